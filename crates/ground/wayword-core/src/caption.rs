@@ -1,0 +1,123 @@
+//! What is said about a view, and who vouches for it.
+
+use crate::{Side, View};
+use serde::{Deserialize, Serialize};
+
+/// A view in words, with the evidence behind them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Caption {
+    /// One or two sentences; holds no object that was denied.
+    pub text: String,
+    /// The room, where one was told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub room: Option<String>,
+    /// What was said to be there, not to be there, or not known.
+    pub sightings: Vec<Sighting>,
+    /// The whole dialogue.
+    pub transcript: Vec<Exchange>,
+}
+
+/// One object, and what a witness said of it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Sighting {
+    /// Its name as the witness gave it.
+    pub name: String,
+    /// Seen, denied or unsure.
+    pub witness: Witness,
+    /// Where it was said to be in the view.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<Where>,
+    /// The colour it was said to have.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<String>,
+    /// Whether several were said to be there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub several: bool,
+    /// Who said so (`labels`, `provider/model`).
+    pub by: String,
+}
+
+/// What a witness said about an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Witness {
+    /// It is there.
+    Seen,
+    /// It is not there.
+    Denied,
+    /// The witness does not know.
+    Unsure,
+}
+
+/// A third of a view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Where {
+    /// The left third.
+    Left,
+    /// The middle.
+    Middle,
+    /// The right third.
+    Right,
+}
+
+impl Where {
+    /// The side of a robot that looks along the view; the middle is ahead.
+    #[must_use]
+    pub fn side(self) -> Side {
+        match self {
+            Self::Left => Side::Left,
+            Self::Middle => Side::Ahead,
+            Self::Right => Side::Right,
+        }
+    }
+}
+
+/// A question and its answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Exchange {
+    /// What was asked.
+    pub question: String,
+    /// What was answered.
+    pub answer: String,
+}
+
+/// A question about a view, with what was said before.
+#[derive(Debug, Clone, Copy)]
+pub struct Ask<'a> {
+    /// What is looked at.
+    pub view: &'a View,
+    /// What is asked.
+    pub question: &'a str,
+    /// The dialogue so far.
+    pub history: &'a [Exchange],
+}
+
+/// What was answered.
+pub type Answer = String;
+
+/// Sees: answers questions about views.
+///
+/// Blocking, object-safe and batching; threads belong to the caller.
+pub trait Answerer: Send + Sync {
+    /// `provider/model`, or `labels`.
+    fn name(&self) -> &str;
+
+    /// One result per question, in their order. One that fails does not fail the others.
+    fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>>;
+}
+
+/// A mind could not do what it was asked.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ModelError {
+    /// The view lacks what this mind looks at.
+    #[error("{mind} needs {needs}, and this view has none: {hint}")]
+    NothingToSee {
+        /// Which mind.
+        mind: String,
+        /// Labels, or an image.
+        needs: &'static str,
+        /// What to do.
+        hint: &'static str,
+    },
+}

@@ -1,0 +1,71 @@
+//! What the program is for: an instruction, tied to its evidence.
+
+use crate::{Finding, Verdict};
+use serde::{Deserialize, Serialize};
+
+/// A wayfinding instruction with where it came from and what was found when it was checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Instruction {
+    /// Its words.
+    pub text: String,
+    /// Name of the style it is written in.
+    pub style: String,
+    /// The parts of the text that evidence stands behind, in the order of the text.
+    pub mentions: Vec<Mention>,
+    /// All checks together.
+    pub verdict: Verdict,
+    /// Each check's outcome.
+    pub findings: Vec<Finding>,
+    /// How it came about.
+    pub provenance: Provenance,
+}
+
+/// Words of an instruction that speak of something on the path.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mention {
+    /// Byte range in the text.
+    pub span: [usize; 2],
+    /// What they speak of.
+    pub kind: MentionKind,
+    /// The frame whose evidence stands behind them.
+    pub frame: usize,
+}
+
+/// What words of an instruction speak of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MentionKind {
+    /// An object.
+    Landmark,
+    /// A room.
+    Room,
+    /// A turn.
+    Turn,
+    /// A floor or stairs.
+    Floor,
+    /// The object of the closing task.
+    Target,
+}
+
+/// How an instruction came about.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Version of Wayword that made it.
+    pub wayword: String,
+    /// Who asked about the frames (`rules`, `provider/model`).
+    pub asker: String,
+    /// Who answered (`labels` is ground truth, not perception).
+    pub answerer: String,
+    /// Who summed the answers up.
+    pub summariser: String,
+    /// Who wrote the text.
+    pub writer: String,
+    /// What the checks held it against (`labels`, `captions`).
+    pub checked_against: String,
+    /// The run's seed.
+    pub seed: u64,
+    /// Hash of the style's reference texts and constraints.
+    pub style_hash: String,
+    /// How often it was written again because a check failed.
+    pub repairs: u32,
+}

@@ -1,0 +1,40 @@
+//! The words that every layer of Wayword shares: ids, poses, headings, paths, views, labels, captions, instructions, styles,
+//! and the traits between two layers.
+//!
+//! **World frame**: right-handed, metres, z up. A heading is in radians, 0 along +y, clockwise seen from above. Elevation
+//! is positive upwards. Adapters convert at their edge.
+//!
+//! Architecture invariant: nothing here reads a file, a clock or a network, and nothing knows a model or a platform.
+
+pub mod caption;
+pub mod graph;
+pub mod heading;
+pub mod id;
+pub mod image;
+pub mod instruction;
+pub mod label;
+pub mod motion;
+pub mod path;
+pub mod platform;
+pub mod pose;
+pub mod seed;
+pub mod style;
+pub mod verdict;
+pub mod view;
+
+pub use caption::{Answer, Answerer, Ask, Caption, Exchange, ModelError, Sighting, Where, Witness};
+pub use glam::DVec3;
+pub use graph::{Route, ViewpointGraph};
+pub use heading::{Compass, Heading, Side};
+pub use id::{ObjectId, SceneId, ViewpointId};
+pub use image::Image;
+pub use instruction::{Instruction, Mention, MentionKind, Provenance};
+pub use label::Label;
+pub use motion::{Climb, Move, Turn};
+pub use path::{Distinction, Frame, Path, Target};
+pub use platform::{PathRequest, Platform, PlatformError};
+pub use pose::Pose;
+pub use seed::rng;
+pub use style::{Constraints, Style};
+pub use verdict::{Check, Finding, Verdict};
+pub use view::{Gaze, GroundTruth, View};

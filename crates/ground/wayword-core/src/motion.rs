@@ -1,0 +1,164 @@
+//! What happens between two frames of a path, and the words that such motion bears.
+
+use crate::{Pose, heading::Side};
+use serde::{Deserialize, Serialize};
+
+/// From one frame to the next: first a turn on the spot, then a walk.
+///
+/// The first move of a path holds the opening turn, from the episode's heading to the first hop.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Move {
+    /// Turn before walking, radians in (-π, π], positive right.
+    pub turn_rad: f64,
+    /// Straight-line distance walked, metres.
+    pub distance_m: f64,
+    /// Height gained (positive) or lost, metres.
+    pub rise_m: f64,
+}
+
+/// A turn as people tell it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Turn {
+    /// Under [`SLIGHT_DEG`]: not worth a word.
+    Straight,
+    /// Between [`SLIGHT_DEG`] and [`FULL_DEG`] to the left.
+    SlightLeft,
+    /// Between [`SLIGHT_DEG`] and [`FULL_DEG`] to the right.
+    SlightRight,
+    /// From [`FULL_DEG`] on, to the left.
+    Left,
+    /// From [`FULL_DEG`] on, to the right.
+    Right,
+    /// From [`AROUND_DEG`] on, either way.
+    Around,
+}
+
+/// Whether a walk goes up, down or stays on the floor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Climb {
+    /// Less than [`CLIMB_M`] of rise.
+    Level,
+    /// Upwards.
+    Up,
+    /// Downwards.
+    Down,
+}
+
+/// From here on a change of direction is worth a word, degrees.
+pub const SLIGHT_DEG: f64 = 25.0;
+/// From here on a turn is told without "slightly", degrees.
+pub const FULL_DEG: f64 = 50.0;
+/// From here on a turn is told as turning around, degrees.
+pub const AROUND_DEG: f64 = 150.0;
+/// From here on a rise is stairs and not a door sill, metres.
+pub const CLIMB_M: f64 = 0.5;
+
+impl Move {
+    /// The move between two poses.
+    #[must_use]
+    pub fn between(from: &Pose, to: &Pose) -> Self {
+        Self {
+            turn_rad: from.heading.turn_to(to.heading),
+            distance_m: from.position.distance(to.position),
+            rise_m: to.position.z - from.position.z,
+        }
+    }
+
+    /// The word for its turn.
+    #[must_use]
+    pub fn turn(&self) -> Turn {
+        Turn::from_rad(self.turn_rad)
+    }
+
+    /// Whether it climbs.
+    #[must_use]
+    pub fn climb(&self) -> Climb {
+        Climb::from_rise(self.rise_m)
+    }
+}
+
+impl Turn {
+    /// The word for a turn of so many radians, positive right.
+    #[must_use]
+    pub fn from_rad(turn_rad: f64) -> Self {
+        let deg = turn_rad.to_degrees();
+        match (deg.abs(), deg > 0.0) {
+            (size, _) if size < SLIGHT_DEG => Self::Straight,
+            (size, _) if size >= AROUND_DEG => Self::Around,
+            (size, true) if size < FULL_DEG => Self::SlightRight,
+            (size, false) if size < FULL_DEG => Self::SlightLeft,
+            (_, true) => Self::Right,
+            (_, false) => Self::Left,
+        }
+    }
+
+    /// Left or right, where the turn has a side.
+    #[must_use]
+    pub fn side(self) -> Option<Side> {
+        match self {
+            Self::SlightLeft | Self::Left => Some(Side::Left),
+            Self::SlightRight | Self::Right => Some(Side::Right),
+            Self::Straight | Self::Around => None,
+        }
+    }
+}
+
+impl Climb {
+    /// The word for a rise of so many metres.
+    #[must_use]
+    pub fn from_rise(rise_m: f64) -> Self {
+        if rise_m >= CLIMB_M {
+            Self::Up
+        } else if rise_m <= -CLIMB_M {
+            Self::Down
+        } else {
+            Self::Level
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Heading;
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    fn pose(x: f64, y: f64, z: f64, deg: f64) -> Pose {
+        Pose::level(DVec3::new(x, y, z), Heading::new(deg.to_radians()).unwrap())
+    }
+
+    #[test]
+    fn a_quarter_clockwise_is_a_right_turn() {
+        let step = Move::between(&pose(0.0, 0.0, 0.0, 350.0), &pose(2.0, 0.0, 0.0, 80.0));
+        assert_eq!(step.turn(), Turn::Right);
+        assert_eq!(step.climb(), Climb::Level);
+        assert!((step.distance_m - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_words_of_turns_change_at_their_limits() {
+        let word = |deg: f64| Turn::from_rad(deg.to_radians());
+        assert_eq!(word(24.9), Turn::Straight);
+        assert_eq!(word(-30.0), Turn::SlightLeft);
+        assert_eq!(word(-50.1), Turn::Left);
+        assert_eq!(word(151.0), Turn::Around);
+        assert_eq!(word(-180.0), Turn::Around);
+    }
+
+    proptest! {
+        #[test]
+        fn mirrored_turns_have_mirrored_words(deg in 0.1..149.0f64) {
+            let (right, left) = (Turn::from_rad(deg.to_radians()), Turn::from_rad(-deg.to_radians()));
+            match right.side() {
+                None => prop_assert_eq!(left, right),
+                Some(side) => {
+                    prop_assert_eq!(side, Side::Right);
+                    prop_assert_eq!(left.side(), Some(Side::Left));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! What a world must offer.
+
+use crate::{Frame, Gaze, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, graph::GraphError};
+use serde::{Deserialize, Serialize};
+use std::{ops::RangeInclusive, path::PathBuf, sync::Arc};
+
+/// A world: scenes with a viewpoint graph, paths through them, and views along these.
+///
+/// Blocking and object-safe; threads belong to the caller.
+pub trait Platform: Send + Sync {
+    /// Its name, as `--platform` takes it.
+    fn name(&self) -> &'static str;
+
+    /// The scenes it can offer, sorted.
+    ///
+    /// # Errors
+    /// When its data cannot be read.
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError>;
+
+    /// The viewpoint graph of a scene.
+    ///
+    /// # Errors
+    /// When there is no such scene or its data cannot be read.
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError>;
+
+    /// A random path that keeps to `request`; the same seed gives the same path. Its target, where the platform knows
+    /// objects, is one that is visible at its end.
+    ///
+    /// # Errors
+    /// When the scene holds no such path, or cannot be read.
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError>;
+
+    /// What is seen from a frame.
+    ///
+    /// # Errors
+    /// When the frame is not a place of the scene, or its data cannot be read.
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError>;
+
+    /// The name of an object that an episode gives by its id, whether or not it can be seen from the frame.
+    ///
+    /// # Errors
+    /// When the data cannot be read.
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError>;
+}
+
+/// What a random path has to be like.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PathRequest {
+    /// Number of hops on the viewpoint graph. A continuous platform, whose paths have none, keeps to the length alone.
+    pub hops: RangeInclusive<usize>,
+    /// Length of the path, metres.
+    pub length_m: RangeInclusive<f64>,
+}
+
+impl Default for PathRequest {
+    /// REVERIE's own range of hops, and R2R's of lengths.
+    fn default() -> Self {
+        Self { hops: 4..=7, length_m: 5.0..=20.0 }
+    }
+}
+
+/// A world cannot give what it was asked for.
+#[derive(Debug, thiserror::Error)]
+pub enum PlatformError {
+    /// A scene that it does not have.
+    #[error("there is no scene {scene}: {hint}")]
+    UnknownScene {
+        /// Its name.
+        scene: String,
+        /// What to do.
+        hint: String,
+    },
+    /// A viewpoint that the scene does not have.
+    #[error("scene {scene} has no viewpoint {viewpoint}")]
+    UnknownViewpoint {
+        /// The scene.
+        scene: SceneId,
+        /// The viewpoint.
+        viewpoint: ViewpointId,
+    },
+    /// A frame that names no viewpoint, on a platform that has nothing between them.
+    #[error("scene {scene} can only be seen from viewpoints of its graph, and this frame names none")]
+    NotAViewpoint {
+        /// The scene.
+        scene: SceneId,
+    },
+    /// A graph that does not hold together.
+    #[error("scene {scene}: {source}")]
+    Graph {
+        /// The scene.
+        scene: SceneId,
+        /// What is wrong with it.
+        source: GraphError,
+    },
+    /// No path of the kind that was asked for.
+    #[error("scene {scene} holds no path with {request}: widen --hops or --metres")]
+    NoSuchPath {
+        /// The scene.
+        scene: SceneId,
+        /// What was asked for, in words.
+        request: String,
+    },
+    /// A file that is missing or cannot be read.
+    #[error("{}: {reason}; {hint}", file.display())]
+    File {
+        /// Which file.
+        file: PathBuf,
+        /// What is wrong, with item, field or line.
+        reason: String,
+        /// What to do.
+        hint: &'static str,
+    },
+}

@@ -1,0 +1,33 @@
+//! Randomness that is the same on every machine and in every order of work.
+
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+/// A generator for one purpose: seeded from the run's seed and the names of what it is for, so that no item's randomness
+/// depends on which items came before it.
+#[must_use]
+pub fn rng(seed: u64, purpose: &[&str]) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(derive(seed, purpose))
+}
+
+/// A seed for a part of a whole: FNV-1a over the seed and the purpose's words.
+#[must_use]
+pub fn derive(seed: u64, purpose: &[&str]) -> u64 {
+    const PRIME: u64 = 0x0000_0100_0000_01b3;
+    let words = purpose.iter().flat_map(|word| word.bytes().chain([0xff]));
+    seed.to_le_bytes()
+        .into_iter()
+        .chain(words)
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn purposes_do_not_run_into_each_other() {
+        assert_ne!(derive(1, &["ab", "c"]), derive(1, &["a", "bc"]));
+        assert_ne!(derive(1, &["ab"]), derive(2, &["ab"]));
+        assert_eq!(derive(7, &["house"]), derive(7, &["house"]));
+    }
+}

@@ -1,0 +1,91 @@
+//! What a check says about a text.
+
+use serde::{Deserialize, Serialize};
+
+/// The outcome of one check, or of all of them together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Checked against evidence, and right.
+    Pass,
+    /// There was nothing to check against.
+    Unverified,
+    /// Checked, and wrong.
+    Fail,
+}
+
+/// What is checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Check {
+    /// Sentences and words, as the style demands.
+    Form,
+    /// The text ends in a task on an object of the final viewpoint.
+    Task,
+    /// Each landmark is evidenced by a frame of the path.
+    Landmarks,
+    /// Landmarks and turns come in the order of the walk.
+    Order,
+    /// Each turn word agrees with a move.
+    Turns,
+    /// Floors and stairs agree with the path.
+    Floors,
+    /// No run of five words is shared with the references.
+    Leak,
+}
+
+/// One check's outcome, with its reason where it did not pass.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Finding {
+    /// Which check.
+    pub check: Check,
+    /// Its outcome.
+    pub verdict: Verdict,
+    /// Why, in a sentence; empty where it passed.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub reason: String,
+    /// The words it is about, where it is about some: byte range in the text.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub span: Option<[usize; 2]>,
+}
+
+impl Check {
+    /// All of them, in the order in which they are told.
+    pub const ALL: [Self; 7] =
+        [Self::Form, Self::Task, Self::Landmarks, Self::Order, Self::Turns, Self::Floors, Self::Leak];
+
+    /// Its name, as files and screens have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Form => "form",
+            Self::Task => "task",
+            Self::Landmarks => "landmarks",
+            Self::Order => "order",
+            Self::Turns => "turns",
+            Self::Floors => "floors",
+            Self::Leak => "leak",
+        }
+    }
+}
+
+impl Verdict {
+    /// The verdict on a whole text: the worst of its checks; nothing checked is unverified.
+    #[must_use]
+    pub fn of(findings: &[Finding]) -> Self {
+        findings.iter().map(|finding| finding.verdict).max().unwrap_or(Self::Unverified)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_is_as_good_as_its_worst_check() {
+        let finding = |verdict| Finding { check: Check::Turns, verdict, reason: String::new(), span: None };
+        assert_eq!(Verdict::of(&[]), Verdict::Unverified);
+        assert_eq!(Verdict::of(&[finding(Verdict::Pass), finding(Verdict::Unverified)]), Verdict::Unverified);
+        assert_eq!(Verdict::of(&[finding(Verdict::Pass), finding(Verdict::Fail)]), Verdict::Fail);
+    }
+}

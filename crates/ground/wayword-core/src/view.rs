@@ -1,0 +1,96 @@
+//! What is seen from a pose.
+
+use crate::{Heading, Image, Label, Pose, Side, heading::Compass};
+use serde::{Deserialize, Serialize};
+use std::{f64::consts::FRAC_PI_2, sync::Arc};
+
+/// Where to look, and how wide.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Gaze {
+    /// Direction of the view's centre; the elevation is 0.
+    pub heading: Heading,
+    /// Horizontal field of view, radians.
+    pub horizontal_fov_rad: f64,
+}
+
+/// What is seen from a pose with a field of view.
+#[derive(Debug, Clone)]
+pub struct View {
+    /// Where the eye is and looks.
+    pub pose: Pose,
+    /// Horizontal field of view, radians.
+    pub horizontal_fov_rad: f64,
+    /// The picture, where there is one.
+    pub image: Option<Arc<Image>>,
+    truth: Option<GroundTruth>,
+}
+
+/// What the platform itself knows about a view.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct GroundTruth {
+    /// Objects whose box's centre lies in the view.
+    pub labels: Vec<Label>,
+    /// The room in which the eye is ("living room").
+    pub room: Option<String>,
+}
+
+impl Gaze {
+    /// One of the four views of a panorama: 90 degrees wide.
+    #[must_use]
+    pub fn quarter(heading: Heading) -> Self {
+        Self { heading, horizontal_fov_rad: FRAC_PI_2 }
+    }
+
+    /// The four views of a panorama relative to a heading: ahead, right, behind, left.
+    #[must_use]
+    pub fn around(heading: Heading) -> [Self; 4] {
+        Side::ALL.map(|side| Self::quarter(heading.turned(side.turn_rad())))
+    }
+
+    /// The four views of a panorama by the compass: north, east, south, west.
+    #[must_use]
+    pub fn compass() -> [Self; 4] {
+        Compass::ALL.map(|point| Self::quarter(point.heading()))
+    }
+
+    /// Whether a direction lies within the gaze's width. Half open on the right, so that each direction belongs to exactly
+    /// one view of a panorama.
+    #[must_use]
+    pub fn holds(&self, heading: Heading) -> bool {
+        let off = self.heading.turn_to(heading);
+        let half = self.horizontal_fov_rad / 2.0;
+        (-half..half).contains(&off)
+    }
+}
+
+impl View {
+    /// A view; `truth` is `None` where the platform knows nothing but the picture.
+    #[must_use]
+    pub fn new(pose: Pose, horizontal_fov_rad: f64, image: Option<Arc<Image>>, truth: Option<GroundTruth>) -> Self {
+        Self { pose, horizontal_fov_rad, image, truth }
+    }
+
+    /// What the platform knows. Only the `labels` minds and the checks' evidence may ask: a test in wayword-synthesis holds
+    /// every other mind to the picture.
+    #[must_use]
+    pub fn ground_truth(&self) -> Option<&GroundTruth> {
+        self.truth.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn each_direction_belongs_to_one_view_of_a_panorama(around in 0.0..std::f64::consts::TAU, seen in 0.0..std::f64::consts::TAU) {
+            let (around, seen) = (Heading::new(around).unwrap(), Heading::new(seen).unwrap());
+            let holders = Gaze::around(around).iter().filter(|gaze| gaze.holds(seen)).count();
+            // Rounding can put a direction on a seam into none or two.
+            let on_seam = ((around.turn_to(seen).abs() / FRAC_PI_2).fract() - 0.5).abs() < 1e-9;
+            prop_assert!(holders == 1 || on_seam);
+        }
+    }
+}
