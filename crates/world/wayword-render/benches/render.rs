@@ -1,0 +1,113 @@
+//! How long drawing takes at 640x480: a scan-like mesh of half a million triangles, and a cube map.
+
+#![allow(clippy::expect_used, clippy::print_stdout, missing_docs, reason = "a benchmark may fail and print")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use glam::{DMat3, DVec3, Vec2, Vec3};
+use std::hint::black_box;
+use std::time::Instant;
+use wayword_render::{Camera, CubeMap, Face, Filter, Material, Mesh, Scene, Texture, render, sample_view};
+
+/// A bumpy box of 12 x 9 x 3 m seen from inside with 40 bumpy columns in it: triangles of about 3 cm, as scanners give.
+fn scan() -> Mesh {
+    let mut mesh = Mesh { id: 1, ..Mesh::default() };
+    let (a, b, c) = (12.0, 9.0, 3.0);
+    let walls: [[Vec3; 3]; 6] = [
+        [Vec3::ZERO, Vec3::X * a, Vec3::Y * b],
+        [Vec3::Z * c, Vec3::Y * b, Vec3::X * a],
+        [Vec3::ZERO, Vec3::Z * c, Vec3::X * a],
+        [Vec3::Y * b, Vec3::X * a, Vec3::Z * c],
+        [Vec3::ZERO, Vec3::Y * b, Vec3::Z * c],
+        [Vec3::X * a, Vec3::Z * c, Vec3::Y * b],
+    ];
+    for [origin, across, up] in walls {
+        grid(&mut mesh, [(across.length() * 29.0) as u32, (up.length() * 29.0) as u32], |s, t| {
+            origin + across * s + up * t
+        });
+    }
+    for column in 0..40 {
+        let (x, y) = (0.9 + (column % 8) as f32 * 1.45, 0.9 + (column / 8) as f32 * 1.75);
+        grid(&mut mesh, [72, 36], |s, t| {
+            let (sin, cos) = (s * std::f32::consts::TAU).sin_cos();
+            Vec3::new(x + 0.35 * cos, y + 0.35 * sin, 1.2 * t)
+        });
+    }
+    mesh
+}
+
+fn grid(mesh: &mut Mesh, [columns, rows]: [u32; 2], place: impl Fn(f32, f32) -> Vec3) {
+    let first = mesh.positions.len() as u32;
+    for row in 0..=rows {
+        for column in 0..=columns {
+            let (s, t) = (column as f32 / columns as f32, row as f32 / rows as f32);
+            let point = place(s, t);
+            let bump = (point.x * 23.0 + point.z * 31.0).sin() * (point.y * 19.0 + point.z * 17.0).cos() * 0.01;
+            mesh.positions.push(point + bump);
+            mesh.uvs.push(Vec2::new(s, t));
+        }
+    }
+    for row in 0..rows {
+        for column in 0..columns {
+            let corner = first + row * (columns + 1) + column;
+            let above = corner + columns + 1;
+            mesh.triangles.extend([[corner, corner + 1, above + 1], [corner, above + 1, above]]);
+        }
+    }
+}
+
+fn scene(filter: Filter) -> Scene {
+    let texel = |i: u32| {
+        let (x, y) = (i % 4096, i / 4096);
+        [(x ^ y) as u8, (x >> 4) as u8, (y >> 4) as u8, 255]
+    };
+    let texture = Texture::new(4096, 4096, (0..4096 * 4096).map(texel).collect()).expect("sizes agree");
+    let material = Material { texture: Some(0), ..Material::default() };
+    let mesh = scan();
+    println!("{} triangles", mesh.triangles.len());
+    Scene::new(vec![mesh], vec![material], vec![texture]).expect("the mesh is sound").with_filter(filter)
+}
+
+/// The pose of a walk through the scan.
+fn pose(step: u32) -> Camera {
+    let position = DVec3::new(1.65 + 1.45 * f64::from(step % 7), 1.8 + 1.75 * f64::from(step % 4), 1.5);
+    let vertical_fov_rad = 60f64.to_radians();
+    Camera { position, heading_rad: f64::from(step), elevation_rad: -0.2, vertical_fov_rad, width: 640, height: 480 }
+}
+
+/// One view after another of twenty poses: the figure is that of the mean pose.
+fn views(criterion: &mut Criterion) {
+    for (name, filter) in [("bilinear", Filter::Bilinear), ("trilinear", Filter::Trilinear)] {
+        let scene = scene(filter);
+        let mut each_ms: Vec<f64> = (0..20)
+            .map(|step| {
+                let start = Instant::now();
+                black_box(render(&scene, &pose(step)).expect("the camera is sound"));
+                start.elapsed().as_secs_f64() * 1e3
+            })
+            .collect();
+        each_ms.sort_by(f64::total_cmp);
+        println!("{name}: by pose median {:.1} ms, from {:.1} to {:.1}", each_ms[10], each_ms[0], each_ms[19]);
+        let mut step = 0;
+        criterion.bench_function(&format!("view 640x480 of 500k triangles, 4096 texture, {name}"), |bencher| {
+            bencher.iter(|| {
+                step = (step + 1) % 20;
+                render(&scene, &pose(step))
+            });
+        });
+    }
+}
+
+fn cube(criterion: &mut Criterion) {
+    let face = |n: u32| Face { side_px: 512, rgb: (0..512 * 512 * 3).map(|i| ((i * (n + 3)) >> 5) as u8).collect() };
+    let cube = CubeMap::new(std::array::from_fn(|n| face(n as u32))).expect("the faces are square");
+    let mut heading = 0.0;
+    criterion.bench_function("cube map to view 640x480", |bencher| {
+        bencher.iter(|| {
+            heading += 0.1;
+            sample_view(&cube, &DMat3::IDENTITY, heading, 0.1, 60f64.to_radians(), 640, 480)
+        });
+    });
+}
+
+criterion_group!(benches, views, cube);
+criterion_main!(benches);

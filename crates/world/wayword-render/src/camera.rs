@@ -1,0 +1,160 @@
+//! The pinhole camera.
+
+use crate::picture::{RenderError, check_finite, check_size};
+use glam::{DMat3, DVec3};
+
+/// A pinhole camera without roll. Its axes in the world are forward = (sin h cos e, cos h cos e, sin e),
+/// right = (cos h, -sin h, 0) and up = right x forward (Matterport3D's and the world frame's conventions).
+///
+/// Pixel coordinates are continuous, x to the right and y down, (0, 0) the top left corner of the picture: the centre
+/// of the top left pixel is (0.5, 0.5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Eye, metres, world frame.
+    pub position: DVec3,
+    /// 0 along +y, clockwise seen from above.
+    pub heading_rad: f64,
+    /// 0 at the horizon, up positive.
+    pub elevation_rad: f64,
+    /// Angle between the top and the bottom of the picture, in (0, pi).
+    pub vertical_fov_rad: f64,
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Camera {
+    /// The camera at `position` that looks along `forward` (any length). Poses given as quaternions (Habitat's) come
+    /// in this way: their roll is zero.
+    #[must_use]
+    pub fn looking_along(position: DVec3, forward: DVec3, vertical_fov_rad: f64, width: u32, height: u32) -> Self {
+        let level = libm::sqrt(forward.x * forward.x + forward.y * forward.y);
+        Self {
+            position,
+            heading_rad: libm::atan2(forward.x, forward.y),
+            elevation_rad: libm::atan2(forward.z, level),
+            vertical_fov_rad,
+            width,
+            height,
+        }
+    }
+
+    /// Rotation whose columns are right, up and backward (-forward) in the world: the camera frame is GL's.
+    #[must_use]
+    pub fn world_from_camera(&self) -> DMat3 {
+        let (sin_h, cos_h) = libm::sincos(self.heading_rad);
+        let (sin_e, cos_e) = libm::sincos(self.elevation_rad);
+        let forward = DVec3::new(sin_h * cos_e, cos_h * cos_e, sin_e);
+        let right = DVec3::new(cos_h, -sin_h, 0.0);
+        DMat3::from_cols(right, right.cross(forward), -forward)
+    }
+
+    /// Where a world point falls: (x_px, y_px, depth_m), depth along forward; `None` for points not in front of the
+    /// eye. The point may lie outside the picture.
+    #[must_use]
+    pub fn project(&self, point: DVec3) -> Option<(f64, f64, f64)> {
+        let axes = self.world_from_camera();
+        let offset = point - self.position;
+        let depth_m = -offset.dot(axes.z_axis);
+        if depth_m <= 0.0 || depth_m.is_nan() {
+            return None;
+        }
+        let scale = self.focal_px() / depth_m;
+        let x_px = 0.5 * f64::from(self.width) + scale * offset.dot(axes.x_axis);
+        let y_px = 0.5 * f64::from(self.height) - scale * offset.dot(axes.y_axis);
+        Some((x_px, y_px, depth_m))
+    }
+
+    /// Unit direction in the world of the ray through a pixel position.
+    #[must_use]
+    pub fn ray(&self, x_px: f64, y_px: f64) -> DVec3 {
+        let focal_px = self.focal_px();
+        let right = (x_px - 0.5 * f64::from(self.width)) / focal_px;
+        let up = (0.5 * f64::from(self.height) - y_px) / focal_px;
+        (self.world_from_camera() * DVec3::new(right, up, -1.0)).normalize()
+    }
+
+    /// Pixels per unit of tangent, the same in both directions.
+    pub(crate) fn focal_px(&self) -> f64 {
+        0.5 * f64::from(self.height) / libm::tan(0.5 * self.vertical_fov_rad)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
+        check_size(self.width.into(), self.height.into())?;
+        check_finite("position.x", self.position.x)?;
+        check_finite("position.y", self.position.y)?;
+        check_finite("position.z", self.position.z)?;
+        check_finite("heading_rad", self.heading_rad)?;
+        check_finite("elevation_rad", self.elevation_rad)?;
+        check_fov(self.vertical_fov_rad)
+    }
+}
+
+/// Refuses angles that no flat picture can have.
+pub(crate) fn check_fov(value: f64) -> Result<(), RenderError> {
+    // The bounds keep the tangent and its inverse within what single precision bears.
+    if (1e-4..=3.1).contains(&value) {
+        return Ok(());
+    }
+    Err(RenderError::Number { field: "vertical_fov_rad", value, wanted: "within 0.0001..=3.1" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn camera(heading_rad: f64, elevation_rad: f64) -> Camera {
+        let position = DVec3::new(1.0, -2.0, 1.5);
+        Camera { position, heading_rad, elevation_rad, vertical_fov_rad: 1.0, width: 640, height: 480 }
+    }
+
+    #[test]
+    fn east_is_right_of_north() {
+        let (x, y, depth) = camera(0.0, 0.0).project(DVec3::new(2.0, 8.0, 1.5)).unwrap();
+        assert!(x > 320.0 && (y - 240.0).abs() < 1e-9 && (depth - 10.0).abs() < 1e-12);
+        let (_, y, _) = camera(0.0, 0.0).project(DVec3::new(1.0, 8.0, 2.5)).unwrap();
+        assert!(y < 240.0, "what is higher is further up in the picture");
+        assert_eq!(camera(0.0, 0.0).project(DVec3::new(1.0, -3.0, 1.5)), None);
+    }
+
+    #[test]
+    fn axes_are_a_right_handed_rotation() {
+        let axes = camera(0.7, -0.4).world_from_camera();
+        assert!((axes.determinant() - 1.0).abs() < 1e-12);
+        assert!(axes.y_axis.z > 0.0);
+    }
+
+    #[test]
+    fn refuses_what_cannot_be_drawn() {
+        assert!(Camera { width: 0, ..camera(0.0, 0.0) }.check().is_err());
+        assert!(Camera { height: MAX + 1, ..camera(0.0, 0.0) }.check().is_err());
+        assert!(Camera { vertical_fov_rad: f64::NAN, ..camera(0.0, 0.0) }.check().is_err());
+        assert!(camera(f64::INFINITY, 0.0).check().is_err());
+        assert!(camera(0.0, 0.0).check().is_ok());
+    }
+    const MAX: u32 = crate::MAX_SIDE_PX;
+
+    proptest! {
+        #[test]
+        fn a_point_on_a_pixels_ray_projects_to_that_pixel(
+            heading in -7.0..7.0f64, elevation in -1.5..1.5f64,
+            x in 0.0..640.0f64, y in 0.0..480.0f64, distance in 0.1..50.0f64,
+        ) {
+            let camera = camera(heading, elevation);
+            let (back_x, back_y, depth) = camera.project(camera.position + camera.ray(x, y) * distance).unwrap();
+            prop_assert!((back_x - x).abs() < 1e-6 && (back_y - y).abs() < 1e-6);
+            prop_assert!(depth <= distance + 1e-9);
+        }
+
+        #[test]
+        fn looking_along_a_cameras_forward_gives_that_camera(heading in -3.1..3.1f64, elevation in -1.5..1.5f64) {
+            let camera = camera(heading, elevation);
+            let forward = camera.ray(320.0, 240.0) * 3.0;
+            let back = Camera::looking_along(camera.position, forward, 1.0, 640, 480);
+            prop_assert!((back.heading_rad - heading).abs() < 1e-9);
+            prop_assert!((back.elevation_rad - elevation).abs() < 1e-9);
+        }
+    }
+}

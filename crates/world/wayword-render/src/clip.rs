@@ -1,0 +1,101 @@
+//! Cutting triangles at planes (Sutherland-Hodgman).
+
+use crate::view::Plane;
+use glam::Vec3;
+
+/// A corner of a cut triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ClipVertex {
+    /// View coordinates.
+    pub(crate) point: Vec3,
+    /// Weights of the three corners of the triangle it was cut from.
+    pub(crate) weights: Vec3,
+}
+
+/// The convex polygon that `planes` leave of a triangle, in its winding; empty where nothing is left.
+///
+/// Two triangles that share an edge get the same points on it: a cut is always computed from the kept end to the
+/// dropped one.
+pub(crate) fn clip(triangle: [Vec3; 3], planes: &[Plane]) -> Vec<ClipVertex> {
+    let [a, b, c] = triangle;
+    let mut polygon = vec![
+        ClipVertex { point: a, weights: Vec3::X },
+        ClipVertex { point: b, weights: Vec3::Y },
+        ClipVertex { point: c, weights: Vec3::Z },
+    ];
+    let mut kept = Vec::with_capacity(8);
+    for plane in planes {
+        kept.clear();
+        for (i, &vertex) in polygon.iter().enumerate() {
+            let next = polygon[(i + 1) % polygon.len()];
+            let (here, there) = (plane.distance(vertex.point), plane.distance(next.point));
+            if here >= 0.0 {
+                kept.push(vertex);
+                if there < 0.0 {
+                    kept.push(cut(vertex, next, here / (here - there)));
+                }
+            } else if there >= 0.0 {
+                kept.push(cut(next, vertex, there / (there - here)));
+            }
+        }
+        std::mem::swap(&mut polygon, &mut kept);
+        if polygon.len() < 3 {
+            return Vec::new();
+        }
+    }
+    polygon
+}
+
+fn cut(kept: ClipVertex, dropped: ClipVertex, share: f32) -> ClipVertex {
+    ClipVertex {
+        point: kept.point + (dropped.point - kept.point) * share,
+        weights: kept.weights + (dropped.weights - kept.weights) * share,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const NEAR: Plane = Plane { normal: Vec3::Z, offset: -1.0 };
+
+    #[test]
+    fn one_corner_behind_leaves_four() {
+        let triangle = [Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 0.0, -1.0)];
+        let polygon = clip(triangle, &[NEAR]);
+        assert_eq!(polygon.len(), 4);
+        assert!(polygon.iter().all(|v| v.point.z >= 1.0 - 1e-6));
+        assert!(clip(triangle.map(|p| p - Vec3::Z * 3.0), &[NEAR]).is_empty());
+        assert_eq!(clip(triangle.map(|p| p + Vec3::Z * 3.0), &[NEAR]).len(), 3);
+    }
+
+    fn point() -> impl Strategy<Value = Vec3> {
+        [-5.0..5.0f32, -5.0..5.0f32, -5.0..5.0f32].prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #[test]
+        fn weights_give_back_the_points(a in point(), b in point(), c in point()) {
+            for vertex in clip([a, b, c], &[NEAR, Plane { normal: Vec3::X, offset: 2.0 }]) {
+                let again = a * vertex.weights.x + b * vertex.weights.y + c * vertex.weights.z;
+                prop_assert!((again - vertex.point).length() < 1e-4);
+                prop_assert!(vertex.point.z > 1.0 - 1e-4 && vertex.point.x > -2.0 - 1e-4);
+            }
+        }
+
+        #[test]
+        fn neighbours_cut_their_edge_at_the_same_point(a in point(), b in point(), c in point(), d in point()) {
+            let cuts = |polygon: Vec<ClipVertex>, unused: fn(Vec3) -> f32| -> Vec<Vec3> {
+                let on_edge = |v: &&ClipVertex| unused(v.weights) == 0.0 && v.weights.max_element() < 1.0;
+                let mut points: Vec<Vec3> = polygon.iter().filter(on_edge).map(|v| v.point).collect();
+                points.sort_by(|p, q| p.x.total_cmp(&q.x));
+                points
+            };
+            // The edge from a to b is run through in opposite directions.
+            let one = cuts(clip([a, b, c], &[NEAR]), |w| w.z);
+            let other = cuts(clip([b, a, d], &[NEAR]), |w| w.z);
+            prop_assert_eq!(one, other);
+        }
+    }
+}

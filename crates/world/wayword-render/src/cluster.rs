@@ -1,0 +1,153 @@
+//! Triangles in groups that lie together: a whole group is dropped when it lies outside the view.
+
+use crate::mesh::Mesh;
+use glam::{Vec2, Vec3};
+use std::collections::BTreeMap;
+
+/// Triangles per cluster, at most.
+pub(crate) const CLUSTER_TRIANGLES: usize = 256;
+
+/// A triangle of a [`Soup`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle {
+    /// Indices into the soup's vertices.
+    pub(crate) corners: [u32; 3],
+    /// Number in the order the caller gave; at equal depth the lower one is seen, so that clusters do not show.
+    pub(crate) source: u32,
+}
+
+/// A run of triangles and of the vertices they use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cluster {
+    pub(crate) first_triangle: u32,
+    pub(crate) triangles: u32,
+    pub(crate) first_vertex: u32,
+    pub(crate) vertices: u32,
+    /// Index into the scene's surfaces.
+    pub(crate) surface: u32,
+    /// World-space box.
+    pub(crate) centre: Vec3,
+    pub(crate) half_extent: Vec3,
+}
+
+/// All meshes of a scene as clusters. A vertex that two clusters use is stored twice.
+#[derive(Debug, Default)]
+pub(crate) struct Soup {
+    pub(crate) clusters: Vec<Cluster>,
+    pub(crate) triangles: Vec<Triangle>,
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) uvs: Vec<Vec2>,
+    pub(crate) colours: Vec<[f32; 3]>,
+}
+
+impl Soup {
+    /// Adds a checked mesh; `surface` is what its clusters will name.
+    pub(crate) fn add(&mut self, mesh: &Mesh, surface: u32) {
+        let first_source = self.triangles.len() as u32;
+        let order = near_order(mesh);
+        for group in order.chunks(CLUSTER_TRIANGLES) {
+            self.add_cluster(mesh, group, first_source, surface);
+        }
+    }
+
+    fn add_cluster(&mut self, mesh: &Mesh, group: &[u32], first_source: u32, surface: u32) {
+        let (first_vertex, first_triangle) = (self.positions.len() as u32, self.triangles.len() as u32);
+        let mut placed = BTreeMap::new();
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for &index in group {
+            let corners = mesh.triangles[index as usize].map(|vertex| {
+                *placed.entry(vertex).or_insert_with(|| {
+                    let v = vertex as usize;
+                    (low, high) = (low.min(mesh.positions[v]), high.max(mesh.positions[v]));
+                    self.positions.push(mesh.positions[v]);
+                    self.uvs.push(mesh.uvs.get(v).copied().unwrap_or_default());
+                    self.colours.push(mesh.colours.get(v).copied().unwrap_or([1.0; 3]));
+                    self.positions.len() as u32 - 1
+                })
+            });
+            self.triangles.push(Triangle { corners, source: first_source + index });
+        }
+        self.clusters.push(Cluster {
+            first_triangle,
+            triangles: group.len() as u32,
+            first_vertex,
+            vertices: self.positions.len() as u32 - first_vertex,
+            surface,
+            centre: (low + high) * 0.5,
+            half_extent: (high - low) * 0.5,
+        });
+    }
+}
+
+/// The mesh's triangle numbers, neighbours in space near each other (Morton order of the centroids).
+fn near_order(mesh: &Mesh) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+    if order.len() <= CLUSTER_TRIANGLES {
+        return order;
+    }
+    let centroid = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        (a + b + c) / 3.0
+    };
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for triangle in &mesh.triangles {
+        let point = centroid(triangle);
+        (low, high) = (low.min(point), high.max(point));
+    }
+    // The same scale on all axes, or clusters of a flat mesh would be long and thin.
+    let scale = 1023.0 / (high - low).max_element().max(f32::MIN_POSITIVE);
+    let keys: Vec<u32> = mesh.triangles.iter().map(|t| morton((centroid(t) - low) * scale)).collect();
+    order.sort_by_key(|&index| keys[index as usize]);
+    order
+}
+
+/// Interleaves the low ten bits of the coordinates.
+fn morton(cell: Vec3) -> u32 {
+    let spread = |value: f32| {
+        let mut bits = (value as u32).min(1023);
+        bits = (bits | bits << 16) & 0x0300_00ff;
+        bits = (bits | bits << 8) & 0x0300_f00f;
+        bits = (bits | bits << 4) & 0x030c_30c3;
+        (bits | bits << 2) & 0x0924_9249
+    };
+    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_triangle_is_kept_once_and_its_cluster_holds_it() {
+        let positions: Vec<Vec3> = (0..1000).map(|i| Vec3::new((i * 37 % 100) as f32, i as f32, 1.0)).collect();
+        let triangles: Vec<[u32; 3]> = (0..900).map(|i| [i, i + 1, (i * 7) % 1000]).collect();
+        let mesh = Mesh { positions, triangles, ..Mesh::default() };
+        let mut soup = Soup::default();
+        soup.add(&Mesh { triangles: vec![[0, 1, 2]], ..mesh.clone() }, 0);
+        soup.add(&mesh, 1);
+        assert_eq!(soup.clusters.len(), 1 + 900usize.div_ceil(CLUSTER_TRIANGLES));
+        let mut sources: Vec<u32> = soup.triangles.iter().map(|t| t.source).collect();
+        sources.sort_unstable();
+        assert_eq!(sources, (0..901).collect::<Vec<u32>>());
+        for cluster in &soup.clusters {
+            let first = cluster.first_triangle as usize;
+            for triangle in &soup.triangles[first..first + cluster.triangles as usize] {
+                for corner in triangle.corners {
+                    assert!((cluster.first_vertex..cluster.first_vertex + cluster.vertices).contains(&corner));
+                    let offset = soup.positions[corner as usize] - cluster.centre;
+                    assert!((offset.abs() - cluster.half_extent).max_element() < 1e-3);
+                }
+            }
+        }
+        let again = soup.triangles.iter().find(|t| t.source == 1 + 500).unwrap();
+        let want = mesh.triangles[500].map(|v| mesh.positions[v as usize]);
+        assert_eq!(again.corners.map(|v| soup.positions[v as usize]), want);
+    }
+
+    #[test]
+    fn morton_interleaves() {
+        assert_eq!(morton(Vec3::new(1.0, 0.0, 0.0)), 1);
+        assert_eq!(morton(Vec3::new(0.0, 3.0, 0.0)), 0b010_010);
+        assert_eq!(morton(Vec3::splat(1023.0)), (1 << 30) - 1);
+    }
+}

@@ -1,0 +1,164 @@
+//! Six pictures around a point, and views sampled from them as the Matterport3D simulator does.
+
+use crate::camera::check_fov;
+use crate::picture::{RenderError, check_finite, check_size};
+use glam::{DMat3, Vec3};
+use rayon::prelude::*;
+
+/// The longest side a face may have.
+const MAX_FACE_PX: u32 = 8192;
+
+/// One side of the cube, square.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    /// Pixels per row, and rows.
+    pub side_px: u32,
+    /// Gamma-encoded sRGB, three bytes per pixel, from the top left.
+    pub rgb: Vec<u8>,
+}
+
+/// The six faces in Matterport3D's skybox order: 0 up, 1 to 4 around, 5 down.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CubeMap {
+    /// GL's cube has them as +X = 2, -X = 4, +Y = 0, -Y = 5, +Z = 1, -Z = 3.
+    pub faces: [Face; 6],
+}
+
+/// Why pictures do not make a cube.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CubeMapError {
+    /// A face is not square, empty or too large.
+    #[error(
+        "face {face}: {bytes} bytes for {side_px}x{side_px} pixels: give three per pixel, side in 1..={MAX_FACE_PX}"
+    )]
+    Face {
+        /// Index of the face.
+        face: usize,
+        /// Its side.
+        side_px: u32,
+        /// Its bytes.
+        bytes: usize,
+    },
+    /// The strip does not hold six squares side by side.
+    #[error("skybox strip of {width}x{height} pixels with {bytes} bytes: give six square faces side by side, RGB")]
+    Strip {
+        /// Pixels per row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Its bytes.
+        bytes: usize,
+    },
+}
+
+impl CubeMap {
+    /// A cube map of six checked faces.
+    ///
+    /// # Errors
+    /// [`CubeMapError::Face`] names the first face whose bytes do not fill a square.
+    pub fn new(faces: [Face; 6]) -> Result<Self, CubeMapError> {
+        for (index, face) in faces.iter().enumerate() {
+            let side = face.side_px as usize;
+            if face.side_px == 0 || face.side_px > MAX_FACE_PX || face.rgb.len() != 3 * side * side {
+                let bytes = face.rgb.len();
+                return Err(CubeMapError::Face { face: index, side_px: face.side_px, bytes });
+            }
+        }
+        Ok(Self { faces })
+    }
+
+    /// A cube map from the faces 0 to 5 side by side (Matterport3D's `*_skybox_small.jpg`), RGB.
+    ///
+    /// # Errors
+    /// [`CubeMapError::Strip`] where the picture is not six squares wide.
+    pub fn from_strip(width: u32, height: u32, rgb: &[u8]) -> Result<Self, CubeMapError> {
+        let (side, bytes) = (height as usize, rgb.len());
+        let fits = (1..=MAX_FACE_PX).contains(&height) && width == 6 * height && bytes == 18 * side * side;
+        if !fits {
+            return Err(CubeMapError::Strip { width, height, bytes });
+        }
+        let face = |index: usize| {
+            let rows = rgb.chunks_exact(18 * side);
+            let part = rows.flat_map(|row| row[3 * side * index..3 * side * (index + 1)].iter().copied());
+            Face { side_px: height, rgb: part.collect() }
+        };
+        Ok(Self { faces: std::array::from_fn(face) })
+    }
+
+    /// The colour in a direction of GL's cube frame, 0..=255 per channel.
+    fn look_up(&self, direction: Vec3) -> Vec3 {
+        let Vec3 { x, y, z } = direction;
+        let size = direction.abs();
+        // Face, the two coordinates on it and the major one, as GL's cube lookup has them.
+        let (face, s, t, major) = if size.x >= size.y && size.x >= size.z {
+            if x >= 0.0 { (2, -z, -y, size.x) } else { (4, z, -y, size.x) }
+        } else if size.y >= size.z {
+            if y >= 0.0 { (0, x, z, size.y) } else { (5, x, -z, size.y) }
+        } else if z >= 0.0 {
+            (1, x, -y, size.z)
+        } else {
+            (3, -x, -y, size.z)
+        };
+        let scale = 0.5 / major;
+        self.faces[face].bilinear(s * scale + 0.5, t * scale + 0.5)
+    }
+}
+
+impl Face {
+    /// Bilinear between pixel centres, clamped at the edges.
+    fn bilinear(&self, u: f32, v: f32) -> Vec3 {
+        let side = self.side_px as usize;
+        let split = |coordinate: f32| {
+            let position = (coordinate * side as f32 - 0.5).clamp(0.0, (side - 1) as f32);
+            let index = position as usize;
+            (index, (index + 1).min(side - 1), position - index as f32)
+        };
+        let (left, right, across) = split(u);
+        let (above, below, down) = split(v);
+        let at = |x: usize, y: usize| {
+            let i = 3 * (y * side + x);
+            Vec3::new(f32::from(self.rgb[i]), f32::from(self.rgb[i + 1]), f32::from(self.rgb[i + 2]))
+        };
+        let top = at(left, above) + (at(right, above) - at(left, above)) * across;
+        let bottom = at(left, below) + (at(right, below) - at(left, below)) * across;
+        top + (bottom - top) * down
+    }
+}
+
+/// Samples the perspective view that the Matterport3D simulator shows: RGB, three bytes per pixel, row by row.
+///
+/// `world_from_skybox` is the rotation of the viewpoint's pose (the upper left 3x3 of `pose`). Heading and elevation
+/// are the world frame's. The cube is looked up along l = -(R^T d) for a pixel's world ray d: the simulator's own
+/// shader in closed form (peteanderson80/Matterport3DSimulator, MatterSim.cpp).
+///
+/// # Errors
+/// [`RenderError`] where the numbers cannot give a picture.
+pub fn sample_view(
+    cube: &CubeMap,
+    world_from_skybox: &DMat3,
+    heading_rad: f64,
+    elevation_rad: f64,
+    vertical_fov_rad: f64,
+    width: u32,
+    height: u32,
+) -> Result<Vec<u8>, RenderError> {
+    check_size(width.into(), height.into())?;
+    check_finite("heading_rad", heading_rad)?;
+    check_finite("elevation_rad", elevation_rad)?;
+    check_fov(vertical_fov_rad)?;
+    let camera =
+        crate::Camera { position: glam::DVec3::ZERO, heading_rad, elevation_rad, vertical_fov_rad, width, height };
+    let axes = -(world_from_skybox.transpose() * camera.world_from_camera());
+    let (right, up, forward) = (axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), -axes.z_axis.as_vec3());
+    let pixel = (1.0 / camera.focal_px()) as f32;
+    let mut rgb = vec![0; 3 * width as usize * height as usize];
+    rgb.par_chunks_exact_mut(3 * width as usize).enumerate().for_each(|(y, row)| {
+        let start = forward + up * ((0.5 * height as f32 - (y as f32 + 0.5)) * pixel);
+        for (x, out) in row.chunks_exact_mut(3).enumerate() {
+            let direction = start + right * ((x as f32 + 0.5 - 0.5 * width as f32) * pixel);
+            let colour = cube.look_up(direction) + Vec3::splat(0.5);
+            out.copy_from_slice(&colour.to_array().map(|value| value as u8));
+        }
+    });
+    Ok(rgb)
+}

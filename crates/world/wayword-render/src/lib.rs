@@ -1,0 +1,57 @@
+//! Meshes to views, cube maps to views, top-down maps: drawn on the CPU, the same picture on every machine.
+//!
+//! The renderer knows meshes, materials, textures and ids, not rooms or platforms. It shades the unlit way that
+//! Habitat does: light arrives baked into vertex colours or textures. All geometry is in the world frame:
+//! right-handed, metres, z up; headings are 0 along +y and grow clockwise seen from above.
+//!
+//! ```
+//! use glam::{DVec3, Vec3};
+//! use wayword_render::{Camera, Material, Mesh, Scene, render};
+//!
+//! let wall = Mesh {
+//!     positions: vec![Vec3::new(-1.0, 2.0, 0.0), Vec3::new(1.0, 2.0, 0.0), Vec3::new(0.0, 2.0, 2.0)],
+//!     triangles: vec![[0, 1, 2]],
+//!     id: 7,
+//!     ..Mesh::default()
+//! };
+//! let scene = Scene::new(vec![wall], vec![Material::default()], vec![])?;
+//! let camera = Camera {
+//!     position: DVec3::new(0.0, 0.0, 1.0),
+//!     heading_rad: 0.0,
+//!     elevation_rad: 0.0,
+//!     vertical_fov_rad: 60f64.to_radians(),
+//!     width: 64,
+//!     height: 48,
+//! };
+//! let picture = render(&scene, &camera)?;
+//! assert_eq!(picture.ids[24 * 64 + 32], 7);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod background;
+mod camera;
+mod clip;
+mod cluster;
+mod cubemap;
+mod mesh;
+mod picture;
+mod raster;
+mod render;
+mod scene;
+mod setup;
+mod shade;
+mod texture;
+mod top_down;
+mod view;
+mod visibility;
+
+pub use background::Background;
+pub use camera::Camera;
+pub use cubemap::{CubeMap, CubeMapError, Face, sample_view};
+pub use mesh::{Material, Mesh};
+pub use picture::{MAX_SIDE_PX, Picture, RenderError};
+pub use render::render;
+pub use scene::{Filter, MAX_COORDINATE_M, MAX_TRIANGLES, Scene, SceneError};
+pub use texture::{MAX_TEXTURE_SIDE, Texture, TextureError};
+pub use top_down::top_down;
+pub use visibility::{Visible, visible_objects};

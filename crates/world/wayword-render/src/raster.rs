@@ -1,0 +1,198 @@
+//! Which triangle is nearest at each pixel: coverage in integers, top-left fill rule, depth test.
+
+use crate::cluster::Triangle;
+use crate::setup::{Batch, ScreenTriangle, centres_between};
+use crate::view::STEPS;
+
+/// A triangle of the batches: the batch and its place there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Seen {
+    pub(crate) batch: u32,
+    pub(crate) place: u32,
+}
+
+impl Seen {
+    pub(crate) const NOTHING: Self = Self { batch: u32::MAX, place: u32::MAX };
+}
+
+/// A run of whole rows of the picture with what is nearest in each pixel.
+pub(crate) struct Band {
+    pub(crate) width: u32,
+    pub(crate) first_row: u32,
+    pub(crate) nearness: Vec<f32>,
+    pub(crate) seen: Vec<Seen>,
+}
+
+impl Band {
+    pub(crate) fn new(width: u32, first_row: u32, rows: usize) -> Self {
+        let pixels = width as usize * rows;
+        Self { width, first_row, nearness: vec![f32::NEG_INFINITY; pixels], seen: vec![Seen::NOTHING; pixels] }
+    }
+
+    /// Draws all batches. The outcome of a pixel depends on no other, so it is the same in whatever bands.
+    pub(crate) fn draw(&mut self, batches: &[Batch], triangles: &[Triangle]) {
+        let rows = (self.nearness.len() / self.width.max(1) as usize) as u32;
+        let (first, end) = (self.first_row, self.first_row + rows);
+        let overlaps = |[low, high]: [u16; 2]| u32::from(low) < end && u32::from(high) >= first;
+        for (index, batch) in batches.iter().enumerate() {
+            if !overlaps(batch.rows) {
+                continue;
+            }
+            for (place, triangle) in batch.triangles.iter().enumerate() {
+                if overlaps(triangle.rows) {
+                    let seen = Seen { batch: index as u32, place: place as u32 };
+                    self.draw_triangle(triangle, seen, end, |other| {
+                        let other = &batches[other.batch as usize].triangles[other.place as usize];
+                        let source = |t: &ScreenTriangle| triangles[t.triangle as usize].source;
+                        source(triangle) < source(other)
+                    });
+                }
+            }
+        }
+    }
+
+    /// `precedes` tells whether this triangle comes before another one that is equally near.
+    fn draw_triangle(&mut self, triangle: &ScreenTriangle, seen: Seen, end: u32, precedes: impl Fn(Seen) -> bool) {
+        let Some([left, right]) = centres_between(triangle.corners.map(|c| c.x), self.width) else { return };
+        let edges = edges(triangle);
+        let slope = NearnessPlane::of(triangle);
+        let first = u32::from(triangle.rows[0]).max(self.first_row);
+        for row in first..end.min(u32::from(triangle.rows[1]) + 1) {
+            let at_left = edges.map(|edge| edge.at(u32::from(left), row));
+            let Some((start, stop)) = span(&edges, at_left, i64::from(right - left) + 1) else { continue };
+            let start_column = usize::from(left) + start as usize;
+            let offset = (row - self.first_row) as usize * self.width as usize + start_column;
+            let count = (stop - start) as usize;
+            let (value, step) = slope.along(start_column as u32, row);
+            let nearness = &mut self.nearness[offset..offset + count];
+            let owners = &mut self.seen[offset..offset + count];
+            for (i, (nearest, owner)) in nearness.iter_mut().zip(owners).enumerate() {
+                let here = value + step * i as f32;
+                if here > *nearest || (here == *nearest && *owner != Seen::NOTHING && precedes(*owner)) {
+                    *nearest = here;
+                    *owner = seen;
+                }
+            }
+        }
+    }
+}
+
+/// A directed edge: a pixel is inside where its value is not negative.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    x: i64,
+    y: i64,
+    dx: i64,
+    dy: i64,
+    /// 0, or -1 where pixels exactly on the edge belong to the neighbour: all but top and left edges.
+    bias: i64,
+}
+
+impl Edge {
+    fn at(&self, column: u32, row: u32) -> i64 {
+        self.dx * (centre(row) - self.y) - self.dy * (centre(column) - self.x) + self.bias
+    }
+
+    /// Change from a pixel to the one right of it.
+    fn step(&self) -> i64 {
+        -self.dy * i64::from(STEPS)
+    }
+}
+
+fn centre(pixel: u32) -> i64 {
+    i64::from(pixel) * i64::from(STEPS) + i64::from(STEPS / 2)
+}
+
+fn edges(triangle: &ScreenTriangle) -> [Edge; 3] {
+    let corners = &triangle.corners;
+    [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
+        let (from, to) = (corners[from], corners[to]);
+        let (dx, dy) = (i64::from(to.x) - i64::from(from.x), i64::from(to.y) - i64::from(from.y));
+        let top_left = dy < 0 || (dy == 0 && dx > 0);
+        Edge { x: from.x.into(), y: from.y.into(), dx, dy, bias: if top_left { 0 } else { -1 } }
+    })
+}
+
+/// The pixels (from, to) of a row of `count` that lie inside all edges, whose values at the first pixel are `at`.
+fn span(edges: &[Edge; 3], at: [i64; 3], count: i64) -> Option<(i64, i64)> {
+    let (mut start, mut stop) = (0, count);
+    for (edge, value) in edges.iter().zip(at) {
+        let step = edge.step();
+        let last = value + step * (count - 1);
+        if value < 0 && last < 0 {
+            return None;
+        }
+        if value < 0 {
+            start = start.max(ceil_quotient(-value, step));
+        } else if last < 0 {
+            stop = stop.min(ceil_quotient(value + 1, -step));
+        }
+    }
+    (start < stop).then_some((start, stop))
+}
+
+/// The quotient rounded up, of positive numbers below 2^52: there the division of doubles rounds to no other
+/// integer, and it is several times faster than that of integers.
+fn ceil_quotient(numerator: i64, denominator: i64) -> i64 {
+    let quotient = (numerator as f64 / denominator as f64) as i64;
+    if quotient * denominator < numerator { quotient + 1 } else { quotient }
+}
+
+/// Nearness as a linear function of the position on the screen.
+struct NearnessPlane {
+    x: i64,
+    y: i64,
+    base: f64,
+    /// Change per step to the right and down.
+    gradient: [f64; 2],
+}
+
+impl NearnessPlane {
+    fn of(triangle: &ScreenTriangle) -> Self {
+        let [a, b, c] = triangle.corners;
+        let [ab, ac] = [b, c].map(|to| [f64::from(to.x - a.x), f64::from(to.y - a.y)]);
+        let base = f64::from(a.nearness);
+        let [to_b, to_c] = [b, c].map(|to| f64::from(to.nearness) - base);
+        let scale = 1.0 / triangle.area() as f64;
+        let gradient = [(to_b * ac[1] - to_c * ab[1]) * scale, (to_c * ab[0] - to_b * ac[0]) * scale];
+        Self { x: a.x.into(), y: a.y.into(), base, gradient }
+    }
+
+    /// The value at a pixel's centre, and its change to the next pixel on the right.
+    fn along(&self, column: u32, row: u32) -> (f32, f32) {
+        let (x, y) = ((centre(column) - self.x) as f64, (centre(row) - self.y) as f64);
+        let value = self.base + self.gradient[0] * x + self.gradient[1] * y;
+        (value as f32, (self.gradient[0] * f64::from(STEPS)) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn ceil_quotient_is_exact(n in 1i64..(1 << 52), d in 1i64..(1 << 33)) {
+            prop_assert_eq!(ceil_quotient(n, d), (n + d - 1) / d);
+            let multiple = (n / d).max(1) * d;
+            prop_assert_eq!(ceil_quotient(multiple, d), multiple / d);
+        }
+
+        #[test]
+        fn a_span_is_what_testing_every_pixel_finds(
+            corners in proptest::array::uniform6(-20_000i64..20_000), row in 0u32..40,
+        ) {
+            let [ax, ay, bx, by, cx, cy] = corners;
+            let edge = |x: i64, y: i64, to_x: i64, to_y: i64| {
+                let (dx, dy) = (to_x - x, to_y - y);
+                Edge { x, y, dx, dy, bias: if dy < 0 || (dy == 0 && dx > 0) { 0 } else { -1 } }
+            };
+            let edges = [edge(ax, ay, bx, by), edge(bx, by, cx, cy), edge(cx, cy, ax, ay)];
+            let inside: Vec<u32> = (0..60).filter(|&x| edges.iter().all(|e| e.at(x, row) >= 0)).collect();
+            let found = span(&edges, edges.map(|e| e.at(0, row)), 60);
+            let listed: Vec<u32> = found.map_or(vec![], |(start, stop)| (start as u32..stop as u32).collect());
+            prop_assert_eq!(inside, listed);
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! A scene: checked once, then ready to be drawn from anywhere.
+
+use crate::background::Background;
+use crate::cluster::Soup;
+use crate::mesh::{Material, Mesh};
+use crate::texture::{MipMap, Texture, TextureError};
+
+/// Triangles that a scene may hold.
+pub const MAX_TRIANGLES: usize = 1 << 26;
+
+/// Positions must not lie further from the origin than this, on any axis.
+pub const MAX_COORDINATE_M: f32 = 1e6;
+
+/// How a texture is looked up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Filter {
+    /// Bilinear on the full picture, as Habitat does: exact, but fine patterns shimmer in the distance.
+    #[default]
+    Bilinear,
+    /// Between the two levels of a mip chain that fit the pixel's footprint: calm in the distance.
+    Trilinear,
+}
+
+/// Meshes, materials and textures, checked and prepared for drawing.
+#[derive(Debug)]
+pub struct Scene {
+    pub(crate) soup: Soup,
+    pub(crate) surfaces: Vec<Surface>,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) textures: Vec<MipMap>,
+    pub(crate) background: Background,
+}
+
+/// What the triangles of one mesh share.
+#[derive(Clone, Debug)]
+pub(crate) struct Surface {
+    pub(crate) id: u32,
+    /// Index into the scene's materials.
+    pub(crate) material: usize,
+}
+
+/// Why a scene cannot be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// More triangles than the renderer numbers.
+    #[error("the scene has {triangles} triangles: at most {MAX_TRIANGLES} can be drawn")]
+    TooManyTriangles {
+        /// Triangles given, all meshes together.
+        triangles: usize,
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("mesh {mesh}, triangle {triangle}: vertex {vertex} of {vertices} does not exist")]
+    Vertex {
+        /// Index of the mesh.
+        mesh: usize,
+        /// Index of the triangle in it.
+        triangle: usize,
+        /// The index it holds.
+        vertex: u32,
+        /// Vertices of the mesh.
+        vertices: usize,
+    },
+    /// A list has another length than the positions.
+    #[error("mesh {mesh}: {field} has {length} entries for {vertices} positions: give one each{or_none}")]
+    Length {
+        /// Index of the mesh.
+        mesh: usize,
+        /// The list.
+        field: &'static str,
+        /// Its length.
+        length: usize,
+        /// Vertices of the mesh.
+        vertices: usize,
+        /// Whether leaving it empty would do too.
+        or_none: &'static str,
+    },
+    /// A value is NaN, infinite, or beyond its bounds.
+    #[error("mesh {mesh}: {field}[{index}] must be {wanted}")]
+    Value {
+        /// Index of the mesh.
+        mesh: usize,
+        /// The list.
+        field: &'static str,
+        /// The entry.
+        index: usize,
+        /// What it should be.
+        wanted: &'static str,
+    },
+    /// A mesh names a material that is not there.
+    #[error("mesh {mesh}: material {material} of {materials} does not exist")]
+    NoMaterial {
+        /// Index of the mesh.
+        mesh: usize,
+        /// The index it holds.
+        material: usize,
+        /// Materials of the scene.
+        materials: usize,
+    },
+    /// A material names a texture that is not there.
+    #[error("material {material}: texture {texture} of {textures} does not exist")]
+    NoTexture {
+        /// Index of the material.
+        material: usize,
+        /// The index it holds.
+        texture: usize,
+        /// Textures of the scene.
+        textures: usize,
+    },
+    /// A material's base colour is NaN, infinite or negative.
+    #[error("material {material}: base_colour must be finite and not negative")]
+    Colour {
+        /// Index of the material.
+        material: usize,
+    },
+    /// A texture's texels do not fill it.
+    #[error("texture {texture}")]
+    Texture {
+        /// Index of the texture.
+        texture: usize,
+        /// What is wrong with it.
+        source: TextureError,
+    },
+}
+
+impl Scene {
+    /// Checks everything and prepares it for drawing: triangles are sorted into clusters that lie together.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the first mesh, material or texture that cannot be drawn.
+    pub fn new(meshes: Vec<Mesh>, materials: Vec<Material>, textures: Vec<Texture>) -> Result<Self, SceneError> {
+        let triangles = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        if triangles > MAX_TRIANGLES {
+            return Err(SceneError::TooManyTriangles { triangles });
+        }
+        for (index, texture) in textures.iter().enumerate() {
+            texture.check().map_err(|source| SceneError::Texture { texture: index, source })?;
+        }
+        for (index, material) in materials.iter().enumerate() {
+            check_material(index, material, textures.len())?;
+        }
+        let mut soup = Soup::default();
+        let mut surfaces = Vec::with_capacity(meshes.len());
+        for (index, mesh) in meshes.into_iter().enumerate() {
+            let none = SceneError::NoMaterial { mesh: index, material: mesh.material, materials: materials.len() };
+            let material = materials.get(mesh.material).ok_or(none)?;
+            check_mesh(index, &mesh, material.texture.is_some())?;
+            soup.add(&mesh, surfaces.len() as u32);
+            surfaces.push(Surface { id: mesh.id, material: mesh.material });
+        }
+        let textures = textures.into_iter().map(MipMap::plain).collect();
+        Ok(Self { soup, surfaces, materials, textures, background: Background::default() })
+    }
+
+    /// The same scene before another background (black until then).
+    #[must_use]
+    pub fn with_background(mut self, background: Background) -> Self {
+        self.background = background;
+        self
+    }
+
+    /// The same scene with another texture lookup ([`Filter::Bilinear`] until then).
+    #[must_use]
+    pub fn with_filter(mut self, filter: Filter) -> Self {
+        for texture in &mut self.textures {
+            match filter {
+                Filter::Bilinear => texture.drop_chain(),
+                Filter::Trilinear => texture.build_chain(),
+            }
+        }
+        self
+    }
+}
+
+fn check_material(material: usize, given: &Material, textures: usize) -> Result<(), SceneError> {
+    if !given.base_colour.iter().all(|c| c.is_finite() && *c >= 0.0) {
+        return Err(SceneError::Colour { material });
+    }
+    match given.texture {
+        Some(texture) if texture >= textures => Err(SceneError::NoTexture { material, texture, textures }),
+        _ => Ok(()),
+    }
+}
+
+fn check_mesh(index: usize, mesh: &Mesh, textured: bool) -> Result<(), SceneError> {
+    let vertices = mesh.positions.len();
+    let length = |field, length: usize, may_be_empty| {
+        if length == vertices || (may_be_empty && length == 0) {
+            return Ok(());
+        }
+        let or_none = if may_be_empty { ", or none" } else { "" };
+        Err(SceneError::Length { mesh: index, field, length, vertices, or_none })
+    };
+    length("uvs", mesh.uvs.len(), !textured)?;
+    length("colours", mesh.colours.len(), true)?;
+    let value = |field, bad: Option<usize>, wanted| match bad {
+        Some(at) => Err(SceneError::Value { mesh: index, field, index: at, wanted }),
+        None => Ok(()),
+    };
+    let far = mesh.positions.iter().position(|p| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE_M);
+    value("positions", far, "finite and within 1000 km of the origin")?;
+    value("uvs", mesh.uvs.iter().position(|uv| !uv.is_finite()), "finite")?;
+    let dark = mesh.colours.iter().position(|c| !c.iter().all(|v| v.is_finite() && *v >= 0.0));
+    value("colours", dark, "finite and not negative")?;
+    for (triangle, corners) in mesh.triangles.iter().enumerate() {
+        if let Some(&vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertices) {
+            return Err(SceneError::Vertex { mesh: index, triangle, vertex, vertices });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Vec2, Vec3};
+
+    fn mesh() -> Mesh {
+        Mesh { positions: vec![Vec3::ZERO; 3], triangles: vec![[0, 1, 2]], ..Mesh::default() }
+    }
+
+    fn refusal(mesh: Mesh) -> String {
+        Scene::new(vec![mesh], vec![Material::default()], vec![]).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn says_what_is_wrong_and_where() {
+        let vertex = refusal(Mesh { triangles: vec![[0, 1, 2], [0, 1, 3]], ..mesh() });
+        assert_eq!(vertex, "mesh 0, triangle 1: vertex 3 of 3 does not exist");
+        let uvs = refusal(Mesh { uvs: vec![Vec2::ZERO; 2], ..mesh() });
+        assert_eq!(uvs, "mesh 0: uvs has 2 entries for 3 positions: give one each, or none");
+        assert_eq!(refusal(Mesh { material: 1, ..mesh() }), "mesh 0: material 1 of 1 does not exist");
+        let positions = vec![Vec3::ZERO, Vec3::new(0.0, f32::NAN, 0.0), Vec3::ZERO];
+        assert!(refusal(Mesh { positions, ..mesh() }).starts_with("mesh 0: positions[1] must be finite"));
+        let far = vec![Vec3::ZERO, Vec3::ZERO, Vec3::new(0.0, 0.0, 1e30)];
+        assert!(refusal(Mesh { positions: far, ..mesh() }).starts_with("mesh 0: positions[2]"));
+        let colours = vec![[1.0; 3], [f32::INFINITY; 3], [1.0; 3]];
+        assert_eq!(refusal(Mesh { colours, ..mesh() }), "mesh 0: colours[1] must be finite and not negative");
+    }
+
+    #[test]
+    fn a_textured_material_needs_its_texture_and_uvs() {
+        let material = Material { texture: Some(0), ..Material::default() };
+        let texture = Texture { width: 1, height: 1, texels: vec![[9; 4]] };
+        let none = Scene::new(vec![mesh()], vec![material.clone()], vec![]).unwrap_err();
+        assert_eq!(none, SceneError::NoTexture { material: 0, texture: 0, textures: 0 });
+        let bare = Scene::new(vec![mesh()], vec![material.clone()], vec![texture.clone()]).unwrap_err();
+        assert_eq!(bare.to_string(), "mesh 0: uvs has 0 entries for 3 positions: give one each");
+        let torn = Texture { width: 1, height: 1, texels: vec![] };
+        assert!(matches!(Scene::new(vec![], vec![], vec![torn]), Err(SceneError::Texture { texture: 0, .. })));
+        let dressed = Mesh { uvs: vec![Vec2::ZERO; 3], ..mesh() };
+        assert!(Scene::new(vec![dressed], vec![material], vec![texture]).is_ok());
+    }
+
+    #[test]
+    fn empty_scenes_are_fine() {
+        assert!(Scene::new(vec![], vec![], vec![]).is_ok());
+        assert!(Scene::new(vec![Mesh::default()], vec![Material::default()], vec![]).is_ok());
+    }
+}

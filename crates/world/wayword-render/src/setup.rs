@@ -1,0 +1,172 @@
+//! From clusters to triangles on the pixel grid.
+
+use crate::clip::{ClipVertex, clip};
+use crate::cluster::{Cluster, Triangle};
+use crate::scene::Scene;
+use crate::view::{Corner, Plane, STEPS, View};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// No entry in [`Batch::cuts`]: the triangle is whole.
+const WHOLE: u32 = u32::MAX;
+
+/// A triangle that covers, or may cover, pixels of the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ScreenTriangle {
+    /// Wound so that the doubled area of [`ScreenTriangle::area`] is positive.
+    pub(crate) corners: [Corner; 3],
+    /// Index into the scene's triangles.
+    pub(crate) triangle: u32,
+    /// Index into its batch's cuts.
+    cut: u32,
+    /// Whether the last two corners had to change places for that.
+    swapped: bool,
+    /// Rows of pixels it can cover, both ends included.
+    pub(crate) rows: [u16; 2],
+}
+
+/// What one cluster puts on the screen.
+#[derive(Debug)]
+pub(crate) struct Batch {
+    pub(crate) triangles: Vec<ScreenTriangle>,
+    /// For parts of clipped triangles: the weights that their corners give to the whole triangle's.
+    cuts: Vec<[Vec3; 3]>,
+    /// Index into the scene's surfaces.
+    pub(crate) surface: u32,
+    /// Rows of pixels its triangles can cover, both ends included.
+    pub(crate) rows: [u16; 2],
+}
+
+impl ScreenTriangle {
+    /// Twice the area, in square steps.
+    pub(crate) fn area(&self) -> i64 {
+        doubled_area(&self.corners)
+    }
+
+    /// The weights that the corners give to the corners of the scene's triangle.
+    pub(crate) fn weights(&self, batch: &Batch) -> [Vec3; 3] {
+        let [a, b, c] = batch.cuts.get(self.cut as usize).copied().unwrap_or([Vec3::X, Vec3::Y, Vec3::Z]);
+        if self.swapped { [a, c, b] } else { [a, b, c] }
+    }
+}
+
+/// All that a view can show of a scene, in the order of its clusters.
+pub(crate) fn batches(scene: &Scene, view: &View) -> Vec<Batch> {
+    let (frustum, clip_planes) = (view.frustum(), view.clip_planes());
+    let visible = |cluster: &&Cluster| !view.misses(&frustum, cluster.centre, cluster.half_extent);
+    let clusters = scene.soup.clusters.par_iter().filter(visible);
+    clusters.filter_map(|cluster| batch(scene, view, &clip_planes, cluster)).collect()
+}
+
+fn batch(scene: &Scene, view: &View, clip_planes: &[Plane], cluster: &Cluster) -> Option<Batch> {
+    let surface = &scene.surfaces[cluster.surface as usize];
+    let double_sided = scene.materials[surface.material].double_sided;
+    let mut builder = Builder {
+        size: [view.width, view.height],
+        double_sided,
+        batch: Batch { triangles: Vec::new(), cuts: Vec::new(), surface: cluster.surface, rows: [u16::MAX, 0] },
+    };
+    let corners = usable_corners(scene, view, cluster);
+    let first = cluster.first_triangle as usize;
+    for (index, triangle) in (first..).zip(&scene.soup.triangles[first..first + cluster.triangles as usize]) {
+        let [a, b, c] = triangle.corners.map(|v| corners[(v - cluster.first_vertex) as usize]);
+        if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+            builder.push([a, b, c], index as u32, None);
+        } else {
+            push_clipped(&mut builder, scene, view, clip_planes, triangle, index as u32);
+        }
+    }
+    (!builder.batch.triangles.is_empty()).then_some(builder.batch)
+}
+
+/// The corner of each vertex of a cluster; `None` where only clipping can tell.
+fn usable_corners(scene: &Scene, view: &View, cluster: &Cluster) -> Vec<Option<Corner>> {
+    let first = cluster.first_vertex as usize;
+    let positions = &scene.soup.positions[first..first + cluster.vertices as usize];
+    let corner = |&position: &Vec3| {
+        let point = view.to_view(position);
+        view.within_guard(point).then(|| view.corner(point))
+    };
+    positions.iter().map(corner).collect()
+}
+
+fn push_clipped(
+    builder: &mut Builder,
+    scene: &Scene,
+    view: &View,
+    clip_planes: &[Plane],
+    triangle: &Triangle,
+    index: u32,
+) {
+    let points = triangle.corners.map(|v| view.to_view(scene.soup.positions[v as usize]));
+    if clip_planes.iter().any(|plane| points.iter().all(|&p| plane.distance(p) < 0.0)) {
+        return;
+    }
+    let polygon = clip(points, clip_planes);
+    let corner = |vertex: &ClipVertex| view.corner(vertex.point);
+    for i in 2..polygon.len() {
+        let fan = [&polygon[0], &polygon[i - 1], &polygon[i]];
+        builder.push(fan.map(corner), index, Some(fan.map(|vertex| vertex.weights)));
+    }
+}
+
+/// Collects the triangles of a batch that can be seen.
+struct Builder {
+    size: [u32; 2],
+    double_sided: bool,
+    batch: Batch,
+}
+
+impl Builder {
+    fn push(&mut self, mut corners: [Corner; 3], triangle: u32, cut: Option<[Vec3; 3]>) {
+        // Counter-clockwise in the world is a negative area here, where y runs down.
+        let area = doubled_area(&corners);
+        if area == 0 || (area > 0 && !self.double_sided) {
+            return;
+        }
+        let swapped = area < 0;
+        if swapped {
+            corners.swap(1, 2);
+        }
+        let [width, height] = self.size;
+        let columns = centres_between(corners.map(|c| c.x), width);
+        let rows = centres_between(corners.map(|c| c.y), height);
+        let (Some(_), Some(rows)) = (columns, rows) else { return };
+        let batch = &mut self.batch;
+        batch.rows = [batch.rows[0].min(rows[0]), batch.rows[1].max(rows[1])];
+        let cut = cut.map_or(WHOLE, |weights| {
+            batch.cuts.push(weights);
+            batch.cuts.len() as u32 - 1
+        });
+        batch.triangles.push(ScreenTriangle { corners, triangle, cut, swapped, rows });
+    }
+}
+
+fn doubled_area([a, b, c]: &[Corner; 3]) -> i64 {
+    let (ab, ac) = ([b.x - a.x, b.y - a.y].map(i64::from), [c.x - a.x, c.y - a.y].map(i64::from));
+    ab[0] * ac[1] - ab[1] * ac[0]
+}
+
+/// The first and last pixel of `count` whose centre lies between the smallest and largest of `steps`.
+pub(crate) fn centres_between(steps: [i32; 3], count: u32) -> Option<[u16; 2]> {
+    let [a, b, c] = steps;
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let first = (low + STEPS / 2 - 1).div_euclid(STEPS).max(0);
+    let last = (high - STEPS / 2).div_euclid(STEPS).min(count as i32 - 1);
+    (first <= last).then_some([first as u16, last as u16])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn centres_are_found_to_the_step() {
+        assert_eq!(centres_between([128, 128, 128], 4), Some([0, 0]));
+        assert_eq!(centres_between([129, 200, 383], 4), None);
+        assert_eq!(centres_between([129, 200, 384], 4), Some([1, 1]));
+        assert_eq!(centres_between([-9000, 200, 9000], 4), Some([0, 3]));
+        assert_eq!(centres_between([-900, -200, -300], 4), None);
+        assert_eq!(centres_between([1024, 2000, 3000], 4), None);
+    }
+}

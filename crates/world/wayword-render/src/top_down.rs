@@ -1,0 +1,43 @@
+//! Maps: a scene seen straight from above, cut open at a height.
+
+use crate::background::Background;
+use crate::picture::{Picture, RenderError, check_finite, check_size};
+use crate::render::draw;
+use crate::scene::Scene;
+use crate::view::View;
+use glam::{DVec2, DVec3};
+
+/// The colour of a map where nothing is.
+const PAPER: Background = Background::Plain([255; 3]);
+
+/// Draws the scene from straight above, without perspective: +x to the right, +y up. What lies higher than
+/// `cut_height_m` is cut away. The top left corner of the picture is (`bounds_min.x`, `bounds_max.y`); the sides are
+/// rounded up to whole pixels, so the world point (x, y) falls on the pixel position
+/// ((x - bounds_min.x) / metres_per_pixel, (bounds_max.y - y) / metres_per_pixel). Depths count from the cut down.
+///
+/// # Errors
+/// [`RenderError`] where the bounds are empty or not finite, or give a picture of too many pixels.
+pub fn top_down(
+    scene: &Scene,
+    bounds_min: DVec2,
+    bounds_max: DVec2,
+    cut_height_m: f64,
+    metres_per_pixel: f64,
+) -> Result<Picture, RenderError> {
+    check_finite("cut_height_m", cut_height_m)?;
+    check_finite("bounds_min.x", bounds_min.x)?;
+    check_finite("bounds_min.y", bounds_min.y)?;
+    if !(metres_per_pixel.is_finite() && metres_per_pixel > 0.0) {
+        let (field, wanted) = ("metres_per_pixel", "finite and positive");
+        return Err(RenderError::Number { field, value: metres_per_pixel, wanted });
+    }
+    let size = (bounds_max - bounds_min) / metres_per_pixel;
+    // Casting saturates; NaN and negative sizes become 0: all are refused next.
+    let (width, height) = (size.x.ceil() as u64, size.y.ceil() as u64);
+    check_size(width, height)?;
+    let half = DVec2::new(width as f64, -(height as f64)) * (0.5 * metres_per_pixel);
+    let centre = DVec2::new(bounds_min.x, bounds_max.y) + half;
+    let origin = DVec3::new(centre.x, centre.y, cut_height_m);
+    let view = View::of_map(origin, 1.0 / metres_per_pixel, [width as u32, height as u32]);
+    Ok(draw(scene, &view, PAPER))
+}
