@@ -1,1 +1,23 @@
 //! Readers and writers of the field's dataset formats: R2R, REVERIE, RxR, VLN-CE and Wayword's own JSONL.
+//!
+//! Files are untrusted: sizes and counts are bounded, ids cannot name a folder, and what is wrong is refused with file, item
+//! and field. What is written is written whole or not at all.
+//!
+//! Architecture invariant: nothing here knows a platform, a model or a network.
+
+mod episode;
+mod error;
+mod input;
+mod item;
+mod limits;
+mod matterport;
+mod output;
+pub mod r2r;
+pub mod reverie;
+mod strict;
+mod unique;
+
+pub use episode::Episode;
+pub use error::{FormatError, Place};
+pub(crate) use item::Item;
+pub use output::write_sidecar;

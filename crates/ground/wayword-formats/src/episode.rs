@@ -1,0 +1,95 @@
+//! What every format's items come to: a path to walk, and what is said about it.
+
+use crate::{item, item::Item};
+use serde_json::{Map, Value};
+use wayword_core::{DVec3, Heading, ObjectId, Path, SceneId, ViewpointId};
+
+/// An item of a dataset, whatever its format.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Episode {
+    /// Its name, unique in its file: REVERIE's `id`, R2R's `path_id`, RxR's `instruction_id`, VLN-CE's `episode_id`.
+    pub id: String,
+    /// Name of its path, which several items may share: `path_id`, VLN-CE's `trajectory_id`.
+    pub path_id: String,
+    /// Where it lies.
+    pub scene: SceneId,
+    /// Nodes of the viewpoint graph, from start to goal. Empty where the path has none (VLN-CE, continuous platforms).
+    pub viewpoints: Vec<ViewpointId>,
+    /// Positions on the floor (not the eye's), world frame, metres, from start to goal. Only VLN-CE has them; empty elsewhere.
+    pub floor_positions: Vec<DVec3>,
+    /// How the walker looks before the first hop. `None` where the file does not say.
+    pub start_heading: Option<Heading>,
+    /// The object of the closing task, where the item has one (REVERIE).
+    pub target_object: Option<ObjectId>,
+    /// What is said about the path; empty where nothing is yet.
+    pub instructions: Vec<String>,
+    /// Fields that the format's field list does not name, in the order of the file. Written back where the loaders bear
+    /// them (R2R, REVERIE, RxR).
+    pub extra: Map<String, Value>,
+    /// Known fields as the file spelt them, so that what was not changed is written as it was read (a heading of 7.0, an id
+    /// in quotes).
+    pub(crate) as_read: Map<String, Value>,
+}
+
+impl Episode {
+    /// An item without a path.
+    #[must_use]
+    pub fn new(id: impl Into<String>, path_id: impl Into<String>, scene: SceneId) -> Self {
+        Self {
+            id: id.into(),
+            path_id: path_id.into(),
+            scene,
+            viewpoints: Vec::new(),
+            floor_positions: Vec::new(),
+            start_heading: None,
+            target_object: None,
+            instructions: Vec::new(),
+            extra: Map::new(),
+            as_read: Map::new(),
+        }
+    }
+
+    /// The item of a path, named as the path is. Its floor lies `eye_height_m` below the frames' eyes; its viewpoints are
+    /// the frames' where each frame has one.
+    #[must_use]
+    pub fn from_path(path: &Path, eye_height_m: f64, instructions: Vec<String>) -> Self {
+        let viewpoints = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect::<Option<Vec<_>>>();
+        let floor = |frame: &wayword_core::Frame| frame.pose.position - DVec3::Z * eye_height_m;
+        Self {
+            viewpoints: viewpoints.unwrap_or_default(),
+            floor_positions: path.frames.iter().map(floor).collect(),
+            start_heading: path.frames.first().map(|frame| frame.pose.heading),
+            target_object: path.target.as_ref().map(|target| target.object.clone()),
+            instructions,
+            ..Self::new(path.id.clone(), path.id.clone(), path.scene.clone())
+        }
+    }
+
+    /// A known field as it is to be written: as it was read where that still means the same, else anew.
+    pub(crate) fn field(&self, key: &str, still_means: impl Fn(&Value) -> bool, anew: impl FnOnce() -> Value) -> Value {
+        self.as_read.get(key).filter(|value| still_means(value)).cloned().unwrap_or_else(anew)
+    }
+
+    /// A field that holds a name.
+    pub(crate) fn name_field(&self, key: &str, name: &str) -> Value {
+        self.field(key, |value| item::name_of(value).as_deref() == Some(name), || item::value_of(name))
+    }
+
+    /// The heading in radians; 0 where the item has none, since every loader demands one.
+    pub(crate) fn heading_field(&self) -> Value {
+        let heading = self.start_heading.unwrap_or(Heading::NORTH);
+        let same = |value: &Value| value.as_f64().and_then(|rad| Heading::new(rad).ok()) == Some(heading);
+        self.field("heading", same, || heading.rad().into())
+    }
+
+    /// Keeps a known field's spelling.
+    pub(crate) fn remember(&mut self, key: &str, value: Value) {
+        self.as_read.insert(key.to_owned(), value);
+    }
+
+    /// Keeps the fields that nobody took.
+    pub(crate) fn keep_rest(mut self, item: Item<'_>) -> Self {
+        self.extra = item.rest();
+        self
+    }
+}

@@ -1,0 +1,91 @@
+//! Why a file is refused: which file, which item, which field, and what to do.
+
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
+
+/// A dataset file cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum FormatError {
+    /// The file system would not.
+    #[error("{}: cannot {doing} it: {source}", file.display())]
+    Io {
+        /// Which file.
+        file: PathBuf,
+        /// What was tried ("open", "write").
+        doing: &'static str,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file as a whole is not what it should be.
+    #[error("{}: {problem}; {hint}", file.display())]
+    Document {
+        /// Which file.
+        file: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// One of its items is wrong.
+    #[error("{}: {place}{}: field \"{field}\": {problem}; {hint}", file.display(), Named(id.as_deref()))]
+    Item {
+        /// Which file.
+        file: PathBuf,
+        /// Where in the file.
+        place: Place,
+        /// The item's own id, where that could be read.
+        id: Option<String>,
+        /// The field, with the way into it (`path[3]`).
+        field: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        hint: &'static str,
+    },
+}
+
+/// Where an item stands in its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Its index in a JSON list, from 0.
+    Item(usize),
+    /// Its line in a JSON Lines file, from 1.
+    Line(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Item(index) => write!(f, "item {index}"),
+            Self::Line(number) => write!(f, "line {number}"),
+        }
+    }
+}
+
+struct Named<'a>(Option<&'a str>);
+
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.map_or(Ok(()), |id| write!(f, " (id {id})"))
+    }
+}
+
+impl FormatError {
+    pub(crate) fn io(file: &Path, doing: &'static str, source: std::io::Error) -> Self {
+        Self::Io { file: file.to_owned(), doing, source }
+    }
+
+    pub(crate) fn document(file: &Path, problem: impl Into<String>, hint: &'static str) -> Self {
+        Self::Document { file: file.to_owned(), problem: problem.into(), hint }
+    }
+
+    /// The file that it is about.
+    #[must_use]
+    pub fn file(&self) -> &Path {
+        match self {
+            Self::Io { file, .. } | Self::Document { file, .. } | Self::Item { file, .. } => file,
+        }
+    }
+}

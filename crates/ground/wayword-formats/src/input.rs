@@ -1,0 +1,192 @@
+//! Files in: bounded, unzipped where they are gzip, item by item.
+
+use crate::{
+    FormatError, Item, Place, limits,
+    strict::{Strict, Trail},
+};
+use flate2::bufread::MultiGzDecoder;
+use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
+use serde_json::Value;
+use std::{
+    fmt,
+    fs::File,
+    io::{self, BufRead, BufReader, Read},
+    path::Path,
+};
+
+const TOO_LARGE: &str = "it is larger than 1 GiB";
+const NOT_JSON: &str = "fetch the file again, or mend it there";
+
+/// Opens a file; gzip is told by its first bytes, not by its name.
+pub(crate) fn open(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
+    let failed = |source| FormatError::io(file, "open", source);
+    let opened = File::open(file).map_err(failed)?;
+    let meta = opened.metadata().map_err(failed)?;
+    if !meta.is_file() {
+        return Err(FormatError::document(file, "it is not a file", "give a dataset file"));
+    }
+    if meta.len() > limits::FILE_BYTES {
+        return Err(FormatError::document(file, TOO_LARGE, "split it into parts"));
+    }
+    let mut plain = BufReader::with_capacity(1 << 16, opened);
+    let is_gzip = plain.fill_buf().map_err(|source| FormatError::io(file, "read", source))?.starts_with(&[0x1f, 0x8b]);
+    // The file may grow while it is read, and gzip may hold a thousand times its size.
+    Ok(if is_gzip {
+        let unzipped = Bounded { inner: MultiGzDecoder::new(plain), left: limits::FILE_BYTES };
+        Box::new(BufReader::with_capacity(1 << 16, unzipped))
+    } else {
+        Box::new(BufReader::with_capacity(1 << 16, Bounded { inner: plain, left: limits::FILE_BYTES }))
+    })
+}
+
+/// A reader that fails, rather than ends, where too much comes out of it.
+struct Bounded<R> {
+    inner: R,
+    left: u64,
+}
+
+impl<R: Read> Read for Bounded<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        self.left = self.left.checked_sub(count as u64).ok_or_else(|| io::Error::other(TOO_LARGE))?;
+        Ok(count)
+    }
+}
+
+/// Reads a file that is one JSON list of objects, and hands on each.
+pub(crate) fn each_item(
+    file: &Path,
+    mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
+    let mut parser = serde_json::Deserializer::from_reader(open(file)?);
+    let items = Items::new(file, &mut take);
+    let read = (&items).deserialize(&mut parser).and_then(|()| parser.end());
+    read.map_err(|error| items.explain(&error))
+}
+
+/// Reads a file with one JSON object per line, and hands on each; empty lines are skipped.
+pub(crate) fn each_line(
+    file: &Path,
+    mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
+    let mut input = open(file)?;
+    let mut line = Vec::new();
+    for number in 1.. {
+        line.clear();
+        let longest = limits::LINE_BYTES as u64 + 1;
+        let read = input.by_ref().take(longest).read_until(b'\n', &mut line);
+        if read.map_err(|source| FormatError::io(file, "read", source))? == 0 {
+            break;
+        }
+        if line.len() > limits::LINE_BYTES || number > limits::ITEMS {
+            let problem =
+                format!("line {number}: the line or the number of lines is beyond every dataset of the field");
+            return Err(FormatError::document(file, problem, "write one JSON object per line; split huge files"));
+        }
+        if !line.trim_ascii().is_empty() {
+            take(line_item(file, number, &line)?)?;
+        }
+    }
+    Ok(())
+}
+
+fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<Item<'a>, FormatError> {
+    let trail = Trail::new(limits::VALUES_PER_ITEM);
+    let mut parser = serde_json::Deserializer::from_slice(line);
+    let value = Strict(&trail).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
+    let value = value.map_err(|error| {
+        let problem = format!("{} (column {})", bare(&error), error.column());
+        broken(file, Place::Line(number), &trail, problem)
+    })?;
+    Item::new(file, Place::Line(number), value)
+}
+
+/// `serde_json`'s message without its own account of the place.
+fn bare(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.rfind(" at line ").map_or(text.clone(), |end| text[..end].to_owned())
+}
+
+fn broken(file: &Path, place: Place, trail: &Trail, problem: String) -> FormatError {
+    match trail.field() {
+        field if field.is_empty() => FormatError::document(file, format!("{place}: {problem}"), NOT_JSON),
+        field => FormatError::Item { file: file.to_owned(), place, id: None, field, problem, hint: NOT_JSON },
+    }
+}
+
+type Take<'a> = &'a mut dyn FnMut(Item<'_>) -> Result<(), FormatError>;
+
+/// Reads a JSON list without ever holding more than one of its items as JSON.
+pub(crate) struct Items<'a> {
+    file: &'a Path,
+    trail: Trail,
+    state: std::cell::RefCell<State<'a>>,
+}
+
+struct State<'a> {
+    take: Take<'a>,
+    index: usize,
+    inside: bool,
+    refused: Option<FormatError>,
+}
+
+impl<'a> Items<'a> {
+    pub(crate) fn new(file: &'a Path, take: Take<'a>) -> Self {
+        let state = State { take, index: 0, inside: false, refused: None };
+        Self { file, trail: Trail::new(0), state: state.into() }
+    }
+
+    /// What a failure of the parser was about: an item that was refused, or JSON that is none.
+    pub(crate) fn explain(&self, error: &serde_json::Error) -> FormatError {
+        let mut state = self.state.borrow_mut();
+        if let Some(refused) = state.refused.take() {
+            return refused;
+        }
+        let problem = format!("{} (line {}, column {})", bare(error), error.line(), error.column());
+        if state.inside {
+            broken(self.file, Place::Item(state.index), &self.trail, problem)
+        } else {
+            FormatError::document(self.file, problem, NOT_JSON)
+        }
+    }
+
+    fn hand_on(&self, value: Value) -> Result<(), FormatError> {
+        let state = &mut *self.state.borrow_mut();
+        if state.index >= limits::ITEMS {
+            return Err(FormatError::document(self.file, "it has more than 2,000,000 items", "split it into parts"));
+        }
+        (state.take)(Item::new(self.file, Place::Item(state.index), value)?)?;
+        state.index += 1;
+        Ok(())
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for &Items<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for &Items<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of items")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        self.state.borrow_mut().inside = true;
+        loop {
+            self.trail.restart(limits::VALUES_PER_ITEM);
+            let Some(value) = list.next_element_seed(Strict(&self.trail))? else { break };
+            if let Err(refused) = self.hand_on(value) {
+                self.state.borrow_mut().refused = Some(refused);
+                return Err(A::Error::custom("refused"));
+            }
+        }
+        self.state.borrow_mut().inside = false;
+        Ok(())
+    }
+}

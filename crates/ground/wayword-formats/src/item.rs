@@ -1,0 +1,163 @@
+//! One item of a file, and its fields as what they should be.
+
+use crate::{FormatError, Place, limits};
+use serde_json::{Map, Value};
+use std::path::Path;
+use wayword_core::{Heading, ObjectId, SceneId, ViewpointId};
+
+/// An object of a dataset file. Fields are taken out of it; what nobody took is kept as unknown.
+pub(crate) struct Item<'a> {
+    file: &'a Path,
+    place: Place,
+    id: Option<String>,
+    fields: Map<String, Value>,
+}
+
+impl<'a> Item<'a> {
+    pub(crate) fn new(file: &'a Path, place: Place, value: Value) -> Result<Self, FormatError> {
+        let Value::Object(fields) = value else {
+            let problem = format!("{place}: expected an object, found {}", told(&value));
+            return Err(FormatError::document(file, problem, "each item of a dataset is a JSON object"));
+        };
+        Ok(Self { file, place, id: None, fields })
+    }
+
+    /// Errors from here on name this id.
+    pub(crate) fn call(&mut self, id: &str) {
+        self.id = Some(id.to_owned());
+    }
+
+    /// What nobody took, in the order of the file.
+    pub(crate) fn rest(self) -> Map<String, Value> {
+        self.fields
+    }
+
+    pub(crate) fn has(&self, field: &str) -> bool {
+        self.fields.contains_key(field)
+    }
+
+    /// Takes a field that must be there.
+    pub(crate) fn take(&mut self, field: &str) -> Result<Value, FormatError> {
+        let value = self.take_optional(field);
+        value.ok_or_else(|| self.wrong(field, "it is missing", "the format demands it"))
+    }
+
+    pub(crate) fn take_optional(&mut self, field: &str) -> Option<Value> {
+        self.fields.shift_remove(field)
+    }
+
+    pub(crate) fn wrong(&self, field: &str, problem: impl Into<String>, hint: &'static str) -> FormatError {
+        FormatError::Item {
+            file: self.file.to_owned(),
+            place: self.place,
+            id: self.id.clone(),
+            field: field.to_owned(),
+            problem: problem.into(),
+            hint,
+        }
+    }
+
+    fn expected(&self, field: &str, what: &str, found: &Value, hint: &'static str) -> FormatError {
+        self.wrong(field, format!("expected {what}, found {}", told(found)), hint)
+    }
+
+    pub(crate) fn text<'v>(&self, field: &str, value: &'v Value) -> Result<&'v str, FormatError> {
+        value.as_str().ok_or_else(|| self.expected(field, "a text", value, "put it in quotes"))
+    }
+
+    /// A name of a path or an item: a whole number or a text that is safe as a file name.
+    pub(crate) fn name(&self, field: &str, value: &Value) -> Result<String, FormatError> {
+        const WHAT: &str =
+            "a whole number, or a text without path separators and control characters of at most 128 bytes";
+        let name =
+            name_of(value).filter(|name| SceneId::new(name.as_str()).is_ok() && name.len() <= limits::NAME_BYTES);
+        name.ok_or_else(|| self.expected(field, WHAT, value, "names become file names later"))
+    }
+
+    pub(crate) fn scene(&self, field: &str, value: &Value) -> Result<SceneId, FormatError> {
+        let text = self.text(field, value)?;
+        SceneId::new(text).map_err(|error| self.wrong(field, error.to_string(), "give the scan's bare name"))
+    }
+
+    pub(crate) fn object(&self, field: &str, value: &Value) -> Result<ObjectId, FormatError> {
+        let name = self.name(field, value)?;
+        ObjectId::new(name).map_err(|error| self.wrong(field, error.to_string(), "give the object's bare id"))
+    }
+
+    pub(crate) fn finite(&self, field: &str, value: &Value) -> Result<f64, FormatError> {
+        let number = value.as_f64().filter(|number| number.is_finite());
+        number.ok_or_else(|| self.expected(field, "a finite number", value, "write it as a JSON number"))
+    }
+
+    pub(crate) fn heading(&self, field: &str, value: &Value) -> Result<Heading, FormatError> {
+        let rad = self.finite(field, value)?;
+        Heading::new(rad).map_err(|error| self.wrong(field, error.to_string(), "write it in radians"))
+    }
+
+    pub(crate) fn list<'v>(&self, field: &str, value: &'v Value, most: usize) -> Result<&'v [Value], FormatError> {
+        let list = value.as_array().ok_or_else(|| self.expected(field, "a list", value, "put it in brackets"))?;
+        if list.len() > most {
+            let problem = format!("it has {} entries, more than {most}", list.len());
+            return Err(self.wrong(field, problem, "no dataset of the field has so many; split it"));
+        }
+        Ok(list)
+    }
+
+    /// The nodes of a path: at least one.
+    pub(crate) fn viewpoints(&self, field: &str, value: &Value) -> Result<Vec<ViewpointId>, FormatError> {
+        let list = self.list(field, value, limits::PATH_NODES)?;
+        if list.is_empty() {
+            return Err(self.wrong(field, "it is empty", "a path has at least one viewpoint"));
+        }
+        let viewpoint = |(index, value)| {
+            let field = format!("{field}[{index}]");
+            ViewpointId::new(self.text(&field, value)?)
+                .map_err(|error| self.wrong(&field, error.to_string(), "give the viewpoint's bare name"))
+        };
+        list.iter().enumerate().map(viewpoint).collect()
+    }
+
+    pub(crate) fn instruction(&self, field: &str, value: &Value) -> Result<String, FormatError> {
+        let text = self.text(field, value)?;
+        if text.len() > limits::INSTRUCTION_BYTES {
+            let problem = format!("it has {} bytes, more than {}", text.len(), limits::INSTRUCTION_BYTES);
+            return Err(self.wrong(field, problem, "an instruction is a few sentences"));
+        }
+        Ok(text.to_owned())
+    }
+
+    pub(crate) fn instructions(&self, field: &str, value: &Value) -> Result<Vec<String>, FormatError> {
+        let list = self.list(field, value, limits::INSTRUCTIONS)?;
+        list.iter().enumerate().map(|(index, value)| self.instruction(&format!("{field}[{index}]"), value)).collect()
+    }
+}
+
+/// A name as text, where the value is one: datasets write some as numbers.
+pub(crate) fn name_of(value: &Value) -> Option<String> {
+    match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) if number.is_u64() || number.is_i64() => Some(number.to_string()),
+        _ => None,
+    }
+}
+
+/// A name as datasets write it: a number where it is one.
+pub(crate) fn value_of(name: &str) -> Value {
+    match name.parse::<u64>() {
+        Ok(number) if number.to_string() == name => number.into(),
+        _ => name.into(),
+    }
+}
+
+/// A value as an error tells it: short.
+fn told(value: &Value) -> String {
+    match value {
+        Value::Array(list) => format!("a list of {}", list.len()),
+        Value::Object(_) => "an object".to_owned(),
+        Value::String(text) if text.chars().count() > 40 => {
+            format!("{:?} (cut)", text.chars().take(40).collect::<String>())
+        }
+        Value::String(text) => format!("{text:?}"),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,93 @@
+//! What R2R, REVERIE and RxR share: paths over Matterport3D's viewpoint graphs.
+
+use crate::{Episode, FormatError, Item};
+use serde_json::{Map, Value};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+/// Takes `path_id`, `scan`, `path` and `heading`. `id` is the field that names the item.
+pub(crate) fn take_path(item: &mut Item<'_>, id: &str) -> Result<Episode, FormatError> {
+    let id_as_read = item.take(id)?;
+    let id_text = item.name(id, &id_as_read)?;
+    item.call(&id_text);
+    let path_as_read = if id == "path_id" { id_as_read.clone() } else { item.take("path_id")? };
+    let path_id = item.name("path_id", &path_as_read)?;
+    let scan = item.take("scan")?;
+    let mut episode = Episode::new(id_text, path_id, item.scene("scan", &scan)?);
+    let path = item.take("path")?;
+    episode.viewpoints = item.viewpoints("path", &path)?;
+    let heading = item.take("heading")?;
+    episode.start_heading = Some(item.heading("heading", &heading)?);
+    episode.remember(id, id_as_read);
+    episode.remember("path_id", path_as_read);
+    episode.remember("heading", heading);
+    Ok(episode)
+}
+
+/// The nodes of a path, as they are written.
+pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, FormatError> {
+    if episode.viewpoints.is_empty() {
+        let problem = format!("the path of item {:?} names no viewpoints, which this format demands", episode.id);
+        return Err(FormatError::document(file, problem, "write it as vlnce or wayword"));
+    }
+    Ok(episode.viewpoints.iter().map(wayword_core::ViewpointId::as_str).collect())
+}
+
+/// The fields that no format knows; known fields win where both have a name.
+pub(crate) fn add_extra(fields: &mut Map<String, Value>, episode: &Episode) {
+    for (key, value) in &episode.extra {
+        if !fields.contains_key(key) {
+            fields.insert(key.clone(), value.clone());
+        }
+    }
+}
+
+/// Under which an item keeps the name of a path that had to be numbered.
+pub(crate) const PATH_NAME: &str = "path_name";
+
+/// The numbers under which a file's paths are written: the field's evaluators read a path's name back with `int()`, so a path
+/// whose name is none (`house-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
+pub(crate) struct PathNumbers {
+    taken: BTreeSet<u64>,
+    given: BTreeMap<String, u64>,
+    next: u64,
+}
+
+impl PathNumbers {
+    pub(crate) fn new(episodes: &[Episode]) -> Self {
+        let taken = episodes.iter().filter_map(|episode| canonical(&episode.path_id)).collect();
+        Self { taken, given: BTreeMap::new(), next: 0 }
+    }
+
+    /// A number that no path has.
+    pub(crate) fn fresh(&mut self) -> u64 {
+        while self.taken.contains(&self.next) {
+            self.next += 1;
+        }
+        self.taken.insert(self.next);
+        self.next
+    }
+
+    /// Writes `path_id`.
+    pub(crate) fn put(&mut self, fields: &mut Map<String, Value>, episode: &Episode) {
+        let name = &episode.path_id;
+        let as_read = episode.as_read.get("path_id").and_then(crate::item::name_of);
+        if canonical(name).is_some() || as_read.as_ref() == Some(name) {
+            fields.insert("path_id".to_owned(), episode.name_field("path_id", name));
+            return;
+        }
+        let number = match self.given.get(name) {
+            Some(number) => *number,
+            None => self.fresh(),
+        };
+        self.given.insert(name.clone(), number);
+        fields.insert("path_id".to_owned(), number.into());
+        fields.insert(PATH_NAME.to_owned(), name.as_str().into());
+    }
+}
+
+fn canonical(name: &str) -> Option<u64> {
+    crate::item::value_of(name).as_u64()
+}

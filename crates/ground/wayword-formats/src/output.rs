@@ -1,0 +1,78 @@
+//! Files out: whole or not at all.
+
+use crate::FormatError;
+use flate2::{Compression, write::GzEncoder};
+use serde::Serialize;
+use std::{
+    ffi::OsString,
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+/// Writes a file beside its place and then moves it there, so that a reader never sees half of it; gzip where the name ends
+/// in `.gz`.
+pub(crate) fn write_file(file: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FormatError> {
+    let beside = beside(file)?;
+    let written = write_to(&beside, file.extension().is_some_and(|ending| ending == "gz"), fill)
+        .and_then(|()| fs::rename(&beside, file));
+    written.map_err(|source| {
+        // The first failure is the one to tell; a file that cannot be removed either is left.
+        let _ = fs::remove_file(&beside);
+        FormatError::io(file, "write", source)
+    })
+}
+
+fn beside(file: &Path) -> Result<PathBuf, FormatError> {
+    let Some(name) = file.file_name() else {
+        return Err(FormatError::document(file, "it is not the name of a file", "give a file to write"));
+    };
+    let mut hidden = OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}.part", std::process::id()));
+    Ok(file.with_file_name(hidden))
+}
+
+fn write_to(file: &Path, gzip: bool, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut plain = BufWriter::new(File::create(file)?);
+    if gzip {
+        let mut zipped = GzEncoder::new(&mut plain, Compression::default());
+        fill(&mut zipped)?;
+        zipped.finish()?;
+    } else {
+        fill(&mut plain)?;
+    }
+    plain.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+}
+
+/// Writes a JSON list with one item per line, which differs line by line where two versions differ.
+pub(crate) fn write_list<T: Serialize>(out: &mut dyn Write, items: impl IntoIterator<Item = T>) -> io::Result<()> {
+    let mut before = "[\n";
+    for item in items {
+        out.write_all(before.as_bytes())?;
+        serde_json::to_writer(&mut *out, &item)?;
+        before = ",\n";
+    }
+    out.write_all(if before == "[\n" { b"[]" } else { b"\n]" })
+}
+
+/// Writes one JSON object per line.
+pub(crate) fn write_lines<T: Serialize>(out: &mut dyn Write, items: impl IntoIterator<Item = T>) -> io::Result<()> {
+    for item in items {
+        serde_json::to_writer(&mut *out, &item)?;
+        out.write_all(b"\n")?;
+    }
+    Ok(())
+}
+
+/// Writes what a format has no room for beside it, one JSON object per line: `<name>.provenance.jsonl`. Returns its name.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_sidecar<T: Serialize>(dataset: &Path, records: &[T]) -> Result<PathBuf, FormatError> {
+    let mut name = dataset.as_os_str().to_owned();
+    name.push(".provenance.jsonl");
+    let sidecar = PathBuf::from(name);
+    write_file(&sidecar, |out| write_lines(out, records))?;
+    Ok(sidecar)
+}

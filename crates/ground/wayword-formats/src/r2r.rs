@@ -1,0 +1,87 @@
+//! R2R: a path and usually three instructions.
+//!
+//! Fields: `distance`, `scan`, `path_id`, `path`, `heading`, `instructions`. `distance` is carried along as unknown fields are.
+
+use crate::{Episode, FormatError, input, matterport, output, unique::Unique};
+use matterport::PathNumbers;
+use serde_json::{Map, Value};
+use std::{collections::BTreeMap, path::Path};
+
+/// Reads an R2R file, plain or gzip.
+///
+/// # Errors
+/// When it cannot be read, is not JSON, or an item lacks a field, has it wrong, or has a `path_id` that was given before.
+pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
+    let mut episodes = Vec::new();
+    let mut unique = Unique::default();
+    input::each_item(file, |mut item| {
+        let mut episode = matterport::take_path(&mut item, "path_id")?;
+        unique.claim(&item, "path_id", &episode)?;
+        let instructions = item.take("instructions")?;
+        episode.instructions = item.instructions("instructions", &instructions)?;
+        episodes.push(episode.keep_rest(item));
+        Ok(())
+    })?;
+    Ok(episodes)
+}
+
+/// Writes an R2R file.
+///
+/// R2R has one item per path, and its loaders name an instruction by path and place. So items on one path with one heading
+/// (REVERIE's, for several objects) become one item with all their instructions; where the heading differs, the later item
+/// gets a path number of its own. A path whose name is not a number gets one, and keeps its name in `path_name`.
+///
+/// # Errors
+/// When a path names no viewpoints, or the file cannot be written.
+pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
+    let mut numbers = PathNumbers::new(episodes);
+    let mut items = Vec::with_capacity(episodes.len());
+    let mut walks: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for episode in episodes {
+        let mut item = fields(file, episode, &mut numbers)?;
+        let known = walks.entry(item["path_id"].to_string()).or_default();
+        if let Some(index) = known.iter().find(|index| same_walk(&items[**index], &item)) {
+            append_instructions(&mut items[*index], &mut item);
+            continue;
+        }
+        if !known.is_empty() {
+            item.insert("path_id".to_owned(), numbers.fresh().into());
+            item.insert(matterport::PATH_NAME.to_owned(), episode.path_id.as_str().into());
+        }
+        known.push(items.len());
+        items.push(item);
+    }
+    output::write_file(file, |out| output::write_list(out, &items))
+}
+
+fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
+    let mut fields = Map::new();
+    if let Some(length_m) = floor_length_m(episode).filter(|_| !episode.extra.contains_key("distance")) {
+        fields.insert("distance".to_owned(), length_m.into());
+    }
+    fields.insert("scan".to_owned(), episode.scene.as_str().into());
+    numbers.put(&mut fields, episode);
+    fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
+    fields.insert("heading".to_owned(), episode.heading_field());
+    fields.insert("instructions".to_owned(), episode.instructions.clone().into());
+    matterport::add_extra(&mut fields, episode);
+    Ok(fields)
+}
+
+/// The path's length, metres, to the centimetre as R2R has it; `None` where the positions are not known.
+fn floor_length_m(episode: &Episode) -> Option<f64> {
+    let hops = episode.floor_positions.windows(2).map(|pair| pair[0].distance(pair[1]));
+    (!episode.floor_positions.is_empty()).then(|| (hops.sum::<f64>() * 100.0).round() / 100.0)
+}
+
+fn same_walk(a: &Map<String, Value>, b: &Map<String, Value>) -> bool {
+    ["scan", "path", "heading"].iter().all(|key| a.get(*key) == b.get(*key))
+}
+
+fn append_instructions(to: &mut Map<String, Value>, from: &mut Map<String, Value>) {
+    if let (Some(Value::Array(to)), Some(Value::Array(from))) =
+        (to.get_mut("instructions"), from.get_mut("instructions"))
+    {
+        to.append(from);
+    }
+}

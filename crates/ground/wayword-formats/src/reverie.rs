@@ -1,0 +1,84 @@
+//! REVERIE: a path, the object at its end, and short instructions that name a task on it.
+//!
+//! Fields: `id` ("path_objId"), `scan`, `path_id`, `path`, `objId`, `heading`, `instructions`. The first release adds
+//! `distance`, `ix` and `instructions_l` (R2R's text); they are carried along as unknown fields are.
+
+use crate::{Episode, FormatError, input, item, matterport, output, unique::Unique};
+use matterport::PathNumbers;
+use serde_json::{Map, Value};
+use std::path::Path;
+
+/// Reads a REVERIE file of either release, plain or gzip.
+///
+/// # Errors
+/// When it cannot be read, is not JSON, or an item lacks a field, has it wrong, or has an id that was given before.
+pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
+    let mut episodes = Vec::new();
+    let mut unique = Unique::default();
+    input::each_item(file, |mut item| {
+        let mut episode = matterport::take_path(&mut item, "id")?;
+        unique.claim(&item, "id", &episode)?;
+        // Test splits and free targets have none.
+        if let Some(object) = item.take_optional("objId") {
+            episode.target_object = Some(item.object("objId", &object)?);
+            episode.remember("objId", object);
+        }
+        let instructions = item.take("instructions")?;
+        episode.instructions = item.instructions("instructions", &instructions)?;
+        episodes.push(episode.keep_rest(item));
+        Ok(())
+    })?;
+    Ok(episodes)
+}
+
+/// Writes a REVERIE file (2022 release; fields of the first release are kept where an item has them).
+///
+/// An item's id is "path_objId", or "path" where it has no target; a path whose name is not a number gets one, and keeps its
+/// name in `path_name`.
+///
+/// # Errors
+/// When a path names no viewpoints, two items come to the same id, or the file cannot be written.
+pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
+    let mut numbers = PathNumbers::new(episodes);
+    let mut ids = std::collections::BTreeSet::new();
+    let mut items = Vec::with_capacity(episodes.len());
+    for episode in episodes {
+        let item = fields(file, episode, &mut numbers)?;
+        if !ids.insert(item.get("id").map(Value::to_string)) {
+            let problem = format!("two items come to the id of {:?}, which is a path and its object", episode.id);
+            return Err(FormatError::document(file, problem, "put instructions for one path and object into one item"));
+        }
+        items.push(item);
+    }
+    output::write_file(file, |out| output::write_list(out, &items))
+}
+
+fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
+    let mut fields = Map::new();
+    fields.insert("id".to_owned(), Value::Null);
+    fields.insert("scan".to_owned(), episode.scene.as_str().into());
+    numbers.put(&mut fields, episode);
+    fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
+    if let Some(object) = &episode.target_object {
+        fields.insert("objId".to_owned(), episode.name_field("objId", object.as_str()));
+    }
+    fields.insert("heading".to_owned(), episode.heading_field());
+    fields.insert("instructions".to_owned(), episode.instructions.clone().into());
+    let id = composed_id(episode, fields.get("path_id"));
+    fields.insert("id".to_owned(), id);
+    matterport::add_extra(&mut fields, episode);
+    Ok(fields)
+}
+
+fn composed_id(episode: &Episode, path_id: Option<&Value>) -> Value {
+    let path = path_id.and_then(item::name_of).unwrap_or_default();
+    let unchanged = |value: &Value| {
+        let object = episode.as_read.get("objId").and_then(item::name_of);
+        item::name_of(value).as_ref() == Some(&episode.id)
+            && object.as_deref() == episode.target_object.as_ref().map(wayword_core::ObjectId::as_str)
+    };
+    episode.field("id", unchanged, || match &episode.target_object {
+        Some(object) => format!("{path}_{object}").into(),
+        None => path.into(),
+    })
+}
