@@ -1,1 +1,10 @@
 //! Where paths and views come from: the built-in house and Matterport3D.
+//!
+//! [`matterport`] reads Matterport3D's buildings as their dataset, simulator and REVERIE ship them; [`episode_path`] turns an
+//! episode of any of these worlds into a path.
+
+pub mod episode_path;
+pub mod matterport;
+
+pub use episode_path::{labels_around, path_of};
+pub use matterport::Matterport;

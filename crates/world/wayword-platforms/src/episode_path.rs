@@ -1,0 +1,56 @@
+//! An episode of a dataset as a [`Path`] through a world.
+
+use wayword_core::{
+    Frame, Gaze, Heading, Label, ObjectId, Path, Platform, PlatformError, SceneId, Target, ViewpointId,
+};
+
+/// The path that an episode walks: frames over `viewpoints`, the first looking along `heading`, and its target by `object`.
+///
+/// The target's name is the platform's; where it knows none, the path has no target. `told_by` is left empty.
+///
+/// # Errors
+/// When the scene or a viewpoint is unknown, two viewpoints in a row have no edge, or data cannot be read.
+pub fn path_of(
+    platform: &dyn Platform,
+    id: impl Into<String>,
+    scene: &SceneId,
+    viewpoints: &[ViewpointId],
+    heading: Option<Heading>,
+    object: Option<&ObjectId>,
+) -> Result<Path, PlatformError> {
+    let graph = platform.graph(scene)?;
+    let frames =
+        graph.walk(viewpoints, heading).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+    let target = match (object, frames.last()) {
+        (Some(object), Some(last)) => target(platform, scene, last, object)?,
+        _ => None,
+    };
+    Ok(Path { id: id.into(), scene: scene.clone(), frames, target })
+}
+
+/// Everything that is visible from a frame, in the order ahead, right, behind, left.
+///
+/// # Errors
+/// When the frame cannot be looked from.
+pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<Label>, PlatformError> {
+    let mut labels = Vec::new();
+    for gaze in Gaze::around(frame.pose.heading) {
+        let view = platform.look(scene, frame, gaze)?;
+        labels.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
+    }
+    Ok(labels)
+}
+
+fn target(
+    platform: &dyn Platform,
+    scene: &SceneId,
+    last: &Frame,
+    object: &ObjectId,
+) -> Result<Option<Target>, PlatformError> {
+    let Some(name) = platform.object_name(scene, last, object)? else {
+        return Ok(None);
+    };
+    let around = labels_around(platform, scene, last)?;
+    let has_namesake = around.iter().any(|label| label.object != *object && label.name == name);
+    Ok(Some(Target { object: object.clone(), name, told_by: Vec::new(), has_namesake }))
+}

@@ -1,0 +1,171 @@
+//! `SCAN_connectivity.json`: the viewpoints of a building and which of them see each other.
+//!
+//! Format: Matterport3DSimulator's `connectivity/README.md`; a list of `{image_id, pose[16], included, visible[],
+//! unobstructed[], height}`, the pose row-major and in metres, z up.
+
+use super::read;
+use glam::{DMat3, DVec3};
+use serde_json::Value;
+use std::path::Path;
+use wayword_core::{PlatformError, ViewpointId};
+
+/// More viewpoints than any building has (the largest has 345); the table of edges grows with the square.
+const MAX_VIEWPOINTS: usize = 4096;
+const HINT: &str = "take the file again from Matterport3DSimulator's folder `connectivity`";
+
+/// A building's viewpoints.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Connectivity {
+    /// Those that are included, in the file's order.
+    pub(crate) viewpoints: Vec<Viewpoint>,
+    /// Pairs of indices into `viewpoints`.
+    pub(crate) edges: Vec<(usize, usize)>,
+}
+
+/// A place from which a panorama was taken.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Viewpoint {
+    pub(crate) id: ViewpointId,
+    /// The camera, metres, world frame.
+    pub(crate) position: DVec3,
+    /// The camera's height above the floor, metres.
+    pub(crate) height_m: f64,
+    /// The 3x3 part of the pose: turns the skybox's axes into the world's.
+    pub(crate) world_from_skybox: DMat3,
+}
+
+impl Viewpoint {
+    /// Height of the floor below the camera, metres, world frame.
+    pub(crate) fn floor_m(&self) -> f64 {
+        self.position.z - self.height_m
+    }
+}
+
+/// Reads a connectivity file; `None` where there is none.
+///
+/// # Errors
+/// When it is not such a file; the message names the viewpoint and the field.
+pub(crate) fn read(file: &Path) -> Result<Option<Connectivity>, PlatformError> {
+    let Some(bytes) = read::bytes_if_there(file, read::MAX_JSON_BYTES, HINT)? else {
+        return Ok(None);
+    };
+    parse(&bytes).map(Some).map_err(|reason| read::wrong(file, reason, HINT))
+}
+
+fn parse(bytes: &[u8]) -> Result<Connectivity, String> {
+    let items: Vec<Value> =
+        serde_json::from_slice(bytes).map_err(|error| format!("is not a JSON list of viewpoints: {error}"))?;
+    if items.len() > MAX_VIEWPOINTS {
+        return Err(format!("lists {} viewpoints; {MAX_VIEWPOINTS} at most are read", items.len()));
+    }
+    // Index among the included viewpoints, by index in the file.
+    let mut included = Vec::with_capacity(items.len());
+    let mut viewpoints = Vec::new();
+    for (number, item) in items.iter().enumerate() {
+        let found = viewpoint(item).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
+        included.push(found.as_ref().map(|_| viewpoints.len()));
+        viewpoints.extend(found);
+    }
+    let mut edges = Vec::new();
+    for (number, item) in items.iter().enumerate() {
+        let open = neighbours(item, items.len()).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
+        let Some(from) = included[number] else { continue };
+        edges
+            .extend(open.into_iter().filter_map(|other| included[other]).filter(|to| *to != from).map(|to| (from, to)));
+    }
+    Ok(Connectivity { viewpoints, edges })
+}
+
+fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
+    let id = ViewpointId::new(read::text(item, "image_id")?).map_err(|error| format!("field `image_id`: {error}"))?;
+    let named = |reason| format!("{id}: {reason}");
+    if !read::flag(read::field(item, "included").map_err(named)?, "included").map_err(named)? {
+        // The poses of viewpoints that were left out are not used, and not always numbers.
+        return Ok(None);
+    }
+    let pose = pose(item).map_err(named)?;
+    let height_m = read::number(read::field(item, "height").map_err(named)?, "height").map_err(named)?;
+    Ok(Some(Viewpoint {
+        position: DVec3::new(pose[3], pose[7], pose[11]),
+        height_m,
+        world_from_skybox: DMat3::from_cols_array(&[
+            pose[0], pose[4], pose[8], pose[1], pose[5], pose[9], pose[2], pose[6], pose[10],
+        ]),
+        id,
+    }))
+}
+
+fn pose(item: &Value) -> Result<[f64; 16], String> {
+    let numbers = read::list(item, "pose")?;
+    if numbers.len() != 16 {
+        return Err(format!("field `pose` has {} numbers, not 16", numbers.len()));
+    }
+    let mut pose = [0.0; 16];
+    for (place, value) in pose.iter_mut().zip(numbers) {
+        *place = read::number(value, "pose")?;
+    }
+    Ok(pose)
+}
+
+fn neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
+    let flags = read::list(item, "unobstructed")?;
+    if flags.len() != count {
+        return Err(format!("field `unobstructed` has {} entries for {count} viewpoints", flags.len()));
+    }
+    let mut open = Vec::new();
+    for (other, value) in flags.iter().enumerate() {
+        if read::flag(value, "unobstructed")? {
+            open.push(other);
+        }
+    }
+    Ok(open)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn item(id: &str, included: bool, x: f64, unobstructed: &[bool]) -> Value {
+        json!({
+            "image_id": id, "included": included, "height": 1.5, "unobstructed": unobstructed, "visible": unobstructed,
+            "pose": [0.0, -1.0, 0.0, x, 0.0, 0.0, -1.0, 2.0, 1.0, 0.0, 0.0, 1.6, 0.0, 0.0, 0.0, 1.0],
+        })
+    }
+
+    fn parsed(value: &Value) -> Result<Connectivity, String> {
+        parse(value.to_string().as_bytes())
+    }
+
+    #[test]
+    fn positions_heights_and_rotation_come_from_the_pose() {
+        let read = parsed(&json!([item("a", true, 4.0, &[false])])).unwrap();
+        let only = &read.viewpoints[0];
+        assert_eq!(only.position, DVec3::new(4.0, 2.0, 1.6));
+        assert!((only.floor_m() - 0.1).abs() < 1e-12);
+        assert_eq!(only.world_from_skybox * DVec3::X, DVec3::Z, "the first column is pose[0], pose[4], pose[8]");
+    }
+
+    #[test]
+    fn an_edge_needs_a_free_way_and_both_ends_included() {
+        let all = [true, true, true];
+        let read =
+            parsed(&json!([item("a", true, 0.0, &all), item("b", false, 1.0, &all), item("c", true, 2.0, &all)]))
+                .unwrap();
+        assert_eq!(read.viewpoints.len(), 2);
+        assert_eq!(read.edges, [(0, 1), (1, 0)]);
+    }
+
+    #[test]
+    fn errors_name_the_viewpoint_and_the_field() {
+        let mut broken = json!([item("a", true, 0.0, &[false])]);
+        broken[0]["pose"][3] = json!("east");
+        assert_eq!(parsed(&broken).unwrap_err(), "viewpoint 0: a: field `pose` holds a text, not a number");
+        broken[0]["pose"][3] = json!(1e300);
+        assert!(parsed(&broken).unwrap_err().contains("no place in a building"));
+        let short = parsed(&json!([item("a", true, 0.0, &[])])).unwrap_err();
+        assert_eq!(short, "viewpoint 0: field `unobstructed` has 0 entries for 1 viewpoints");
+        assert!(parsed(&json!([item("../a", true, 0.0, &[false])])).unwrap_err().contains("path separators"));
+        assert!(parse(b"[{\"pose\": [NaN]}]").unwrap_err().contains("is not a JSON list"));
+    }
+}

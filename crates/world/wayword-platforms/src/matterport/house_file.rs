@@ -1,0 +1,200 @@
+//! `SCAN.house`: levels, regions, panoramas and objects of a building.
+//!
+//! Format: Matterport3D's `data_organization.md`, "house_segmentations": ASCII, one record per line, its first word the
+//! kind. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts in `H` are not trusted.
+
+use super::{names, read};
+use glam::DVec3;
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::{ObjectId, PlatformError, ViewpointId};
+
+const MAX_BYTES: u64 = 256 << 20;
+/// Longest line that is read: the records have under 40 words.
+const MAX_WORDS: usize = 64;
+const HINT: &str = "take the file again from Matterport3D's house_segmentations";
+
+/// What a `.house` file says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct House {
+    /// Height of each level, metres, by its index in the file.
+    levels_m: BTreeMap<i64, f64>,
+    regions: BTreeMap<i64, Region>,
+    panoramas: BTreeMap<ViewpointId, i64>,
+    pub(crate) objects: Vec<HouseObject>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Region {
+    level: i64,
+    letter: char,
+}
+
+/// An object of a `.house` file.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct HouseObject {
+    pub(crate) id: ObjectId,
+    /// In plain words; `None` where the annotators gave none.
+    pub(crate) name: Option<String>,
+    /// Index of the region in which it stands.
+    pub(crate) region: i64,
+    /// Centre of its box, metres, world frame.
+    pub(crate) centre: DVec3,
+}
+
+impl House {
+    /// The storey of a viewpoint, the lowest being 1.
+    pub(crate) fn level(&self, viewpoint: &ViewpointId) -> Option<u32> {
+        let region = self.regions.get(self.panoramas.get(viewpoint)?)?;
+        let height_m = self.levels_m.get(&region.level)?;
+        // Levels are numbered from the lowest, in whatever order the file has them.
+        let lower = self.levels_m.iter().filter(|(index, other_m)| (**other_m, **index) < (*height_m, region.level));
+        Some(lower.count() as u32 + 1)
+    }
+
+    /// The letter of the region in which a viewpoint stands.
+    pub(crate) fn room_letter(&self, viewpoint: &ViewpointId) -> Option<char> {
+        self.regions.get(self.panoramas.get(viewpoint)?).map(|region| region.letter)
+    }
+
+    /// The objects that stand in a viewpoint's region.
+    pub(crate) fn objects_around(&self, viewpoint: &ViewpointId) -> impl Iterator<Item = &HouseObject> {
+        let region = self.panoramas.get(viewpoint).copied();
+        self.objects.iter().filter(move |object| Some(object.region) == region)
+    }
+}
+
+/// Reads a `.house` file; `None` where there is none.
+///
+/// # Errors
+/// When it is not such a file; the message names the line and the column.
+pub(crate) fn read(file: &Path) -> Result<Option<House>, PlatformError> {
+    let Some(text) = read::text_if_there(file, MAX_BYTES, HINT)? else {
+        return Ok(None);
+    };
+    parse(&text).map(Some).map_err(|reason| read::wrong(file, reason, HINT))
+}
+
+fn parse(text: &str) -> Result<House, String> {
+    if !text.starts_with("ASCII") {
+        return Err("line 1: does not begin with ASCII".into());
+    }
+    let mut house = House::default();
+    let mut categories = BTreeMap::new();
+    let mut objects = Vec::new();
+    for (number, line) in text.lines().enumerate().skip(1) {
+        if !line.starts_with(['L', 'R', 'P', 'O', 'C']) {
+            continue;
+        }
+        let record = Record { words: line.split_whitespace().take(MAX_WORDS).collect() };
+        add(&record, &mut house, &mut categories, &mut objects)
+            .map_err(|reason| format!("line {}: {reason}", number + 1))?;
+    }
+    house.objects = objects
+        .into_iter()
+        .map(|(object, category)| HouseObject { name: categories.get(&category).cloned().flatten(), ..object })
+        .collect();
+    Ok(house)
+}
+
+fn add(
+    record: &Record<'_>,
+    house: &mut House,
+    categories: &mut BTreeMap<i64, Option<String>>,
+    objects: &mut Vec<(HouseObject, i64)>,
+) -> Result<(), String> {
+    match record.word(0)? {
+        "L" => {
+            house.levels_m.insert(record.index(1)?, record.position(4)?.z);
+        }
+        "R" => {
+            let letter = record.word(5)?.chars().next().unwrap_or('Z');
+            house.regions.insert(record.index(1)?, Region { level: record.index(2)?, letter });
+        }
+        "P" => {
+            let viewpoint = ViewpointId::new(record.word(1)?).map_err(|error| error.to_string())?;
+            house.panoramas.insert(viewpoint, record.index(3)?);
+        }
+        "O" => {
+            let id = ObjectId::new(record.word(1)?).map_err(|error| error.to_string())?;
+            let object = HouseObject { id, name: None, region: record.index(2)?, centre: record.position(4)? };
+            objects.push((object, record.index(3)?));
+        }
+        "C" => {
+            categories.insert(record.index(1)?, names::plain(record.word(3)?));
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+/// The words of a line.
+struct Record<'a> {
+    words: Vec<&'a str>,
+}
+
+impl<'a> Record<'a> {
+    fn word(&self, column: usize) -> Result<&'a str, String> {
+        let count = self.words.len();
+        self.words.get(column).copied().ok_or_else(|| format!("has {count} columns; column {} is missing", column + 1))
+    }
+
+    fn index(&self, column: usize) -> Result<i64, String> {
+        let word = self.word(column)?;
+        word.parse().map_err(|_| format!("column {}: {word:.20?} is no index", column + 1))
+    }
+
+    fn position(&self, column: usize) -> Result<DVec3, String> {
+        let number = |column: usize| {
+            let word = self.word(column)?;
+            let number: f64 = word.parse().map_err(|_| format!("column {}: {word:.20?} is no number", column + 1))?;
+            read::coordinate(number).map_err(|reason| format!("column {}: {reason}", column + 1))
+        };
+        Ok(DVec3::new(number(column)?, number(column + 1)?, number(column + 2)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "ASCII 1.1\n\
+        H - - 1 999999999 0 0 0 0 0 0 0 0\n\
+        L 0 1 - 0 0 3.0 0 0 0 1 1 1 0 0 0 0 0\n\
+        L 1 1 - 0 0 0.0 0 0 0 1 1 1 0 0 0 0 0\n\
+        R 0 0 0 0 b 0 0 0 0 0 0 1 1 1 2.5 0 0 0 0\n\
+        R 1 1 0 0 k 0 0 0 0 0 0 1 1 1 2.5 0 0 0 0\n\
+        P upper 0 0 0 1 2 4.5 0 0 0 0 0\n\
+        P lower 1 1 0 1 2 1.5 0 0 0 0 0\n\
+        O 5 1 9 1 1 0.5 1 0 0 0 1 0 1 1 1 0 0 0 0 0 0 0 0\n\
+        C 9 3 coffee#table 5 table 0 0 0 0 0\n\
+        E 0 0 0\n";
+
+    fn id(name: &str) -> ViewpointId {
+        ViewpointId::new(name).unwrap()
+    }
+
+    #[test]
+    fn levels_are_numbered_from_the_lowest_whatever_their_order() {
+        let house = parse(TEXT).unwrap();
+        assert_eq!((house.level(&id("lower")), house.level(&id("upper"))), (Some(1), Some(2)));
+        assert_eq!(house.level(&id("elsewhere")), None);
+        assert_eq!(house.room_letter(&id("upper")), Some('b'));
+    }
+
+    #[test]
+    fn objects_have_the_names_of_their_categories() {
+        let house = parse(TEXT).unwrap();
+        let around: Vec<_> = house.objects_around(&id("lower")).collect();
+        assert_eq!(around.len(), 1);
+        assert_eq!((around[0].id.as_str(), around[0].name.as_deref()), ("5", Some("coffee table")));
+        assert_eq!(house.objects_around(&id("upper")).count(), 0);
+    }
+
+    #[test]
+    fn errors_name_the_line_and_the_column() {
+        assert_eq!(parse("ply\n").unwrap_err(), "line 1: does not begin with ASCII");
+        assert_eq!(parse("ASCII\nL 0 1").unwrap_err(), "line 2: has 3 columns; column 5 is missing");
+        assert_eq!(parse("ASCII\nL 0 1 - 0 nan 3").unwrap_err(), "line 2: column 6: NaN is no place in a building");
+        assert_eq!(parse("ASCII\nP v 0 x 0 0 0 0").unwrap_err(), "line 2: column 4: \"x\" is no index");
+    }
+}

@@ -1,0 +1,115 @@
+//! What is visible from a viewpoint, from REVERIE's boxes or the `.house` file.
+
+use super::{
+    boxes::{Listed, Ray},
+    house_file::House,
+};
+use glam::DVec3;
+use std::collections::BTreeMap;
+use wayword_core::{Heading, Label, ViewpointId};
+
+/// Objects of a `.house` file count as visible within this distance and in the same region, metres: as far as REVERIE's
+/// paper says that it looked. Walls within the region are not known.
+const HOUSE_REACH_M: f64 = 3.0;
+
+/// Labels from REVERIE's boxes; `eye` and `centres` in the world frame.
+///
+/// The direction is that of a box that no picture's edge cuts. An object that every picture cuts goes round the viewer or
+/// over the edge of the lowest view; then its centre's direction stands, and the most central box's only where no centre
+/// is known. The distance is to the centre.
+pub(crate) fn from_boxes(listed: &[Listed], eye: DVec3, centres: &BTreeMap<String, DVec3>) -> Vec<Label> {
+    let mut labels: Vec<Label> = listed
+        .iter()
+        .filter_map(|entry| {
+            let seen = entry.best_box()?;
+            let centre = centres.get(entry.object.as_str()).copied();
+            let by_centre = centre.and_then(|centre| ray_to(eye, centre));
+            let ray = if seen.is_cut() { by_centre.or(seen.ray()) } else { seen.ray() }?;
+            Some(Label {
+                object: entry.object.clone(),
+                name: entry.name.clone()?,
+                heading: ray.heading,
+                elevation_rad: ray.elevation_rad,
+                box_px: None,
+                distance_m: centre.map(|centre| eye.distance(centre)),
+                position: centre,
+                colour: None,
+            })
+        })
+        .collect();
+    labels.sort_by(|a, b| a.object.cmp(&b.object));
+    labels
+}
+
+/// Labels from the centres of the objects in a viewpoint's region.
+pub(crate) fn from_house(house: &House, viewpoint: &ViewpointId, eye: DVec3) -> Vec<Label> {
+    let mut labels: Vec<Label> = house
+        .objects_around(viewpoint)
+        .filter(|object| eye.distance(object.centre) <= HOUSE_REACH_M)
+        .filter_map(|object| {
+            let ray = ray_to(eye, object.centre)?;
+            Some(Label {
+                object: object.id.clone(),
+                name: object.name.clone()?,
+                heading: ray.heading,
+                elevation_rad: ray.elevation_rad,
+                box_px: None,
+                distance_m: Some(eye.distance(object.centre)),
+                position: Some(object.centre),
+                colour: None,
+            })
+        })
+        .collect();
+    labels.sort_by(|a, b| a.object.cmp(&b.object));
+    labels
+}
+
+/// The ray from an eye to a point; `None` where the point lies straight above or below.
+fn ray_to(eye: DVec3, point: DVec3) -> Option<Ray> {
+    let to = point - eye;
+    let flat_m = libm::hypot(to.x, to.y);
+    if flat_m <= 1e-6 {
+        return None;
+    }
+    let heading = Heading::new(libm::atan2(to.x, to.y)).ok()?;
+    Some(Ray { heading, elevation_rad: libm::atan2(to.z, flat_m) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matterport::boxes::SeenBox;
+    use wayword_core::ObjectId;
+
+    fn listed(boxes: &[SeenBox]) -> Listed {
+        Listed { object: ObjectId::new("3").unwrap(), name: Some("lamp".into()), boxes: boxes.to_vec() }
+    }
+
+    fn centres(at: DVec3) -> BTreeMap<String, DVec3> {
+        BTreeMap::from([("3".to_owned(), at)])
+    }
+
+    const WHOLE: SeenBox = SeenBox { view: 15, box_px: [300.0, 200.0, 40.0, 80.0] };
+    const CUT: SeenBox = SeenBox { view: 15, box_px: [0.0, 0.0, 640.0, 480.0] };
+
+    #[test]
+    fn a_whole_box_gives_the_direction_and_the_centre_the_distance() {
+        let labels = from_boxes(&[listed(&[WHOLE])], DVec3::ZERO, &centres(DVec3::new(3.0, 0.2, 0.0)));
+        assert!((labels[0].heading.deg() - 90.0).abs() < 1e-9);
+        assert!((labels[0].distance_m.unwrap() - 3.0067).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_cut_box_leaves_the_direction_to_the_centre() {
+        let labels = from_boxes(&[listed(&[CUT])], DVec3::ZERO, &centres(DVec3::new(0.0, 2.0, 0.0)));
+        assert!(labels[0].heading.rad().abs() < 1e-9);
+        let without = from_boxes(&[listed(&[CUT])], DVec3::ZERO, &BTreeMap::new());
+        assert!((without[0].heading.deg() - 90.0).abs() < 1e-9);
+        assert_eq!(without[0].distance_m, None);
+    }
+
+    #[test]
+    fn what_is_listed_but_not_seen_is_no_label() {
+        assert_eq!(from_boxes(&[listed(&[])], DVec3::ZERO, &centres(DVec3::Y)), []);
+    }
+}

@@ -1,0 +1,105 @@
+//! Where a user's Matterport3D data lies.
+
+use super::read;
+use std::path::{Path, PathBuf};
+use wayword_core::{PlatformError, SceneId, ViewpointId};
+
+const HINT: &str = "give the folder that holds Matterport3DSimulator's `connectivity` folder as --data";
+
+/// The folders and files that were found below the data folder.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    connectivity: PathBuf,
+    /// Folder that holds one folder per scan.
+    scans: Vec<PathBuf>,
+    boxes: Option<PathBuf>,
+    pub(crate) object_positions: Option<PathBuf>,
+}
+
+impl Layout {
+    /// Looks for the parts of Matterport3D below a folder, in the places where its tools put them.
+    ///
+    /// # Errors
+    /// When there are no connectivity graphs; the message names every place that was tried.
+    pub(crate) fn find(data: &Path) -> Result<Self, PlatformError> {
+        let connectivity = first(data, &["matterport/connectivity", "connectivity", "graph"]).ok_or_else(|| {
+            let reason = if data.is_dir() {
+                "holds no connectivity graphs: neither `matterport/connectivity` nor `connectivity` is a folder in it"
+            } else {
+                "is not a folder"
+            };
+            read::wrong(data, reason, HINT)
+        })?;
+        Ok(Self {
+            connectivity,
+            scans: all(data, &["matterport/v1/scans", "v1/scans", "matterport/scans", "scans"]),
+            boxes: first(data, &["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"]),
+            object_positions: ["reverie/objpos.json", "objpos.json", "BBox/objpos.json"]
+                .iter()
+                .map(|place| data.join(place))
+                .find(|file| file.is_file()),
+        })
+    }
+
+    /// The scenes that have a connectivity file, sorted.
+    pub(crate) fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        let failed = |error: std::io::Error| read::wrong(&self.connectivity, error.to_string(), HINT);
+        let mut scenes = Vec::new();
+        for entry in std::fs::read_dir(&self.connectivity).map_err(failed)? {
+            let name = entry.map_err(failed)?.file_name();
+            let scan = name.to_str().and_then(|name| name.strip_suffix("_connectivity.json"));
+            scenes.extend(scan.and_then(|scan| SceneId::new(scan).ok()));
+        }
+        scenes.sort();
+        Ok(scenes)
+    }
+
+    pub(crate) fn connectivity(&self, scene: &SceneId) -> PathBuf {
+        self.connectivity.join(format!("{scene}_connectivity.json"))
+    }
+
+    /// The file of room letters, whether or not it is there.
+    pub(crate) fn rooms(&self, scene: &SceneId) -> Option<PathBuf> {
+        self.in_scan(scene, "house_segmentations/panorama_to_region.txt")
+    }
+
+    /// The `.house` file.
+    pub(crate) fn house(&self, scene: &SceneId) -> Option<PathBuf> {
+        self.in_scan(scene, &format!("house_segmentations/{scene}.house"))
+    }
+
+    /// REVERIE's boxes of a viewpoint, whether or not they are there.
+    pub(crate) fn boxes(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
+        self.boxes.as_ref().map(|folder| folder.join(format!("{scene}_{viewpoint}.json")))
+    }
+
+    /// A file in a scan's folder. Matterport3D's archives unpack to `SCAN/...` inside `scans/SCAN` or right there.
+    fn in_scan(&self, scene: &SceneId, file: &str) -> Option<PathBuf> {
+        let scan = scene.as_str();
+        let places =
+            self.scans.iter().flat_map(|scans| [scans.join(scan).join(file), scans.join(scan).join(scan).join(file)]);
+        places.into_iter().find(|file| file.is_file())
+    }
+}
+
+fn all(data: &Path, places: &[&str]) -> Vec<PathBuf> {
+    places.iter().map(|place| data.join(place)).filter(|folder| folder.is_dir()).collect()
+}
+
+fn first(data: &Path, places: &[&str]) -> Option<PathBuf> {
+    all(data, places).into_iter().next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_named_with_where_it_was_looked_for() {
+        let empty = tempfile::tempdir().unwrap();
+        let error = Layout::find(empty.path()).unwrap_err().to_string();
+        assert!(error.contains("`matterport/connectivity`") && error.contains("--data"), "{error}");
+        let nowhere = Layout::find(&empty.path().join("nowhere")).unwrap_err().to_string();
+        assert!(nowhere.contains("is not a folder"), "{nowhere}");
+    }
+}

@@ -1,0 +1,21 @@
+//! Matterport3D: real buildings, as the dataset, its simulator and REVERIE ship them.
+//!
+//! What there is to see depends on what the user has: photographs (skyboxes or 36-view folders), or none at all, and then
+//! REVERIE's boxes, the `.house` file and the rooms of the viewpoints carry the perception.
+
+mod boxes;
+mod connectivity;
+mod house_file;
+mod labels;
+mod layout;
+mod levels;
+mod names;
+mod object_positions;
+mod platform;
+mod read;
+mod recent;
+mod rooms;
+mod sample;
+mod scene;
+
+pub use platform::Matterport;

@@ -1,0 +1,173 @@
+//! Annotators' names of objects in plain words.
+
+/// Annotators' slips, with what they meant: only such as leave no doubt.
+const SLIPS: &[(&str, &str)] = &[
+    ("baracade", "barricade"),
+    ("bathtab", "bathtub"),
+    ("beside", "bedside"),
+    ("bothroom", "bathroom"),
+    ("cailing", "ceiling"),
+    ("celling", "ceiling"),
+    ("chairir", "chair"),
+    ("chandellier", "chandelier"),
+    ("closte", "closet"),
+    ("curatain", "curtain"),
+    ("displensor", "dispenser"),
+    ("doorgrame", "doorframe"),
+    ("dushbin", "dustbin"),
+    ("excercise", "exercise"),
+    ("exericse", "exercise"),
+    ("extinctioms", "extinguisher"),
+    ("fireextinctioms", "fire extinguisher"),
+    ("firealarm", "fire alarm"),
+    ("horizonal", "horizontal"),
+    ("kitchencounter", "kitchen counter"),
+    ("laundrybag", "laundry bag"),
+    ("lightswitch", "light switch"),
+    ("llight", "light"),
+    ("nob", "knob"),
+    ("paining", "painting"),
+    ("paintintg", "painting"),
+    ("scultpure", "sculpture"),
+    ("sidetable", "side table"),
+    ("sofachair", "sofa chair"),
+    ("soffet", "soffit"),
+    ("tarrace", "terrace"),
+    ("trashcan", "trash can"),
+    ("unkown", "unknown"),
+    ("utencils", "utensils"),
+    ("vaccum", "vacuum"),
+    ("wainscotting", "wainscoting"),
+    ("whine", "wine"),
+    ("windowframe", "window frame"),
+];
+
+/// Words that belong to the building and not to what stands in it: nobody is sent to do something with them.
+const STRUCTURE: &[&str] = &[
+    "arch",
+    "archway",
+    "baseboard",
+    "beam",
+    "ceiling",
+    "column",
+    "doorframe",
+    "doorway",
+    "duct",
+    "edge",
+    "floor",
+    "frame",
+    "ground",
+    "hole",
+    "ledge",
+    "molding",
+    "partition",
+    "pillar",
+    "pipe",
+    "pipes",
+    "post",
+    "reflection",
+    "roof",
+    "room",
+    "skirting",
+    "soffit",
+    "space",
+    "trim",
+    "unknown",
+    "void",
+    "wall",
+    "wainscoting",
+];
+
+/// Longest name that is kept, in characters.
+const MAX_CHARS: usize = 60;
+
+/// A name as people would write it: `#` is a space; remarks on where the thing really is ("/ other room"), stray marks and
+/// slips are gone. `None` where nothing is left.
+///
+/// Of two names joined by a slash with spaces round it the first stands; without spaces ("stand/table") the second.
+pub(crate) fn plain(raw: &str) -> Option<String> {
+    let spaced: String = raw.chars().take(4 * MAX_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
+    let lower = one_of_two(&spaced).to_lowercase();
+    let kept: String = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '\'')).collect();
+    let words: Vec<&str> = kept.split_whitespace().map(|word| word.trim_matches(['-', '\''])).map(mended).collect();
+    let mut words: &[&str] = &words;
+    while let [rest @ .., "etc" | ""] = words {
+        words = rest;
+    }
+    if let [rest @ .., "other", "room"] = words
+        && !rest.is_empty()
+    {
+        words = rest;
+    }
+    let name: String = words.join(" ").chars().take(MAX_CHARS).collect();
+    name.chars().any(char::is_alphabetic).then(|| name.trim().to_owned())
+}
+
+fn one_of_two(name: &str) -> &str {
+    let Some((first, second)) = name.split_once(['/', '\\']) else {
+        return name;
+    };
+    let is_remark = first.ends_with(' ') || second.starts_with(' ') || second.starts_with("other");
+    if is_remark && !first.trim().is_empty() { first } else { second }
+}
+
+fn mended(word: &str) -> &str {
+    SLIPS.iter().find(|(slip, _)| *slip == word).map_or(word, |(_, meant)| meant)
+}
+
+/// Whether a plain name is of something that one can be sent to do something with.
+pub(crate) fn is_furnishing(name: &str) -> bool {
+    !name.split(' ').any(|word| STRUCTURE.contains(&word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn odd_names_become_plain() {
+        for (raw, expected) in [
+            ("bath#cabinet", "bath cabinet"),
+            ("bathroom##sink", "bathroom sink"),
+            ("ceiling#/otherroom", "ceiling"),
+            ("cabinet#\\other#room", "cabinet"),
+            ("door/other#room", "door"),
+            ("wall#\\other#oom", "wall"),
+            ("c;lothes#hangers", "clothes hangers"),
+            ("stand/table", "table"),
+            ("hot#water/cold#water#knob", "cold water knob"),
+            ("art#/#clutter", "art"),
+            ("t.v", "tv"),
+            ("towels#(rolled)", "towels rolled"),
+            ("toaster?", "toaster"),
+            ("shower#caddy#for#soap#etc.", "shower caddy for soap"),
+            ("wall#other#room", "wall"),
+            ("kitchen#countertop#object'", "kitchen countertop object"),
+            ("a-frame#sign", "a-frame sign"),
+            ("lightswitch", "light switch"),
+        ] {
+            assert_eq!(plain(raw).as_deref(), Some(expected), "{raw}");
+        }
+        assert_eq!(plain("##"), None);
+        assert_eq!(plain("/"), None);
+    }
+
+    #[test]
+    fn parts_of_the_building_are_no_furnishings() {
+        assert!(is_furnishing("coffee table"));
+        assert!(!is_furnishing("shower wall"));
+        assert!(!is_furnishing("unknown object"));
+    }
+
+    proptest! {
+        #[test]
+        fn a_plain_name_is_plain_and_stays_so(raw in "\\PC{0,300}") {
+            if let Some(name) = plain(&raw) {
+                prop_assert!(!name.contains(['#', '/', '\\', ';', '\n']) && !name.contains("  "));
+                prop_assert!(name.chars().count() <= MAX_CHARS);
+                prop_assert_eq!(name.trim(), &name);
+            }
+        }
+    }
+}

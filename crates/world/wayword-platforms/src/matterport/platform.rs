@@ -1,0 +1,158 @@
+//! Matterport3D as a [`Platform`].
+
+use super::{
+    boxes::{self, Listed},
+    labels,
+    layout::Layout,
+    object_positions::{self, ObjectPositions},
+    recent::Recent,
+    sample,
+    scene::Scene,
+};
+use std::{
+    collections::BTreeMap,
+    path::Path as FilePath,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    Frame, Gaze, GroundTruth, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId, View,
+    ViewpointGraph, ViewpointId,
+};
+
+/// How many viewpoints' boxes are kept in memory.
+const BOXES_KEPT: usize = 256;
+
+/// Matterport3D's buildings, from the files that a user has.
+pub struct Matterport {
+    layout: Layout,
+    centres: ObjectPositions,
+    scenes: Mutex<BTreeMap<SceneId, Arc<Scene>>>,
+    boxes: Recent<(SceneId, ViewpointId), Option<Vec<Listed>>>,
+}
+
+impl Matterport {
+    /// Finds the data below a folder: `connectivity` is needed; rooms, `.house` files, REVERIE's boxes and object centres,
+    /// and photographs are used where they are.
+    ///
+    /// # Errors
+    /// When there are no connectivity graphs, or the object centres cannot be read.
+    pub fn open(data: &FilePath) -> Result<Self, PlatformError> {
+        let layout = Layout::find(data)?;
+        let centres = layout.object_positions.as_deref().map(object_positions::read).transpose()?.unwrap_or_default();
+        Ok(Self { layout, centres, scenes: Mutex::default(), boxes: Recent::new(BOXES_KEPT) })
+    }
+
+    fn scene(&self, scene: &SceneId) -> Result<Arc<Scene>, PlatformError> {
+        if let Some(loaded) = self.scenes.lock().unwrap_or_else(PoisonError::into_inner).get(scene) {
+            return Ok(Arc::clone(loaded));
+        }
+        // Not under the lock: other buildings need not wait. Whoever comes second takes what the first has put there.
+        let loaded = Arc::new(Scene::load(&self.layout, scene)?);
+        let mut scenes = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Arc::clone(scenes.entry(scene.clone()).or_insert(loaded)))
+    }
+
+    fn listed(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Result<Arc<Option<Vec<Listed>>>, PlatformError> {
+        self.boxes.get_or_make((scene.clone(), viewpoint.clone()), || {
+            let file = self.layout.boxes(scene, viewpoint);
+            file.map(|file| boxes::read(&file, viewpoint)).transpose().map(Option::flatten)
+        })
+    }
+
+    /// Everything that is visible from a viewpoint, or `None` where nothing is known about it.
+    fn labels(
+        &self,
+        id: &SceneId,
+        scene: &Scene,
+        viewpoint: &ViewpointId,
+    ) -> Result<Option<Vec<Label>>, PlatformError> {
+        let eye = known(id, scene, viewpoint)?.position;
+        let nowhere = BTreeMap::new();
+        let centres = self.centres.get(id.as_str()).unwrap_or(&nowhere);
+        if let Some(listed) = self.listed(id, viewpoint)?.as_ref() {
+            return Ok(Some(labels::from_boxes(listed, eye, centres)));
+        }
+        let house = scene.house.as_ref().filter(|house| !house.objects.is_empty());
+        Ok(house.map(|house| labels::from_house(house, viewpoint, eye)))
+    }
+
+    /// Names of all objects listed anywhere in a building. Viewpoints are read one after another and not kept.
+    fn names<'a>(&self, id: &SceneId, scene: &'a Scene) -> Result<&'a BTreeMap<ObjectId, String>, PlatformError> {
+        if let Some(names) = scene.names.get() {
+            return Ok(names);
+        }
+        let mut names = BTreeMap::new();
+        for viewpoint in scene.viewpoints.keys() {
+            let Some(file) = self.layout.boxes(id, viewpoint) else { break };
+            for entry in boxes::read(&file, viewpoint)?.into_iter().flatten() {
+                if let Some(name) = entry.name {
+                    names.entry(entry.object).or_insert(name);
+                }
+            }
+        }
+        Ok(scene.names.get_or_init(|| names))
+    }
+}
+
+fn known<'a>(
+    id: &SceneId,
+    scene: &'a Scene,
+    viewpoint: &ViewpointId,
+) -> Result<&'a super::connectivity::Viewpoint, PlatformError> {
+    let found = scene.viewpoints.get(viewpoint);
+    found.ok_or_else(|| PlatformError::UnknownViewpoint { scene: id.clone(), viewpoint: viewpoint.clone() })
+}
+
+fn viewpoint_of<'a>(id: &SceneId, frame: &'a Frame) -> Result<&'a ViewpointId, PlatformError> {
+    frame.viewpoint.as_ref().ok_or_else(|| PlatformError::NotAViewpoint { scene: id.clone() })
+}
+
+impl Platform for Matterport {
+    fn name(&self) -> &'static str {
+        "matterport"
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.layout.scenes()
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(Arc::clone(&self.scene(scene)?.graph))
+    }
+
+    fn sample_path(&self, id: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        let scene = self.scene(id)?;
+        sample::path(id, &scene.graph, request, seed, |viewpoint| {
+            Ok(self.labels(id, &scene, viewpoint)?.unwrap_or_default())
+        })
+    }
+
+    fn look(&self, id: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let scene = self.scene(id)?;
+        let viewpoint = viewpoint_of(id, from)?;
+        let eye = known(id, &scene, viewpoint)?.position;
+        let labels = self.labels(id, &scene, viewpoint)?;
+        let truth = (labels.is_some() || scene.knows_rooms()).then(|| GroundTruth {
+            labels: labels.into_iter().flatten().filter(|label| gaze.holds(label.heading)).collect(),
+            room: scene.room(viewpoint).map(str::to_owned),
+        });
+        Ok(View::new(Pose::level(eye, gaze.heading), gaze.horizontal_fov_rad, None, truth))
+    }
+
+    fn object_name(&self, id: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        let scene = self.scene(id)?;
+        if let Some(viewpoint) = &near.viewpoint {
+            known(id, &scene, viewpoint)?;
+            let here = self.listed(id, viewpoint)?;
+            let entry = here.iter().flatten().find(|entry| entry.object == *object);
+            if let Some(name) = entry.and_then(|entry| entry.name.clone()) {
+                return Ok(Some(name));
+            }
+        }
+        let in_house = scene.house.as_ref().and_then(|house| house.objects.iter().find(|other| other.id == *object));
+        if let Some(name) = in_house.and_then(|found| found.name.clone()) {
+            return Ok(Some(name));
+        }
+        Ok(self.names(id, &scene)?.get(object).cloned())
+    }
+}

@@ -1,0 +1,111 @@
+//! `panorama_to_region.txt`: the room in which each viewpoint stands.
+//!
+//! One line per panorama: index, viewpoint, region, letter of the region's label (Matterport3D `house_segmentations`,
+//! data organisation, "region labels").
+
+use super::read;
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::{PlatformError, ViewpointId};
+
+const MAX_BYTES: u64 = 4 << 20;
+const HINT: &str = "take the file again from Matterport3D's house_segmentations";
+
+/// The room of each viewpoint, as a letter.
+pub(crate) type RoomLetters = BTreeMap<ViewpointId, char>;
+
+/// Reads the rooms; `None` where there is no such file.
+///
+/// # Errors
+/// When a line is not one of such a file; the message names it.
+pub(crate) fn read(file: &Path) -> Result<Option<RoomLetters>, PlatformError> {
+    let Some(text) = read::text_if_there(file, MAX_BYTES, HINT)? else {
+        return Ok(None);
+    };
+    parse(&text).map(Some).map_err(|reason| read::wrong(file, reason, HINT))
+}
+
+fn parse(text: &str) -> Result<RoomLetters, String> {
+    let mut rooms = RoomLetters::new();
+    for (number, line) in text.lines().enumerate() {
+        let words: Vec<&str> = line.split_whitespace().take(5).collect();
+        if words.is_empty() {
+            continue;
+        }
+        let (viewpoint, letter) = entry(&words).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        if rooms.insert(viewpoint, letter).is_some() {
+            return Err(format!("line {}: viewpoint {} is listed twice", number + 1, words[1]));
+        }
+    }
+    Ok(rooms)
+}
+
+fn entry(words: &[&str]) -> Result<(ViewpointId, char), String> {
+    let [_, viewpoint, _, label] = words else {
+        return Err("does not have four columns: index, viewpoint, region, letter".into());
+    };
+    let viewpoint = ViewpointId::new(*viewpoint).map_err(|error| error.to_string())?;
+    let mut letters = label.chars();
+    match (letters.next(), letters.next()) {
+        (Some(letter), None) => Ok((viewpoint, letter)),
+        _ => Err(format!("the room is {:?}, not one letter", label.chars().take(20).collect::<String>())),
+    }
+}
+
+/// The everyday word for a region's letter; `None` for what is no room that a person would name.
+pub(crate) fn name(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        'a' => "bathroom",
+        'b' => "bedroom",
+        'c' => "closet",
+        'd' => "dining room",
+        'e' => "entryway",
+        'f' => "family room",
+        'g' => "garage",
+        'h' => "hallway",
+        'i' => "library",
+        'j' => "laundry room",
+        'k' => "kitchen",
+        'l' => "living room",
+        'm' => "meeting room",
+        'n' => "lounge",
+        'o' => "office",
+        'p' => "porch",
+        'r' => "game room",
+        's' => "stairs",
+        't' => "toilet",
+        'u' => "utility room",
+        'v' => "tv room",
+        'w' => "gym",
+        'x' => "outdoor area",
+        'y' => "balcony",
+        'B' => "bar",
+        'C' => "classroom",
+        'D' => "dining booth",
+        'S' => "spa",
+        // z "other", Z "junk", - "no label"
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_gives_a_viewpoint_its_room() {
+        let rooms = parse("0 aa 3 k\n1 bb 0 Z\n\n").unwrap();
+        let words: Vec<_> = rooms.values().map(|letter| name(*letter)).collect();
+        assert_eq!(words, [Some("kitchen"), None]);
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        assert_eq!(
+            parse("0 a 0 k\n1 b 0").unwrap_err(),
+            "line 2: does not have four columns: index, viewpoint, region, letter"
+        );
+        assert_eq!(parse("0 a 0 kitchen").unwrap_err(), "line 1: the room is \"kitchen\", not one letter");
+        assert_eq!(parse("0 a 0 k\n1 a 1 b").unwrap_err(), "line 2: viewpoint a is listed twice");
+        assert!(parse("0 ../a 0 k").unwrap_err().contains("path separators"));
+    }
+}

@@ -1,0 +1,172 @@
+//! Random paths through a building.
+
+use super::names;
+use rand::{Rng, seq::SliceRandom};
+use std::f64::consts::TAU;
+use wayword_core::{
+    Heading, Label, Path, PathRequest, PlatformError, Route, SceneId, Target, ViewpointGraph, ViewpointId, rng,
+};
+
+/// So many ends without anything visible are passed over before a path without a target is accepted.
+const MAX_BARE_ENDS: usize = 64;
+
+/// A shortest path between two random nodes that keeps to `request`, with a random start heading (as REVERIE's) and, where
+/// something is visible at an end, a target there.
+///
+/// # Errors
+/// When no two nodes lie as far apart as asked, or `labels_at` fails.
+pub(crate) fn path(
+    scene: &SceneId,
+    graph: &ViewpointGraph,
+    request: &PathRequest,
+    seed: u64,
+    labels_at: impl Fn(&ViewpointId) -> Result<Vec<Label>, PlatformError>,
+) -> Result<Path, PlatformError> {
+    let failed = |source| PlatformError::Graph { scene: scene.clone(), source };
+    let mut rng = rng(seed, &["matterport path", scene.as_str()]);
+    let heading = Heading::new(rng.random_range(0.0..TAU)).unwrap_or(Heading::NORTH);
+    let mut starts: Vec<&ViewpointId> = graph.viewpoints().collect();
+    starts.shuffle(&mut rng);
+    let mut bare: Option<Route> = None;
+    let mut bare_ends = 0;
+    for start in starts {
+        let distances = graph.distances_from(start).map_err(failed)?;
+        let far_enough = distances.into_iter().filter(|(_, length_m)| request.length_m.contains(length_m));
+        let mut ends: Vec<&ViewpointId> = far_enough.map(|(end, _)| end).collect();
+        ends.shuffle(&mut rng);
+        for end in ends {
+            let route = graph.shortest_path(start, end).map_err(failed)?;
+            let Some(route) = route.filter(|route| request.hops.contains(&(route.viewpoints.len() - 1))) else {
+                continue;
+            };
+            let target = target(&labels_at(end)?, &mut rng);
+            if target.is_none() && bare_ends < MAX_BARE_ENDS {
+                bare_ends += 1;
+                bare.get_or_insert(route);
+                continue;
+            }
+            let route = if target.is_none() { bare.unwrap_or(route) } else { route };
+            return walked(scene, graph, &route, heading, seed, target);
+        }
+    }
+    match bare {
+        Some(route) => walked(scene, graph, &route, heading, seed, None),
+        None => Err(PlatformError::NoSuchPath { scene: scene.clone(), request: in_words(request) }),
+    }
+}
+
+fn walked(
+    scene: &SceneId,
+    graph: &ViewpointGraph,
+    route: &Route,
+    heading: Heading,
+    seed: u64,
+    target: Option<Target>,
+) -> Result<Path, PlatformError> {
+    let frames = graph
+        .walk(&route.viewpoints, Some(heading))
+        .map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+    let start = route.viewpoints.first().map_or("", ViewpointId::as_str);
+    Ok(Path { id: format!("{scene}_{start}_{seed}"), scene: scene.clone(), frames, target })
+}
+
+/// One of the visible objects: furnishings before parts of the building, and among these one without a namesake where
+/// there is one.
+fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
+    let has_namesake = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() > 1;
+    let rank = |label: &Label| (!names::is_furnishing(&label.name), has_namesake(label));
+    let best = labels.iter().map(rank).min()?;
+    let candidates: Vec<&Label> = labels.iter().filter(|label| rank(label) == best).collect();
+    let chosen = candidates[rng.random_range(0..candidates.len())];
+    Some(Target {
+        object: chosen.object.clone(),
+        name: chosen.name.clone(),
+        told_by: Vec::new(),
+        has_namesake: has_namesake(chosen),
+    })
+}
+
+fn in_words(request: &PathRequest) -> String {
+    let (hops, length_m) = (&request.hops, &request.length_m);
+    format!("{} to {} hops and {} to {} metres", hops.start(), hops.end(), length_m.start(), length_m.end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use wayword_core::ObjectId;
+
+    fn line(count: usize) -> ViewpointGraph {
+        let id = |n: usize| ViewpointId::new(format!("v{n}")).unwrap();
+        let mut graph = ViewpointGraph::default();
+        for n in 0..count {
+            graph.add(id(n), DVec3::new(2.0 * n as f64, 0.0, 1.5), Some(1)).unwrap();
+        }
+        for n in 1..count {
+            graph.join(&id(n - 1), &id(n)).unwrap();
+        }
+        graph
+    }
+
+    fn label(object: &str, name: &str) -> Label {
+        Label {
+            object: ObjectId::new(object).unwrap(),
+            name: name.into(),
+            heading: Heading::NORTH,
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: None,
+            position: None,
+            colour: None,
+        }
+    }
+
+    fn scene() -> SceneId {
+        SceneId::new("s").unwrap()
+    }
+
+    #[test]
+    fn paths_keep_to_hops_and_metres_and_to_their_seed() {
+        let graph = line(12);
+        let request = PathRequest { hops: 4..=5, length_m: 5.0..=9.0 };
+        let sampled = |seed| path(&scene(), &graph, &request, seed, |_| Ok(Vec::new())).unwrap();
+        for seed in 0..50 {
+            let path = sampled(seed);
+            assert_eq!(path.moves().len(), 4);
+            assert!((path.length_m() - 8.0).abs() < 1e-9);
+            assert_eq!(path, sampled(seed));
+        }
+        assert_ne!(sampled(1).id, sampled(2).id);
+    }
+
+    #[test]
+    fn an_end_where_something_is_visible_is_preferred() {
+        let graph = line(12);
+        let labels = |end: &ViewpointId| Ok(if end.as_str() == "v5" { vec![label("9", "lamp")] } else { Vec::new() });
+        for seed in 0..20 {
+            let path = path(&scene(), &graph, &PathRequest::default(), seed, labels).unwrap();
+            assert_eq!(path.frames.last().unwrap().viewpoint.as_ref().unwrap().as_str(), "v5");
+            assert_eq!(path.target.unwrap().name, "lamp");
+        }
+    }
+
+    #[test]
+    fn the_target_is_furniture_and_alone_of_its_name_where_it_can_be() {
+        let labels = [label("1", "wall"), label("2", "chair"), label("3", "chair"), label("4", "lamp")];
+        for seed in 0..20 {
+            let alone = target(&labels, &mut rng(seed, &[])).unwrap();
+            assert_eq!((alone.name.as_str(), alone.has_namesake), ("lamp", false));
+            let of_two = target(&labels[..3], &mut rng(seed, &[])).unwrap();
+            assert_eq!((of_two.name.as_str(), of_two.has_namesake), ("chair", true));
+        }
+        assert_eq!(target(&[], &mut rng(0, &[])), None);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_in_words() {
+        let request = PathRequest { hops: 40..=50, length_m: 5.0..=9.0 };
+        let error = path(&scene(), &line(6), &request, 1, |_| Ok(Vec::new())).unwrap_err().to_string();
+        assert!(error.contains("40 to 50 hops and 5 to 9 metres"), "{error}");
+    }
+}

@@ -1,0 +1,74 @@
+//! One building in memory: its graph, cameras and rooms.
+
+use super::{
+    connectivity::{self, Connectivity, Viewpoint},
+    house_file::{self, House},
+    layout::Layout,
+    levels, read, rooms,
+};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, OnceLock},
+};
+use wayword_core::{ObjectId, PlatformError, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
+
+/// A building.
+pub(crate) struct Scene {
+    pub(crate) graph: Arc<ViewpointGraph>,
+    pub(crate) viewpoints: BTreeMap<ViewpointId, Viewpoint>,
+    pub(crate) house: Option<House>,
+    rooms: Option<rooms::RoomLetters>,
+    /// Names of all objects that REVERIE lists anywhere in the building; read when first asked for.
+    pub(crate) names: OnceLock<BTreeMap<ObjectId, String>>,
+}
+
+impl Scene {
+    /// Reads a building's graph, rooms and `.house` file.
+    ///
+    /// # Errors
+    /// When it is not there, or one of its files is broken.
+    pub(crate) fn load(layout: &Layout, scene: &SceneId) -> Result<Self, PlatformError> {
+        let file = layout.connectivity(scene);
+        let read = connectivity::read(&file)?.ok_or_else(|| PlatformError::UnknownScene {
+            scene: scene.to_string(),
+            hint: format!("{} is not there", file.display()),
+        })?;
+        let house = layout.house(scene).map(|file| house_file::read(&file)).transpose()?.flatten();
+        let rooms = layout.rooms(scene).map(|file| rooms::read(&file)).transpose()?.flatten();
+        let graph = graph(&read, house.as_ref()).map_err(|error| {
+            read::wrong(
+                &file,
+                error.to_string(),
+                "take the file again from Matterport3DSimulator's folder `connectivity`",
+            )
+        })?;
+        let viewpoints = read.viewpoints.into_iter().map(|viewpoint| (viewpoint.id.clone(), viewpoint)).collect();
+        Ok(Self { graph: Arc::new(graph), viewpoints, house, rooms, names: OnceLock::new() })
+    }
+
+    /// Whether rooms are known here at all.
+    pub(crate) fn knows_rooms(&self) -> bool {
+        self.rooms.is_some() || self.house.is_some()
+    }
+
+    /// The room in which a viewpoint stands, as a person would call it.
+    pub(crate) fn room(&self, viewpoint: &ViewpointId) -> Option<&'static str> {
+        let listed = self.rooms.as_ref().and_then(|rooms| rooms.get(viewpoint)).copied();
+        let letter = listed.or_else(|| self.house.as_ref()?.room_letter(viewpoint))?;
+        rooms::name(letter)
+    }
+}
+
+fn graph(read: &Connectivity, house: Option<&House>) -> Result<ViewpointGraph, GraphError> {
+    let floors_m: Vec<f64> = read.viewpoints.iter().map(Viewpoint::floor_m).collect();
+    let by_height = levels::from_floor_heights(&floors_m);
+    let mut graph = ViewpointGraph::default();
+    for (viewpoint, by_height) in read.viewpoints.iter().zip(by_height) {
+        let level = house.and_then(|house| house.level(&viewpoint.id)).unwrap_or(by_height);
+        graph.add(viewpoint.id.clone(), viewpoint.position, Some(level))?;
+    }
+    for (from, to) in &read.edges {
+        graph.join(&read.viewpoints[*from].id, &read.viewpoints[*to].id)?;
+    }
+    Ok(graph)
+}
