@@ -1,0 +1,142 @@
+//! The things that homes hold: names, usual sizes, colours and materials.
+
+use super::{colour::Colour, dice::Dice};
+use Colour as C;
+use serde::{Deserialize, Serialize};
+
+/// What a kind of thing is like.
+pub(crate) struct Entry {
+    /// Its name in plain words.
+    pub(crate) name: &'static str,
+    /// Usual width, depth and height, centimetres.
+    pub(crate) size_cm: [i32; 3],
+    /// How much wider or narrower it may be, centimetres.
+    pub(crate) give_cm: i32,
+    /// Main material.
+    pub(crate) material: &'static str,
+    /// Usual colours.
+    pub(crate) colours: &'static [Colour],
+}
+
+macro_rules! catalogue {
+    ($($kind:ident $name:literal [$w:literal $d:literal $h:literal] +- $give:literal $material:literal [$($colour:ident)+];)*) => {
+        /// A kind of thing.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Kind {
+            $(#[doc = $name] $kind,)*
+        }
+
+        impl Kind {
+            /// All of them.
+            #[cfg(test)]
+            pub(crate) const ALL: &'static [Self] = &[$(Self::$kind,)*];
+
+            pub(crate) fn entry(self) -> Entry {
+                match self {
+                    $(Self::$kind => Entry {
+                        name: $name,
+                        size_cm: [$w, $d, $h],
+                        give_cm: $give,
+                        material: $material,
+                        colours: &[$(C::$colour),+],
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+catalogue! {
+    Sofa "sofa" [210 90 82] +- 20 "fabric" [Grey Beige Blue Green DarkGrey Teal Red];
+    Armchair "armchair" [82 82 84] +- 4 "fabric" [Beige Yellow Blue Green Orange Red Grey];
+    CoffeeTable "coffee table" [110 60 42] +- 10 "wood" [Brown LightBrown White DarkBrown];
+    TvStand "tv stand" [160 42 50] +- 15 "wood" [White Brown DarkBrown LightBrown];
+    Television "television" [124 8 74] +- 8 "plastic" [Black];
+    Bookshelf "bookshelf" [95 32 200] +- 15 "wood" [Brown White LightBrown DarkBrown];
+    FloorLamp "floor lamp" [42 42 162] +- 2 "metal" [Black Silver Gold White];
+    Rug "rug" [230 160 1] +- 20 "wool" [Red Blue Beige Grey Teal];
+    Plant "plant" [52 52 130] +- 8 "plant" [Green];
+    Painting "painting" [90 4 66] +- 20 "canvas" [Blue Orange Green Red Yellow Purple];
+    SideTable "side table" [48 48 54] +- 2 "wood" [Brown LightBrown White];
+    TableLamp "lamp" [30 30 50] +- 2 "ceramic" [White Blue Green Gold Black];
+    Fireplace "fireplace" [140 34 112] +- 10 "stone" [White Grey Red];
+    Curtain "curtain" [60 8 220] +- 0 "fabric" [Beige Grey Blue Green Red White];
+    Vase "vase" [22 22 44] +- 2 "ceramic" [White Blue Teal Red];
+    Piano "piano" [148 60 122] +- 2 "wood" [Black DarkBrown];
+    Clock "clock" [36 4 36] +- 2 "plastic" [White Black];
+    CeilingLight "ceiling light" [44 44 16] +- 4 "glass" [White];
+    Counter "kitchen counter" [60 62 91] +- 0 "wood" [White Grey Blue Green LightBrown];
+    KitchenSink "sink" [80 62 91] +- 0 "metal" [Silver];
+    Stove "stove" [62 62 91] +- 0 "metal" [Silver Black White];
+    Refrigerator "refrigerator" [76 70 182] +- 6 "metal" [Silver White];
+    WallCabinet "cabinet" [80 36 66] +- 0 "wood" [White Grey Blue Green LightBrown];
+    RangeHood "range hood" [62 44 58] +- 0 "metal" [Silver];
+    Island "kitchen island" [150 80 92] +- 10 "wood" [White Grey Blue Green LightBrown];
+    BarStool "stool" [38 38 68] +- 0 "wood" [Black LightBrown White Red];
+    Microwave "microwave" [48 34 28] +- 0 "metal" [Black Silver White];
+    Toaster "toaster" [30 18 20] +- 0 "metal" [Silver Red];
+    Kettle "kettle" [22 18 26] +- 0 "metal" [Silver Red Black];
+    FruitBowl "fruit bowl" [32 32 16] +- 0 "ceramic" [White];
+    Toilet "toilet" [40 68 78] +- 0 "ceramic" [White];
+    Vanity "sink" [80 48 86] +- 12 "ceramic" [White];
+    Mirror "mirror" [64 4 84] +- 8 "glass" [Silver];
+    Bathtub "bathtub" [165 76 58] +- 4 "ceramic" [White];
+    Shower "shower" [92 92 205] +- 4 "glass" [LightBlue];
+    Towel "towel" [56 8 74] +- 0 "fabric" [Blue White Teal Red Yellow Pink];
+    BathMat "bath mat" [80 50 2] +- 5 "fabric" [Blue Teal Grey Pink];
+    DiningTable "dining table" [170 92 75] +- 15 "wood" [Brown LightBrown DarkBrown White];
+    Chair "chair" [44 48 92] +- 0 "wood" [Brown LightBrown White Black DarkBrown];
+    Chandelier "chandelier" [66 66 62] +- 4 "metal" [Gold Black Silver];
+    Sideboard "sideboard" [160 45 82] +- 15 "wood" [Brown White LightBrown DarkBrown];
+    Bed "bed" [160 206 100] +- 0 "fabric" [White Blue Grey Green Red Purple Beige];
+    Nightstand "nightstand" [46 42 54] +- 2 "wood" [Brown White LightBrown DarkBrown];
+    Wardrobe "wardrobe" [150 60 205] +- 20 "wood" [White Brown LightBrown DarkBrown];
+    Dresser "dresser" [116 48 84] +- 10 "wood" [White Brown LightBrown DarkBrown];
+    Bench "bench" [120 40 46] +- 8 "wood" [Brown Beige LightBrown];
+    Desk "desk" [140 66 75] +- 10 "wood" [Brown White LightBrown DarkBrown];
+    OfficeChair "office chair" [60 60 108] +- 0 "fabric" [Black Grey Blue];
+    Computer "computer" [58 22 46] +- 4 "plastic" [Black];
+    FilingCabinet "filing cabinet" [46 56 104] +- 0 "metal" [Grey Black White];
+    Globe "globe" [30 30 40] +- 0 "plastic" [Blue];
+    Whiteboard "whiteboard" [130 4 90] +- 10 "plastic" [White];
+    ConsoleTable "console table" [105 34 80] +- 10 "wood" [Brown White LightBrown DarkBrown];
+    Washer "washing machine" [62 62 88] +- 0 "metal" [White];
+    Dryer "dryer" [62 62 88] +- 0 "metal" [White Grey];
+    LaundryBasket "laundry basket" [46 40 56] +- 2 "wicker" [LightBrown Beige White];
+    IroningBoard "ironing board" [120 36 90] +- 0 "fabric" [Blue Red Grey];
+    Shelf "shelf" [90 28 40] +- 6 "wood" [White Brown LightBrown];
+    CoatRack "coat rack" [50 50 178] +- 0 "wood" [Brown Black];
+    ShoeRack "shoe rack" [80 34 54] +- 8 "wood" [Brown White LightBrown];
+    DoorMat "doormat" [84 54 2] +- 0 "coir" [Brown DarkGrey];
+    ClothesRack "clothes rack" [120 50 170] +- 15 "metal" [Silver];
+    Boxes "cardboard boxes" [70 50 84] +- 6 "cardboard" [LightBrown];
+    Car "car" [178 400 146] +- 0 "metal" [Red Blue Silver White Green];
+    Workbench "workbench" [150 60 92] +- 10 "wood" [LightBrown Brown];
+    MetalShelf "metal shelf" [110 45 180] +- 10 "metal" [Grey Silver];
+    Bicycle "bicycle" [168 50 104] +- 0 "metal" [Red Blue Green Black];
+}
+
+impl Kind {
+    /// A size for one piece, centimetres.
+    pub(crate) fn size_cm(self, dice: &mut Dice) -> [i32; 3] {
+        let Entry { size_cm: [width, depth, height], give_cm, .. } = self.entry();
+        [width + dice.stepped(-give_cm, give_cm, 2), depth, height]
+    }
+
+    /// A colour for one piece.
+    pub(crate) fn colour(self, dice: &mut Dice) -> Colour {
+        let colours = self.entry().colours;
+        colours[dice.index(colours.len())]
+    }
+
+    /// Whether it lies so flat that one walks over it.
+    pub(crate) fn is_flat(self) -> bool {
+        matches!(self, Self::Rug | Self::BathMat | Self::DoorMat)
+    }
+
+    /// Whether it hangs on walls or stands on other things, so that it never takes floor of its own.
+    pub(crate) fn is_slim_on_wall(self) -> bool {
+        matches!(self, Self::Painting | Self::Mirror | Self::Clock | Self::Whiteboard | Self::Towel | Self::Curtain)
+    }
+}

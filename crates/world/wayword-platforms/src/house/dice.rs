@@ -1,0 +1,63 @@
+//! Seeded choices that are the same on every machine.
+
+use rand_chacha::{ChaCha8Rng, rand_core::RngCore};
+
+/// Draws integers only, so that neither the platform's word size nor its mathematics shows.
+#[derive(Debug)]
+pub(crate) struct Dice(ChaCha8Rng);
+
+impl Dice {
+    /// Dice for one purpose within a house.
+    pub(crate) fn new(seed: u64, purpose: &[&str]) -> Self {
+        Self(wayword_core::rng(seed, purpose))
+    }
+
+    /// A number in `low..=high`; `low` where the range is empty.
+    pub(crate) fn between(&mut self, low: i32, high: i32) -> i32 {
+        let count = (i64::from(high) - i64::from(low) + 1).max(1).unsigned_abs();
+        let drawn = (u64::from(self.0.next_u32()) * count) >> 32;
+        low + drawn as i32
+    }
+
+    /// A multiple of `step` above `low`, at most `high`.
+    pub(crate) fn stepped(&mut self, low: i32, high: i32, step: i32) -> i32 {
+        low + step * self.between(0, (high - low).max(0) / step)
+    }
+
+    /// True so many times in a hundred.
+    pub(crate) fn chance(&mut self, percent: i32) -> bool {
+        self.between(1, 100) <= percent
+    }
+
+    /// One of a list's indices; 0 for an empty list.
+    pub(crate) fn index(&mut self, count: usize) -> usize {
+        self.between(0, count as i32 - 1).max(0) as usize
+    }
+
+    /// One of a non-empty array.
+    pub(crate) fn pick<T: Copy, const N: usize>(&mut self, options: [T; N]) -> T {
+        options[self.index(N)]
+    }
+
+    /// Orders a list anew.
+    pub(crate) fn shuffle<T>(&mut self, list: &mut [T]) {
+        for last in (1..list.len()).rev() {
+            list.swap(last, self.index(last + 1));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn draws_stay_in_range_and_reach_both_ends() {
+        let mut dice = Dice::new(1, &["test"]);
+        let drawn: Vec<_> = (0..200).map(|_| dice.between(-1, 2)).collect();
+        assert!(drawn.iter().all(|n| (-1..=2).contains(n)));
+        assert!((-1..=2).all(|n| drawn.contains(&n)));
+        assert_eq!(dice.between(5, 3), 5);
+        assert!((0..50).all(|_| dice.stepped(10, 34, 5) % 5 == 0));
+    }
+}

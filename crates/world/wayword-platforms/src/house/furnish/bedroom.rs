@@ -1,0 +1,59 @@
+//! The bedroom: a bed between nightstands, and somewhere to keep clothes.
+
+use super::super::{catalogue::Kind as K, rect::RectCm};
+use super::placing::{Along, Furnisher};
+
+pub(super) fn furnish(room: &mut Furnisher<'_>) {
+    let wood = room.taste.wood;
+    let walls = room.quiet_walls();
+    let width = if room.inner.width().min(room.inner.depth()) > 300 { room.dice.pick([160, 160, 180]) } else { 120 };
+    let bed = room.stand_sized(K::Bed, [width, 206, 100], &walls, Along::Middle, 50);
+    let bed = bed.or_else(|| room.stand_sized(K::Bed, [100, 206, 96], &walls, Along::Ends, 30));
+    if let Some(bed) = bed {
+        for gap in [4, -4] {
+            if let Some(stand) = room.beside(bed, K::Nightstand, gap) {
+                room.paint(stand, wood);
+                room.on_top(stand, K::TableLamp, 0, 0);
+            }
+        }
+        room.hang_over(bed, K::Painting, 40);
+        let before = room.in_front(room.piece(bed).footprint, room.wall_behind(bed), 60);
+        let size = K::Rug.size_cm(&mut room.dice);
+        room.lay(K::Rug, before.centre(), size, room.wall_behind(bed));
+    }
+    if let Some(wardrobe) = room.stand_anywhere(K::Wardrobe, Along::Ends, 60) {
+        room.paint(wardrobe, wood);
+    }
+    if let Some(dresser) = room.stand_anywhere(K::Dresser, Along::Middle, 60) {
+        room.paint(dresser, wood);
+        room.hang_over(dresser, K::Mirror, 12);
+    }
+    if room.dice.chance(35) {
+        desk(room);
+    }
+    if room.dice.chance(50) {
+        room.stand_anywhere(K::Armchair, Along::Ends, 30);
+    }
+    room.stand_anywhere(K::Plant, Along::Ends, 0);
+    room.hang(K::Painting, 140);
+    room.curtains();
+}
+
+/// A desk with its chair.
+pub(super) fn desk(room: &mut Furnisher<'_>) {
+    let walls = room.shuffled_walls();
+    let Some(desk) = room.stand(K::Desk, &walls, Along::Middle, 70) else {
+        return;
+    };
+    room.paint(desk, room.taste.wood);
+    room.on_top(desk, K::Computer, 0, -8);
+    if room.dice.chance(70) {
+        room.on_top(desk, K::TableLamp, 48, -10);
+    }
+    let (footprint, wall) = (room.piece(desk).footprint, room.wall_behind(desk));
+    let (x, y) = room.in_front(footprint, wall, 50).centre();
+    let (dx, dy) = wall.inward();
+    let (x, y) = (x + dx * 6, y + dy * 6);
+    let area = RectCm::new(x - 30, y - 30, x + 30, y + 30);
+    room.try_at(K::OfficeChair, area, wall.opposite(), true);
+}

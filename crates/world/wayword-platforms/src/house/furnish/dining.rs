@@ -1,0 +1,57 @@
+//! The dining room: a table with chairs under a chandelier.
+
+use super::super::{
+    catalogue::Kind as K,
+    rect::{RectCm, Wall},
+};
+use super::placing::{Along, Furnisher};
+
+pub(super) fn furnish(room: &mut Furnisher<'_>) {
+    let (x, y) = room.inner.centre();
+    let along_x = room.inner.width() >= room.inner.depth();
+    room.on_ceiling(K::Chandelier);
+    for length in [180, 150, 120] {
+        let (w, d) = if along_x { (length, 90) } else { (90, length) };
+        let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
+        let wall = if along_x { Wall::North } else { Wall::West };
+        if let Some(table) = room.try_at(K::DiningTable, footprint, wall, false) {
+            room.paint(table, room.taste.wood);
+            room.on_top(table, K::Vase, 0, 0);
+            chairs(room, footprint, along_x, length);
+            break;
+        }
+    }
+    let walls = room.quiet_walls();
+    if let Some(sideboard) = room.stand(K::Sideboard, &walls, Along::Middle, 45) {
+        room.paint(sideboard, room.taste.wood);
+        room.on_top(sideboard, K::TableLamp, 45, 0);
+        room.hang_over(sideboard, K::Painting, 50);
+    }
+    room.stand_anywhere(K::Plant, Along::Ends, 0);
+    room.hang(K::Painting, 140);
+    room.curtains();
+}
+
+/// Chairs on the long sides, and at the heads where there is room.
+fn chairs(room: &mut Furnisher<'_>, table: RectCm, along_x: bool, length: i32) {
+    let colour = K::Chair.colour(&mut room.dice);
+    let shifts: &[i32] = if length >= 150 { &[-42, 42] } else { &[0] };
+    let (long, heads) = if along_x {
+        ([Wall::North, Wall::South], [Wall::West, Wall::East])
+    } else {
+        ([Wall::West, Wall::East], [Wall::North, Wall::South])
+    };
+    let sides = long.iter().flat_map(|wall| shifts.iter().map(|shift| (*wall, *shift)));
+    for (back, shift) in sides.chain(heads.map(|wall| (wall, 0))) {
+        let middle = table.edge(back).middle();
+        let (dx, dy) = back.inward();
+        // Pushed under the table by a third of its depth.
+        let (x, y) = (middle.0 - dx * 10, middle.1 - dy * 10);
+        let (x, y) = if back.along_x() { (x + shift, y) } else { (x, y + shift) };
+        let (w, d) = if back.along_x() { (44, 48) } else { (48, 44) };
+        let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
+        if let Some(chair) = room.try_under(K::Chair, footprint, back, &table) {
+            room.paint(chair, colour);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! The kitchen: a row of counters with sink and stove, a refrigerator at its end, and an island or a table.
+
+use super::super::{
+    catalogue::Kind as K,
+    rect::{RectCm, Wall},
+};
+use super::placing::{Along, Furnisher, Piece};
+
+/// What stands in the row, from one end to the other.
+const ROW: [K; 6] = [K::Refrigerator, K::Counter, K::Stove, K::Counter, K::KitchenSink, K::Counter];
+
+pub(super) fn furnish(room: &mut Furnisher<'_>) {
+    let mut walls = room.quiet_walls();
+    // The row needs length before it needs quiet.
+    walls.sort_by_key(|wall| -room.inner.edge(*wall).length() / 80);
+    let row = walls.iter().find_map(|wall| place_row(room, *wall));
+    let on_counter = [K::Microwave, K::Toaster, K::Kettle];
+    if let Some(row) = row {
+        let counters: Vec<Piece> = row.iter().copied().filter(|piece| room.piece(*piece).kind == K::Counter).collect();
+        for (counter, kind) in counters.into_iter().zip(on_counter) {
+            room.on_top(counter, kind, 0, -8);
+        }
+        for piece in row {
+            finish(room, piece);
+        }
+    }
+    island(room);
+    if let Some(counter) = room.stand_anywhere(K::Counter, Along::Ends, 60) {
+        room.paint(counter, room.taste.kitchen);
+    }
+    room.stand_anywhere(K::Plant, Along::Ends, 0);
+    room.hang(K::Clock, 180);
+    room.hang(K::Painting, 140);
+}
+
+fn place_row(room: &mut Furnisher<'_>, wall: Wall) -> Option<Vec<Piece>> {
+    let mut kinds = ROW;
+    if room.dice.chance(50) {
+        kinds.reverse();
+    }
+    // Shorter rows where the long one finds no place.
+    for skip in [&[][..], &[3][..], &[3, 5][..], &[1, 3, 5][..], &[0, 1, 3, 5][..]] {
+        let kept = kinds.iter().enumerate().filter(|(at, _)| !skip.contains(at));
+        let sizes: Vec<_> = kept.map(|(_, kind)| (*kind, kind.entry().size_cm)).collect();
+        let length: i32 = sizes.iter().map(|(_, size)| size[0]).sum();
+        let probe = [length, 70, 91];
+        let Some(whole) = room.stand_sized(K::Counter, probe, &[wall], Along::Ends, 90) else {
+            continue;
+        };
+        let footprint = room.piece(whole).footprint;
+        room.forget_last();
+        let mut from = if wall.along_x() { footprint.x0 } else { footprint.y0 };
+        let mut row = Vec::new();
+        for (kind, size) in sizes {
+            let area = room.at_wall(wall, from, size);
+            row.push(room.put(kind, area, 0, size[2], wall));
+            from += size[0];
+        }
+        return Some(row);
+    }
+    None
+}
+
+/// Hangs what belongs above, and paints the fronts alike.
+fn finish(room: &mut Furnisher<'_>, piece: Piece) {
+    let colour = room.taste.kitchen;
+    match room.piece(piece).kind {
+        K::Counter => {
+            room.paint(piece, colour);
+            let footprint = room.piece(piece).footprint;
+            let wall = room.wall_behind(piece);
+            let from = if wall.along_x() { footprint.x0 } else { footprint.y0 };
+            if let Some(cabinet) = room.hang_at(K::WallCabinet, wall, from, 145, [60, 36, 66]) {
+                room.paint(cabinet, colour);
+            }
+        }
+        K::Stove => {
+            room.hang_over(piece, K::RangeHood, 62);
+        }
+        _ => {}
+    }
+}
+
+fn island(room: &mut Furnisher<'_>) {
+    let (x, y) = room.inner.centre();
+    let colour = room.taste.kitchen;
+    for along_x in [room.inner.width() >= room.inner.depth(), room.inner.width() < room.inner.depth()] {
+        let (w, d) = if along_x { (140, 76) } else { (76, 140) };
+        let wall = if along_x { Wall::North } else { Wall::West };
+        for shift in [(0, 0), (30, 0), (-30, 0), (0, 30), (0, -30), (40, 40), (-40, 40), (40, -40), (-40, -40)] {
+            let (x, y) = (x + shift.0, y + shift.1);
+            let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
+            if let Some(island) = room.try_at(K::Island, footprint, wall, false) {
+                room.paint(island, colour);
+                room.on_top(island, K::FruitBowl, 20, 0);
+                stools(room, footprint, wall);
+                return;
+            }
+        }
+    }
+}
+
+fn stools(room: &mut Furnisher<'_>, island: RectCm, wall: Wall) {
+    let before = room.in_front(island, wall, 44);
+    let (x, y) = before.centre();
+    for shift in [-38, 38] {
+        let (x, y) = if wall.along_x() { (x + shift, y) } else { (x, y + shift) };
+        room.try_at(K::BarStool, RectCm::new(x - 19, y - 19, x + 19, y + 19), wall.opposite(), false);
+    }
+}

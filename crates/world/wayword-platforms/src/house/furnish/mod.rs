@@ -1,0 +1,72 @@
+//! Furnishes rooms as such rooms usually are.
+
+mod bathroom;
+mod bedroom;
+mod dining;
+mod kitchen;
+mod living;
+mod office;
+mod placing;
+mod reach;
+mod service;
+mod walls;
+
+use super::{
+    catalogue::Kind,
+    colour::Colour,
+    dice::Dice,
+    layout::Layout,
+    model::{Furniture, RoomKind},
+};
+use placing::Furnisher;
+
+/// Colours that a household repeats.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Taste {
+    pub(super) wood: Colour,
+    pub(super) kitchen: Colour,
+    pub(super) curtain: Colour,
+}
+
+/// All furniture of a house; each room has dice of its own, so that one room's luck does not change the next.
+pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
+    let mut dice = Dice::new(seed, &["taste"]);
+    let taste = Taste {
+        wood: dice.pick([Colour::Brown, Colour::LightBrown, Colour::DarkBrown, Colour::White]),
+        kitchen: dice.pick([Colour::White, Colour::Grey, Colour::Blue, Colour::Green, Colour::LightBrown]),
+        curtain: dice.pick([Colour::Beige, Colour::Grey, Colour::Blue, Colour::White]),
+    };
+    let mut pieces = Vec::new();
+    for index in 0..layout.rooms.len() {
+        let mut room = Furnisher::new(seed, layout, index, taste);
+        furnish_room(&mut room, layout.rooms[index].kind);
+        pieces.extend(room.into_pieces());
+    }
+    for (id, piece) in (layout.next_id..).zip(&mut pieces) {
+        piece.id = id;
+    }
+    pieces
+}
+
+fn furnish_room(room: &mut Furnisher<'_>, kind: RoomKind) {
+    match kind {
+        RoomKind::LivingRoom => living::furnish(room),
+        RoomKind::Kitchen => kitchen::furnish(room),
+        RoomKind::DiningRoom => dining::furnish(room),
+        RoomKind::Bedroom => bedroom::furnish(room),
+        RoomKind::Bathroom => bathroom::furnish(room),
+        RoomKind::Office => office::furnish(room),
+        RoomKind::Hallway => service::hallway(room),
+        RoomKind::LaundryRoom => service::laundry(room),
+        RoomKind::Entryway => service::entryway(room),
+        RoomKind::Closet => service::closet(room),
+        RoomKind::Garage => service::garage(room),
+        RoomKind::Staircase => {}
+    }
+    if !matches!(kind, RoomKind::DiningRoom | RoomKind::Staircase) {
+        room.on_ceiling(Kind::CeilingLight);
+    }
+}
+
+#[cfg(test)]
+mod tests;

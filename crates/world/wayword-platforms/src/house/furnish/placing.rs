@@ -1,0 +1,336 @@
+//! Puts one thing after the other into a room where it fits and nobody is shut in.
+
+use super::super::{
+    catalogue::Kind,
+    colour::Colour,
+    dice::Dice,
+    layout::{Layout, swing},
+    model::{CEILING_CM, Furniture, Leaf, Opening, Room},
+    rect::{RectCm, SpanCm, Wall},
+};
+use super::{Taste, reach};
+
+/// A room while it is being furnished.
+pub(super) struct Furnisher<'a> {
+    pub(super) dice: Dice,
+    pub(super) taste: Taste,
+    pub(super) room: &'a Room,
+    index: usize,
+    /// Between the walls.
+    pub(super) inner: RectCm,
+    /// Floor before openings, one each.
+    doorsteps: Vec<RectCm>,
+    /// Openings of the room, on its walls.
+    holes: Vec<SpanCm>,
+    /// Where the house door is, if it is here.
+    front_door: Option<SpanCm>,
+    /// Windows of the room: where, and the lower edge above the room's floor.
+    pub(super) windows: Vec<(SpanCm, i32)>,
+    /// Floor that someone needs in order to use a piece.
+    reserved: Vec<RectCm>,
+    pieces: Vec<Furniture>,
+}
+
+/// Where along a wall something is tried first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Along {
+    Middle,
+    Ends,
+    Anywhere,
+}
+
+/// A piece in the room: its place in the list.
+pub(super) type Piece = usize;
+
+impl<'a> Furnisher<'a> {
+    pub(super) fn new(seed: u64, layout: &'a Layout, index: usize, taste: Taste) -> Self {
+        let room = &layout.rooms[index];
+        let of_room = |opening: &&Opening| opening.room == index || opening.beyond == Some(index);
+        let openings = || layout.openings.iter().filter(of_room);
+        let windows = layout.windows.iter().filter(|window| window.room == index);
+        Self {
+            dice: Dice::new(seed, &["furniture", &index.to_string()]),
+            taste,
+            room,
+            index,
+            inner: room.inner(),
+            doorsteps: openings().filter_map(|opening| swing(&room.outline, &opening.span)).collect(),
+            holes: openings().map(|opening| opening.span).collect(),
+            front_door: openings().find(|opening| opening.leaf == Leaf::Closed).map(|opening| opening.span),
+            windows: windows.map(|window| (window.span, window.sill_cm - room.base_cm())).collect(),
+            reserved: Vec::new(),
+            pieces: Vec::new(),
+        }
+    }
+
+    pub(super) fn into_pieces(self) -> Vec<Furniture> {
+        self.pieces
+    }
+
+    pub(super) fn piece(&self, piece: Piece) -> &Furniture {
+        &self.pieces[piece]
+    }
+
+    /// The wall at which a piece has its back.
+    pub(super) fn wall_behind(&self, piece: Piece) -> Wall {
+        Wall::ALL[usize::from(self.pieces[piece].quarter_turns) % 4]
+    }
+
+    /// Sets a colour, where the drawn one does not match its companions.
+    pub(super) fn paint(&mut self, piece: Piece, colour: Colour) {
+        self.pieces[piece].colour = colour;
+    }
+
+    /// Adds a piece without asking whether it fits.
+    pub(super) fn put(&mut self, kind: Kind, footprint: RectCm, base_cm: i32, height_cm: i32, wall: Wall) -> Piece {
+        let entry = kind.entry();
+        let colour = kind.colour(&mut self.dice);
+        self.pieces.push(Furniture {
+            id: 0,
+            kind,
+            name: entry.name.to_owned(),
+            colour,
+            material: entry.material.to_owned(),
+            room: self.index,
+            footprint,
+            base_cm: self.room.base_cm() + base_cm,
+            height_cm,
+            quarter_turns: wall.quarter_turns(),
+            variant: self.dice.between(0, 9999).unsigned_abs(),
+        });
+        self.pieces.len() - 1
+    }
+
+    /// Stands something with its back to one of `walls`, with `clearance` centimetres of free floor before it.
+    pub(super) fn stand(&mut self, kind: Kind, walls: &[Wall], along: Along, clearance: i32) -> Option<Piece> {
+        let size = kind.size_cm(&mut self.dice);
+        self.stand_sized(kind, size, walls, along, clearance)
+    }
+
+    /// As [`Self::stand`], on any wall, in random order.
+    pub(super) fn stand_anywhere(&mut self, kind: Kind, along: Along, clearance: i32) -> Option<Piece> {
+        let walls = self.shuffled_walls();
+        self.stand(kind, &walls, along, clearance)
+    }
+
+    pub(super) fn stand_sized(
+        &mut self,
+        kind: Kind,
+        size: [i32; 3],
+        walls: &[Wall],
+        along: Along,
+        clearance: i32,
+    ) -> Option<Piece> {
+        for wall in walls {
+            for from in self.offsets(*wall, size[0], along) {
+                let footprint = self.at_wall(*wall, from, size);
+                let before = self.in_front(footprint, *wall, clearance);
+                if !self.blinds_window(*wall, &footprint, size[2]) && self.is_free(&footprint, &before) {
+                    self.reserved.push(before);
+                    return Some(self.put(kind, footprint, 0, size[2], *wall));
+                }
+            }
+        }
+        None
+    }
+
+    /// Places a piece at exactly this footprint if it fits there; reserved floor does not count where `close` is set.
+    pub(super) fn try_at(&mut self, kind: Kind, footprint: RectCm, wall: Wall, close: bool) -> Option<Piece> {
+        let fits = self.inner.contains(&footprint)
+            && !self.touches_fixed(&footprint)
+            && (close || !self.reserved.iter().any(|area| area.overlaps(&footprint)))
+            && self.keeps_ways_open(&footprint);
+        let height = kind.entry().size_cm[2];
+        fits.then(|| self.put(kind, footprint, 0, height, wall))
+    }
+
+    /// As [`Self::try_at`], pushed in under `table`.
+    pub(super) fn try_under(&mut self, kind: Kind, footprint: RectCm, wall: Wall, table: &RectCm) -> Option<Piece> {
+        let others = |area: &RectCm| area != table && area.overlaps(&footprint);
+        let fits = self.inner.contains(&footprint)
+            && !self.doorsteps.iter().any(|area| area.overlaps(&footprint))
+            && !self.standing().any(|area| others(&area))
+            && self.keeps_ways_open(&footprint);
+        let height = kind.entry().size_cm[2];
+        fits.then(|| self.put(kind, footprint, 0, height, wall))
+    }
+
+    /// Stands something beside a piece, at the same wall: `gap` centimetres further along it, or back where negative.
+    pub(super) fn beside(&mut self, anchor: Piece, kind: Kind, gap: i32) -> Option<Piece> {
+        let wall = self.wall_behind(anchor);
+        let size = kind.size_cm(&mut self.dice);
+        let anchor = self.pieces[anchor].footprint;
+        let (low, high) = if wall.along_x() { (anchor.x0, anchor.x1) } else { (anchor.y0, anchor.y1) };
+        let from = if gap > 0 { high + gap } else { low + gap - size[0] };
+        let footprint = self.at_wall(wall, from, size);
+        let fits = self.inner.contains(&footprint)
+            && !self.touches_fixed(&footprint)
+            && !self.blinds_window(wall, &footprint, size[2])
+            && self.keeps_ways_open(&footprint);
+        fits.then(|| self.put(kind, footprint, 0, size[2], wall))
+    }
+
+    /// Takes the last piece away again.
+    pub(super) fn forget_last(&mut self) {
+        self.pieces.pop();
+    }
+
+    /// Whether anything at all is within an area.
+    pub(super) fn overlaps_any(&self, area: &RectCm) -> bool {
+        self.pieces.iter().any(|piece| !piece.kind.is_flat() && piece.footprint.overlaps(area))
+            || self.doorsteps.iter().any(|step| step.overlaps(area))
+    }
+
+    /// The wall with the house door and the floor before it.
+    pub(super) fn front_doorstep(&self) -> Option<(Wall, (i32, i32))> {
+        let span = self.front_door?;
+        let wall = self.room.outline.wall_of(&span)?;
+        let ((x, y), (dx, dy)) = (span.middle(), wall.inward());
+        Some((wall, (x + dx * 50, y + dy * 50)))
+    }
+
+    pub(super) fn shuffled_walls(&mut self) -> [Wall; 4] {
+        let mut walls = Wall::ALL;
+        self.dice.shuffle(&mut walls);
+        walls
+    }
+
+    /// Walls in random order, those without openings first.
+    pub(super) fn quiet_walls(&mut self) -> Vec<Wall> {
+        let mut walls = self.shuffled_walls().to_vec();
+        walls.sort_by_key(|wall| self.holes.iter().filter(|span| self.is_on(*wall, span)).count());
+        walls
+    }
+
+    fn is_on(&self, wall: Wall, span: &SpanCm) -> bool {
+        self.room.outline.wall_of(span) == Some(wall)
+    }
+
+    fn offsets(&mut self, wall: Wall, width: i32, along: Along) -> Vec<i32> {
+        let edge = self.inner.edge(wall);
+        let spare = edge.length() - width;
+        if spare < 0 {
+            return Vec::new();
+        }
+        let mut offsets: Vec<i32> = (0..=spare / 5).map(|step| step * 5).chain([spare]).collect();
+        match along {
+            Along::Middle => offsets.sort_by_key(|offset| ((2 * offset - spare).abs(), *offset)),
+            Along::Ends => offsets.sort_by_key(|offset| ((*offset).min(spare - offset), *offset)),
+            Along::Anywhere => self.dice.shuffle(&mut offsets),
+        }
+        offsets.into_iter().map(|offset| edge.from + offset).collect()
+    }
+
+    /// The footprint of something whose back touches a wall, from `from` along it.
+    pub(super) fn at_wall(&self, wall: Wall, from: i32, [width, depth, _]: [i32; 3]) -> RectCm {
+        let edge = self.inner.edge(wall);
+        let area = SpanCm { from, to: from + width, ..edge }.thickened(0);
+        let (dx, dy) = wall.inward();
+        RectCm::new(
+            area.x0 + depth * dx.min(0),
+            area.y0 + depth * dy.min(0),
+            area.x1 + depth * dx.max(0),
+            area.y1 + depth * dy.max(0),
+        )
+    }
+
+    /// The floor before a piece, `depth` centimetres deep.
+    pub(super) fn in_front(&self, footprint: RectCm, wall: Wall, depth: i32) -> RectCm {
+        match wall {
+            Wall::North => RectCm::new(footprint.x0, footprint.y0 - depth, footprint.x1, footprint.y0),
+            Wall::South => RectCm::new(footprint.x0, footprint.y1, footprint.x1, footprint.y1 + depth),
+            Wall::West => RectCm::new(footprint.x1, footprint.y0, footprint.x1 + depth, footprint.y1),
+            Wall::East => RectCm::new(footprint.x0 - depth, footprint.y0, footprint.x0, footprint.y1),
+        }
+    }
+
+    fn blinds_window(&self, wall: Wall, footprint: &RectCm, height: i32) -> bool {
+        let covers = |span: &SpanCm| self.is_on(wall, span) && span.thickened(20).overlaps(footprint);
+        self.windows.iter().any(|(span, sill)| *sill < height - 25 && covers(span))
+    }
+
+    fn is_free(&self, footprint: &RectCm, before: &RectCm) -> bool {
+        self.inner.contains(footprint)
+            && self.inner.contains(before)
+            && !self.touches_fixed(footprint)
+            && !self.reserved.iter().any(|area| area.overlaps(footprint))
+            && !self.standing().any(|area| area.overlaps(before))
+            && self.keeps_ways_open(footprint)
+    }
+
+    fn touches_fixed(&self, footprint: &RectCm) -> bool {
+        self.doorsteps.iter().any(|area| area.overlaps(footprint))
+            || self.standing().any(|area| area.overlaps(footprint))
+    }
+
+    /// Footprints of what takes floor.
+    fn standing(&self) -> impl Iterator<Item = RectCm> + '_ {
+        let low = self.room.base_cm() + 150;
+        let takes_floor =
+            move |piece: &&Furniture| !piece.kind.is_flat() && !piece.kind.is_slim_on_wall() && piece.base_cm < low;
+        self.pieces.iter().filter(takes_floor).map(|piece| piece.footprint)
+    }
+
+    fn keeps_ways_open(&self, footprint: &RectCm) -> bool {
+        let obstacles: Vec<_> = self.standing().chain([*footprint]).collect();
+        reach::ways_stay_open(&self.inner, &obstacles, &self.doorsteps)
+    }
+
+    /// Puts a small thing on top of a piece, `shift` centimetres along it from its middle and `forward` from its middle
+    /// towards its front.
+    pub(super) fn on_top(&mut self, below: Piece, kind: Kind, shift: i32, forward: i32) -> Piece {
+        let [width, depth, height] = kind.size_cm(&mut self.dice);
+        let (wall, base) = (self.wall_behind(below), self.pieces[below].base_cm + self.pieces[below].height_cm);
+        let (cx, cy) = self.pieces[below].footprint.centre();
+        let (fx, fy) = wall.inward();
+        // Along the wall, counter-clockwise from its inward normal.
+        let (ax, ay) = (-fy, fx);
+        let (x, y) = (cx + ax * shift + fx * forward, cy + ay * shift + fy * forward);
+        let (w, d) = if wall.along_x() { (width, depth) } else { (depth, width) };
+        let footprint = RectCm::new(x - w / 2, y - d / 2, x - w / 2 + w, y - d / 2 + d);
+        self.put(kind, footprint, base - self.room.base_cm(), height, wall)
+    }
+
+    /// Lays something flat, centred on a point.
+    pub(super) fn lay(
+        &mut self,
+        kind: Kind,
+        (x, y): (i32, i32),
+        [width, depth, height]: [i32; 3],
+        wall: Wall,
+    ) -> Option<Piece> {
+        let (w, d) = if wall.along_x() { (width, depth) } else { (depth, width) };
+        let wanted = RectCm::new(x - w / 2, y - d / 2, x - w / 2 + w, y - d / 2 + d);
+        let inner = self.inner.inset(8);
+        let cut = RectCm::new(
+            wanted.x0.max(inner.x0),
+            wanted.y0.max(inner.y0),
+            wanted.x1.min(inner.x1),
+            wanted.y1.min(inner.y1),
+        );
+        (cut.width() > 40 && cut.depth() > 40).then(|| self.put(kind, cut, 0, height, wall))
+    }
+
+    /// Hangs a lamp from the middle of the ceiling.
+    pub(super) fn on_ceiling(&mut self, kind: Kind) -> Piece {
+        let [width, depth, height] = kind.size_cm(&mut self.dice);
+        let (x, y) = self.inner.centre();
+        let footprint = RectCm::new(x - width / 2, y - depth / 2, x - width / 2 + width, y - depth / 2 + depth);
+        self.put(kind, footprint, CEILING_CM - height, height, Wall::North)
+    }
+
+    /// Whether a stretch of wall between two heights has no opening, window, or thing before it.
+    pub(super) fn wall_is_bare(&self, wall: Wall, area: &RectCm, base: i32, top: i32) -> bool {
+        let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened(14).overlaps(area));
+        let window = self
+            .windows
+            .iter()
+            .any(|(span, sill)| self.is_on(wall, span) && span.thickened(30).overlaps(area) && *sill < top);
+        let floor = self.room.base_cm();
+        let piece = self.pieces.iter().any(|piece| {
+            let (low, high) = (piece.base_cm - floor, piece.base_cm - floor + piece.height_cm);
+            low < top && base < high && piece.footprint.overlaps(area)
+        });
+        !(hole || window || piece || self.doorsteps.iter().any(|step| step.overlaps(area)))
+    }
+}

@@ -1,0 +1,66 @@
+//! What hangs on walls and before windows.
+
+use super::super::{catalogue::Kind, rect::Wall};
+use super::placing::{Furnisher, Piece};
+
+impl Furnisher<'_> {
+    /// Hangs something above a piece, centred on it, its lower edge `gap` centimetres over the piece's top.
+    pub(super) fn hang_over(&mut self, below: Piece, kind: Kind, gap: i32) -> Option<Piece> {
+        let size = kind.size_cm(&mut self.dice);
+        let wall = self.wall_behind(below);
+        let piece = self.piece(below);
+        let base = piece.base_cm + piece.height_cm - self.room.base_cm() + gap;
+        let (x, y) = piece.footprint.centre();
+        let from = if wall.along_x() { x } else { y } - size[0] / 2;
+        self.hang_at(kind, wall, from, base, size)
+    }
+
+    /// Hangs something at `base` centimetres, on the first wall where there is room.
+    pub(super) fn hang(&mut self, kind: Kind, base: i32) -> Option<Piece> {
+        let walls = self.shuffled_walls();
+        let size = kind.size_cm(&mut self.dice);
+        for wall in walls {
+            let edge = self.inner.edge(wall);
+            let spare = edge.length() - size[0];
+            let mut offsets: Vec<i32> = (0..=spare.max(0) / 10).map(|step| step * 10).collect();
+            offsets.sort_by_key(|offset| (2 * offset - spare).abs());
+            for offset in offsets {
+                if let Some(piece) = self.hang_at(kind, wall, edge.from + offset, base, size) {
+                    return Some(piece);
+                }
+            }
+        }
+        None
+    }
+
+    /// Hangs something at a place, if the wall is bare there.
+    pub(super) fn hang_at(&mut self, kind: Kind, wall: Wall, from: i32, base: i32, size: [i32; 3]) -> Option<Piece> {
+        let area = self.at_wall(wall, from, size);
+        let fits = self.inner.contains(&area) && self.wall_is_bare(wall, &area, base, base + size[2]);
+        fits.then(|| self.put(kind, area, base, size[2], wall))
+    }
+
+    /// Curtains to both sides of every window, where nothing stands.
+    pub(super) fn curtains(&mut self) {
+        for (span, _) in self.windows.clone() {
+            let Some(wall) = self.room.outline.wall_of(&span) else {
+                continue;
+            };
+            for from in [span.from - 34, span.to - 16] {
+                let size = [50, 8, 236];
+                let area = self.at_wall(wall, from, size);
+                if self.inner.contains(&area) && !self.overlaps_any(&area) {
+                    let curtain = self.put(Kind::Curtain, area, 6, size[2], wall);
+                    self.paint(curtain, self.taste.curtain);
+                }
+            }
+        }
+    }
+
+    /// Walls without a window in them, in the order given.
+    pub(super) fn windowless(&self, walls: &[Wall]) -> Vec<Wall> {
+        let has_window =
+            |wall: &Wall| self.windows.iter().any(|(span, _)| self.room.outline.wall_of(span) == Some(*wall));
+        walls.iter().copied().filter(|wall| !has_window(wall)).collect()
+    }
+}

@@ -1,0 +1,259 @@
+//! Floor plans: which rooms there are, where they lie, and which are joined.
+//!
+//! A hallway runs between two strips of rooms; at one end a block of two rooms fills the house's whole depth. Houses
+//! of two storeys have the same stairwell on both. The whole plan is then mirrored or turned.
+
+mod openings;
+mod orientation;
+mod program;
+mod strip;
+mod windows;
+
+use super::{
+    dice::Dice,
+    model::{CEILING_CM, Room, RoomKind, STOREY_CM, Stairs, Window},
+    rect::{RectCm, Wall},
+};
+use program::{Program, Upstairs};
+
+pub(super) use openings::swing;
+
+/// Rooms and who is joined to whom, before any wall is built.
+#[derive(Debug, Default)]
+struct Plan {
+    rooms: Vec<PlannedRoom>,
+    links: Vec<Link>,
+    well: Option<Well>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct PlannedRoom {
+    kind: RoomKind,
+    floor: u32,
+    outline: RectCm,
+}
+
+/// Two rooms that one can walk between; `beyond` is none for the way out.
+#[derive(Debug, Clone, Copy)]
+struct Link {
+    room: usize,
+    beyond: Option<usize>,
+    how: Passage,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Passage {
+    Door,
+    Doorway {
+        width_cm: i32,
+    },
+    FrontDoor,
+    GarageDoor,
+    /// One half of the stairwell's open side, on that floor.
+    Flight {
+        floor: u32,
+    },
+}
+
+/// Where the stairs are, and which way they run.
+#[derive(Debug, Clone, Copy)]
+struct Well {
+    room: usize,
+    entry: Wall,
+    lower_flight_low: bool,
+}
+
+/// The outer measures that both storeys share, centimetres.
+#[derive(Debug, Clone, Copy)]
+struct Shell {
+    width: i32,
+    block: i32,
+    south: i32,
+    hall: i32,
+    north: i32,
+    /// West and east edge of the stairwell in the northern strip.
+    well: Option<(i32, i32)>,
+}
+
+/// Everything of a house but its furniture.
+pub(super) struct Layout {
+    pub(super) storeys: u32,
+    pub(super) rooms: Vec<Room>,
+    pub(super) openings: Vec<super::model::Opening>,
+    pub(super) windows: Vec<Window>,
+    pub(super) stairs: Option<Stairs>,
+    /// The first number that no object has yet.
+    pub(super) next_id: u32,
+}
+
+/// Draws up the plan of a house.
+pub(super) fn lay_out(seed: u64) -> Layout {
+    let mut dice = Dice::new(seed, &["layout"]);
+    let storeys = if dice.chance(50) { 2 } else { 1 };
+    let shell = shell(&mut dice, storeys);
+    let mut plan = Plan::default();
+    plan.add_storey(&mut dice, &shell, 0, &Program::ground(storeys));
+    if storeys == 2 {
+        plan.add_storey(&mut dice, &shell, 1, &Program::upper());
+    }
+    plan.orient(&mut dice);
+    let rooms = finish(&mut dice, &plan);
+    let mut ids = Ids(1);
+    let openings = openings::cut(&mut dice, &plan, &rooms, &mut ids);
+    let windows = windows::cut(&plan, &rooms, &openings, &mut ids);
+    let stairs = plan.stairs(&rooms, &mut ids);
+    Layout { storeys, rooms, openings, windows, stairs, next_id: ids.next() }
+}
+
+/// Numbers objects.
+struct Ids(u32);
+
+impl Ids {
+    fn next(&mut self) -> u32 {
+        self.0 += 1;
+        self.0 - 1
+    }
+}
+
+fn shell(dice: &mut Dice, storeys: u32) -> Shell {
+    let block = dice.stepped(430, 540, 10);
+    let (south, hall, north) = (dice.stepped(370, 430, 10), dice.stepped(120, 150, 10), dice.stepped(350, 410, 10));
+    let width = if storeys == 2 { block + dice.stepped(800, 920, 10) } else { dice.stepped(1240, 1520, 10) };
+    let well = (storeys == 2).then(|| {
+        let from = if dice.chance(50) { block } else { block + dice.stepped(300, 360, 10) };
+        (from, from + 232)
+    });
+    Shell { width, block, south, hall, north, well }
+}
+
+impl Plan {
+    fn add(&mut self, kind: RoomKind, floor: u32, outline: RectCm) -> usize {
+        self.rooms.push(PlannedRoom { kind, floor, outline });
+        self.rooms.len() - 1
+    }
+
+    fn link(&mut self, room: usize, beyond: usize, how: Passage) {
+        self.links.push(Link { room, beyond: Some(beyond), how });
+    }
+
+    fn add_storey(&mut self, dice: &mut Dice, shell: &Shell, floor: u32, program: &Program) {
+        let (south, hall_top) = (shell.south, shell.south + shell.hall);
+        let top = hall_top + shell.north;
+        let hall = self.add(RoomKind::Hallway, floor, RectCm::new(shell.block, south, shell.width, hall_top));
+        let main = self.add(program.block_main, floor, RectCm::new(0, 0, shell.block, hall_top));
+        let side = self.add(program.block_side, floor, RectCm::new(0, hall_top, shell.block, top));
+        self.link(hall, main, program.into_main);
+        self.link(main, side, program.into_side);
+        self.add_south(dice, shell, floor, program, hall, main);
+        self.add_north(dice, shell, floor, program, hall, side);
+        if program.garage_chance > 0 && dice.chance(program.garage_chance) {
+            let outline = RectCm::new(shell.width, 0, shell.width + dice.stepped(360, 420, 10), hall_top);
+            let garage = self.add(RoomKind::Garage, floor, outline);
+            self.link(hall, garage, Passage::Door);
+            self.links.push(Link { room: garage, beyond: None, how: Passage::GarageDoor });
+        }
+    }
+
+    fn add_south(&mut self, dice: &mut Dice, shell: &Shell, floor: u32, program: &Program, hall: usize, main: usize) {
+        let strip = strip::fill(dice, (shell.block, shell.width), program.south_first, program.south_more);
+        let cell = |(kind, from, to)| (kind, RectCm::new(from, 0, to, shell.south));
+        let cells = strip.into_iter().map(cell).collect::<Vec<_>>();
+        self.add_cells(dice, floor, &cells, hall, Some(main));
+    }
+
+    fn add_north(&mut self, dice: &mut Dice, shell: &Shell, floor: u32, program: &Program, hall: usize, side: usize) {
+        let (bottom, top) = (shell.south + shell.hall, shell.south + shell.hall + shell.north);
+        let cell = |(kind, from, to)| (kind, RectCm::new(from, bottom, to, top));
+        let Some((well_from, well_to)) = shell.well else {
+            let cells = strip::fill(dice, (shell.block, shell.width), program.north_first, program.north_more);
+            let cells = cells.into_iter().map(cell).collect::<Vec<_>>();
+            return self.add_cells(dice, floor, &cells, hall, Some(side));
+        };
+        let mut after = program.north_first;
+        if well_from > shell.block {
+            let (first, rest) = after.split_at(after.len().min(1));
+            let kind = first.first().copied().unwrap_or(RoomKind::Office);
+            self.add_cells(dice, floor, &[cell((kind, shell.block, well_from))], hall, Some(side));
+            after = rest;
+        }
+        self.add_well(dice, floor, cell((RoomKind::Staircase, well_from, well_to)).1, hall, program.upstairs);
+        let cells = strip::fill(dice, (well_to, shell.width), after, program.north_more);
+        let cells = cells.into_iter().map(cell).collect::<Vec<_>>();
+        self.add_cells(dice, floor, &cells, hall, None);
+    }
+
+    fn add_well(&mut self, dice: &mut Dice, floor: u32, outline: RectCm, hall: usize, upstairs: Upstairs) {
+        let how = Passage::Flight { floor };
+        match (upstairs, self.well) {
+            (Upstairs::Above, None) => {
+                let room = self.add(RoomKind::Staircase, floor, outline);
+                self.well = Some(Well { room, entry: Wall::South, lower_flight_low: dice.chance(50) });
+                self.link(hall, room, how);
+            }
+            (_, Some(well)) => self.link(hall, well.room, how),
+            (Upstairs::None, None) => {}
+        }
+    }
+
+    /// Adds the rooms of a strip, from the block outwards, and joins them to the hallway and to one another.
+    fn add_cells(
+        &mut self,
+        dice: &mut Dice,
+        floor: u32,
+        cells: &[(RoomKind, RectCm)],
+        hall: usize,
+        block: Option<usize>,
+    ) {
+        let mut before = block;
+        for (kind, outline) in cells {
+            let room = self.add(*kind, floor, *outline);
+            let neighbour = before.map(|index| (index, self.rooms[index].kind));
+            match program::join(dice, *kind, neighbour.map(|(_, kind)| kind)) {
+                program::Join::Hall(how) => self.link(hall, room, how),
+                program::Join::Neighbour(how) => self.link(neighbour.map_or(hall, |(index, _)| index), room, how),
+                program::Join::Both(hall_how, how) => {
+                    self.link(hall, room, hall_how);
+                    if let Some((index, _)) = neighbour {
+                        self.link(index, room, how);
+                    }
+                }
+            }
+            if *kind == RoomKind::Entryway {
+                self.links.push(Link { room, beyond: None, how: Passage::FrontDoor });
+            }
+            before = Some(room);
+        }
+    }
+
+    fn stairs(&self, rooms: &[Room], ids: &mut Ids) -> Option<Stairs> {
+        let well = self.well?;
+        let inner = rooms[well.room].inner();
+        let (id, railing_id) = (ids.next(), ids.next());
+        let lower_flight_low = well.lower_flight_low;
+        Some(Stairs {
+            id,
+            railing_id,
+            room: well.room,
+            well: inner,
+            entry: well.entry,
+            lower_flight_low,
+            flight_cm: 210,
+        })
+    }
+}
+
+fn finish(dice: &mut Dice, plan: &Plan) -> Vec<Room> {
+    let scheme = program::Scheme::draw(dice);
+    plan.rooms
+        .iter()
+        .map(|planned| {
+            let (wall_colour, floor_finish, floor_colour) = scheme.of(dice, planned.kind);
+            let height_cm = CEILING_CM + if planned.kind == RoomKind::Staircase { STOREY_CM } else { 0 };
+            let PlannedRoom { kind, floor, outline } = *planned;
+            Room { kind, floor, outline, height_cm, wall_colour, floor_finish, floor_colour }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

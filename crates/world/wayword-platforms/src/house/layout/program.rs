@@ -1,0 +1,154 @@
+//! Which rooms a storey has, how they are joined, and how they are finished.
+
+use super::{
+    super::{
+        colour::Colour,
+        dice::Dice,
+        model::{FloorFinish, RoomKind},
+    },
+    Passage,
+};
+use RoomKind as R;
+
+/// The rooms of a storey.
+pub(super) struct Program {
+    /// The larger room of the block at the hallway's end.
+    pub(super) block_main: RoomKind,
+    /// The smaller one beside it.
+    pub(super) block_side: RoomKind,
+    /// Between hallway and block.
+    pub(super) into_main: Passage,
+    /// Between the block's two rooms.
+    pub(super) into_side: Passage,
+    /// Rooms of the strips, from the block outwards: these for certain, then what fits.
+    pub(super) south_first: &'static [RoomKind],
+    pub(super) south_more: &'static [RoomKind],
+    pub(super) north_first: &'static [RoomKind],
+    pub(super) north_more: &'static [RoomKind],
+    /// In how many houses of a hundred a garage adjoins.
+    pub(super) garage_chance: i32,
+    /// Whether stairs begin here.
+    pub(super) upstairs: Upstairs,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Upstairs {
+    Above,
+    None,
+}
+
+impl Program {
+    pub(super) fn ground(storeys: u32) -> Self {
+        let two = storeys == 2;
+        Self {
+            block_main: R::LivingRoom,
+            block_side: R::Kitchen,
+            into_main: Passage::Doorway { width_cm: 100 },
+            into_side: Passage::Doorway { width_cm: 180 },
+            south_first: if two { &[R::Entryway] } else { &[R::Entryway, R::Bedroom] },
+            south_more: if two {
+                &[R::Office, R::Closet, R::LaundryRoom, R::Bedroom]
+            } else {
+                &[R::Closet, R::Office, R::Bedroom]
+            },
+            north_first: if two { &[R::DiningRoom, R::Bathroom] } else { &[R::DiningRoom, R::Bathroom, R::Bedroom] },
+            north_more: if two { &[R::LaundryRoom, R::Office] } else { &[R::LaundryRoom, R::Bathroom, R::Office] },
+            garage_chance: 30,
+            upstairs: if two { Upstairs::Above } else { Upstairs::None },
+        }
+    }
+
+    pub(super) fn upper() -> Self {
+        Self {
+            block_main: R::Bedroom,
+            block_side: R::Bathroom,
+            into_main: Passage::Door,
+            into_side: Passage::Door,
+            south_first: &[R::Bedroom],
+            south_more: &[R::Bedroom, R::Closet, R::Office],
+            north_first: &[R::Office, R::Bathroom],
+            north_more: &[R::Bedroom, R::LaundryRoom, R::Closet],
+            garage_chance: 0,
+            upstairs: Upstairs::None,
+        }
+    }
+}
+
+/// Smallest and largest usual width of a room in a strip, centimetres.
+pub(super) fn widths(kind: RoomKind) -> (i32, i32) {
+    match kind {
+        R::Bathroom => (190, 270),
+        R::LaundryRoom => (180, 230),
+        R::Closet => (140, 180),
+        R::Entryway => (190, 250),
+        R::Office => (260, 350),
+        R::Bedroom => (310, 430),
+        R::DiningRoom => (300, 400),
+        _ => (300, 450),
+    }
+}
+
+/// What a room of a strip is joined to.
+pub(super) enum Join {
+    Hall(Passage),
+    Neighbour(Passage),
+    Both(Passage, Passage),
+}
+
+/// How a room of a strip is joined, given what lies between it and the block.
+pub(super) fn join(dice: &mut Dice, kind: RoomKind, neighbour: Option<RoomKind>) -> Join {
+    match (kind, neighbour) {
+        (R::DiningRoom, Some(R::Kitchen)) => {
+            Join::Both(Passage::Doorway { width_cm: 110 }, Passage::Doorway { width_cm: 140 })
+        }
+        (R::Entryway, Some(R::LivingRoom)) => {
+            Join::Both(Passage::Doorway { width_cm: 110 }, Passage::Doorway { width_cm: 130 })
+        }
+        (R::Entryway | R::DiningRoom, _) => Join::Hall(Passage::Doorway { width_cm: 110 }),
+        (R::Closet, Some(R::Bedroom)) if dice.chance(60) => Join::Neighbour(Passage::Door),
+        (R::Bathroom, Some(R::Bedroom)) if dice.chance(30) => Join::Both(Passage::Door, Passage::Door),
+        _ => Join::Hall(Passage::Door),
+    }
+}
+
+/// What one household's taste is.
+pub(super) struct Scheme {
+    walls: Colour,
+    planks: Colour,
+    tiles: Colour,
+    carpet: Colour,
+    carpeted_bedrooms: bool,
+}
+
+impl Scheme {
+    pub(super) fn draw(dice: &mut Dice) -> Self {
+        Self {
+            walls: dice.pick([Colour::White, Colour::Cream, Colour::White]),
+            planks: dice.pick([Colour::LightBrown, Colour::Brown, Colour::Beige]),
+            tiles: dice.pick([Colour::White, Colour::Grey, Colour::Beige]),
+            carpet: dice.pick([Colour::Beige, Colour::Grey, Colour::Cream]),
+            carpeted_bedrooms: dice.chance(50),
+        }
+    }
+
+    /// Walls, floor and floor's colour of a room.
+    pub(super) fn of(&self, dice: &mut Dice, kind: RoomKind) -> (Colour, FloorFinish, Colour) {
+        let planks = (FloorFinish::Planks, self.planks);
+        let ((finish, colour), walls) = match kind {
+            R::Bathroom | R::LaundryRoom => {
+                ((FloorFinish::Tiles, self.tiles), dice.pick([Colour::White, Colour::LightBlue]))
+            }
+            R::Kitchen | R::Entryway => {
+                (if dice.chance(60) { (FloorFinish::Tiles, self.tiles) } else { planks }, self.walls)
+            }
+            R::Garage => ((FloorFinish::Concrete, Colour::Grey), Colour::White),
+            R::Bedroom => {
+                let walls = dice.pick([self.walls, Colour::LightBlue, Colour::Cream, Colour::Pink, Colour::Beige]);
+                (if self.carpeted_bedrooms { (FloorFinish::Carpet, self.carpet) } else { planks }, walls)
+            }
+            R::Office | R::DiningRoom => (planks, dice.pick([self.walls, Colour::Beige, Colour::Cream])),
+            _ => (planks, self.walls),
+        };
+        (walls, finish, colour)
+    }
+}

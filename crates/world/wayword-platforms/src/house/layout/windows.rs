@@ -1,0 +1,75 @@
+//! Puts windows into outer walls.
+
+use super::super::{
+    model::{Opening, Room, RoomKind, STOREY_CM, Window},
+    rect::{SpanCm, Wall},
+};
+use super::{Ids, Plan};
+
+/// Width, sill and head of a room's windows, centimetres.
+fn size(kind: RoomKind) -> Option<(i32, i32, i32)> {
+    match kind {
+        RoomKind::Closet | RoomKind::Garage => None,
+        RoomKind::Bathroom | RoomKind::LaundryRoom => Some((70, 135, 215)),
+        RoomKind::Kitchen => Some((120, 115, 215)),
+        RoomKind::LivingRoom => Some((180, 60, 220)),
+        RoomKind::Staircase => Some((80, 250, 370)),
+        RoomKind::Hallway | RoomKind::Entryway => Some((70, 100, 215)),
+        _ => Some((140, 90, 215)),
+    }
+}
+
+pub(super) fn cut(plan: &Plan, rooms: &[Room], openings: &[Opening], ids: &mut Ids) -> Vec<Window> {
+    let mut windows = Vec::new();
+    for (index, room) in rooms.iter().enumerate() {
+        let Some((width, sill, head)) = size(room.kind) else {
+            continue;
+        };
+        for span in Wall::ALL.into_iter().flat_map(|wall| spans(plan, rooms, index, wall, width)) {
+            if openings
+                .iter()
+                .all(|opening| !opening.span.thickened(1).overlaps(&span.thickened(1)) || apart(opening, room))
+            {
+                let (sill_cm, head_cm) = (room.base_cm() + sill, room.base_cm() + head);
+                windows.push(Window { id: ids.next(), room: index, span, sill_cm, head_cm });
+            }
+        }
+    }
+    windows
+}
+
+/// Whether an opening lies on another floor than a room.
+fn apart(opening: &Opening, room: &Room) -> bool {
+    opening.base_cm / STOREY_CM != room.floor as i32
+}
+
+/// Evenly spaced windows in the stretches of a wall that have nothing behind them.
+fn spans(plan: &Plan, rooms: &[Room], index: usize, wall: Wall, width: i32) -> Vec<SpanCm> {
+    let edge = rooms[index].outline.edge(wall);
+    let behind = |other: &usize| {
+        let shares = rooms[index].outline.shared_edge(&rooms[*other].outline);
+        shares.filter(|(shared, _)| *shared == wall).map(|(_, span)| (span.from, span.to))
+    };
+    // A garage has no upper storey, but a staircase has: its neighbours above count too.
+    let beside = |other: &usize| {
+        let is_well = plan.rooms[index].kind == RoomKind::Staircase || plan.rooms[*other].kind == RoomKind::Staircase;
+        *other != index && (rooms[*other].floor == rooms[index].floor || is_well)
+    };
+    let mut covered: Vec<_> = (0..rooms.len()).filter(beside).filter_map(|other| behind(&other)).collect();
+    covered.sort_unstable();
+    let mut free = Vec::new();
+    let mut from = edge.from;
+    for (start, end) in covered {
+        free.push((from, start));
+        from = from.max(end);
+    }
+    free.push((from, edge.to));
+    let per_window = width + 110;
+    free.into_iter()
+        .flat_map(|(from, to)| {
+            let count = ((to - from) / per_window).clamp(0, 3);
+            (0..count).map(move |n| from + (to - from) * (2 * n + 1) / (2 * count) - width / 2)
+        })
+        .map(|from| SpanCm { from, to: from + width, ..edge })
+        .collect()
+}

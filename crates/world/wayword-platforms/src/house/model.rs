@@ -1,0 +1,273 @@
+//! What a house is made of.
+
+use super::{
+    catalogue::Kind,
+    colour::Colour,
+    rect::{RectCm, SpanCm, Wall},
+};
+use serde::{Deserialize, Serialize};
+
+/// From one floor to the next, centimetres.
+pub const STOREY_CM: i32 = 300;
+/// From floor to ceiling, centimetres.
+pub const CEILING_CM: i32 = 270;
+/// Half the thickness of every wall, centimetres: rooms are this much smaller than their outline on each side.
+pub const HALF_WALL_CM: i32 = 6;
+
+/// A home: rooms joined by openings, and what stands in them. World frame; the ground floor lies at z = 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct House {
+    /// What it was made from.
+    pub seed: u64,
+    /// One or two.
+    pub storeys: u32,
+    /// All rooms, those of the ground floor first.
+    pub rooms: Vec<Room>,
+    /// Doors and doorways.
+    pub openings: Vec<Opening>,
+    /// Windows.
+    pub windows: Vec<Window>,
+    /// The way up, in houses with two storeys.
+    pub stairs: Option<Stairs>,
+    /// Everything that stands, lies or hangs.
+    pub furniture: Vec<Furniture>,
+}
+
+/// What a room is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "each is the room of that name")]
+pub enum RoomKind {
+    LivingRoom,
+    Kitchen,
+    DiningRoom,
+    Bedroom,
+    Bathroom,
+    Office,
+    Hallway,
+    LaundryRoom,
+    Entryway,
+    Closet,
+    Garage,
+    Staircase,
+}
+
+/// A room: a rectangle of floor with walls around it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Room {
+    /// What it is for.
+    pub kind: RoomKind,
+    /// The floor on which it lies, 0 at the ground; a staircase belongs to the lower one.
+    pub floor: u32,
+    /// Middle lines of its walls.
+    pub outline: RectCm,
+    /// From its floor to its ceiling, centimetres.
+    pub height_cm: i32,
+    /// Paint of the walls.
+    pub wall_colour: Colour,
+    /// What one walks on.
+    pub floor_finish: FloorFinish,
+    /// Its colour.
+    pub floor_colour: Colour,
+}
+
+/// What a floor is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FloorFinish {
+    /// Wooden boards.
+    Planks,
+    /// Square tiles.
+    Tiles,
+    /// Wall-to-wall carpet.
+    Carpet,
+    /// Bare concrete.
+    Concrete,
+}
+
+/// A hole in a wall through which one walks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Opening {
+    /// Its number among all objects of the house.
+    pub id: u32,
+    /// The room it belongs to.
+    pub room: usize,
+    /// The room beyond; none for the front door.
+    pub beyond: Option<usize>,
+    /// Where it lies on the shared middle line of the walls.
+    pub span: SpanCm,
+    /// Height of its sill above z = 0, centimetres.
+    pub base_cm: i32,
+    /// Clear height, centimetres.
+    pub height_cm: i32,
+    /// What closes it.
+    pub leaf: Leaf,
+    /// Colour of the leaf.
+    pub colour: Colour,
+}
+
+/// What closes an opening.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Leaf {
+    /// Nothing: a doorway.
+    None,
+    /// A door that stands open into a room, hinged at the span's lower or upper end.
+    Open {
+        /// Index of the room it opens into.
+        into: usize,
+        /// Whether it hangs at the lower end.
+        hinge_low: bool,
+    },
+    /// A closed house door.
+    Closed,
+    /// A closed garage door.
+    Garage,
+}
+
+/// A window in an outer wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Window {
+    /// Its number among all objects of the house.
+    pub id: u32,
+    /// The room it lights.
+    pub room: usize,
+    /// Where it lies on the wall's middle line.
+    pub span: SpanCm,
+    /// The lower edge above z = 0, centimetres.
+    pub sill_cm: i32,
+    /// The upper edge above z = 0, centimetres.
+    pub head_cm: i32,
+}
+
+/// Two flights with a landing between them: up along one half, back along the other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stairs {
+    /// Its number among all objects of the house.
+    pub id: u32,
+    /// Number of its handrail.
+    pub railing_id: u32,
+    /// The room of kind staircase.
+    pub room: usize,
+    /// Inner edges of its walls.
+    pub well: RectCm,
+    /// The side of the well at which both flights begin and end.
+    pub entry: Wall,
+    /// Whether the lower flight fills the half with the lower coordinates.
+    pub lower_flight_low: bool,
+    /// Depth of one flight from the entry to the landing, centimetres.
+    pub flight_cm: i32,
+}
+
+/// Something that stands, lies or hangs in a room.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Furniture {
+    /// Its number among all objects of the house.
+    pub id: u32,
+    /// What it is.
+    pub kind: Kind,
+    /// Its name in plain words.
+    pub name: String,
+    /// Its main colour.
+    pub colour: Colour,
+    /// What it is mainly made of.
+    pub material: String,
+    /// The room it is in.
+    pub room: usize,
+    /// Its footprint.
+    pub footprint: RectCm,
+    /// Its lower edge above z = 0, centimetres.
+    pub base_cm: i32,
+    /// Its height, centimetres.
+    pub height_cm: i32,
+    /// Quarter turns counter-clockwise; at 0 its front looks south.
+    pub quarter_turns: u8,
+    /// Seed of what varies in its look.
+    pub variant: u32,
+}
+
+impl RoomKind {
+    /// Its name in plain words.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::LivingRoom => "living room",
+            Self::Kitchen => "kitchen",
+            Self::DiningRoom => "dining room",
+            Self::Bedroom => "bedroom",
+            Self::Bathroom => "bathroom",
+            Self::Office => "office",
+            Self::Hallway => "hallway",
+            Self::LaundryRoom => "laundry room",
+            Self::Entryway => "entryway",
+            Self::Closet => "closet",
+            Self::Garage => "garage",
+            Self::Staircase => "staircase",
+        }
+    }
+}
+
+impl Room {
+    /// Its floor's height, centimetres.
+    #[must_use]
+    pub fn base_cm(&self) -> i32 {
+        self.floor as i32 * STOREY_CM
+    }
+
+    /// What lies between its walls.
+    #[must_use]
+    pub fn inner(&self) -> RectCm {
+        self.outline.inset(HALF_WALL_CM)
+    }
+}
+
+impl Opening {
+    /// Whether one can walk through.
+    #[must_use]
+    pub fn is_passable(&self) -> bool {
+        matches!(self.leaf, Leaf::None | Leaf::Open { .. })
+    }
+
+    /// Its name in plain words.
+    #[must_use]
+    pub fn word(&self) -> &'static str {
+        match self.leaf {
+            Leaf::None => "doorway",
+            Leaf::Open { .. } => "door",
+            Leaf::Closed => "front door",
+            Leaf::Garage => "garage door",
+        }
+    }
+
+    /// Footprint of a leaf that stands open: across the wall's line, `reach` long and `thick` thick, centimetres.
+    #[must_use]
+    pub fn open_leaf(&self, rooms: &[Room], thick: i32) -> Option<RectCm> {
+        let Leaf::Open { into, hinge_low } = self.leaf else {
+            return None;
+        };
+        let (dx, dy) = rooms.get(into)?.outline.wall_of(&self.span)?.inward();
+        let along =
+            if hinge_low { (self.span.from, self.span.from + thick) } else { (self.span.to - thick, self.span.to) };
+        let step = dx + dy;
+        let (near, far) =
+            (self.span.at + step * HALF_WALL_CM, self.span.at + step * (HALF_WALL_CM + self.span.length()));
+        let (low, high) = (near.min(far), near.max(far));
+        Some(if self.span.along_x {
+            RectCm::new(along.0, low, along.1, high)
+        } else {
+            RectCm::new(low, along.0, high, along.1)
+        })
+    }
+}
+
+impl House {
+    /// The room in which a point lies, given the floor under it (metres): the staircase where both floors overlap.
+    #[must_use]
+    pub fn room_at(&self, x_m: f64, y_m: f64, floor_z_m: f64) -> Option<&Room> {
+        let holds = |room: &&Room| {
+            let above_cm = floor_z_m * 100.0 - f64::from(room.base_cm());
+            room.outline.holds_m(x_m, y_m) && (-20.0..f64::from(room.height_cm - 20)).contains(&above_cm)
+        };
+        self.rooms.iter().find(holds)
+    }
+}
