@@ -71,6 +71,29 @@ impl Where {
             Self::Right => Side::Right,
         }
     }
+
+    /// The direction of its middle from that of a view so wide, radians, positive right.
+    #[must_use]
+    pub fn turn_rad(self, horizontal_fov_rad: f64) -> f64 {
+        match self {
+            Self::Left => -horizontal_fov_rad / 3.0,
+            Self::Middle => 0.0,
+            Self::Right => horizontal_fov_rad / 3.0,
+        }
+    }
+
+    /// The third of a view so wide in which a direction lies, `off_rad` from the view's own, positive right.
+    #[must_use]
+    pub fn at(off_rad: f64, horizontal_fov_rad: f64) -> Self {
+        let sixth = horizontal_fov_rad / 6.0;
+        if off_rad < -sixth {
+            Self::Left
+        } else if off_rad > sixth {
+            Self::Right
+        } else {
+            Self::Middle
+        }
+    }
 }
 
 /// A question and its answer.

@@ -47,9 +47,9 @@ pub enum Climb {
 }
 
 /// From here on a change of direction is worth a word, degrees.
-pub const SLIGHT_DEG: f64 = 25.0;
+pub const SLIGHT_DEG: f64 = 30.0;
 /// From here on a turn is told without "slightly", degrees.
-pub const FULL_DEG: f64 = 50.0;
+pub const FULL_DEG: f64 = 55.0;
 /// From here on a turn is told as turning around, degrees.
 pub const AROUND_DEG: f64 = 150.0;
 /// From here on a rise is stairs and not a door sill, metres.
@@ -141,9 +141,9 @@ mod tests {
     #[test]
     fn the_words_of_turns_change_at_their_limits() {
         let word = |deg: f64| Turn::from_rad(deg.to_radians());
-        assert_eq!(word(24.9), Turn::Straight);
-        assert_eq!(word(-30.0), Turn::SlightLeft);
-        assert_eq!(word(-50.1), Turn::Left);
+        assert_eq!(word(29.9), Turn::Straight);
+        assert_eq!(word(-31.0), Turn::SlightLeft);
+        assert_eq!(word(-55.1), Turn::Left);
         assert_eq!(word(151.0), Turn::Around);
         assert_eq!(word(-180.0), Turn::Around);
     }

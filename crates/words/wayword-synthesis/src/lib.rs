@@ -1,1 +1,12 @@
 //! From views to words: the dialogue, prompts, styles, writing, checks and repair, and the offline minds.
+//!
+//! Architecture invariant: nothing here opens a file or a connection, and nothing knows a platform beyond the trait.
+
+pub mod checks;
+pub mod dialogue;
+pub mod evidence;
+pub mod lexicon;
+pub mod minds;
+pub mod reading;
+pub mod text;
+pub mod walk;

@@ -1,0 +1,24 @@
+//! Sentences and words, as the style demands.
+
+use super::{finding, or_pass};
+use crate::text::{sentence_count, word_count};
+use wayword_core::{Check, Constraints, Finding, Verdict};
+
+pub(super) fn form(text: &str, constraints: &Constraints) -> Vec<Finding> {
+    let (sentences, words) = (sentence_count(text), word_count(text));
+    let mut wrong = Vec::new();
+    let mut fail = |reason: String| wrong.push(finding(Check::Form, Verdict::Fail, reason, None));
+    if words == 0 {
+        fail("it holds no word".into());
+    }
+    if let Some(least) = constraints.min_sentences.filter(|least| sentences < *least) {
+        fail(format!("{sentences} sentences where the style asks for {least} or more"));
+    }
+    if let Some(most) = constraints.max_sentences.filter(|most| sentences > *most) {
+        fail(format!("{sentences} sentences where the style asks for {most} at most"));
+    }
+    if let Some(limit) = constraints.fewer_words_than.filter(|limit| words >= *limit) {
+        fail(format!("{words} words where the style asks for fewer than {limit}"));
+    }
+    or_pass(Check::Form, wrong)
+}

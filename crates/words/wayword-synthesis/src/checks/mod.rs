@@ -1,0 +1,102 @@
+//! Holds a text against the evidence of its path. Works on the words alone, whoever wrote them.
+
+mod align;
+mod floors;
+mod form;
+mod landmarks;
+mod leak;
+mod order;
+mod sides;
+mod task;
+
+use crate::{
+    evidence::Evidence,
+    lexicon::normal,
+    reading::{Event, Reading, What, read},
+};
+use std::collections::BTreeSet;
+use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
+
+pub use leak::{SHARED_RUN, shared_run};
+
+/// What a text is checked against.
+#[derive(Debug, Clone, Copy)]
+pub struct Subject<'a> {
+    /// What is known of the path.
+    pub evidence: &'a Evidence,
+    /// The style that the text is to keep to.
+    pub style: &'a Style,
+    /// The object that its task has to be about, where one was given.
+    pub target: Option<&'a Target>,
+}
+
+/// A checked text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checked {
+    /// Every check's outcome; a check that failed several times has several findings.
+    pub findings: Vec<Finding>,
+    /// What the text speaks of, tied to its frames.
+    pub mentions: Vec<Mention>,
+}
+
+impl Checked {
+    /// All checks together.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        Verdict::of(&self.findings)
+    }
+}
+
+/// Checks a text.
+#[must_use]
+pub fn check(text: &str, subject: Subject<'_>) -> Checked {
+    let reading = read(text, &names(subject.evidence));
+    let mut findings = Vec::new();
+    findings.extend(form::form(text, &subject.style.constraints));
+    if subject.style.constraints.ends_in_task {
+        findings.push(task::task(&reading, subject.evidence, subject.target));
+    }
+    let places = landmarks::landmarks(&reading, subject.evidence, subject.target);
+    findings.extend(places.findings);
+    let walk = order::order(&reading, subject.evidence, &places.frames);
+    findings.extend(walk.findings);
+    findings.extend(floors::floors(&reading, subject.evidence));
+    findings.push(leak::leak(text, &subject.style.references));
+    findings.sort_by_key(|finding| finding.check);
+    Checked { mentions: mentions(&reading, &walk.frames), findings }
+}
+
+/// The names of everything that is known along a path: the reader has to recognise them.
+fn names(evidence: &Evidence) -> BTreeSet<String> {
+    let things = evidence.frames.iter().flat_map(|frame| frame.things.iter().map(|thing| normal(&thing.name)));
+    things.filter(|name| !name.is_empty()).collect()
+}
+
+fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
+    let object = reading.task.as_ref().and_then(|task| task.object);
+    let kind = |at: usize, event: &Event| match &event.what {
+        What::Place(_) if object == Some(at) => MentionKind::Target,
+        What::Place(place) if place.is_room => MentionKind::Room,
+        What::Place(_) => MentionKind::Landmark,
+        What::Turn(_) => MentionKind::Turn,
+        What::Climb(_) | What::Floor(_) => MentionKind::Floor,
+    };
+    let told = reading.events.iter().zip(frames).enumerate();
+    told.filter_map(|(at, (event, frame))| Some(Mention { span: event.span, kind: kind(at, event), frame: (*frame)? }))
+        .collect()
+}
+
+/// A check that found nothing wrong.
+fn pass(check: Check) -> Finding {
+    Finding { check, verdict: Verdict::Pass, reason: String::new(), span: None }
+}
+
+/// A check that found something wrong, or nothing to hold it against.
+fn finding(check: Check, verdict: Verdict, reason: impl Into<String>, span: Option<[usize; 2]>) -> Finding {
+    Finding { check, verdict, reason: reason.into(), span }
+}
+
+/// The findings of one check: a pass where there are none.
+fn or_pass(check: Check, findings: Vec<Finding>) -> Vec<Finding> {
+    if findings.is_empty() { vec![pass(check)] } else { findings }
+}

@@ -1,0 +1,41 @@
+//! Left and right of somebody who walks the path.
+
+use crate::{evidence::Evidence, lexicon::agree, reading::Place};
+use std::f64::consts::{PI, TAU};
+use wayword_core::Side;
+
+/// Whether a direction from the heading (radians, positive right) is on a side as people tell it: roughly, and not ahead.
+pub(super) fn lies_on(side: Side, turn_rad: f64) -> bool {
+    let deg = turn_rad.to_degrees();
+    match side {
+        Side::Right => (10.0..170.0).contains(&deg),
+        Side::Left => (10.0..170.0).contains(&-deg),
+        Side::Ahead => deg.abs() < 70.0,
+        Side::Behind => deg.abs() > 110.0,
+    }
+}
+
+/// The word for a side.
+pub(super) fn word(side: Side) -> &'static str {
+    match side {
+        Side::Ahead => "front",
+        Side::Right => "right",
+        Side::Behind => "back",
+        Side::Left => "left",
+    }
+}
+
+/// The side with which a place is told, where it lies there in none of the given frames.
+pub(super) fn wrong_side(place: &Place, frames: &[usize], evidence: &Evidence) -> Option<Side> {
+    let side = place.side?;
+    let turns: Vec<f64> = frames.iter().flat_map(|at| turns_to(place, *at, evidence)).collect();
+    (!turns.is_empty() && !turns.iter().any(|turn_rad| lies_on(side, *turn_rad))).then_some(side)
+}
+
+/// The directions of a named thing at a frame, from the heading of arrival and from that of leaving.
+fn turns_to(place: &Place, at: usize, evidence: &Evidence) -> Vec<f64> {
+    let leaving_rad = evidence.moves.get(at).map_or(0.0, |step| step.turn_rad);
+    let things = evidence.frames[at].things.iter().filter(|thing| agree(&thing.name, &place.name));
+    let wrap = |rad: f64| (rad + PI).rem_euclid(TAU) - PI;
+    things.filter_map(|thing| thing.turn_rad).flat_map(|turn_rad| [turn_rad, wrap(turn_rad - leaving_rad)]).collect()
+}

@@ -1,0 +1,43 @@
+//! The closing task.
+
+use super::{
+    finding, pass,
+    sides::{lies_on, word},
+};
+use crate::{
+    evidence::Evidence,
+    lexicon::agree,
+    reading::{Reading, What},
+};
+use wayword_core::{Check, Finding, Target, Verdict};
+
+pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Target>) -> Finding {
+    let fail = |reason: String, span| finding(Check::Task, Verdict::Fail, reason, span);
+    let Some(task) = &reading.task else { return fail("it does not end in a task".into(), None) };
+    let object = task.object.map(|at| &reading.events[at]);
+    let Some((What::Place(place), span)) = object.map(|event| (&event.what, event.span)) else {
+        return fail(format!("its task ({:?}) names no object", task.verb), None);
+    };
+    let name = &place.name;
+    if let Some(target) = target.filter(|target| !agree(&target.name, name)) {
+        return fail(format!("its task is about {name:?}, and the given target is {:?}", target.name), Some(span));
+    }
+    if !evidence.knows_things() {
+        return finding(Check::Task, Verdict::Unverified, "no object is known on this path", Some(span));
+    }
+    let alike: Vec<_> = evidence.final_things().iter().filter(|thing| agree(&thing.name, name)).collect();
+    if alike.is_empty() {
+        return fail(format!("{name:?} is not seen from the final viewpoint"), Some(span));
+    }
+    // Where the very object is known, a side is told of it and of no namesake.
+    let meant = alike.iter().filter(|thing| {
+        target.is_none_or(|target| thing.object.as_ref().is_none_or(|object| *object == target.object))
+    });
+    let mut turns = meant.filter_map(|thing| thing.turn_rad).peekable();
+    if let (Some(side), true) = (place.side, turns.peek().is_some()) {
+        if !turns.any(|turn_rad| lies_on(side, turn_rad)) {
+            return fail(format!("{name:?} is not on the {} of somebody who arrives", word(side)), Some(span));
+        }
+    }
+    pass(Check::Task)
+}

@@ -1,0 +1,40 @@
+//! Evidence from what was seen and told.
+
+use super::{Evidence, FrameEvidence, SeenThing, Source};
+use crate::walk::Observation;
+use wayword_core::{Path, Witness};
+
+impl Evidence {
+    /// Evidence from captions, one observation per frame of the path. `None` where no caption tells of anything.
+    #[must_use]
+    pub fn from_captions(path: &Path, observations: &[Observation]) -> Option<Self> {
+        let frames: Vec<FrameEvidence> = path
+            .frames
+            .iter()
+            .zip(observations)
+            .map(|(frame, seen)| {
+                let mut evidence = FrameEvidence::default();
+                for look in &seen.looks {
+                    evidence.rooms.extend(look.caption.room.clone().filter(|room| !evidence.rooms.contains(room)));
+                    let off_rad = frame.pose.heading.turn_to(look.gaze.heading);
+                    for sighting in &look.caption.sightings {
+                        match sighting.witness {
+                            Witness::Seen => evidence.things.push(SeenThing {
+                                name: sighting.name.clone(),
+                                object: None,
+                                turn_rad: sighting
+                                    .place
+                                    .map(|place| off_rad + place.turn_rad(look.gaze.horizontal_fov_rad)),
+                            }),
+                            Witness::Denied => evidence.denied.push(sighting.name.clone()),
+                            Witness::Unsure => {}
+                        }
+                    }
+                }
+                evidence
+            })
+            .collect();
+        let known = frames.iter().any(|frame| !frame.rooms.is_empty() || !frame.things.is_empty());
+        known.then(|| Self::of(path, frames, Source::Captions))
+    }
+}

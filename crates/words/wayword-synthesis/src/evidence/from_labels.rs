@@ -1,0 +1,26 @@
+//! Evidence from the platform's own labels.
+
+use super::{Evidence, FrameEvidence, SeenThing, Source};
+use wayword_core::{Path, View};
+
+impl Evidence {
+    /// Evidence from ground truth: `panoramas` holds, for each frame, the views all around it. `None` where the platform
+    /// knows nothing of any of them.
+    #[must_use]
+    pub fn from_labels(path: &Path, panoramas: &[Vec<View>]) -> Option<Self> {
+        let known = panoramas.iter().flatten().any(|view| view.ground_truth().is_some());
+        let frames = path.frames.iter().zip(panoramas).map(|(frame, views)| {
+            let mut evidence = FrameEvidence::default();
+            for truth in views.iter().filter_map(View::ground_truth) {
+                evidence.rooms.extend(truth.room.clone().filter(|room| !evidence.rooms.contains(room)));
+                evidence.things.extend(truth.labels.iter().map(|label| SeenThing {
+                    name: label.name.clone(),
+                    object: Some(label.object.clone()),
+                    turn_rad: Some(frame.pose.heading.turn_to(label.heading)),
+                }));
+            }
+            evidence
+        });
+        known.then(|| Self::of(path, frames.collect(), Source::Labels))
+    }
+}

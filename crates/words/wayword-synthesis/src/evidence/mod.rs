@@ -1,0 +1,129 @@
+//! What a text about a path can be held against.
+
+mod from_captions;
+mod from_labels;
+
+use crate::lexicon::{agree, same_room};
+use wayword_core::{Climb, Move, ObjectId, Path};
+
+/// What is known of a path, frame by frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// One per frame of the path.
+    pub frames: Vec<FrameEvidence>,
+    /// The moves between them.
+    pub moves: Vec<Move>,
+    /// Who vouches for it.
+    pub source: Source,
+}
+
+/// What is known to be seen from one frame, all around.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FrameEvidence {
+    /// The room, or the rooms where witnesses differ.
+    pub rooms: Vec<String>,
+    /// Objects.
+    pub things: Vec<SeenThing>,
+    /// Names of objects that were said not to be there.
+    pub denied: Vec<String>,
+    /// The storey, the lowest being 1.
+    pub level: Option<u32>,
+}
+
+/// An object that is seen from a frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenThing {
+    /// Its name.
+    pub name: String,
+    /// Its id, where labels vouch for it.
+    pub object: Option<ObjectId>,
+    /// Its direction from the frame's heading, radians in (-π, π], positive right.
+    pub turn_rad: Option<f64>,
+}
+
+/// Who vouches for evidence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The platform's ground truth.
+    Labels,
+    /// What was seen and told in captions.
+    Captions,
+    /// Nobody: only the path itself is known.
+    Nothing,
+}
+
+impl Source {
+    /// Its name in provenance and on the screen.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Labels => "labels",
+            Self::Captions => "captions",
+            Self::Nothing => "nothing",
+        }
+    }
+}
+
+impl Evidence {
+    fn of(path: &Path, mut frames: Vec<FrameEvidence>, source: Source) -> Self {
+        for (evidence, frame) in frames.iter_mut().zip(&path.frames) {
+            evidence.level = frame.level;
+        }
+        Self { frames, moves: path.moves(), source }
+    }
+
+    /// Evidence of a path about whose sights nobody says anything: turns and floors alone can be checked.
+    #[must_use]
+    pub fn of_path_alone(path: &Path) -> Self {
+        Self::of(path, vec![FrameEvidence::default(); path.frames.len()], Source::Nothing)
+    }
+
+    /// Whether objects are known at all along the path.
+    #[must_use]
+    pub fn knows_things(&self) -> bool {
+        self.frames.iter().any(|frame| !frame.things.is_empty())
+    }
+
+    /// Whether rooms are known at all along the path.
+    #[must_use]
+    pub fn knows_rooms(&self) -> bool {
+        self.frames.iter().any(|frame| !frame.rooms.is_empty())
+    }
+
+    /// The frames from which something of that name is seen.
+    #[must_use]
+    pub fn frames_with_thing(&self, name: &str) -> Vec<usize> {
+        self.frames_where(|frame| frame.things.iter().any(|thing| agree(&thing.name, name)))
+    }
+
+    /// The frames that lie in a room of that name.
+    #[must_use]
+    pub fn frames_in_room(&self, name: &str) -> Vec<usize> {
+        self.frames_where(|frame| frame.rooms.iter().any(|room| same_room(room, name)))
+    }
+
+    fn frames_where(&self, holds: impl Fn(&FrameEvidence) -> bool) -> Vec<usize> {
+        (0..self.frames.len()).filter(|at| holds(&self.frames[*at])).collect()
+    }
+
+    /// The frames from which a climb begins that gains or loses a flight of stairs. Small rises add up.
+    #[must_use]
+    pub fn frames_with_climb(&self, climb: Climb) -> Vec<usize> {
+        let sign = if climb == Climb::Up { 1.0 } else { -1.0 };
+        let rises: Vec<f64> = self.moves.iter().map(|step| step.rise_m * sign).collect();
+        let climbs_from = |at: usize| {
+            let mut gained_m = 0.0;
+            rises[at..].iter().take_while(|rise_m| **rise_m > 0.05).any(|rise_m| {
+                gained_m += rise_m;
+                Climb::from_rise(gained_m) == Climb::Up
+            })
+        };
+        (0..rises.len()).filter(|at| climbs_from(*at)).collect()
+    }
+
+    /// The things that are seen from the last frame.
+    #[must_use]
+    pub fn final_things(&self) -> &[SeenThing] {
+        self.frames.last().map_or(&[], |frame| &frame.things)
+    }
+}

@@ -1,0 +1,221 @@
+//! Objects, what they are kinds of, and what one can do with them.
+
+use super::normal;
+use std::{collections::BTreeMap, sync::LazyLock};
+
+/// What one can do with a thing; the writer's tasks go by it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[allow(missing_docs)] // Each name says what it is.
+pub enum Class {
+    Seat,
+    Surface,
+    Container,
+    Bed,
+    Textile,
+    Drape,
+    Floor,
+    Furnishing,
+    Light,
+    Switch,
+    WallArt,
+    Glass,
+    Door,
+    /// A part of the building; labels seldom have them, so what they don't confirm is unverified rather than wrong.
+    Structure,
+    Stairs,
+    Water,
+    Plant,
+    Ornament,
+    Hearth,
+    Fan,
+    Appliance,
+    Cooker,
+    Fridge,
+    Basin,
+    Tap,
+    Toilet,
+    Tub,
+    Screen,
+    Music,
+    Exercise,
+    Vehicle,
+    Small,
+    /// Not in the lexicon.
+    Unknown,
+}
+
+/// A thing of the lexicon.
+#[derive(Debug, Clone)]
+pub struct Thing {
+    /// Its usual name.
+    pub name: &'static str,
+    /// What one can do with it.
+    pub class: Class,
+    /// 3: a landmark seen from afar, 0: never a landmark.
+    pub salience: u8,
+    parent: Option<&'static str>,
+}
+
+struct Things {
+    things: Vec<Thing>,
+    by_name: BTreeMap<String, usize>,
+    longest: usize,
+}
+
+static THINGS: LazyLock<Things> = LazyLock::new(|| {
+    let (mut things, mut by_name): (Vec<Thing>, BTreeMap<String, usize>) = Default::default();
+    let lines = include_str!("objects.txt").lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty());
+    for line in lines {
+        let mut columns = line.split('|').map(str::trim);
+        let mut column = || columns.next().unwrap_or("");
+        let (name, class, salience, others, parent) = (column(), column(), column(), column(), column());
+        let thing = Thing {
+            name,
+            class: class_named(class),
+            salience: salience.parse().unwrap_or(0),
+            parent: Some(parent).filter(|parent| !parent.is_empty()),
+        };
+        for name in std::iter::once(name).chain(others.split(',')).map(normal).filter(|name| !name.is_empty()) {
+            by_name.entry(name).or_insert(things.len());
+        }
+        things.push(thing);
+    }
+    let longest = by_name.keys().map(|name| name.split(' ').count()).max().unwrap_or(1);
+    Things { things, by_name, longest }
+});
+
+fn class_named(name: &str) -> Class {
+    match name {
+        "seat" => Class::Seat,
+        "surface" => Class::Surface,
+        "container" => Class::Container,
+        "bed" => Class::Bed,
+        "textile" => Class::Textile,
+        "drape" => Class::Drape,
+        "floor" => Class::Floor,
+        "furnishing" => Class::Furnishing,
+        "light" => Class::Light,
+        "switch" => Class::Switch,
+        "wall_art" => Class::WallArt,
+        "glass" => Class::Glass,
+        "door" => Class::Door,
+        "structure" => Class::Structure,
+        "stairs" => Class::Stairs,
+        "water" => Class::Water,
+        "plant" => Class::Plant,
+        "ornament" => Class::Ornament,
+        "hearth" => Class::Hearth,
+        "fan" => Class::Fan,
+        "appliance" => Class::Appliance,
+        "cooker" => Class::Cooker,
+        "fridge" => Class::Fridge,
+        "basin" => Class::Basin,
+        "tap" => Class::Tap,
+        "toilet" => Class::Toilet,
+        "tub" => Class::Tub,
+        "screen" => Class::Screen,
+        "music" => Class::Music,
+        "exercise" => Class::Exercise,
+        "vehicle" => Class::Vehicle,
+        "small" => Class::Small,
+        _ => Class::Unknown,
+    }
+}
+
+/// Number of words in the longest name of the lexicon.
+#[must_use]
+pub fn longest_name() -> usize {
+    THINGS.longest
+}
+
+/// The thing that a phrase in normal spelling names, exactly.
+fn named(normal_name: &str) -> Option<&'static Thing> {
+    THINGS.by_name.get(normal_name).map(|at| &THINGS.things[*at])
+}
+
+/// The thing that a name means: the whole name's, else that of its longest tail that is known ("old oak table" is a table).
+#[must_use]
+pub fn thing(name: &str) -> Option<&'static Thing> {
+    let name = normal(name);
+    tails(&name).find_map(named)
+}
+
+fn tails(name: &str) -> impl Iterator<Item = &str> {
+    std::iter::once(name).chain(name.match_indices(' ').map(move |(at, _)| &name[at + 1..]))
+}
+
+/// What a name means, from the most special to the most general: "dining chair" is a dining chair and a chair. A name
+/// that the lexicon does not know means itself, and its last word.
+#[must_use]
+pub fn kinds(name: &str) -> Vec<String> {
+    let name = normal(name);
+    let Some(mut at) = tails(&name).find_map(named) else {
+        let last = name.rsplit(' ').next().unwrap_or_default().to_owned();
+        return if last == name { vec![name] } else { vec![name, last] };
+    };
+    let mut kinds = vec![at.name.to_owned()];
+    while let Some(parent) = parent(at).filter(|parent| kinds.len() < 4 && !kinds.contains(&parent.name.to_owned())) {
+        kinds.push(parent.name.to_owned());
+        at = parent;
+    }
+    kinds
+}
+
+fn parent(thing: &Thing) -> Option<&'static Thing> {
+    named(&normal(thing.parent?))
+}
+
+/// Whether two names may mean the same thing: the more special kind of one is a kind of the other.
+#[must_use]
+pub fn agree(a: &str, b: &str) -> bool {
+    let (a, b) = (kinds(a), kinds(b));
+    b.contains(&a[0]) || a.contains(&b[0])
+}
+
+/// Whether a phrase in normal spelling is the name of a thing.
+pub(crate) fn is_thing(normal_name: &str) -> bool {
+    THINGS.by_name.contains_key(normal_name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_one_thing_agree() {
+        for (a, b) in
+            [("couch", "sofa"), ("chair", "dining chairs"), ("painting", "picture frame"), ("bin", "trashcan")]
+        {
+            assert!(agree(a, b), "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn names_of_different_things_do_not() {
+        for (a, b) in
+            [("office chair", "dining chair"), ("sink", "toilet"), ("pool table", "table lamp"), ("bed", "bedroom")]
+        {
+            assert!(!agree(a, b), "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn a_name_with_adjectives_means_the_thing() {
+        assert_eq!(thing("old oak dining table").unwrap().name, "dining table");
+        assert_eq!(kinds("brown leather armchair"), ["armchair", "chair"]);
+        assert_eq!(kinds("purple gizmo"), ["purple gizmo", "gizmo"]);
+    }
+
+    #[test]
+    fn every_line_of_the_lexicon_is_whole() {
+        for line in include_str!("objects.txt").lines().filter(|line| !line.starts_with('#') && !line.is_empty()) {
+            let columns: Vec<_> = line.split('|').collect();
+            assert!((3..=5).contains(&columns.len()), "{line}");
+            assert_ne!(class_named(columns[1]), Class::Unknown, "{line}");
+            assert!(columns[2].parse::<u8>().is_ok_and(|salience| salience <= 3), "{line}");
+            if let Some(parent) = columns.get(4).filter(|parent| !parent.is_empty()) {
+                assert!(named(&normal(parent)).is_some(), "unknown parent in {line}");
+            }
+        }
+    }
+}

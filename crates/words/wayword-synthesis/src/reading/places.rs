@@ -1,0 +1,172 @@
+//! Landmarks and rooms.
+
+use super::{Event, Place, What, vocabulary as v};
+use crate::{
+    lexicon::{is_room, is_thing, longest_name, normal_word},
+    text::Token,
+};
+use std::collections::BTreeSet;
+use wayword_core::Side;
+
+/// A run of tokens that names a place.
+struct Found {
+    from: usize,
+    to: usize,
+    name: String,
+    is_thing: bool,
+    is_room: bool,
+}
+
+/// The places of a text; tokens within `taken` spans are left alone.
+pub(super) fn places(
+    tokens: &[Token],
+    clauses: &[usize],
+    known: &BTreeSet<String>,
+    taken: &[[usize; 2]],
+) -> Vec<Event> {
+    let free = |at: usize| !taken.iter().any(|span| tokens[at].span[0] >= span[0] && tokens[at].span[1] <= span[1]);
+    let mut found: Vec<Found> = Vec::new();
+    let mut at = 0;
+    while at < tokens.len() {
+        let next = if free(at) { named(tokens, at, known).or_else(|| unnamed(tokens, at, known)) } else { None };
+        at = next.as_ref().map_or(at + 1, |place| place.to);
+        let Some(mut place) = next else { continue };
+        // "the kitchen table": what stands right before a place only tells which one it is.
+        if let Some(before) = found.pop_if(|before| before.to == place.from) {
+            place.name = if before.is_room { place.name } else { format!("{} {}", before.name, place.name) };
+        }
+        found.push(place);
+    }
+    let event = |place: Found| {
+        let span = [tokens[place.from].span[0], tokens[place.to - 1].span[1]];
+        let (related, side) = (is_related(tokens, place.from), side_after(tokens, place.to));
+        let Found { name, is_thing, is_room, .. } = place;
+        let what = What::Place(Place { name, is_thing, is_room, related, side, tells_turn: false });
+        Event { what, span, clause: clauses[place.from] }
+    };
+    found.into_iter().map(event).collect()
+}
+
+/// The longest known name that begins at a token.
+fn named(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Found> {
+    let longest = longest_name().max(6).min(tokens.len() - at);
+    (1..=longest).rev().find_map(|length| {
+        let run = &tokens[at..at + length];
+        if !run.iter().all(Token::is_word) || is_no_place(tokens, at, length) {
+            return None;
+        }
+        let name = run.iter().map(|token| normal_word(&token.word)).collect::<Vec<_>>().join(" ");
+        let (is_thing, is_room) = (is_thing(&name) || known.contains(&name), is_room(&name));
+        (is_thing || is_room).then_some(Found { from: at, to: at + length, name, is_thing, is_room })
+    })
+}
+
+/// Words that are names elsewhere but not here: "step" and "turn back" of walking, "light blue", "water the plant".
+fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+    if length > 1 {
+        return false;
+    }
+    let after_determiner = at > 0 && (v::DETERMINERS.contains(&word(at - 1)) || v::ADJECTIVES.contains(&word(at - 1)));
+    let verb_like = matches!(
+        word(at),
+        "step"
+            | "exit"
+            | "light"
+            | "book"
+            | "frame"
+            | "cover"
+            | "bar"
+            | "iron"
+            | "pan"
+            | "box"
+            | "study"
+            | "throw"
+            | "map"
+            | "print"
+            | "case"
+            | "glass"
+            | "stage"
+            | "board"
+            | "mop"
+            | "tap"
+            | "outside"
+            | "landing"
+            | "entry"
+            | "opening"
+            | "passage"
+            | "runner"
+            | "art"
+            | "paper"
+            | "tool"
+            | "cap"
+            | "remote"
+            | "seat"
+            | "post"
+            | "rail"
+    );
+    let before_noun = is_thing(&normal_word(word(at + 1)))
+        || is_room(&normal_word(word(at + 1)))
+        || v::ADJECTIVES.contains(&word(at + 1));
+    (verb_like && !after_determiner && word(at) != "outside")
+        || (word(at) == "light" && before_noun && !after_determiner)
+}
+
+/// A noun phrase that no name covers: "the shiny gizmo".
+fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Found> {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+    if !matches!(word(at), "the" | "a" | "an") {
+        return None;
+    }
+    let ends = |at: usize| {
+        tokens.get(at).is_none_or(|token| !token.is_word())
+            || v::BREAKERS.contains(&word(at))
+            || named(tokens, at, known).is_some()
+    };
+    let mut to = at + 1;
+    while to < at + 5 && !ends(to) {
+        to += 1;
+    }
+    // A named place right behind means that these are its adjectives.
+    let ends_in_name = tokens.get(to).is_some_and(Token::is_word) && named(tokens, to, known).is_some();
+    let last = word(to - 1);
+    let tells_nothing = v::ABSTRACT.contains(&normal_word(last).as_str())
+        || v::ADJECTIVES.contains(&last)
+        || last.ends_with("ly")
+        || v::floor_number(last).is_some();
+    if to == at + 1 || ends_in_name || tells_nothing {
+        return None;
+    }
+    let name = tokens[at + 1..to].iter().map(|token| normal_word(&token.word)).collect::<Vec<_>>().join(" ");
+    Some(Found { from: at + 1, to, name, is_thing: true, is_room: false })
+}
+
+/// Whether a place stands behind a word of nearness.
+fn is_related(tokens: &[Token], from: usize) -> bool {
+    let before = tokens[..from]
+        .iter()
+        .rev()
+        .take_while(|token| token.is_word() && token.word != "and" && token.word != "then")
+        .take(4);
+    let words: Vec<&str> = before.map(|token| token.word.as_str()).collect();
+    let nearest_preposition =
+        words.iter().find(|word| v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word) && **word != "to");
+    nearest_preposition.is_some_and(|word| v::RELATIONS.contains(word))
+}
+
+/// The side that follows a place: "on your left", "to the right", but not "to the right of".
+fn side_after(tokens: &[Token], to: usize) -> Option<Side> {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+    let mut at = to;
+    while matches!(word(at), "that" | "is" | "are" | "which") {
+        at += 1;
+    }
+    let begins = matches!(word(at), "on" | "to") && matches!(word(at + 1), "the" | "your");
+    let side = match word(at + 2) {
+        "left" => Side::Left,
+        "right" => Side::Right,
+        _ => return None,
+    };
+    let of = word(at + 3) == "of" || (word(at + 3) == "side" && word(at + 4) == "of");
+    (begins && !of).then_some(side)
+}

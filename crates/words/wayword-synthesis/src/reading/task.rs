@@ -1,0 +1,67 @@
+//! The closing task.
+
+use super::{Event, Task, What, vocabulary as v};
+use crate::{
+    lexicon::{is_room, is_thing, normal_word},
+    text::Token,
+};
+
+/// The task that ends a text: the last clause with a verb, where that verb is not one of walking.
+pub(super) fn closing_task(tokens: &[Token], events: &[Event]) -> Option<Task> {
+    let starts = (0..tokens.len())
+        .filter(|at| *at == 0 || !tokens[at - 1].is_word() || matches!(tokens[at - 1].word.as_str(), "and" | "then"));
+    let verbs: Vec<usize> = starts.filter_map(|at| verb_of(tokens, at)).collect();
+    let at = *verbs.last()?;
+    let verb = tokens[at].word.clone();
+    if is_walking(tokens, at) {
+        return None;
+    }
+    let object = events.iter().position(|event| {
+        event.span[0] > tokens[at].span[0] && matches!(&event.what, What::Place(place) if place.is_thing)
+    });
+    Some(Task { verb, object })
+}
+
+/// Where the verb of the clause that begins at a token stands; `None` where the clause has none.
+fn verb_of(tokens: &[Token], start: usize) -> Option<usize> {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+    let mut at = start;
+    while v::ADVERBS.contains(&word(at)) {
+        at += 1;
+    }
+    let first = tokens.get(at).filter(|token| token.is_word())?.word.as_str();
+    if v::WALKING.contains(&first) {
+        return Some(at);
+    }
+    let takes_object = v::DETERMINERS.contains(&word(at + 1))
+        || matches!(word(at + 1), "me" | "off" | "up" | "on" | "down" | "out" | "all" | "any" | "some");
+    let name = normal_word(first);
+    let is_name = v::ADJECTIVES.contains(&first) || is_thing(&name) || is_room(&name);
+    let no_verb = v::FUNCTION.contains(&first)
+        || (is_name && !takes_object)
+        || (first.ends_with("ing") && first.len() > 5)
+        || first.ends_with('s') && is_name;
+    (!no_verb).then_some(at)
+}
+
+/// Whether a verb is one of walking here: "take a left" is, "take the towel" is not.
+fn is_walking(tokens: &[Token], at: usize) -> bool {
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+    let turns = || {
+        (at + 1..at + 5).map(word).any(|word| matches!(word, "left" | "right" | "stairs" | "door" | "steps" | "few"))
+    };
+    match word(at) {
+        "take" => turns(),
+        "turn" => {
+            !(at + 1..at + 9)
+                .map(word)
+                .take_while(|word| *word != "." && *word != "and")
+                .any(|word| matches!(word, "on" | "off" | "over" | "down" | "up"))
+                || matches!(word(at + 1), "left" | "right" | "around")
+        }
+        "cut" | "get" | "pop" | "drop" | "carry" | "move" | "make" | "back" | "round" | "run" => {
+            !(v::DETERMINERS.contains(&word(at + 1)) || matches!(word(at + 1), "me" | "on" | "off" | "all")) || turns()
+        }
+        verb => v::WALKING.contains(&verb),
+    }
+}

@@ -1,0 +1,94 @@
+//! A path together with what was seen along it: all that a writer is told.
+
+use crate::evidence::Evidence;
+use serde::{Deserialize, Serialize};
+use wayword_core::{Caption, Gaze, Heading, Move, Path, Side, Sighting, Witness};
+
+/// Which views of each frame are captioned.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FrameSelection {
+    /// The view along the heading (arXiv 2403.11487, "central").
+    #[default]
+    Central,
+    /// Four views, north east south west, condensed (arXiv 2403.11487, "panoramic").
+    Panoramic,
+}
+
+/// A captioned view.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Look {
+    /// Where it looked.
+    pub gaze: Gaze,
+    /// What was said of it.
+    pub caption: Caption,
+}
+
+/// What was seen from one frame.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Observation {
+    /// One look where the central view was captioned, four where the panorama was.
+    pub looks: Vec<Look>,
+    /// The frame in words: the caption of the only look, or the four condensed to under 20 words.
+    pub summary: String,
+}
+
+/// All that a writer is told about a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Walk {
+    /// The path, with its target where one is given.
+    pub path: Path,
+    /// The moves between its frames.
+    pub moves: Vec<Move>,
+    /// One observation per frame.
+    pub observations: Vec<Observation>,
+}
+
+/// An object that was seen from a frame, in words that a writer can use.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Seen<'a> {
+    /// What the witness said.
+    pub sighting: &'a Sighting,
+    /// The side of the walker on which it is, where that was told.
+    pub side: Option<Side>,
+}
+
+impl Walk {
+    /// A walk from a path and what was seen along it.
+    #[must_use]
+    pub fn new(path: Path, observations: Vec<Observation>) -> Self {
+        Self { moves: path.moves(), path, observations }
+    }
+
+    /// The objects that were seen from a frame, each look's in its order.
+    pub fn seen(&self, frame: usize) -> impl Iterator<Item = Seen<'_>> {
+        let heading = self.path.frames.get(frame).map_or(Heading::NORTH, |frame| frame.pose.heading);
+        self.observations.get(frame).into_iter().flat_map(|observation| &observation.looks).flat_map(move |look| {
+            let seen = look.caption.sightings.iter().filter(|sighting| sighting.witness == Witness::Seen);
+            seen.map(move |sighting| Seen { sighting, side: look.side_of(sighting, heading) })
+        })
+    }
+
+    /// The room of a frame, as its captions have it.
+    #[must_use]
+    pub fn room(&self, frame: usize) -> Option<&str> {
+        self.observations.get(frame)?.looks.iter().find_map(|look| look.caption.room.as_deref())
+    }
+
+    /// The evidence that its captions give.
+    #[must_use]
+    pub fn evidence(&self) -> Option<Evidence> {
+        Evidence::from_captions(&self.path, &self.observations)
+    }
+}
+
+impl Look {
+    fn side_of(&self, sighting: &Sighting, heading: Heading) -> Option<Side> {
+        let place = sighting.place?;
+        let off_rad = heading.turn_to(self.gaze.heading);
+        if off_rad.abs() < 0.1 {
+            return Some(place.side());
+        }
+        Some(heading.side_of(self.gaze.heading.turned(place.turn_rad(self.gaze.horizontal_fov_rad))))
+    }
+}
