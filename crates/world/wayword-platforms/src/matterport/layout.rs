@@ -10,10 +10,21 @@ const HINT: &str = "give the folder that holds Matterport3DSimulator's `connecti
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     connectivity: PathBuf,
-    /// Folder that holds one folder per scan.
+    /// Folders that hold one folder per scan.
     scans: Vec<PathBuf>,
     boxes: Option<PathBuf>,
     pub(crate) object_positions: Option<PathBuf>,
+    /// Folders that hold `SCAN/VIEWPOINT/N.jpg`.
+    views: Vec<PathBuf>,
+}
+
+/// Where a skybox's faces lie.
+#[derive(Debug, Clone)]
+pub(crate) enum SkyboxFiles {
+    /// Six faces side by side (Matterport3DSimulator's `downsize_skybox.py`).
+    Strip(PathBuf),
+    /// One file per face, as Matterport3D ships them.
+    Faces([PathBuf; 6]),
 }
 
 impl Layout {
@@ -32,12 +43,13 @@ impl Layout {
         })?;
         Ok(Self {
             connectivity,
-            scans: all(data, &["matterport/v1/scans", "v1/scans", "matterport/scans", "scans"]),
+            scans: all(data, &["matterport/v1/scans", "v1/scans", "matterport/scans", "scans", ""]),
             boxes: first(data, &["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"]),
             object_positions: ["reverie/objpos.json", "objpos.json", "BBox/objpos.json"]
                 .iter()
                 .map(|place| data.join(place))
                 .find(|file| file.is_file()),
+            views: all(data, &["matterport_36_views", "matterport/matterport_36_views", "matterport/views", "views"]),
         })
     }
 
@@ -71,6 +83,23 @@ impl Layout {
     /// REVERIE's boxes of a viewpoint, whether or not they are there.
     pub(crate) fn boxes(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
         self.boxes.as_ref().map(|folder| folder.join(format!("{scene}_{viewpoint}.json")))
+    }
+
+    /// The six faces of a viewpoint's skybox: one file that has them side by side, or one file each.
+    pub(crate) fn skybox(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<SkyboxFiles> {
+        let folder = "matterport_skybox_images";
+        if let Some(strip) = self.in_scan(scene, &format!("{folder}/{viewpoint}_skybox_small.jpg")) {
+            return Some(SkyboxFiles::Strip(strip));
+        }
+        let first = self.in_scan(scene, &format!("{folder}/{viewpoint}_skybox0_sami.jpg"))?;
+        let face = |index: usize| first.with_file_name(format!("{viewpoint}_skybox{index}_sami.jpg"));
+        Some(SkyboxFiles::Faces(std::array::from_fn(face)))
+    }
+
+    /// The folder of a viewpoint's 36 views, `0.jpg` to `35.jpg`.
+    pub(crate) fn views(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
+        let folders = self.views.iter().map(|views| views.join(scene.as_str()).join(viewpoint.as_str()));
+        folders.into_iter().find(|folder| folder.is_dir())
     }
 
     /// A file in a scan's folder. Matterport3D's archives unpack to `SCAN/...` inside `scans/SCAN` or right there.

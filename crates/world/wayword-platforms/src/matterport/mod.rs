@@ -11,11 +11,13 @@ mod layout;
 mod levels;
 mod names;
 mod object_positions;
+mod photographs;
 mod platform;
 mod read;
 mod recent;
 mod rooms;
 mod sample;
 mod scene;
+mod thirty_six;
 
 pub use platform::Matterport;

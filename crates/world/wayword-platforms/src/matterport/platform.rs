@@ -2,9 +2,11 @@
 
 use super::{
     boxes::{self, Listed},
+    connectivity::Viewpoint,
     labels,
     layout::Layout,
     object_positions::{self, ObjectPositions},
+    photographs::Photographs,
     recent::Recent,
     sample,
     scene::Scene,
@@ -15,19 +17,26 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, Gaze, GroundTruth, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId, View,
+    Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId, View,
     ViewpointGraph, ViewpointId,
 };
 
 /// How many viewpoints' boxes are kept in memory.
 const BOXES_KEPT: usize = 256;
+/// How many viewpoints' photographs are kept in memory: 5 MB each for small skyboxes, 19 for whole ones, 33 for 36 views.
+const PHOTOGRAPHS_KEPT: usize = 8;
 
 /// Matterport3D's buildings, from the files that a user has.
+///
+/// Pictures, where there are photographs, have 640x480 square pixels and the horizontal field of view that is asked for:
+/// a quarter of a panorama is 73.7 degrees high. Labels carry no boxes: their directions are exact, REVERIE's boxes belong
+/// to other views.
 pub struct Matterport {
     layout: Layout,
     centres: ObjectPositions,
     scenes: Mutex<BTreeMap<SceneId, Arc<Scene>>>,
     boxes: Recent<(SceneId, ViewpointId), Option<Vec<Listed>>>,
+    photographs: Recent<(SceneId, ViewpointId), Option<Photographs>>,
 }
 
 impl Matterport {
@@ -39,7 +48,13 @@ impl Matterport {
     pub fn open(data: &FilePath) -> Result<Self, PlatformError> {
         let layout = Layout::find(data)?;
         let centres = layout.object_positions.as_deref().map(object_positions::read).transpose()?.unwrap_or_default();
-        Ok(Self { layout, centres, scenes: Mutex::default(), boxes: Recent::new(BOXES_KEPT) })
+        Ok(Self {
+            layout,
+            centres,
+            scenes: Mutex::default(),
+            boxes: Recent::new(BOXES_KEPT),
+            photographs: Recent::new(PHOTOGRAPHS_KEPT),
+        })
     }
 
     fn scene(&self, scene: &SceneId) -> Result<Arc<Scene>, PlatformError> {
@@ -76,6 +91,14 @@ impl Matterport {
         Ok(house.map(|house| labels::from_house(house, viewpoint, eye)))
     }
 
+    /// The picture of a gaze, where there are photographs and the gaze is one that a flat picture can have.
+    fn image(&self, id: &SceneId, viewpoint: &Viewpoint, gaze: Gaze) -> Result<Option<Arc<Image>>, PlatformError> {
+        let photographs = self
+            .photographs
+            .get_or_make((id.clone(), viewpoint.id.clone()), || Photographs::read(&self.layout, id, viewpoint))?;
+        Ok(photographs.as_ref().as_ref().and_then(|photographs| photographs.view(gaze)).map(Arc::new))
+    }
+
     /// Names of all objects listed anywhere in a building. Viewpoints are read one after another and not kept.
     fn names<'a>(&self, id: &SceneId, scene: &'a Scene) -> Result<&'a BTreeMap<ObjectId, String>, PlatformError> {
         if let Some(names) = scene.names.get() {
@@ -94,11 +117,7 @@ impl Matterport {
     }
 }
 
-fn known<'a>(
-    id: &SceneId,
-    scene: &'a Scene,
-    viewpoint: &ViewpointId,
-) -> Result<&'a super::connectivity::Viewpoint, PlatformError> {
+fn known<'a>(id: &SceneId, scene: &'a Scene, viewpoint: &ViewpointId) -> Result<&'a Viewpoint, PlatformError> {
     let found = scene.viewpoints.get(viewpoint);
     found.ok_or_else(|| PlatformError::UnknownViewpoint { scene: id.clone(), viewpoint: viewpoint.clone() })
 }
@@ -130,13 +149,14 @@ impl Platform for Matterport {
     fn look(&self, id: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let scene = self.scene(id)?;
         let viewpoint = viewpoint_of(id, from)?;
-        let eye = known(id, &scene, viewpoint)?.position;
+        let here = known(id, &scene, viewpoint)?;
         let labels = self.labels(id, &scene, viewpoint)?;
         let truth = (labels.is_some() || scene.knows_rooms()).then(|| GroundTruth {
             labels: labels.into_iter().flatten().filter(|label| gaze.holds(label.heading)).collect(),
             room: scene.room(viewpoint).map(str::to_owned),
         });
-        Ok(View::new(Pose::level(eye, gaze.heading), gaze.horizontal_fov_rad, None, truth))
+        let image = self.image(id, here, gaze)?;
+        Ok(View::new(Pose::level(here.position, gaze.heading), gaze.horizontal_fov_rad, image, truth))
     }
 
     fn object_name(&self, id: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

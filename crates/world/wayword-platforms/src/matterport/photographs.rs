@@ -1,0 +1,101 @@
+//! The photographs of a viewpoint, and views of them.
+
+use super::{
+    connectivity::Viewpoint,
+    layout::{Layout, SkyboxFiles},
+    read,
+    thirty_six::ThirtySix,
+};
+use glam::DMat3;
+use image::{ImageReader, Limits};
+use std::{io::Cursor, path::Path};
+use wayword_core::{Gaze, Image, PlatformError, SceneId};
+use wayword_render::{CubeMap, Face, sample_view};
+
+const WIDTH_PX: u32 = 640;
+const HEIGHT_PX: u32 = 480;
+/// Wider gazes than this are not flat pictures any more, radians.
+const MAX_FOV_RAD: f64 = 2.8;
+
+const MAX_FILE_BYTES: u64 = 32 << 20;
+/// Longest side of a decoded picture: a strip of six faces of 2048 pixels.
+const MAX_SIDE_PX: u32 = 6 * 2048;
+/// The most memory that decoding one picture may take, bytes.
+const MAX_DECODED_BYTES: u64 = 256 << 20;
+const HINT: &str = "take the picture again from Matterport3D, or move it away to work from labels alone";
+
+/// What a viewpoint was photographed as.
+pub(crate) enum Photographs {
+    Skybox { cube: CubeMap, world_from_skybox: DMat3 },
+    Views(ThirtySix),
+}
+
+impl Photographs {
+    /// Reads a viewpoint's skybox, or else its 36 views; `None` where there are neither.
+    ///
+    /// # Errors
+    /// When a picture is missing from its set, or broken.
+    pub(crate) fn read(layout: &Layout, scene: &SceneId, at: &Viewpoint) -> Result<Option<Self>, PlatformError> {
+        if let Some(files) = layout.skybox(scene, &at.id) {
+            return Ok(Some(Self::Skybox { cube: cube(&files)?, world_from_skybox: at.world_from_skybox }));
+        }
+        let views = layout.views(scene, &at.id).map(|folder| ThirtySix::read(&folder)).transpose()?;
+        Ok(views.map(Self::Views))
+    }
+
+    /// What is seen along a gaze; `None` where it is too wide, or too narrow, for a flat picture.
+    pub(crate) fn view(&self, gaze: Gaze) -> Option<Image> {
+        if !(0.01..=MAX_FOV_RAD).contains(&gaze.horizontal_fov_rad) {
+            return None;
+        }
+        let rgb = match self {
+            Self::Skybox { cube, world_from_skybox } => {
+                let half_width = libm::tan(gaze.horizontal_fov_rad / 2.0);
+                let vertical_fov_rad = 2.0 * libm::atan(half_width * f64::from(HEIGHT_PX) / f64::from(WIDTH_PX));
+                let heading_rad = gaze.heading.rad();
+                sample_view(cube, world_from_skybox, heading_rad, 0.0, vertical_fov_rad, WIDTH_PX, HEIGHT_PX).ok()?
+            }
+            Self::Views(views) => views.sample(gaze, WIDTH_PX, HEIGHT_PX),
+        };
+        Image::new(WIDTH_PX, HEIGHT_PX, rgb).ok()
+    }
+}
+
+fn cube(files: &SkyboxFiles) -> Result<CubeMap, PlatformError> {
+    match files {
+        SkyboxFiles::Strip(file) => {
+            let strip = decode(file)?;
+            CubeMap::from_strip(strip.width_px(), strip.height_px(), strip.rgb())
+                .map_err(|error| read::wrong(file, error.to_string(), HINT))
+        }
+        SkyboxFiles::Faces(files) => {
+            let mut faces = Vec::with_capacity(6);
+            for file in files {
+                let picture = decode(file)?;
+                faces.push(Face { side_px: picture.height_px(), rgb: picture.rgb().to_vec() });
+            }
+            let faces = <[Face; 6]>::try_from(faces).map_err(|_| read::wrong(&files[0], "has not six faces", HINT))?;
+            CubeMap::new(faces).map_err(|error| read::wrong(&files[0], error.to_string(), HINT))
+        }
+    }
+}
+
+/// Decodes a JPEG or PNG file, within bounds.
+///
+/// # Errors
+/// When it is missing, too large, or no picture.
+pub(crate) fn decode(file: &Path) -> Result<Image, PlatformError> {
+    let wrong = |reason: String| read::wrong(file, reason, HINT);
+    let bytes =
+        read::bytes_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("is missing from its set".into()))?;
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE_PX);
+    limits.max_image_height = Some(MAX_SIDE_PX);
+    limits.max_alloc = Some(MAX_DECODED_BYTES);
+    let mut reader =
+        ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| wrong(error.to_string()))?;
+    reader.limits(limits);
+    let picture =
+        reader.decode().map_err(|error| wrong(format!("is no picture that can be read: {error}")))?.into_rgb8();
+    Image::new(picture.width(), picture.height(), picture.into_raw()).map_err(|error| wrong(error.to_string()))
+}

@@ -1,0 +1,192 @@
+//! A panorama as the simulator's 36 views: `VIEWPOINT/0.jpg` to `35.jpg`.
+
+use super::{boxes::VIEWS, photographs, read};
+use rayon::prelude::*;
+use std::{f64::consts::FRAC_PI_6, path::Path};
+use wayword_core::{Gaze, Image, PlatformError};
+
+const HINT: &str = "draw the views again: all of one size, with a vertical field of view of 60 degrees";
+/// Half of the views' vertical field of view.
+const HALF_FOV_RAD: f64 = FRAC_PI_6;
+const ROWS: usize = 3;
+const COLUMNS: usize = 12;
+/// The most pixels of one view: 36 of them are held.
+const MAX_PIXELS: u64 = 1280 * 960;
+
+/// The pictures of a panorama, by view index: rows at -30, 0 and 30 degrees of elevation, columns every 30 degrees.
+pub(crate) struct ThirtySix {
+    views: Vec<Image>,
+}
+
+/// Where a ray meets a view: how far along its axis, and the pixel (continuous, from the top left corner).
+struct Hit {
+    along: f64,
+    x_px: f64,
+    y_px: f64,
+}
+
+impl ThirtySix {
+    /// Reads the views of a folder.
+    ///
+    /// # Errors
+    /// When one is missing or broken, or they are not all of one size.
+    pub(crate) fn read(folder: &Path) -> Result<Self, PlatformError> {
+        let mut views: Vec<Image> = Vec::with_capacity(VIEWS);
+        for index in 0..VIEWS {
+            let file = folder.join(format!("{index}.jpg"));
+            let view = photographs::decode(&file)?;
+            let size = (view.width_px(), view.height_px());
+            if u64::from(size.0) * u64::from(size.1) > MAX_PIXELS {
+                return Err(read::wrong(
+                    &file,
+                    format!("has {} x {} pixels, more than 1280 x 960", size.0, size.1),
+                    HINT,
+                ));
+            }
+            if views.first().is_some_and(|first| (first.width_px(), first.height_px()) != size) {
+                return Err(read::wrong(&file, format!("has {} x {} pixels, unlike 0.jpg", size.0, size.1), HINT));
+            }
+            views.push(view);
+        }
+        Ok(Self { views })
+    }
+
+    /// The view along a gaze, resampled: each pixel from the view whose axis is nearest, bilinear. RGB, from the top left.
+    pub(crate) fn sample(&self, gaze: Gaze, width: u32, height: u32) -> Vec<u8> {
+        let pixel = 2.0 * libm::tan(gaze.horizontal_fov_rad / 2.0) / f64::from(width);
+        let columns: Vec<(usize, f64, f64)> = (0..width)
+            .map(|x| column(gaze.heading.rad(), (f64::from(x) + 0.5 - f64::from(width) / 2.0) * pixel))
+            .collect();
+        let mut rgb = vec![0; 3 * width as usize * height as usize];
+        rgb.par_chunks_exact_mut(3 * width as usize).enumerate().for_each(|(y, row)| {
+            let up = (f64::from(height) / 2.0 - (y as f64 + 0.5)) * pixel;
+            for (out, (column, right, ahead)) in row.chunks_exact_mut(3).zip(&columns) {
+                out.copy_from_slice(&self.colour(*column, *right, *ahead, up));
+            }
+        });
+        rgb
+    }
+
+    fn colour(&self, column: usize, right: f64, ahead: f64, up: f64) -> [u8; 3] {
+        let mut best = (0, self.meet(0, right, ahead, up));
+        for row in 1..ROWS {
+            let hit = self.meet(row, right, ahead, up);
+            if hit.along > best.1.along {
+                best = (row, hit);
+            }
+        }
+        bilinear(&self.views[COLUMNS * best.0 + column], best.1.x_px, best.1.y_px)
+    }
+
+    /// Where the ray (right, ahead, up) of a column's axes meets the view in a row of that column.
+    fn meet(&self, row: usize, right: f64, ahead: f64, up: f64) -> Hit {
+        let (sin, cos) = TILTS[row];
+        let (along, above) = (ahead * cos + up * sin, up * cos - ahead * sin);
+        let (width, height) = (f64::from(self.views[0].width_px()), f64::from(self.views[0].height_px()));
+        let focal_px = height / 2.0 / libm::tan(HALF_FOV_RAD);
+        Hit { along, x_px: width / 2.0 + focal_px * right / along, y_px: height / 2.0 - focal_px * above / along }
+    }
+}
+
+/// Sine and cosine of the rows' elevations: -30, 0 and 30 degrees.
+const TILTS: [(f64, f64); ROWS] = [(-0.5, COS_30), (0.0, 1.0), (0.5, COS_30)];
+const COS_30: f64 = 0.866_025_403_784_438_6;
+
+/// The column whose axis is nearest to the direction `off` (a tangent, positive right) from a heading, and the parts of
+/// the ray (off, 1) to the right of and along that axis.
+fn column(heading_rad: f64, off: f64) -> (usize, f64, f64) {
+    let steps = libm::round((heading_rad + libm::atan(off)) / FRAC_PI_6);
+    let turn = heading_rad - steps * FRAC_PI_6;
+    let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+    (steps.rem_euclid(COLUMNS as f64) as usize % COLUMNS, sin + cos * off, cos - sin * off)
+}
+
+/// Bilinear between pixel centres, clamped at the edges.
+fn bilinear(picture: &Image, x_px: f64, y_px: f64) -> [u8; 3] {
+    let split = |position: f64, side: u32| {
+        let position = (position - 0.5).clamp(0.0, f64::from(side - 1));
+        let index = position as usize;
+        (index, (index + 1).min(side as usize - 1), position - index as f64)
+    };
+    let (left, right, across) = split(x_px, picture.width_px());
+    let (above, below, down) = split(y_px, picture.height_px());
+    let at = |x: usize, y: usize, channel: usize| {
+        f64::from(picture.rgb()[3 * (y * picture.width_px() as usize + x) + channel])
+    };
+    std::array::from_fn(|channel| {
+        let top = at(left, above, channel) * (1.0 - across) + at(right, above, channel) * across;
+        let bottom = at(left, below, channel) * (1.0 - across) + at(right, below, channel) * across;
+        (top * (1.0 - down) + bottom * down + 0.5) as u8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::FRAC_PI_3;
+    use wayword_core::Heading;
+
+    const WIDTH: u32 = 80;
+    const HEIGHT: u32 = 60;
+    /// Horizontal field of view of a 4:3 view that is 60 degrees high.
+    fn own_fov_rad() -> f64 {
+        2.0 * (FRAC_PI_6.tan() * 4.0 / 3.0).atan()
+    }
+
+    /// A world whose colour is a smooth function of the direction.
+    fn world_colour(heading: f64, elevation: f64) -> [u8; 3] {
+        let wave = |angle: f64| (127.5 + 110.0 * angle.sin()) as u8;
+        [wave(heading), wave(heading + FRAC_PI_3), wave(2.0 * elevation)]
+    }
+
+    fn drawn(heading: f64, elevation: f64) -> Image {
+        let focal = f64::from(HEIGHT) / 2.0 / HALF_FOV_RAD.tan();
+        let mut rgb = Vec::new();
+        for y in 0..HEIGHT {
+            for x in 0..WIDTH {
+                let right = (f64::from(x) + 0.5 - f64::from(WIDTH) / 2.0) / focal;
+                let up = (f64::from(HEIGHT) / 2.0 - f64::from(y) - 0.5) / focal;
+                let (ahead, above) = (elevation.cos() - up * elevation.sin(), elevation.sin() + up * elevation.cos());
+                rgb.extend(world_colour(heading + right.atan2(ahead), above.atan2(right.hypot(ahead))));
+            }
+        }
+        Image::new(WIDTH, HEIGHT, rgb).unwrap()
+    }
+
+    fn panorama() -> ThirtySix {
+        let view = |index: usize| drawn((index % 12) as f64 * FRAC_PI_6, ((index / 12) as f64 - 1.0) * FRAC_PI_6);
+        ThirtySix { views: (0..VIEWS).map(view).collect() }
+    }
+
+    #[test]
+    fn along_a_views_own_axis_its_middle_comes_back_unchanged() {
+        let panorama = panorama();
+        for step in 0..12 {
+            let heading = Heading::new(f64::from(step) * FRAC_PI_6).unwrap();
+            let rgb = panorama.sample(Gaze { heading, horizontal_fov_rad: own_fov_rad() }, WIDTH, HEIGHT);
+            let own = panorama.views[12 + step as usize].rgb();
+            let middle = 3 * ((HEIGHT / 2) * WIDTH + WIDTH / 2) as usize;
+            assert_eq!(rgb[middle..middle + 3], own[middle..middle + 3]);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        #[test]
+        fn every_gaze_shows_the_world_without_seams(heading in 0.0..std::f64::consts::TAU) {
+            let heading = Heading::new(heading).unwrap();
+            let rgb = panorama().sample(Gaze::quarter(heading), WIDTH, HEIGHT);
+            for (index, pixel) in rgb.chunks_exact(3).enumerate() {
+                let (x, y) = ((index as u32 % WIDTH) as f64 + 0.5, (index as u32 / WIDTH) as f64 + 0.5);
+                let pixel_size = 2.0 / f64::from(WIDTH);
+                let right = (x - f64::from(WIDTH) / 2.0) * pixel_size;
+                let up = (f64::from(HEIGHT) / 2.0 - y) * pixel_size;
+                let expected = world_colour(heading.rad() + right.atan(), up.atan2(right.hypot(1.0)));
+                for (shown, expected) in pixel.iter().zip(expected) {
+                    prop_assert!(shown.abs_diff(expected) <= 3, "pixel {index}: {shown} for {expected}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Pictures, held against what the genuine simulator drew, where its answers are at hand (`WAYWORD_DATA`).
+
+use std::{f64::consts::FRAC_PI_6, path::PathBuf};
+use wayword_core::{Gaze, Heading, Platform, SceneId};
+use wayword_platforms::Matterport;
+
+fn oracle() -> Option<PathBuf> {
+    let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data"));
+    let folder = std::env::var_os("WAYWORD_DATA").map_or_else(beside, PathBuf::from).join("oracles/matterport_views");
+    let there = folder.join("graph").is_dir();
+    if !there {
+        println!("SKIPPED: no answers of the simulator in {}; set WAYWORD_DATA", folder.display());
+    }
+    there.then_some(folder)
+}
+
+#[test]
+fn a_look_shows_what_the_simulator_shows() {
+    let Some(folder) = oracle() else { return };
+    let platform = Matterport::open(&folder).unwrap();
+    let scene = SceneId::new("17DRP5sb8fy").unwrap();
+    let graph = platform.graph(&scene).unwrap();
+    let first = graph.viewpoints().next().unwrap().clone();
+    let frame = graph.walk(&[first], None).unwrap().remove(0);
+    for (name, heading_rad) in [("v0", 0.0), ("v1", FRAC_PI_6), ("v2", std::f64::consts::FRAC_PI_2)] {
+        let heading = Heading::new(heading_rad).unwrap();
+        let horizontal_fov_rad = 2.0 * (FRAC_PI_6.tan() * 4.0 / 3.0).atan();
+        let view = platform.look(&scene, &frame, Gaze { heading, horizontal_fov_rad }).unwrap();
+        let shown = view.image.unwrap();
+        let genuine = image::open(folder.join(format!("{name}.png"))).unwrap().into_rgb8();
+        assert_eq!((genuine.width(), genuine.height()), (shown.width_px(), shown.height_px()));
+        let off: u64 = genuine.as_raw().iter().zip(shown.rgb()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        let mean = off as f64 / shown.rgb().len() as f64;
+        println!("{name}: mean difference {mean:.4} of 255");
+        assert!(mean < 0.5, "{name}: {mean}");
+    }
+}
