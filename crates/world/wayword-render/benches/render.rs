@@ -8,7 +8,8 @@ use std::hint::black_box;
 use std::time::Instant;
 use wayword_render::{Camera, CubeMap, Face, Filter, Material, Mesh, Scene, Texture, render, sample_view};
 
-/// A bumpy box of 12 x 9 x 3 m seen from inside with 40 bumpy columns in it: triangles of about 3 cm, as scanners give.
+/// A bumpy box of 12 x 9 x 3 m seen from inside with 40 bumpy columns in it: triangles of about 4 cm, as scanners give. Each
+/// surface has its own part of the texture: a quarter of its side for a wall, an eighth for a column.
 fn scan() -> Mesh {
     let mut mesh = Mesh { id: 1, ..Mesh::default() };
     let (a, b, c) = (12.0, 9.0, 3.0);
@@ -20,14 +21,13 @@ fn scan() -> Mesh {
         [Vec3::ZERO, Vec3::Y * b, Vec3::Z * c],
         [Vec3::X * a, Vec3::Z * c, Vec3::Y * b],
     ];
-    for [origin, across, up] in walls {
-        grid(&mut mesh, [(across.length() * 29.0) as u32, (up.length() * 29.0) as u32], |s, t| {
-            origin + across * s + up * t
-        });
+    for (n, [origin, across, up]) in walls.into_iter().enumerate() {
+        let size = [across, up].map(|side| (side.length() * 24.0) as u32);
+        grid(&mut mesh, size, part(n as u32, 4), |s, t| origin + across * s + up * t);
     }
     for column in 0..40 {
         let (x, y) = (0.9 + (column % 8) as f32 * 1.45, 0.9 + (column / 8) as f32 * 1.75);
-        grid(&mut mesh, [72, 36], |s, t| {
+        grid(&mut mesh, [60, 30], part(column + 24, 8), |s, t| {
             let (sin, cos) = (s * std::f32::consts::TAU).sin_cos();
             Vec3::new(x + 0.35 * cos, y + 0.35 * sin, 1.2 * t)
         });
@@ -35,7 +35,12 @@ fn scan() -> Mesh {
     mesh
 }
 
-fn grid(mesh: &mut Mesh, [columns, rows]: [u32; 2], place: impl Fn(f32, f32) -> Vec3) {
+/// Corner and side of the `n`th of `side` x `side` squares of the texture.
+fn part(n: u32, side: u32) -> [f32; 3] {
+    [(n % side) as f32, (n / side) as f32, 1.0].map(|v| v / side as f32)
+}
+
+fn grid(mesh: &mut Mesh, [columns, rows]: [u32; 2], [u, v, side]: [f32; 3], place: impl Fn(f32, f32) -> Vec3) {
     let first = mesh.positions.len() as u32;
     for row in 0..=rows {
         for column in 0..=columns {
@@ -43,7 +48,7 @@ fn grid(mesh: &mut Mesh, [columns, rows]: [u32; 2], place: impl Fn(f32, f32) -> 
             let point = place(s, t);
             let bump = (point.x * 23.0 + point.z * 31.0).sin() * (point.y * 19.0 + point.z * 17.0).cos() * 0.01;
             mesh.positions.push(point + bump);
-            mesh.uvs.push(Vec2::new(s, t));
+            mesh.uvs.push(Vec2::new(u + side * s, v + side * t));
         }
     }
     for row in 0..rows {

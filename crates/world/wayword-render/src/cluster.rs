@@ -2,10 +2,12 @@
 
 use crate::mesh::Mesh;
 use glam::{Vec2, Vec3};
-use std::collections::BTreeMap;
 
 /// Triangles per cluster, at most.
 pub(crate) const CLUSTER_TRIANGLES: usize = 256;
+
+/// The place of a vertex that is not stored yet.
+const NOWHERE: u32 = u32::MAX;
 
 /// A triangle of a [`Soup`].
 #[derive(Clone, Copy, Debug)]
@@ -45,25 +47,29 @@ impl Soup {
     pub(crate) fn add(&mut self, mesh: &Mesh, surface: u32) {
         let first_source = self.triangles.len() as u32;
         let order = near_order(mesh);
+        // Where each of the mesh's vertices was stored last.
+        let mut stored = vec![NOWHERE; mesh.positions.len()];
         for group in order.chunks(CLUSTER_TRIANGLES) {
-            self.add_cluster(mesh, group, first_source, surface);
+            self.add_cluster(mesh, group, first_source, surface, &mut stored);
         }
     }
 
-    fn add_cluster(&mut self, mesh: &Mesh, group: &[u32], first_source: u32, surface: u32) {
+    fn add_cluster(&mut self, mesh: &Mesh, group: &[u32], first_source: u32, surface: u32, stored: &mut [u32]) {
         let (first_vertex, first_triangle) = (self.positions.len() as u32, self.triangles.len() as u32);
-        let mut placed = BTreeMap::new();
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for &index in group {
             let corners = mesh.triangles[index as usize].map(|vertex| {
-                *placed.entry(vertex).or_insert_with(|| {
-                    let v = vertex as usize;
-                    (low, high) = (low.min(mesh.positions[v]), high.max(mesh.positions[v]));
-                    self.positions.push(mesh.positions[v]);
-                    self.uvs.push(mesh.uvs.get(v).copied().unwrap_or_default());
-                    self.colours.push(mesh.colours.get(v).copied().unwrap_or([1.0; 3]));
-                    self.positions.len() as u32 - 1
-                })
+                let vertex = vertex as usize;
+                // Places before this cluster's belong to others.
+                if stored[vertex] == NOWHERE || stored[vertex] < first_vertex {
+                    let position = mesh.positions[vertex];
+                    (low, high) = (low.min(position), high.max(position));
+                    stored[vertex] = self.positions.len() as u32;
+                    self.positions.push(position);
+                    self.uvs.push(mesh.uvs.get(vertex).copied().unwrap_or_default());
+                    self.colours.push(mesh.colours.get(vertex).copied().unwrap_or([1.0; 3]));
+                }
+                stored[vertex]
             });
             self.triangles.push(Triangle { corners, source: first_source + index });
         }

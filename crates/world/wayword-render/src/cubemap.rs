@@ -21,7 +21,7 @@ pub struct Face {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
     /// GL's cube has them as +X = 2, -X = 4, +Y = 0, -Y = 5, +Z = 1, -Z = 3.
-    pub faces: [Face; 6],
+    faces: [Face; 6],
 }
 
 /// Why pictures do not make a cube.
@@ -85,6 +85,12 @@ impl CubeMap {
         Ok(Self { faces: std::array::from_fn(face) })
     }
 
+    /// The faces 0 to 5.
+    #[must_use]
+    pub fn faces(&self) -> &[Face; 6] {
+        &self.faces
+    }
+
     /// The colour in a direction of GL's cube frame, 0..=255 per channel.
     fn look_up(&self, direction: Vec3) -> Vec3 {
         let Vec3 { x, y, z } = direction;
@@ -143,6 +149,7 @@ pub fn sample_view(
     height: u32,
 ) -> Result<Vec<u8>, RenderError> {
     check_size(width.into(), height.into())?;
+    check_finite("world_from_skybox", world_from_skybox.determinant())?;
     check_finite("heading_rad", heading_rad)?;
     check_finite("elevation_rad", elevation_rad)?;
     check_fov(vertical_fov_rad)?;

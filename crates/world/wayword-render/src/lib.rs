@@ -34,6 +34,7 @@ mod clip;
 mod cluster;
 mod cubemap;
 mod mesh;
+mod mipmap;
 mod picture;
 mod raster;
 mod render;

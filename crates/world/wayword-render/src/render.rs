@@ -39,36 +39,50 @@ pub(crate) fn draw(scene: &Scene, view: &View, background: Background) -> Pictur
     bands.enumerate().for_each(|(index, ((rgb, depth_m), ids))| {
         let mut band = Band::new(view.width, (index * rows) as u32, ids.len() / width);
         band.draw(&batches, &scene.soup.triangles);
-        shade(scene, view, background, &batches, &band, Output { rgb, depth_m, ids });
+        Painter { scene, view, background, batches: &batches, band: &band }.paint(rgb, depth_m, ids);
     });
     picture
 }
 
-/// The pixels of one band.
-struct Output<'a> {
-    rgb: &'a mut [u8],
-    depth_m: &'a mut [f32],
-    ids: &'a mut [u32],
+/// Turns what is seen in a band into pixels.
+struct Painter<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    background: Background,
+    batches: &'a [Batch],
+    band: &'a Band,
 }
 
-fn shade(scene: &Scene, view: &View, background: Background, batches: &[Batch], band: &Band, output: Output<'_>) {
-    let width = band.width as usize;
-    let mut shader: Option<(Seen, Shader<'_>)> = None;
-    let pixels = output.rgb.chunks_exact_mut(3).zip(output.depth_m).zip(output.ids);
-    for (index, ((rgb, depth_m), id)) in pixels.enumerate() {
-        let (column, row) = (index % width, index / width + band.first_row as usize);
-        let seen = band.seen[index];
-        if seen == Seen::NOTHING {
-            rgb.copy_from_slice(&background.colour(view.sin_elevation(column, row)));
-            continue;
+impl Painter<'_> {
+    fn paint(&self, rgb: &mut [u8], depth_m: &mut [f32], ids: &mut [u32]) {
+        let width = self.band.width as usize;
+        for (row, seen) in self.band.seen.chunks_exact(width).enumerate() {
+            let mut start = row * width;
+            for run in seen.chunk_by(|a, b| a == b) {
+                let pixels = start..start + run.len();
+                let place = [start - row * width, row + self.band.first_row as usize];
+                let colours = rgb[3 * start..3 * pixels.end].chunks_exact_mut(3);
+                if run[0] == Seen::NOTHING {
+                    self.paint_background(colours, place);
+                } else {
+                    let shader = Shader::new(self.scene, self.view, self.batches, run[0]);
+                    for (column, colour) in (place[0]..).zip(colours) {
+                        colour.copy_from_slice(&shader.colour(column, place[1]));
+                    }
+                    ids[pixels.clone()].fill(shader.id());
+                    let nearness = &self.band.nearness[pixels.clone()];
+                    for (depth_m, &nearness) in depth_m[pixels].iter_mut().zip(nearness) {
+                        *depth_m = self.view.depth_m(nearness);
+                    }
+                }
+                start += run.len();
+            }
         }
-        let ready = match shader.take() {
-            Some((of, ready)) if of == seen => ready,
-            _ => Shader::new(scene, view, batches, seen),
-        };
-        rgb.copy_from_slice(&ready.colour(column, row));
-        *depth_m = view.depth_m(band.nearness[index]);
-        *id = ready.id();
-        shader = Some((seen, ready));
+    }
+
+    fn paint_background<'b>(&self, colours: impl Iterator<Item = &'b mut [u8]>, [first, row]: [usize; 2]) {
+        for (column, colour) in (first..).zip(colours) {
+            colour.copy_from_slice(&self.background.colour(self.view.sin_elevation(column, row)));
+        }
     }
 }

@@ -3,7 +3,8 @@
 use crate::background::Background;
 use crate::cluster::Soup;
 use crate::mesh::{Material, Mesh};
-use crate::texture::{MipMap, Texture, TextureError};
+use crate::mipmap::MipMap;
+use crate::texture::{Texture, TextureError};
 
 /// Triangles that a scene may hold.
 pub const MAX_TRIANGLES: usize = 1 << 26;
@@ -147,7 +148,7 @@ impl Scene {
             soup.add(&mesh, surfaces.len() as u32);
             surfaces.push(Surface { id: mesh.id, material: mesh.material });
         }
-        let textures = textures.into_iter().map(MipMap::plain).collect();
+        let textures = textures.into_iter().map(|texture| MipMap::plain(&texture)).collect();
         Ok(Self { soup, surfaces, materials, textures, background: Background::default() })
     }
 

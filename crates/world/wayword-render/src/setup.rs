@@ -6,6 +6,7 @@ use crate::scene::Scene;
 use crate::view::{Corner, Plane, STEPS, View};
 use glam::Vec3;
 use rayon::prelude::*;
+use std::ops::{Add, Mul};
 
 /// No entry in [`Batch::cuts`]: the triangle is whole.
 const WHOLE: u32 = u32::MAX;
@@ -43,9 +44,15 @@ impl ScreenTriangle {
         doubled_area(&self.corners)
     }
 
-    /// The weights that the corners give to the corners of the scene's triangle.
-    pub(crate) fn weights(&self, batch: &Batch) -> [Vec3; 3] {
-        let [a, b, c] = batch.cuts.get(self.cut as usize).copied().unwrap_or([Vec3::X, Vec3::Y, Vec3::Z]);
+    /// The values of the corners, given those of the corners of the scene's triangle.
+    pub(crate) fn at_corners<T>(&self, batch: &Batch, whole: [T; 3]) -> [T; 3]
+    where
+        T: Copy + Add<Output = T> + Mul<f32, Output = T>,
+    {
+        let [a, b, c] = match batch.cuts.get(self.cut as usize) {
+            None => whole,
+            Some(cut) => cut.map(|w| whole[0] * w.x + whole[1] * w.y + whole[2] * w.z),
+        };
         if self.swapped { [a, c, b] } else { [a, b, c] }
     }
 }
@@ -64,7 +71,12 @@ fn batch(scene: &Scene, view: &View, clip_planes: &[Plane], cluster: &Cluster) -
     let mut builder = Builder {
         size: [view.width, view.height],
         double_sided,
-        batch: Batch { triangles: Vec::new(), cuts: Vec::new(), surface: cluster.surface, rows: [u16::MAX, 0] },
+        batch: Batch {
+            triangles: Vec::with_capacity(cluster.triangles as usize),
+            cuts: Vec::new(),
+            surface: cluster.surface,
+            rows: [u16::MAX, 0],
+        },
     };
     let corners = usable_corners(scene, view, cluster);
     let first = cluster.first_triangle as usize;

@@ -31,7 +31,6 @@ impl<'a> Shader<'a> {
         let uvs = vertices.map(|v| scene.soup.uvs[v]);
         let [r, g, b, _] = material.base_colour;
         let light = vertices.map(|v| Vec3::from(scene.soup.colours[v]) * Vec3::new(r, g, b));
-        let weights = triangle.weights(batch);
         Self {
             scene,
             id: surface.id,
@@ -39,8 +38,8 @@ impl<'a> Shader<'a> {
             corners: triangle.corners.map(|c| [i64::from(c.x), i64::from(c.y)]),
             inverse_area: 1.0 / triangle.area() as f32,
             inverse_w: Vec3::from(triangle.corners.map(|c| view.inverse_w(c.nearness))),
-            uvs: weights.map(|w| uvs[0] * w.x + uvs[1] * w.y + uvs[2] * w.z),
-            light: weights.map(|w| light[0] * w.x + light[1] * w.y + light[2] * w.z),
+            uvs: triangle.at_corners(batch, uvs),
+            light: triangle.at_corners(batch, light),
         }
     }
 

@@ -13,6 +13,10 @@ pub(crate) const STEPS: i32 = 256;
 /// Corners further than this from the picture's centre are clipped: it keeps the integers of coverage small.
 const GUARD_PX: f32 = 16_384.0;
 
+/// No corner lies further out than this, in steps. Clipping leaves none that does but by rounding, where a triangle
+/// is a thousand kilometres long.
+const LIMIT_STEPS: f32 = 2.0 * GUARD_PX * STEPS as f32;
+
 /// The half-space of view points `p` with `normal . p + offset >= 0`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {
@@ -133,7 +137,7 @@ impl View {
     /// The corner of a view point within the clip planes.
     pub(crate) fn corner(&self, point: Vec3) -> Corner {
         let (scale, nearness) = if self.perspective {
-            let inverse = 1.0 / point.z;
+            let inverse = 1.0 / point.z.max(NEAR_M);
             (self.scale_px * inverse, inverse)
         } else {
             (self.scale_px, -point.z)
@@ -166,6 +170,6 @@ impl View {
 
 /// The nearest step of the sub-pixel grid. (`f32::round` is a function call on the baseline x86-64.)
 fn snap(px: f32) -> i32 {
-    let steps = px * STEPS as f32;
+    let steps = (px * STEPS as f32).clamp(-LIMIT_STEPS, LIMIT_STEPS);
     (if steps >= 0.0 { steps + 0.5 } else { steps - 0.5 }) as i32
 }

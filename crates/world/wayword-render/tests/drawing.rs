@@ -240,6 +240,25 @@ proptest! {
     }
 
     #[test]
+    fn endless_triangles_do_no_harm(
+        corners in proptest::collection::vec(proptest::array::uniform9(-1e6..1e6f32), 1..20), shift in 0..7u32,
+        heading in 0.0..6.2f64, fov in 0.0001..3.1f64,
+    ) {
+        let scale = 0.1f32.powi(shift as i32);
+        let meshes: Vec<Mesh> = corners.iter().map(|c| {
+            let corner = |i: usize| Vec3::new(c[i] * scale, c[i + 1], c[i + 2] * scale);
+            mesh(1, vec![corner(0), corner(3), corner(6)], vec![[0, 1, 2]])
+        }).collect();
+        let scene = Scene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap();
+        let view = Camera { vertical_fov_rad: fov, ..camera(heading, 0.1) };
+        let map = top_down(&scene, DVec2::splat(-3.0), DVec2::splat(3.0), 2.0, 0.1).unwrap();
+        for picture in [render(&scene, &view).unwrap(), map] {
+            prop_assert!(picture.depth_m.iter().all(|d| *d > -0.2));
+            prop_assert!(picture.ids.iter().zip(&picture.depth_m).all(|(id, d)| (*id == 0) == d.is_infinite()));
+        }
+    }
+
+    #[test]
     fn any_triangles_give_the_same_picture_on_any_number_of_threads(
         corners in proptest::collection::vec((point(), point(), point()), 1..60), heading in 0.0..6.2f64, seed: u64,
     ) {

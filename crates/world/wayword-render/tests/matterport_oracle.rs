@@ -9,6 +9,7 @@ use wayword_render::{CubeMap, sample_view};
 /// The first viewpoint of the oracle's connectivity file, and the rows of its pose's rotation.
 const SCAN: &str = "17DRP5sb8fy";
 
+#[allow(clippy::approx_constant, reason = "the very numbers that the simulator was given")]
 const VIEWS: [(f64, f64); 6] = [
     (0.0, 0.0),
     (0.5235987755982988, 0.0),
