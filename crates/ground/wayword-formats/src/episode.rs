@@ -21,6 +21,8 @@ pub struct Episode {
     pub start_heading: Option<Heading>,
     /// The object of the closing task, where the item has one (REVERIE).
     pub target_object: Option<ObjectId>,
+    /// The part of the dataset it belongs to ("train", "val_seen"), where the item itself says so.
+    pub split: Option<String>,
     /// What is said about the path; empty where nothing is yet.
     pub instructions: Vec<String>,
     /// Fields that the format's field list does not name, in the order of the file. Written back where the loaders bear
@@ -43,26 +45,39 @@ impl Episode {
             floor_positions: Vec::new(),
             start_heading: None,
             target_object: None,
+            split: None,
             instructions: Vec::new(),
             extra: Map::new(),
             as_read: Map::new(),
         }
     }
 
-    /// The item of a path, named as the path is. Its floor lies `eye_height_m` below the frames' eyes; its viewpoints are
-    /// the frames' where each frame has one.
+    /// The item of a path, named as the path is; its viewpoints are the frames' where each frame has one.
     #[must_use]
-    pub fn from_path(path: &Path, eye_height_m: f64, instructions: Vec<String>) -> Self {
+    pub fn from_path(path: &Path, instructions: Vec<String>) -> Self {
         let viewpoints = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect::<Option<Vec<_>>>();
-        let floor = |frame: &wayword_core::Frame| frame.pose.position - DVec3::Z * eye_height_m;
         Self {
             viewpoints: viewpoints.unwrap_or_default(),
-            floor_positions: path.frames.iter().map(floor).collect(),
             start_heading: path.frames.first().map(|frame| frame.pose.heading),
             target_object: path.target.as_ref().map(|target| target.object.clone()),
             instructions,
             ..Self::new(path.id.clone(), path.id.clone(), path.scene.clone())
         }
+    }
+
+    /// With positions on the floor, which lies `eye_height_m` below the eyes of the path's frames (a camera's height over
+    /// the floor: about 1.5 m in Matterport3D). VLN-CE needs them.
+    #[must_use]
+    pub fn on_floor_of(mut self, path: &Path, eye_height_m: f64) -> Self {
+        self.floor_positions = path.frames.iter().map(|frame| frame.pose.position - DVec3::Z * eye_height_m).collect();
+        self
+    }
+
+    /// Length over the floor positions, metres; `None` where they are not known.
+    #[must_use]
+    pub fn floor_length_m(&self) -> Option<f64> {
+        let hops = self.floor_positions.windows(2).map(|pair| pair[0].distance(pair[1]));
+        (!self.floor_positions.is_empty()).then(|| hops.sum())
     }
 
     /// A known field as it is to be written: as it was read where that still means the same, else anew.

@@ -29,21 +29,26 @@ pub enum FormatError {
         hint: &'static str,
     },
     /// One of its items is wrong.
-    #[error("{}: {place}{}: field \"{field}\": {problem}; {hint}", file.display(), Named(id.as_deref()))]
-    Item {
-        /// Which file.
-        file: PathBuf,
-        /// Where in the file.
-        place: Place,
-        /// The item's own id, where that could be read.
-        id: Option<String>,
-        /// The field, with the way into it (`path[3]`).
-        field: String,
-        /// What is wrong with it.
-        problem: String,
-        /// What to do.
-        hint: &'static str,
-    },
+    #[error(transparent)]
+    Item(#[from] Box<WrongItem>),
+}
+
+/// An item of a dataset file is refused.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {place}{}: field \"{field}\": {problem}; {hint}", file.display(), Named(id.as_deref()))]
+pub struct WrongItem {
+    /// Which file.
+    pub file: PathBuf,
+    /// Where in the file.
+    pub place: Place,
+    /// The item's own id, where that could be read.
+    pub id: Option<String>,
+    /// The field, with the way into it (`path[3]`).
+    pub field: String,
+    /// What is wrong with it.
+    pub problem: String,
+    /// What to do.
+    pub hint: &'static str,
 }
 
 /// Where an item stands in its file.
@@ -85,7 +90,8 @@ impl FormatError {
     #[must_use]
     pub fn file(&self) -> &Path {
         match self {
-            Self::Io { file, .. } | Self::Document { file, .. } | Self::Item { file, .. } => file,
+            Self::Io { file, .. } | Self::Document { file, .. } => file,
+            Self::Item(item) => &item.file,
         }
     }
 }

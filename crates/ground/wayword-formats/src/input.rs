@@ -1,12 +1,12 @@
 //! Files in: bounded, unzipped where they are gzip, item by item.
 
 use crate::{
-    FormatError, Item, Place, limits,
+    FormatError, Item, Place, WrongItem, limits,
     strict::{Strict, Trail},
 };
 use flate2::bufread::MultiGzDecoder;
-use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
-use serde_json::Value;
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value};
 use std::{
     fmt,
     fs::File,
@@ -64,6 +64,20 @@ pub(crate) fn each_item(
     read.map_err(|error| items.explain(&error))
 }
 
+/// Reads a file that is a JSON object of which one field is the list of items; hands on each of these and returns the other
+/// fields.
+pub(crate) fn each_item_in(
+    file: &Path,
+    field: &'static str,
+    mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
+) -> Result<Map<String, Value>, FormatError> {
+    let mut parser = serde_json::Deserializer::from_reader(open(file)?);
+    let items = Items::new(file, &mut take);
+    let read = Within { items: &items, field }.deserialize(&mut parser);
+    let read = read.and_then(|rest| parser.end().map(|()| rest));
+    read.map_err(|error| items.explain(&error))
+}
+
 /// Reads a file with one JSON object per line, and hands on each; empty lines are skipped.
 pub(crate) fn each_line(
     file: &Path,
@@ -110,7 +124,7 @@ fn bare(error: &serde_json::Error) -> String {
 fn broken(file: &Path, place: Place, trail: &Trail, problem: String) -> FormatError {
     match trail.field() {
         field if field.is_empty() => FormatError::document(file, format!("{place}: {problem}"), NOT_JSON),
-        field => FormatError::Item { file: file.to_owned(), place, id: None, field, problem, hint: NOT_JSON },
+        field => Box::new(WrongItem { file: file.to_owned(), place, id: None, field, problem, hint: NOT_JSON }).into(),
     }
 }
 
@@ -188,5 +202,45 @@ impl<'de> Visitor<'de> for &Items<'_> {
         }
         self.state.borrow_mut().inside = false;
         Ok(())
+    }
+}
+
+/// A JSON object around a list of items.
+struct Within<'i, 'a> {
+    items: &'i Items<'a>,
+    field: &'static str,
+}
+
+impl<'de> DeserializeSeed<'de> for Within<'_, '_> {
+    type Value = Map<String, Value>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Within<'_, '_> {
+    type Value = Map<String, Value>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "an object with \"{}\"", self.field)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Self::Value, A::Error> {
+        let mut rest = Map::new();
+        let mut found = false;
+        while let Some(key) = entries.next_key::<String>()? {
+            if rest.contains_key(&key) || (found && key == self.field) {
+                return Err(A::Error::custom(format_args!("field {key:?} is given twice")));
+            }
+            if key == self.field {
+                found = true;
+                entries.next_value_seed(self.items)?;
+            } else {
+                let trail = Trail::new(limits::VALUES_PER_ITEM);
+                rest.insert(key, entries.next_value_seed(Strict(&trail))?);
+            }
+        }
+        if found { Ok(rest) } else { Err(A::Error::custom(format_args!("field {:?} is missing", self.field))) }
     }
 }

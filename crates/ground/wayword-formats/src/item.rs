@@ -1,9 +1,10 @@
 //! One item of a file, and its fields as what they should be.
 
-use crate::{FormatError, Place, limits};
+use crate::{FormatError, Place, WrongItem, limits};
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::path::Path;
-use wayword_core::{Heading, ObjectId, SceneId, ViewpointId};
+use wayword_core::{DVec3, Heading, ObjectId, SceneId, ViewpointId};
 
 /// An object of a dataset file. Fields are taken out of it; what nobody took is kept as unknown.
 pub(crate) struct Item<'a> {
@@ -32,10 +33,6 @@ impl<'a> Item<'a> {
         self.fields
     }
 
-    pub(crate) fn has(&self, field: &str) -> bool {
-        self.fields.contains_key(field)
-    }
-
     /// Takes a field that must be there.
     pub(crate) fn take(&mut self, field: &str) -> Result<Value, FormatError> {
         let value = self.take_optional(field);
@@ -47,14 +44,15 @@ impl<'a> Item<'a> {
     }
 
     pub(crate) fn wrong(&self, field: &str, problem: impl Into<String>, hint: &'static str) -> FormatError {
-        FormatError::Item {
+        Box::new(WrongItem {
             file: self.file.to_owned(),
             place: self.place,
             id: self.id.clone(),
             field: field.to_owned(),
             problem: problem.into(),
             hint,
-        }
+        })
+        .into()
     }
 
     fn expected(&self, field: &str, what: &str, found: &Value, hint: &'static str) -> FormatError {
@@ -92,6 +90,27 @@ impl<'a> Item<'a> {
     pub(crate) fn heading(&self, field: &str, value: &Value) -> Result<Heading, FormatError> {
         let rad = self.finite(field, value)?;
         Heading::new(rad).map_err(|error| self.wrong(field, error.to_string(), "write it in radians"))
+    }
+
+    /// Three numbers.
+    pub(crate) fn position(&self, field: &str, value: &Value) -> Result<DVec3, FormatError> {
+        let [x, y, z] = self.numbers(field, value)?;
+        Ok(DVec3::new(x, y, z))
+    }
+
+    /// So many finite numbers.
+    pub(crate) fn numbers<const N: usize>(&self, field: &str, value: &Value) -> Result<[f64; N], FormatError> {
+        let list = self.list(field, value, N)?;
+        let numbers = list.iter().enumerate().map(|(index, value)| self.finite(&format!("{field}[{index}]"), value));
+        let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
+        <[f64; N]>::try_from(numbers)
+            .map_err(|_| self.wrong(field, format!("expected {N} numbers, found {}", list.len()), "write all of them"))
+    }
+
+    /// Anything that serde can read.
+    pub(crate) fn parsed<T: DeserializeOwned>(&self, field: &str, value: Value) -> Result<T, FormatError> {
+        serde_json::from_value(value)
+            .map_err(|error| self.wrong(field, error.to_string(), "docs/FORMATS.md tells what it should be"))
     }
 
     pub(crate) fn list<'v>(&self, field: &str, value: &'v Value, most: usize) -> Result<&'v [Value], FormatError> {

@@ -7,17 +7,27 @@
 
 mod episode;
 mod error;
+mod format;
+pub mod habitat;
 mod input;
 mod item;
+pub mod jsonl;
 mod limits;
 mod matterport;
 mod output;
 pub mod r2r;
 pub mod reverie;
+pub mod rxr;
+mod splits;
 mod strict;
 mod unique;
+pub mod vlnce;
+mod vocabulary;
 
 pub use episode::Episode;
-pub use error::{FormatError, Place};
+pub use error::{FormatError, Place, WrongItem};
+pub use format::{Format, UnknownFormat, detect, read};
 pub(crate) use item::Item;
 pub use output::write_sidecar;
+pub use splits::split;
+pub use vocabulary::Vocabulary;

@@ -1,6 +1,6 @@
 //! What R2R, REVERIE and RxR share: paths over Matterport3D's viewpoint graphs.
 
-use crate::{Episode, FormatError, Item};
+use crate::{Episode, FormatError, Item, item};
 use serde_json::{Map, Value};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -50,37 +50,32 @@ pub(crate) const PATH_NAME: &str = "path_name";
 /// The numbers under which a file's paths are written: the field's evaluators read a path's name back with `int()`, so a path
 /// whose name is none (`house-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
 pub(crate) struct PathNumbers {
-    taken: BTreeSet<u64>,
+    numbers: Numbers,
     given: BTreeMap<String, u64>,
-    next: u64,
 }
 
 impl PathNumbers {
     pub(crate) fn new(episodes: &[Episode]) -> Self {
-        let taken = episodes.iter().filter_map(|episode| canonical(&episode.path_id)).collect();
-        Self { taken, given: BTreeMap::new(), next: 0 }
+        let names = episodes.iter().map(|episode| episode.path_id.as_str());
+        Self { numbers: Numbers::not_in(names), given: BTreeMap::new() }
     }
 
     /// A number that no path has.
     pub(crate) fn fresh(&mut self) -> u64 {
-        while self.taken.contains(&self.next) {
-            self.next += 1;
-        }
-        self.taken.insert(self.next);
-        self.next
+        self.numbers.fresh()
     }
 
     /// Writes `path_id`.
     pub(crate) fn put(&mut self, fields: &mut Map<String, Value>, episode: &Episode) {
         let name = &episode.path_id;
-        let as_read = episode.as_read.get("path_id").and_then(crate::item::name_of);
-        if canonical(name).is_some() || as_read.as_ref() == Some(name) {
+        let as_read = episode.as_read.get("path_id").and_then(item::name_of);
+        if number_of(name).is_some() || as_read.as_ref() == Some(name) {
             fields.insert("path_id".to_owned(), episode.name_field("path_id", name));
             return;
         }
         let number = match self.given.get(name) {
             Some(number) => *number,
-            None => self.fresh(),
+            None => self.numbers.fresh(),
         };
         self.given.insert(name.clone(), number);
         fields.insert("path_id".to_owned(), number.into());
@@ -88,6 +83,26 @@ impl PathNumbers {
     }
 }
 
-fn canonical(name: &str) -> Option<u64> {
-    crate::item::value_of(name).as_u64()
+/// Numbers that are still free in a file.
+pub(crate) struct Numbers {
+    taken: BTreeSet<u64>,
+    next: u64,
+}
+
+impl Numbers {
+    pub(crate) fn not_in<'n>(names: impl Iterator<Item = &'n str>) -> Self {
+        Self { taken: names.filter_map(number_of).collect(), next: 0 }
+    }
+
+    pub(crate) fn fresh(&mut self) -> u64 {
+        while !self.taken.insert(self.next) {
+            self.next += 1;
+        }
+        self.next
+    }
+}
+
+/// The number that a name is.
+pub(crate) fn number_of(name: &str) -> Option<u64> {
+    item::value_of(name).as_u64()
 }

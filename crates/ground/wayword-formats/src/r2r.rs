@@ -56,8 +56,9 @@ pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
 
 fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
     let mut fields = Map::new();
-    if let Some(length_m) = floor_length_m(episode).filter(|_| !episode.extra.contains_key("distance")) {
-        fields.insert("distance".to_owned(), length_m.into());
+    if let Some(length_m) = episode.floor_length_m().filter(|_| !episode.extra.contains_key("distance")) {
+        // To the centimetre, as R2R has it.
+        fields.insert("distance".to_owned(), ((length_m * 100.0).round() / 100.0).into());
     }
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
     numbers.put(&mut fields, episode);
@@ -66,12 +67,6 @@ fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<M
     fields.insert("instructions".to_owned(), episode.instructions.clone().into());
     matterport::add_extra(&mut fields, episode);
     Ok(fields)
-}
-
-/// The path's length, metres, to the centimetre as R2R has it; `None` where the positions are not known.
-fn floor_length_m(episode: &Episode) -> Option<f64> {
-    let hops = episode.floor_positions.windows(2).map(|pair| pair[0].distance(pair[1]));
-    (!episode.floor_positions.is_empty()).then(|| (hops.sum::<f64>() * 100.0).round() / 100.0)
 }
 
 fn same_walk(a: &Map<String, Value>, b: &Map<String, Value>) -> bool {

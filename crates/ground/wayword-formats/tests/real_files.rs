@@ -1,5 +1,7 @@
 //! The field's own files come back as they were, where they are at hand (`WAYWORD_DATA`).
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking, and says what it skipped")]
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use wayword_formats::{Episode, FormatError, r2r, reverie};
@@ -25,6 +27,7 @@ fn comes_back(file: &str, items: usize, read: Read, write: Write) {
     let Some(file) = data(file) else { return };
     let episodes = read(&file).unwrap();
     assert_eq!(episodes.len(), items);
+    assert_eq!(wayword_formats::read(&file).unwrap(), episodes, "the format was not told from the content");
     let folder = tempfile::tempdir().unwrap();
     let copy = folder.path().join("copy.json");
     write(&copy, &episodes).unwrap();

@@ -1,0 +1,144 @@
+//! Which format a file is in.
+
+use crate::{
+    Episode, FormatError, input, jsonl, limits, r2r, reverie, rxr,
+    strict::{Strict, Trail},
+    vlnce,
+};
+use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value};
+use std::{cell::RefCell, fmt, path::Path, str::FromStr};
+
+/// A format that can be read and written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Format {
+    /// Room-to-Room.
+    R2r,
+    /// REVERIE, either release.
+    Reverie,
+    /// RxR guide annotations.
+    Rxr,
+    /// VLN-CE episodes.
+    Vlnce,
+    /// Wayword's own records.
+    Wayword,
+}
+
+/// There is no format of that name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no format {0:?}; choose one of r2r, reverie, rxr, vlnce, wayword")]
+pub struct UnknownFormat(String);
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::R2r, Self::Reverie, Self::Rxr, Self::Vlnce, Self::Wayword];
+
+    /// Its name, as `--format` takes it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::R2r => "r2r",
+            Self::Reverie => "reverie",
+            Self::Rxr => "rxr",
+            Self::Vlnce => "vlnce",
+            Self::Wayword => "wayword",
+        }
+    }
+
+    /// Reads a file of this format.
+    ///
+    /// # Errors
+    /// As the format's own `read`.
+    pub fn read(self, file: &Path) -> Result<Vec<Episode>, FormatError> {
+        match self {
+            Self::R2r => r2r::read(file),
+            Self::Reverie => reverie::read(file),
+            Self::Rxr => rxr::read(file),
+            Self::Vlnce => vlnce::read(file).map(|dataset| dataset.episodes),
+            Self::Wayword => jsonl::read(file).map(|records| jsonl::episodes(&records)),
+        }
+    }
+}
+
+impl FromStr for Format {
+    type Err = UnknownFormat;
+
+    fn from_str(name: &str) -> Result<Self, UnknownFormat> {
+        Self::ALL.into_iter().find(|format| format.name() == name).ok_or_else(|| UnknownFormat(name.to_owned()))
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Reads a file of whatever format.
+///
+/// # Errors
+/// When its format is not known, or as the format's own `read`.
+pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
+    detect(file)?.read(file)
+}
+
+/// Tells a file's format by what its beginning holds: a list whose first item has an object (`objId`), or an `id` that begins with
+/// its `path_id`, is REVERIE, any other list R2R; a line with `instruction_id` is RxR, one with `format` Wayword's; `episodes` or
+/// `instruction_vocab` is VLN-CE.
+///
+/// # Errors
+/// When it cannot be read, or its beginning is none of these.
+pub fn detect(file: &Path) -> Result<Format, FormatError> {
+    let mut parser = serde_json::Deserializer::from_reader(input::open(file)?);
+    let told = RefCell::new(None);
+    // An error is what stopping early looks like, too: what counts is what was told before.
+    let read = (&mut parser).deserialize_any(Beginning(&told));
+    let format = told.take();
+    format.ok_or_else(|| {
+        let why = read.err().map_or_else(|| "it is empty".to_owned(), |error| error.to_string());
+        let problem = format!("its beginning is that of no known format: {why}");
+        FormatError::document(file, problem, "give a file in one of the formats r2r, reverie, rxr, vlnce, wayword")
+    })
+}
+
+/// Looks at the first item of a list, or the first telling key of an object.
+struct Beginning<'a>(&'a RefCell<Option<Format>>);
+
+impl<'de> Visitor<'de> for Beginning<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of items, or an object")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let trail = Trail::new(limits::VALUES_PER_ITEM);
+        if let Some(Value::Object(item)) = list.next_element_seed(Strict(&trail))? {
+            *self.0.borrow_mut() = Some(if is_reverie(&item) { Format::Reverie } else { Format::R2r });
+        }
+        Ok(())
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
+        while let Some(key) = entries.next_key::<String>()? {
+            let format = match key.as_str() {
+                "instruction_id" => Format::Rxr,
+                "episodes" | "instruction_vocab" => Format::Vlnce,
+                "format" => Format::Wayword,
+                _ => {
+                    entries.next_value::<IgnoredAny>()?;
+                    continue;
+                }
+            };
+            *self.0.borrow_mut() = Some(format);
+            return Ok(());
+        }
+        Ok(())
+    }
+}
+
+fn is_reverie(item: &Map<String, Value>) -> bool {
+    let name = |field: &str| item.get(field).and_then(crate::item::name_of);
+    let begins = |id: String, path: String| id == path || id.starts_with(&format!("{path}_"));
+    item.contains_key("objId") || name("id").zip(name("path_id")).is_some_and(|(id, path)| begins(id, path))
+}

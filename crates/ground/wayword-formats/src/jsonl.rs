@@ -1,0 +1,235 @@
+//! Wayword's own format: JSON Lines, one instruction each, whatever platform its path lies on.
+//!
+//! A line has `format` ("wayword/1"), `platform`, `split`, `path` (a core path with its frames) and the fields of a core
+//! instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`. Unknown fields are kept.
+
+use crate::{Episode, FormatError, Item, input, limits, output};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde_json::{Map, Value};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path as FilePath,
+};
+use wayword_core::{Instruction, Path, SceneId};
+
+/// What `format` says.
+const FORMAT: &str = "wayword/1";
+
+/// One instruction for one path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Record {
+    format: &'static str,
+    /// Name of the platform that the path lies on.
+    pub platform: String,
+    /// The part of the dataset it belongs to, where that was decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub split: Option<Split>,
+    /// What the instruction is about.
+    pub path: Path,
+    /// The instruction with its evidence.
+    #[serde(flatten)]
+    pub instruction: Instruction,
+    /// Fields that the format does not name, in the order of the file.
+    #[serde(flatten)]
+    pub extra: Map<String, Value>,
+}
+
+/// A part of a dataset. No scene is in both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Split {
+    /// To learn from.
+    Train,
+    /// To be judged on.
+    Val,
+}
+
+impl Split {
+    /// Its name, as files have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Train => "train",
+            Self::Val => "val",
+        }
+    }
+}
+
+impl Record {
+    /// A record that belongs to no split yet.
+    #[must_use]
+    pub fn new(platform: impl Into<String>, path: Path, instruction: Instruction) -> Self {
+        Self { format: FORMAT, platform: platform.into(), split: None, path, instruction, extra: Map::new() }
+    }
+}
+
+/// Reads a file of records, plain or gzip.
+///
+/// # Errors
+/// When it cannot be read, is not JSON, a line lacks a field or has it wrong, the same instruction comes twice, two paths of a
+/// platform have one id, or a scene is in both splits.
+pub fn read(file: &FilePath) -> Result<Vec<Record>, FormatError> {
+    merge(&[file])
+}
+
+/// Reads several files, of several platforms, as one; each record keeps its split.
+///
+/// # Errors
+/// As [`read`], for all files together.
+pub fn merge<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<Record>, FormatError> {
+    let mut records: Vec<Record> = Vec::new();
+    let mut seen = Seen::default();
+    for file in files {
+        input::each_line(file.as_ref(), |mut item| {
+            let record = take_record(&mut item)?;
+            seen.check(&records, &record).map_err(|clash| item.wrong(clash.field, clash.problem, clash.hint))?;
+            seen.note(&record, records.len());
+            records.push(Record { extra: item.rest(), ..record });
+            Ok(())
+        })?;
+    }
+    Ok(records)
+}
+
+/// Writes records; gzip where the name ends in `.gz`.
+///
+/// # Errors
+/// When the same instruction comes twice, two paths of a platform have one id, a scene is in both splits, or the file cannot be
+/// written.
+pub fn write(file: &FilePath, records: &[Record]) -> Result<(), FormatError> {
+    let mut seen = Seen::default();
+    for (index, record) in records.iter().enumerate() {
+        seen.check(records, record).map_err(|clash| FormatError::document(file, clash.problem, clash.hint))?;
+        seen.note(record, index);
+    }
+    output::write_file(file, |out| output::write_lines(out, records))
+}
+
+/// The items of records: one per path, in their order, with all that is said about it.
+#[must_use]
+pub fn episodes(records: &[Record]) -> Vec<Episode> {
+    let mut episodes: Vec<Episode> = Vec::new();
+    let mut places = BTreeMap::new();
+    for record in records {
+        let place = *places.entry((&record.platform, &record.path.id)).or_insert_with(|| {
+            let split = record.split.map(|split| split.name().to_owned());
+            episodes.push(Episode { split, ..Episode::from_path(&record.path, Vec::new()) });
+            episodes.len() - 1
+        });
+        episodes[place].instructions.push(record.instruction.text.clone());
+    }
+    episodes
+}
+
+fn take_record(item: &mut Item<'_>) -> Result<Record, FormatError> {
+    let format = item.take("format")?;
+    if item.text("format", &format)? != FORMAT {
+        let problem = format!("expected {FORMAT:?}, found {format}");
+        return Err(item.wrong("format", problem, "read it with the version of Wayword that wrote it"));
+    }
+    let path = take_path(item)?;
+    let platform = item.take("platform")?;
+    let platform = item.name("platform", &platform)?;
+    let split = item.take_optional("split").map(|split| item.parsed("split", split)).transpose()?;
+    let instruction = take_instruction(item, path.frames.len())?;
+    Ok(Record { split, ..Record::new(platform, path, instruction) })
+}
+
+fn take_path(item: &mut Item<'_>) -> Result<Path, FormatError> {
+    let path = item.take("path")?;
+    let id = item.name("path.id", path.get("id").unwrap_or(&Value::Null))?;
+    item.call(&id);
+    let frames = item.list("path.frames", path.get("frames").unwrap_or(&Value::Null), limits::PATH_NODES)?;
+    if frames.is_empty() {
+        return Err(item.wrong("path.frames", "it is empty", "a path has at least one frame"));
+    }
+    // One by one, so that an error can say which.
+    for (index, frame) in frames.iter().enumerate() {
+        item.parsed::<wayword_core::Frame>(&format!("path.frames[{index}]"), frame.clone())?;
+    }
+    item.parsed("path", path)
+}
+
+/// Byte ranges and frame numbers are used as indices later, so they are held to the text and the path here.
+fn take_instruction(item: &mut Item<'_>, frames: usize) -> Result<Instruction, FormatError> {
+    let text = item.take("text")?;
+    let instruction = Instruction {
+        text: item.instruction("text", &text)?,
+        style: take_parsed(item, "style")?,
+        mentions: take_parsed(item, "mentions")?,
+        verdict: take_parsed(item, "verdict")?,
+        findings: take_parsed(item, "findings")?,
+        provenance: take_parsed(item, "provenance")?,
+    };
+    let fits = |span: [usize; 2]| instruction.text.get(span[0]..span[1]).is_some();
+    let (mentions, findings) = (&instruction.mentions, &instruction.findings);
+    if let Some(index) = mentions.iter().position(|mention| !fits(mention.span) || mention.frame >= frames) {
+        let field = format!("mentions[{index}]");
+        return Err(item.wrong(&field, "it leads out of the text or the path", "spans are byte ranges of the text"));
+    }
+    if let Some(index) = findings.iter().position(|finding| finding.span.is_some_and(|span| !fits(span))) {
+        let field = format!("findings[{index}].span");
+        return Err(item.wrong(&field, "it leads out of the text", "spans are byte ranges of the text"));
+    }
+    Ok(instruction)
+}
+
+fn take_parsed<T: DeserializeOwned>(item: &mut Item<'_>, field: &str) -> Result<T, FormatError> {
+    let value = item.take(field)?;
+    item.parsed(field, value)
+}
+
+/// What a dataset holds so far, to find what cannot be in it together.
+#[derive(Default)]
+struct Seen {
+    paths: BTreeMap<(String, String), usize>,
+    texts: BTreeSet<(String, String, String, String)>,
+    splits: BTreeMap<(String, SceneId), Split>,
+}
+
+struct Clash {
+    field: &'static str,
+    problem: String,
+    hint: &'static str,
+}
+
+impl Seen {
+    fn check(&self, earlier: &[Record], record: &Record) -> Result<(), Clash> {
+        let same_name = self.paths.get(&path_key(record)).and_then(|index| earlier.get(*index));
+        if same_name.is_some_and(|other| other.path != record.path) {
+            let problem = format!("an earlier record has another path of the name {:?}", record.path.id);
+            return Err(Clash { field: "path", problem, hint: "merge runs whose paths have names of their own" });
+        }
+        if self.texts.contains(&text_key(record)) {
+            let problem = format!("path {:?} has this very instruction already", record.path.id);
+            return Err(Clash { field: "text", problem, hint: "leave one of the two out" });
+        }
+        let other = self.splits.get(&scene_key(record));
+        if record.split.is_some() && other.is_some() && other != record.split.as_ref() {
+            let problem = format!("scene {} is in train and in val", record.path.scene);
+            return Err(Clash { field: "split", problem, hint: "split the records anew, by scene" });
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, record: &Record, index: usize) {
+        self.paths.entry(path_key(record)).or_insert(index);
+        self.texts.insert(text_key(record));
+        if let Some(split) = record.split {
+            self.splits.insert(scene_key(record), split);
+        }
+    }
+}
+
+fn path_key(record: &Record) -> (String, String) {
+    (record.platform.clone(), record.path.id.clone())
+}
+
+fn text_key(record: &Record) -> (String, String, String, String) {
+    let (platform, path) = path_key(record);
+    (platform, path, record.instruction.style.clone(), record.instruction.text.clone())
+}
+
+fn scene_key(record: &Record) -> (String, SceneId) {
+    (record.platform.clone(), record.path.scene.clone())
+}

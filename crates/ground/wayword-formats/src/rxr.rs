@@ -1,0 +1,116 @@
+//! RxR guide annotations: JSON Lines, one instruction each, plain or gzip.
+//!
+//! Fields: `split`, `instruction_id`, `annotator_id`, `language`, `path_id`, `scan`, `path`, `heading`, `instruction`,
+//! `timed_instruction` (`word`, and where known `start_time`, `end_time`), `edit_distance`.
+
+use crate::{Episode, FormatError, Item, input, limits, matterport, output, unique::Unique};
+use matterport::{Numbers, PathNumbers, number_of};
+use serde_json::{Map, Value, json};
+use std::{collections::BTreeSet, path::Path};
+
+/// Known fields that are carried along with the text that they belong to.
+const OF_THE_TEXT: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
+
+/// Reads a file of guide annotations.
+///
+/// # Errors
+/// When it cannot be read, is not JSON, or a line lacks a field, has it wrong, or has an `instruction_id` that was given before.
+pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
+    let mut episodes = Vec::new();
+    let mut unique = Unique::default();
+    input::each_line(file, |mut item| {
+        let mut episode = matterport::take_path(&mut item, "instruction_id")?;
+        unique.claim(&item, "instruction_id", &episode)?;
+        let instruction = item.take("instruction")?;
+        episode.instructions = vec![item.instruction("instruction", &instruction)?];
+        episode.remember("instruction", instruction);
+        if let Some(split) = item.take_optional("split") {
+            episode.split = Some(item.name("split", &split)?);
+        }
+        take_text_fields(&mut item, &mut episode)?;
+        episodes.push(episode.keep_rest(item));
+        Ok(())
+    })?;
+    Ok(episodes)
+}
+
+/// Fields that model-made annotations may lack.
+fn take_text_fields(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), FormatError> {
+    for field in OF_THE_TEXT {
+        let Some(value) = item.take_optional(field) else { continue };
+        match field {
+            "annotator_id" => drop(item.name(field, &value)?),
+            "edit_distance" => drop(item.finite(field, &value)?),
+            "language" => drop(item.text(field, &value)?),
+            _ => timed_words(item, field, &value)?,
+        }
+        episode.remember(field, value);
+    }
+    Ok(())
+}
+
+fn timed_words(item: &Item<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
+    for (index, timed) in item.list(field, value, limits::INSTRUCTION_BYTES)?.iter().enumerate() {
+        let at = format!("{field}[{index}].word");
+        let Some(word) = timed.get("word") else {
+            return Err(item.wrong(&at, "it is missing", "each entry is an object with a word"));
+        };
+        item.text(&at, word)?;
+    }
+    Ok(())
+}
+
+/// Writes guide annotations, one line per instruction; gzip where the name ends in `.gz`.
+///
+/// A text that is not the one that was read gets `language` "en-US", the `annotator_id` 0 (no annotator wrote it), an
+/// `edit_distance` of 0 (nothing was transcribed) and words without times, as some of RxR's own words are. Instructions get new
+/// numbers where an item has several, or its id is no number or was used before. A path whose name is not a number gets one,
+/// and keeps its name in `path_name`. Where an item knows no split, it is "train".
+///
+/// # Errors
+/// When a path names no viewpoints, or the file cannot be written.
+pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
+    let mut paths = PathNumbers::new(episodes);
+    let mut fresh = Numbers::not_in(episodes.iter().map(|episode| episode.id.as_str()));
+    let mut used = BTreeSet::new();
+    let mut lines = Vec::with_capacity(episodes.len());
+    for episode in episodes {
+        let alone = episode.instructions.len() == 1;
+        for text in &episode.instructions {
+            let keeps_id = alone && keeps_its_id(episode) && used.insert(&episode.id);
+            let id = if keeps_id { episode.name_field("instruction_id", &episode.id) } else { fresh.fresh().into() };
+            lines.push(fields(file, episode, text, id, &mut paths)?);
+        }
+    }
+    output::write_file(file, |out| output::write_lines(out, &lines))
+}
+
+fn keeps_its_id(episode: &Episode) -> bool {
+    number_of(&episode.id).is_some() || episode.as_read.contains_key("instruction_id")
+}
+
+fn fields(
+    file: &Path,
+    episode: &Episode,
+    text: &str,
+    id: Value,
+    paths: &mut PathNumbers,
+) -> Result<Map<String, Value>, FormatError> {
+    let same_text = episode.as_read.get("instruction").and_then(Value::as_str) == Some(text);
+    let of_text = |field: &str, anew: Value| episode.field(field, |_| same_text, || anew);
+    let words: Value = text.split_whitespace().map(|word| json!({ "word": word })).collect();
+    let mut fields = Map::new();
+    fields.insert("split".to_owned(), episode.split.as_deref().unwrap_or("train").into());
+    fields.insert("instruction_id".to_owned(), id);
+    fields.insert("annotator_id".to_owned(), of_text("annotator_id", 0.into()));
+    fields.insert("language".to_owned(), of_text("language", "en-US".into()));
+    paths.put(&mut fields, episode);
+    fields.insert("scan".to_owned(), episode.scene.as_str().into());
+    fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
+    fields.insert("heading".to_owned(), episode.heading_field());
+    fields.insert("instruction".to_owned(), text.into());
+    fields.insert("timed_instruction".to_owned(), of_text("timed_instruction", words));
+    fields.insert("edit_distance".to_owned(), of_text("edit_distance", 0.0.into()));
+    matterport::add_extra(&mut fields, episode);
+    Ok(fields)
+}

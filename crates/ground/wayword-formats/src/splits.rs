@@ -1,0 +1,50 @@
+//! Which scenes are learnt from, and which are kept for judging.
+
+use crate::jsonl::{Record, Split};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{SceneId, seed};
+
+/// Puts every scene into one of the two splits, and every record where its scene is.
+///
+/// Of each platform's scenes the share `val_share` (0 to 1, rounded) is for `val`; at least one scene is in each split where the
+/// platform has two and the share is neither 0 nor 1. The choice depends on the seed and the names of the scenes, not on the
+/// order of the records, and a scene that is added later moves few others.
+pub fn split(records: &mut [Record], val_share: f64, seed: u64) {
+    let val = val_scenes(records, val_share, seed);
+    for record in records {
+        let in_val = val.get(&record.platform).is_some_and(|scenes| scenes.contains(&record.path.scene));
+        record.split = Some(if in_val { Split::Val } else { Split::Train });
+    }
+}
+
+fn val_scenes(records: &[Record], val_share: f64, seed: u64) -> BTreeMap<String, BTreeSet<SceneId>> {
+    let mut drawn: BTreeMap<String, BTreeSet<(u64, SceneId)>> = BTreeMap::new();
+    for record in records {
+        let (platform, scene) = (&record.platform, &record.path.scene);
+        let lot = seed::derive(seed, &["split", platform, scene.as_str()]);
+        drawn.entry(platform.clone()).or_default().insert((lot, scene.clone()));
+    }
+    let first = |(platform, scenes): (String, BTreeSet<(u64, SceneId)>)| {
+        let count = val_count(scenes.len(), val_share);
+        (platform, scenes.into_iter().take(count).map(|(_, scene)| scene).collect())
+    };
+    drawn.into_iter().map(first).collect()
+}
+
+fn val_count(scenes: usize, share: f64) -> usize {
+    let rounded = (scenes as f64 * share.clamp(0.0, 1.0)).round() as usize;
+    let divided = share > 0.0 && share < 1.0 && scenes > 1;
+    if divided { rounded.clamp(1, scenes - 1) } else { rounded }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_split_gets_a_scene_where_there_are_two() {
+        assert_eq!([val_count(2, 0.01), val_count(2, 0.99), val_count(10, 0.2)], [1, 1, 2]);
+        assert_eq!([val_count(5, 0.0), val_count(5, 1.0), val_count(1, 0.1), val_count(0, 0.5)], [0, 5, 0, 0]);
+        assert_eq!(val_count(5, f64::NAN), 0);
+    }
+}

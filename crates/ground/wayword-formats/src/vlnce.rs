@@ -1,0 +1,244 @@
+//! VLN-CE: episodes in Habitat's frame, with a vocabulary.
+//!
+//! `{episodes, instruction_vocab: {word_list}}`; an episode has `episode_id`, `trajectory_id`, `scene_id`
+//! ("mp3d/SCAN/SCAN.glb"), `start_position`, `start_rotation` (x, y, z, w), `goals` (`position`, `radius`), `reference_path`,
+//! `instruction` (`instruction_text`, `instruction_tokens`) and `info`. Its loader builds an episode from exactly these keys and
+//! crashes on any other, so none is written, and unknown fields of a file that was read are lost.
+//!
+//! Positions are turned into the world frame on the way in and back on the way out. They lie on the floor, where a Matterport3D
+//! viewpoint is the camera, about 1.5 m above: whoever writes gives floor positions ([`Episode::floor_positions`]).
+
+use crate::{
+    Episode, FormatError, Item,
+    habitat::{habitat_from_heading, habitat_from_wayword, heading_from_habitat, wayword_from_habitat},
+    input, limits, output,
+    unique::Unique,
+    vocabulary::Vocabulary,
+};
+use serde_json::{Map, Value, json};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+use wayword_core::{DVec3, SceneId};
+
+/// How near to the goal counts as there, metres (VLN-CE's own).
+const GOAL_RADIUS_M: f64 = 3.0;
+
+/// What a VLN-CE file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dataset {
+    /// Its episodes, with one instruction each when they were read.
+    pub episodes: Vec<Episode>,
+    /// The words that their tokens stand for. A trained agent knows the numbers of one vocabulary only, so keep it.
+    pub vocabulary: Vocabulary,
+}
+
+impl Dataset {
+    /// Episodes with a vocabulary of their own words.
+    #[must_use]
+    pub fn of(episodes: Vec<Episode>) -> Self {
+        let texts = episodes.iter().flat_map(|episode| &episode.instructions);
+        Self { vocabulary: Vocabulary::of(texts.map(String::as_str)), episodes }
+    }
+}
+
+/// Reads a VLN-CE file, plain or gzip.
+///
+/// # Errors
+/// When it cannot be read, is not JSON, or an episode lacks a field, has it wrong, or has an `episode_id` that was given before.
+pub fn read(file: &Path) -> Result<Dataset, FormatError> {
+    let mut episodes = Vec::new();
+    let mut tokens = BTreeMap::new();
+    let mut unique = Unique::default();
+    let mut rest = input::each_item_in(file, "episodes", |mut item| {
+        let episode = take_episode(&mut item, &mut tokens)?;
+        unique.claim(&item, "episode_id", &episode)?;
+        episodes.push(episode);
+        Ok(())
+    })?;
+    let mut vocabulary = Vocabulary::new(word_list(file, rest.remove("instruction_vocab"))?);
+    vocabulary.remember(tokens);
+    Ok(Dataset { episodes, vocabulary })
+}
+
+fn word_list(file: &Path, vocabulary: Option<Value>) -> Result<Vec<String>, FormatError> {
+    let words = vocabulary.and_then(|vocabulary| vocabulary.get("word_list").cloned());
+    let words = words.and_then(|words| serde_json::from_value::<Vec<String>>(words).ok());
+    words.ok_or_else(|| {
+        let problem = "field \"instruction_vocab.word_list\": expected a list of words";
+        FormatError::document(file, problem, "R2R's VLN-CE files have it; RxR's are another format")
+    })
+}
+
+fn take_episode(item: &mut Item<'_>, tokens: &mut BTreeMap<String, Vec<u64>>) -> Result<Episode, FormatError> {
+    let id = item.take("episode_id")?;
+    let id_text = item.name("episode_id", &id)?;
+    item.call(&id_text);
+    let trajectory = item.take("trajectory_id")?;
+    let scene_file = item.take("scene_id")?;
+    let mut episode = Episode::new(id_text, item.name("trajectory_id", &trajectory)?, scene_of(item, &scene_file)?);
+    episode.remember("episode_id", id);
+    episode.remember("trajectory_id", trajectory);
+    episode.remember("scene_id", scene_file);
+    take_positions(item, &mut episode)?;
+    take_instruction(item, &mut episode, tokens)?;
+    if let Some(info) = item.take_optional("info") {
+        if !info.is_object() && !info.is_null() {
+            return Err(item.wrong("info", "expected an object", "leave it out where there is nothing to say"));
+        }
+        episode.remember("info", info);
+    }
+    Ok(episode)
+}
+
+/// The scene that a path to its mesh names: the file's name without its ending.
+fn scene_of(item: &Item<'_>, value: &Value) -> Result<SceneId, FormatError> {
+    const HINT: &str = "VLN-CE writes mp3d/SCAN/SCAN.glb";
+    let text = item.text("scene_id", value)?;
+    let outside = text.starts_with('/') || text.split('/').any(|part| part == "..");
+    if outside || text.contains('\\') {
+        return Err(item.wrong("scene_id", "it leads out of the folder of scenes", HINT));
+    }
+    let name = text.rsplit('/').next().unwrap_or(text);
+    let bare = name.rsplit_once('.').map_or(name, |(bare, _)| bare);
+    SceneId::new(bare).map_err(|error| item.wrong("scene_id", error.to_string(), HINT))
+}
+
+fn take_positions(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), FormatError> {
+    let start = item.take("start_position")?;
+    let start_floor = item.position("start_position", &start)?;
+    let rotation = item.take("start_rotation")?;
+    let heading = heading_from_habitat(item.numbers("start_rotation", &rotation)?);
+    episode.start_heading = Some(heading.ok_or_else(|| {
+        item.wrong("start_rotation", "it is no rotation with a heading", "write a quaternion of length 1 as x, y, z, w")
+    })?);
+    let goals = item.take("goals")?;
+    let goal_floors = goal_positions(item, &goals)?;
+    let path = item.take_optional("reference_path").unwrap_or_default();
+    let floors = if path.is_null() {
+        std::iter::once(start_floor).chain(goal_floors.into_iter().take(1)).collect()
+    } else {
+        positions(item, "reference_path", &path)?
+    };
+    episode.floor_positions = floors.into_iter().map(wayword_from_habitat).collect();
+    for (field, value) in
+        [("start_position", start), ("start_rotation", rotation), ("goals", goals), ("reference_path", path)]
+    {
+        episode.remember(field, value);
+    }
+    Ok(())
+}
+
+fn positions(item: &Item<'_>, field: &str, value: &Value) -> Result<Vec<DVec3>, FormatError> {
+    let list = item.list(field, value, limits::PATH_NODES)?;
+    if list.is_empty() {
+        return Err(item.wrong(field, "it is empty", "a path has at least one position"));
+    }
+    list.iter().enumerate().map(|(index, value)| item.position(&format!("{field}[{index}]"), value)).collect()
+}
+
+/// Test splits have no goals.
+fn goal_positions(item: &Item<'_>, value: &Value) -> Result<Vec<DVec3>, FormatError> {
+    if value.is_null() {
+        return Ok(Vec::new());
+    }
+    let goal = |(index, goal): (usize, &Value)| {
+        let field = format!("goals[{index}].position");
+        let position = goal.get("position").ok_or_else(|| item.wrong(&field, "it is missing", "each goal has one"))?;
+        item.position(&field, position)
+    };
+    item.list("goals", value, limits::PATH_NODES)?.iter().enumerate().map(goal).collect()
+}
+
+fn take_instruction(
+    item: &mut Item<'_>,
+    episode: &mut Episode,
+    tokens: &mut BTreeMap<String, Vec<u64>>,
+) -> Result<(), FormatError> {
+    let instruction = item.take("instruction")?;
+    let text = instruction.get("instruction_text").unwrap_or(&Value::Null);
+    let text = item.instruction("instruction.instruction_text", text)?;
+    match instruction.get("instruction_tokens") {
+        None | Some(Value::Null) => {}
+        Some(numbers) => {
+            let field = "instruction.instruction_tokens";
+            let numbers = item.list(field, numbers, limits::INSTRUCTION_BYTES)?.iter().map(Value::as_u64);
+            let numbers = numbers.collect::<Option<Vec<_>>>();
+            let wrong = || item.wrong(field, "expected whole numbers", "leave them out to have them counted anew");
+            tokens.insert(text.clone(), numbers.ok_or_else(wrong)?);
+        }
+    }
+    episode.instructions = vec![text];
+    Ok(())
+}
+
+/// Writes a VLN-CE file, one episode per instruction; gzip where the name ends in `.gz`.
+///
+/// An episode is named by its item's id, or by `ID_0`, `ID_1`, ... where the item has several instructions. Where the path is not
+/// the one that was read, its goal is its last position (radius 3 m) and `info.geodesic_distance` its length. What does not fit
+/// into the format belongs into a sidecar ([`crate::write_sidecar`]).
+///
+/// # Errors
+/// When an item has no floor positions, two episodes come to the same id, or the file cannot be written.
+pub fn write(file: &Path, dataset: &Dataset) -> Result<(), FormatError> {
+    let mut ids = BTreeSet::new();
+    let mut episodes = Vec::new();
+    for episode in &dataset.episodes {
+        for (index, text) in episode.instructions.iter().enumerate() {
+            let id = match episode.instructions.len() {
+                1 => episode.name_field("episode_id", &episode.id),
+                _ => format!("{}_{index}", episode.id).into(),
+            };
+            if !ids.insert(id.to_string()) {
+                let problem = format!("two episodes come to the id {id}");
+                return Err(FormatError::document(file, problem, "put instructions for one path into one item"));
+            }
+            let mut fields = Map::new();
+            fields.insert("episode_id".to_owned(), id);
+            add_place(file, &mut fields, episode)?;
+            let tokens = dataset.vocabulary.tokens(text);
+            let instruction = json!({ "instruction_text": text, "instruction_tokens": tokens });
+            fields.insert("instruction".to_owned(), instruction);
+            episodes.push(fields);
+        }
+    }
+    let vocabulary = json!({ "word_list": dataset.vocabulary.words() });
+    output::write_file(file, |out| {
+        out.write_all(b"{\"episodes\": ")?;
+        output::write_list(out, &episodes)?;
+        write!(out, ",\n\"instruction_vocab\": {vocabulary}}}")
+    })
+}
+
+fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) -> Result<(), FormatError> {
+    let (Some(start), Some(goal)) = (episode.floor_positions.first(), episode.floor_positions.last()) else {
+        let problem = format!("item {:?} has no floor positions, which this format demands", episode.id);
+        return Err(FormatError::document(file, problem, "write it as r2r, reverie, rxr or wayword"));
+    };
+    let path: Value = episode.floor_positions.iter().map(|position| habitat_value(*position)).collect();
+    let read_path = episode.as_read.get("reference_path");
+    // Where the file had no path, the one made of its start and goal is taken for it.
+    let same_path = read_path.is_some_and(|as_read| as_read.is_null() || *as_read == path);
+    let scene = &episode.scene;
+    let heading = episode.start_heading.unwrap_or(wayword_core::Heading::NORTH);
+    let same_heading = |value: &Value| {
+        let rotation = serde_json::from_value::<[f64; 4]>(value.clone()).ok();
+        rotation.and_then(heading_from_habitat) == Some(heading)
+    };
+    let same_scene = |value: &Value| value.as_str().is_some_and(|text| text.contains(scene.as_str()));
+    let mut put = |key: &str, value: Value| drop(fields.insert(key.to_owned(), value));
+    put("trajectory_id", episode.name_field("trajectory_id", &episode.path_id));
+    put("scene_id", episode.field("scene_id", same_scene, || format!("mp3d/{scene}/{scene}.glb").into()));
+    put("start_position", episode.field("start_position", |_| same_path, || habitat_value(*start)));
+    put("start_rotation", episode.field("start_rotation", same_heading, || json!(habitat_from_heading(heading))));
+    let goals = || json!([{ "position": habitat_value(*goal), "radius": GOAL_RADIUS_M }]);
+    put("goals", episode.field("goals", |_| same_path, goals));
+    put("reference_path", read_path.filter(|_| same_path).cloned().unwrap_or(path));
+    put("info", episode.field("info", |_| same_path, || json!({ "geodesic_distance": episode.floor_length_m() })));
+    Ok(())
+}
+
+fn habitat_value(floor: DVec3) -> Value {
+    json!(habitat_from_wayword(floor).to_array())
+}

@@ -1,0 +1,110 @@
+//! Words as the numbers that VLN-CE's agents read.
+
+use std::collections::BTreeMap;
+
+/// VLN-CE's agents read so many tokens; shorter texts are filled up with `<pad>`.
+const TOKENS: usize = 200;
+const PAD: &str = "<pad>";
+const UNKNOWN: &str = "<unk>";
+
+/// VLN-CE's `instruction_vocab`: a word's token is its place in the list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Vocabulary {
+    words: Vec<String>,
+    index: BTreeMap<String, u64>,
+    tokens_as_read: BTreeMap<String, Vec<u64>>,
+}
+
+impl Vocabulary {
+    /// A vocabulary from its word list. Where one word is listed twice, the later place counts, as in Habitat's `VocabDict`.
+    /// `<pad>` and `<unk>` are added at the end where they lack.
+    #[must_use]
+    pub fn new(mut words: Vec<String>) -> Self {
+        for special in [PAD, UNKNOWN] {
+            if !words.iter().any(|word| word == special) {
+                words.push(special.to_owned());
+            }
+        }
+        let index = (0..).zip(&words).map(|(place, word)| (word.clone(), place)).collect();
+        Self { words, index, tokens_as_read: BTreeMap::new() }
+    }
+
+    /// The vocabulary of some texts: `<pad>`, `<unk>`, then every word, sorted.
+    #[must_use]
+    pub fn of<'t>(texts: impl IntoIterator<Item = &'t str>) -> Self {
+        let words: std::collections::BTreeSet<_> = texts.into_iter().flat_map(words).collect();
+        Self::new([PAD.to_owned(), UNKNOWN.to_owned()].into_iter().chain(words).collect())
+    }
+
+    /// Its words, each at the place that is its token.
+    #[must_use]
+    pub fn words(&self) -> &[String] {
+        &self.words
+    }
+
+    /// A text's 200 tokens: lower case, words of letters and digits (with inner `'` and `-`) and each mark of punctuation
+    /// except commas and question marks, which are left out; what comes after the 200th is cut. A text whose tokens were read
+    /// with this vocabulary keeps them.
+    #[must_use]
+    pub fn tokens(&self, text: &str) -> Vec<u64> {
+        if let Some(tokens) = self.tokens_as_read.get(text) {
+            return tokens.clone();
+        }
+        let number = |word: &str| self.index.get(word).copied();
+        let unknown = number(UNKNOWN).unwrap_or_default();
+        let mut tokens: Vec<_> = words(text).take(TOKENS).map(|word| number(&word).unwrap_or(unknown)).collect();
+        tokens.resize(TOKENS, number(PAD).unwrap_or_default());
+        tokens
+    }
+
+    pub(crate) fn remember(&mut self, tokens_as_read: BTreeMap<String, Vec<u64>>) {
+        self.tokens_as_read = tokens_as_read;
+    }
+}
+
+/// The words of a text, in its order.
+fn words(text: &str) -> impl Iterator<Item = String> {
+    let mut words = Vec::new();
+    let mut word = String::new();
+    for letter in text.chars().flat_map(char::to_lowercase) {
+        if letter.is_alphanumeric() || (!word.is_empty() && matches!(letter, '\'' | '-')) {
+            word.push(letter);
+            continue;
+        }
+        words.extend((!word.is_empty()).then(|| std::mem::take(&mut word)));
+        if !letter.is_whitespace() && !matches!(letter, ',' | '?') {
+            words.push(letter.to_string());
+        }
+    }
+    words.extend((!word.is_empty()).then_some(word));
+    words.into_iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_numbered_by_their_place() {
+        let vocabulary = Vocabulary::of(["Turn left, then stop.", "Stop"]);
+        assert_eq!(vocabulary.words(), ["<pad>", "<unk>", ".", "left", "stop", "then", "turn"]);
+        let tokens = vocabulary.tokens("turn RIGHT, stop.");
+        assert_eq!(tokens[..5], [6, 1, 4, 2, 0]);
+        assert_eq!(tokens.len(), 200);
+    }
+
+    #[test]
+    fn an_existing_vocabulary_keeps_its_numbers() {
+        let words = ["<pad>", "<unk>", "walk", "stop"].map(str::to_owned).to_vec();
+        assert_eq!(Vocabulary::new(words.clone()).words(), words);
+        assert_eq!(Vocabulary::new(words).tokens("stop walk")[..3], [3, 2, 0]);
+    }
+
+    #[test]
+    fn hyphens_and_apostrophes_stay_within_words() {
+        assert_eq!(
+            words("Don't enter the half-bath; -wait").collect::<Vec<_>>(),
+            ["don't", "enter", "the", "half-bath", ";", "-", "wait"]
+        );
+    }
+}

@@ -1,0 +1,89 @@
+//! Small datasets of our own, one per format, as JSON values.
+
+#![allow(clippy::unwrap_used, dead_code, reason = "a test fails by panicking; not every test uses all of this")]
+
+use serde_json::{Value, json};
+use std::path::Path;
+use wayword_formats::{Format, FormatError, jsonl, r2r, reverie, rxr, vlnce};
+
+/// What every item of a format has, in a file of three.
+pub(crate) fn items(format: Format) -> Vec<Value> {
+    (0..3).map(|n| item(format, n)).collect()
+}
+
+fn item(format: Format, n: u64) -> Value {
+    let path = json!(["hall", "door", format!("room{n}")]);
+    match format {
+        Format::R2r => json!({
+            "distance": 7.5, "scan": "house1", "path_id": n, "path": path, "heading": 1.5,
+            "instructions": ["Leave the hall.", "Walk through the door.", "Go to the room and stop."],
+        }),
+        Format::Reverie => json!({
+            "id": format!("{n}_66"), "scan": "house1", "path_id": n, "path": path, "objId": 66, "heading": 1.5,
+            "instructions": ["Go to the room and water the plant"],
+        }),
+        Format::Rxr => json!({
+            "split": "val_seen", "instruction_id": n, "annotator_id": 7, "language": "en-IN", "path_id": n,
+            "scan": "house1", "path": path, "heading": 1.5, "instruction": "You are in a hall.",
+            "timed_instruction": [{"word": "You", "start_time": 0.5, "end_time": 0.75}, {"word": "are"}],
+            "edit_distance": 0.25,
+        }),
+        Format::Vlnce => json!({
+            "episode_id": n, "trajectory_id": n, "scene_id": "mp3d/house1/house1.glb",
+            "start_position": [1.5, 0.125, -2.5], "start_rotation": [0.0, -0.6816387600233341, 0.0, 0.7316888688738209],
+            "goals": [{"position": [4.0, 0.125, -2.5], "radius": 3.0}],
+            "reference_path": [[1.5, 0.125, -2.5], [2.5, 0.125, -2.5], [4.0, 0.125, -2.5]],
+            "instruction": {"instruction_text": format!("Walk to door {n}."), "instruction_tokens": [4, 3, 2, 1, 0, 0]},
+            "info": {"geodesic_distance": 2.5},
+        }),
+        Format::Wayword => json!({
+            "format": "wayword/1", "platform": "house", "split": "train",
+            "path": {"id": format!("house-{n}"), "scene": "house1", "frames": [
+                {"pose": {"position": [0.0, 0.0, 1.5], "heading": 0.0, "elevation_rad": 0.0}, "viewpoint": "hall", "level": 1},
+                {"pose": {"position": [0.0, 2.0, 1.5], "heading": 0.0, "elevation_rad": 0.0}, "viewpoint": "door", "level": 1},
+            ]},
+            "text": "Walk to the door and stop.", "style": "r2r",
+            "mentions": [{"span": [12, 16], "kind": "landmark", "frame": 1}], "verdict": "pass",
+            "findings": [{"check": "landmarks", "verdict": "pass"}],
+            "provenance": {"wayword": "0.1.0", "asker": "rules", "answerer": "labels", "summariser": "rules",
+                "writer": "rules", "checked_against": "labels", "seed": 1, "style_hash": "0f", "repairs": 0},
+        }),
+    }
+}
+
+/// The file that holds some items.
+pub(crate) fn text(format: Format, items: &[Value]) -> String {
+    let lines = items.iter().map(|item| format!("{item}\n")).collect();
+    match format {
+        Format::R2r | Format::Reverie => Value::from(items.to_vec()).to_string(),
+        Format::Rxr | Format::Wayword => lines,
+        Format::Vlnce => {
+            let words = ["<pad>", "<unk>", "door", "to", "walk"];
+            json!({"episodes": items, "instruction_vocab": {"word_list": words}}).to_string()
+        }
+    }
+}
+
+/// The items of a file.
+pub(crate) fn items_of(format: Format, file: &Path) -> Vec<Value> {
+    let text = std::fs::read_to_string(file).unwrap();
+    match format {
+        Format::Rxr | Format::Wayword => text.lines().map(|line| serde_json::from_str(line).unwrap()).collect(),
+        Format::R2r | Format::Reverie => serde_json::from_str(&text).unwrap(),
+        Format::Vlnce => {
+            let mut dataset: Value = serde_json::from_str(&text).unwrap();
+            serde_json::from_value(dataset["episodes"].take()).unwrap()
+        }
+    }
+}
+
+/// Reads a file and writes what was read to another.
+pub(crate) fn copy(format: Format, from: &Path, to: &Path) -> Result<(), FormatError> {
+    match format {
+        Format::R2r => r2r::write(to, &r2r::read(from)?),
+        Format::Reverie => reverie::write(to, &reverie::read(from)?),
+        Format::Rxr => rxr::write(to, &rxr::read(from)?),
+        Format::Vlnce => vlnce::write(to, &vlnce::read(from)?),
+        Format::Wayword => jsonl::write(to, &jsonl::read(from)?),
+    }
+}

@@ -1,0 +1,226 @@
+//! A thousand damaged files per reader: each is read or refused with the file's name, and none brings the reader down.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use serde_json::{Value, json};
+use wayword_core::seed::derive;
+use wayword_formats::{Format, FormatError, read};
+
+/// Choices that are the same in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, below: usize) -> usize {
+        self.0 = derive(self.0, &["roll"]);
+        ((self.0 >> 16) % below as u64) as usize
+    }
+
+    fn pick<T: Clone>(&mut self, from: &[T]) -> T {
+        from[self.roll(from.len())].clone()
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Damage {
+    Truncated,
+    ByteFlipped,
+    OtherType,
+    NotANumber,
+    ManyNodes,
+    OutsideName,
+    KeyTwice,
+    Nested,
+    FieldGone,
+    ItemTwice,
+}
+
+const ALL: [Damage; 10] = [
+    Damage::Truncated,
+    Damage::ByteFlipped,
+    Damage::OtherType,
+    Damage::NotANumber,
+    Damage::ManyNodes,
+    Damage::OutsideName,
+    Damage::KeyTwice,
+    Damage::Nested,
+    Damage::FieldGone,
+    Damage::ItemTwice,
+];
+
+/// Fields of which a damaged item must be refused: ids, and what every item needs.
+fn needed(format: Format) -> &'static [&'static str] {
+    match format {
+        Format::R2r => &["/path_id", "/scan", "/path", "/heading", "/instructions"],
+        Format::Reverie => &["/id", "/path_id", "/scan", "/path", "/heading", "/instructions"],
+        Format::Rxr => &["/instruction_id", "/path_id", "/scan", "/path", "/heading", "/instruction"],
+        Format::Vlnce => &[
+            "/episode_id",
+            "/trajectory_id",
+            "/scene_id",
+            "/start_position",
+            "/start_rotation",
+            "/goals",
+            "/instruction",
+        ],
+        Format::Wayword => {
+            &["/format", "/platform", "/path", "/text", "/style", "/mentions", "/verdict", "/findings", "/provenance"]
+        }
+    }
+}
+
+fn names(format: Format) -> &'static [&'static str] {
+    match format {
+        Format::R2r => &["/path_id", "/scan", "/path/1"],
+        Format::Reverie => &["/id", "/path_id", "/scan", "/path/0", "/objId"],
+        Format::Rxr => &["/instruction_id", "/path_id", "/scan", "/path/2", "/split"],
+        Format::Vlnce => &["/episode_id", "/trajectory_id", "/scene_id"],
+        Format::Wayword => &["/path/id", "/path/scene", "/path/frames/1/viewpoint", "/platform"],
+    }
+}
+
+fn places(format: Format) -> &'static str {
+    match format {
+        Format::R2r | Format::Reverie | Format::Rxr => "/path",
+        Format::Vlnce => "/reference_path",
+        Format::Wayword => "/path/frames",
+    }
+}
+
+fn number_place(format: Format) -> &'static str {
+    match format {
+        Format::R2r | Format::Reverie | Format::Rxr => "/heading",
+        Format::Vlnce => "/start_position/1",
+        Format::Wayword => "/path/frames/0/pose/position/2",
+    }
+}
+
+/// A damaged file, and whether a reader may accept it.
+fn damaged(format: Format, damage: Damage, dice: &mut Dice) -> (Vec<u8>, bool) {
+    let mut items = common::items(format);
+    let index = dice.roll(items.len());
+    let lines = matches!(format, Format::Rxr | Format::Wayword);
+    let marked = |items: &mut Vec<Value>, place: &str| *items[index].pointer_mut(place).unwrap() = json!("MARK");
+    let render = |items: &[Value], with: &str| common::text(format, items).replace("\"MARK\"", with).into_bytes();
+    match damage {
+        Damage::Truncated => {
+            let mut text = common::text(format, &items).into_bytes();
+            text.truncate(dice.roll(text.len() - 1));
+            // A file of lines may end after any of them, and a line without its end may still be whole.
+            let whole = lines && (text.is_empty() || text.ends_with(b"\n") || text.ends_with(b"}"));
+            (text, whole)
+        }
+        Damage::ByteFlipped => {
+            let mut text = common::text(format, &items).into_bytes();
+            let place = dice.roll(text.len());
+            text[place] ^= 1 << dice.roll(8);
+            (text, true)
+        }
+        Damage::OtherType => {
+            let swaps = [json!(true), json!({}), json!([]), json!(-1.5), json!([[[]]]), json!("\u{0}")];
+            let place = dice.pick(needed(format));
+            let swap = dice.pick(&swaps);
+            // No text, number or list of instructions is missing where the swap is empty.
+            let may_pass = swap == json!([])
+                || (swap == json!(-1.5) && place == "/heading")
+                || place == "/style"
+                || swap == json!("\u{0}");
+            *items[index].pointer_mut(place).unwrap() = swap;
+            (render(&items, ""), may_pass)
+        }
+        Damage::NotANumber => {
+            marked(&mut items, number_place(format));
+            (render(&items, dice.pick(&["NaN", "-Infinity", "1e999", "-1e400", "null", "\"abc\"", "0x10"])), false)
+        }
+        Damage::ManyNodes => {
+            marked(&mut items, places(format));
+            let count = [1_001, 50_000, 300_000][dice.roll(3)];
+            (render(&items, &format!("[{}0]", "0,".repeat(count))), false)
+        }
+        Damage::OutsideName => {
+            let long = "x".repeat(200);
+            let name = dice.pick(&["../../etc/passwd", "..", "a\\b", "/abs/x", "line\nbreak", "", long.as_str()]);
+            let place = dice.pick(names(format));
+            *items[index].pointer_mut(place).unwrap() = json!(name);
+            (render(&items, ""), false)
+        }
+        Damage::KeyTwice => {
+            let text = common::text(format, &items);
+            let keys = ["\"path\":", "\"heading\":", "\"info\":", "\"text\":", "\"scan\":", "\"goals\":"];
+            let key = keys.iter().find(|key| text.contains(**key)).unwrap();
+            (text.replacen(key, &format!("{key} 1, {key}"), 1).into_bytes(), false)
+        }
+        Damage::Nested => {
+            marked(&mut items, dice.pick(needed(format)));
+            let depth = [200, 5_000, 100_000][dice.roll(3)];
+            (render(&items, &"[".repeat(depth)), false)
+        }
+        Damage::FieldGone => {
+            let field = dice.pick(needed(format)).trim_start_matches('/');
+            items[index].as_object_mut().unwrap().shift_remove(field);
+            (render(&items, ""), false)
+        }
+        Damage::ItemTwice => {
+            items.push(items[index].clone());
+            (render(&items, ""), false)
+        }
+    }
+}
+
+fn survives(format: Format) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("damaged.json");
+    let mut dice = Dice(derive(20_260_101, &[format.name()]));
+    let mut refused = 0;
+    for round in 0..1_000 {
+        let damage = ALL[round % ALL.len()];
+        let (bytes, may_pass) = damaged(format, damage, &mut dice);
+        std::fs::write(&file, &bytes).unwrap();
+        let shown = || String::from_utf8_lossy(&bytes[..bytes.len().min(2_000)]).into_owned();
+        match format.read(&file) {
+            Ok(_) => assert!(may_pass, "{format}: {damage:?} was accepted: {}", shown()),
+            Err(error) => {
+                refused += 1;
+                assert_clear(&error, &file);
+            }
+        }
+        // Whatever it is taken for, it must not bring the reader down either.
+        let _ = read(&file);
+    }
+    assert!(refused > 700, "only {refused} of 1,000 were refused");
+}
+
+fn assert_clear(error: &FormatError, file: &std::path::Path) {
+    let text = error.to_string();
+    assert!(text.starts_with(&file.display().to_string()), "does not name its file: {text}");
+    assert!(text.len() < 600, "rambles: {text}");
+    if let FormatError::Item(item) = error {
+        assert!(!item.field.is_empty() && !item.problem.is_empty(), "names no field: {text}");
+    }
+}
+
+#[test]
+fn r2r_reader_survives() {
+    survives(Format::R2r);
+}
+
+#[test]
+fn reverie_reader_survives() {
+    survives(Format::Reverie);
+}
+
+#[test]
+fn rxr_reader_survives() {
+    survives(Format::Rxr);
+}
+
+#[test]
+fn vlnce_reader_survives() {
+    survives(Format::Vlnce);
+}
+
+#[test]
+fn wayword_reader_survives() {
+    survives(Format::Wayword);
+}

@@ -1,0 +1,154 @@
+//! What is read and written again is what it was.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use proptest::prelude::*;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+use wayword_formats::{Format, read};
+
+fn number() -> impl Strategy<Value = Value> {
+    prop_oneof![
+        any::<i64>().prop_map(Value::from),
+        (-1e9..1e9f64).prop_map(Value::from),
+        any::<f32>()
+            .prop_filter("JSON has no NaN", |number| number.is_finite())
+            .prop_map(|number| Value::from(f64::from(number)))
+    ]
+}
+
+fn any_json() -> impl Strategy<Value = Value> {
+    let leaf = prop_oneof![
+        Just(Value::Null),
+        any::<bool>().prop_map(Value::from),
+        number(),
+        "\\PC{0,12}".prop_map(Value::from)
+    ];
+    leaf.prop_recursive(3, 16, 4, |inner| {
+        prop_oneof![
+            prop::collection::vec(inner.clone(), 0..4).prop_map(Value::from),
+            prop::collection::vec(("\\PC{0,6}", inner), 0..4).prop_map(|entries| entries.into_iter().collect())
+        ]
+    })
+}
+
+/// Fields that no format names.
+fn unknown() -> impl Strategy<Value = Vec<(String, Value)>> {
+    prop::collection::vec(("x_\\PC{0,8}", any_json()), 0..5)
+}
+
+/// Changes to an item that keep it valid: other values of the fields that every such item has.
+#[derive(Debug, Clone)]
+struct Change {
+    scene: String,
+    path: Vec<String>,
+    heading: Value,
+    text: String,
+    unknown: Vec<(String, Value)>,
+    reversed: bool,
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let heading = prop_oneof![(-10.0..10.0f64).prop_map(Value::from), (-3i64..9).prop_map(Value::from)];
+    let path = prop::collection::vec("[0-9a-f]{1,32}", 1..9);
+    ("[A-Za-z0-9_]{1,12}", path, heading, "\\PC{0,60}", unknown(), any::<bool>()).prop_map(
+        |(scene, path, heading, text, unknown, reversed)| Change { scene, path, heading, text, unknown, reversed },
+    )
+}
+
+fn changed(format: Format, n: usize, item: &Value, change: &Change) -> Value {
+    let mut item = item.as_object().unwrap().clone();
+    let scene = if format == Format::Wayword || format == Format::Vlnce { None } else { Some(&change.scene) };
+    if let Some(scene) = scene {
+        item["scan"] = json!(scene);
+        item["path"] = json!(change.path);
+        item["heading"] = change.heading.clone();
+    }
+    let text = json!(format!("{} {n}", change.text));
+    match format {
+        Format::R2r | Format::Reverie => item["instructions"] = json!([text, change.text]),
+        Format::Rxr => item["instruction"] = text,
+        Format::Vlnce => item["instruction"]["instruction_text"] = text,
+        Format::Wayword => {
+            item["text"] = text;
+            item["mentions"] = json!([]);
+        }
+    }
+    let bears_unknown = format != Format::Vlnce;
+    item.extend(change.unknown.iter().filter(|_| bears_unknown).cloned());
+    let entries: Vec<_> = item.into_iter().collect();
+    let ordered: Map<_, _> =
+        if change.reversed { entries.into_iter().rev().collect() } else { entries.into_iter().collect() };
+    ordered.into()
+}
+
+fn unknown_keys(item: &Value) -> Vec<&String> {
+    item.as_object().unwrap().keys().filter(|key| key.starts_with("x_")).collect()
+}
+
+fn comes_back(format: Format, ending: &str, changes: &[Change]) {
+    let items: Vec<_> = changes
+        .iter()
+        .zip(common::items(format))
+        .enumerate()
+        .map(|(n, (change, item))| changed(format, n, &item, change))
+        .collect();
+    let folder = tempfile::tempdir().unwrap();
+    let (file, copy) = (folder.path().join("file"), folder.path().join(format!("copy{ending}")));
+    std::fs::write(&file, common::text(format, &items)).unwrap();
+    common::copy(format, &file, &copy).unwrap();
+    assert_eq!(read(&copy).unwrap(), read(&file).unwrap());
+    if !ending.ends_with(".gz") {
+        let back = common::items_of(format, &copy);
+        assert_eq!(back, items);
+        for (back, item) in back.iter().zip(&items) {
+            assert_eq!(unknown_keys(back), unknown_keys(item), "unknown fields changed their order");
+        }
+    }
+    assert_no_leftovers(folder.path(), 2);
+}
+
+fn assert_no_leftovers(folder: &Path, files: usize) {
+    assert_eq!(std::fs::read_dir(folder).unwrap().count(), files);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn r2r(changes in prop::collection::vec(change(), 1..4)) {
+        comes_back(Format::R2r, ".json", &changes);
+    }
+
+    #[test]
+    fn reverie(changes in prop::collection::vec(change(), 1..4)) {
+        comes_back(Format::Reverie, ".json", &changes);
+    }
+
+    #[test]
+    fn rxr(changes in prop::collection::vec(change(), 1..4)) {
+        comes_back(Format::Rxr, ".jsonl", &changes);
+    }
+
+    #[test]
+    fn rxr_gz(changes in prop::collection::vec(change(), 1..4)) {
+        comes_back(Format::Rxr, ".jsonl.gz", &changes);
+    }
+
+    #[test]
+    fn vlnce(changes in prop::collection::vec(change(), 1..4)) {
+        comes_back(Format::Vlnce, ".json", &changes);
+    }
+
+    #[test]
+    fn vlnce_gz(changes in prop::collection::vec(change(), 1..4)) {
+        comes_back(Format::Vlnce, ".json.gz", &changes);
+    }
+
+    #[test]
+    fn wayword(changes in prop::collection::vec(change(), 1..4)) {
+        comes_back(Format::Wayword, ".jsonl", &changes);
+    }
+}
