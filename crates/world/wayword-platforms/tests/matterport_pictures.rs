@@ -1,5 +1,11 @@
 //! Pictures, held against what the genuine simulator drew, where its answers are at hand (`WAYWORD_DATA`).
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and says what it skipped or counted"
+)]
+
 use std::{f64::consts::FRAC_PI_6, path::PathBuf};
 use wayword_core::{Gaze, Heading, Platform, SceneId};
 use wayword_platforms::Matterport;

@@ -1,6 +1,12 @@
 //! The real buildings, where they are at hand: `WAYWORD_DATA` names their folder, `../shared/data` beside the repository
 //! is tried without it.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and says what it skipped or counted"
+)]
+
 use serde_json::Value;
 use std::path::PathBuf;
 use wayword_core::{Gaze, Heading, ObjectId, Path, PathRequest, Platform, SceneId, Side, ViewpointId};

@@ -26,7 +26,7 @@ const HINT: &str = "take the picture again from Matterport3D, or move it away to
 
 /// What a viewpoint was photographed as.
 pub(crate) enum Photographs {
-    Skybox { cube: CubeMap, world_from_skybox: DMat3 },
+    Skybox { cube: Box<CubeMap>, world_from_skybox: DMat3 },
     Views(ThirtySix),
 }
 
@@ -37,7 +37,7 @@ impl Photographs {
     /// When a picture is missing from its set, or broken.
     pub(crate) fn read(layout: &Layout, scene: &SceneId, at: &Viewpoint) -> Result<Option<Self>, PlatformError> {
         if let Some(files) = layout.skybox(scene, &at.id) {
-            return Ok(Some(Self::Skybox { cube: cube(&files)?, world_from_skybox: at.world_from_skybox }));
+            return Ok(Some(Self::Skybox { cube: Box::new(cube(&files)?), world_from_skybox: at.world_from_skybox }));
         }
         let views = layout.views(scene, &at.id).map(|folder| ThirtySix::read(&folder)).transpose()?;
         Ok(views.map(Self::Views))

@@ -1,0 +1,95 @@
+//! A small made-up building in the file formats of Matterport3D, REVERIE and R2R, for tests: two storeys with stairs, nine
+//! rooms, 14 viewpoints, 42 objects (some of one name), ten paths with instructions. Nothing of it is taken from a dataset.
+
+mod boxes;
+mod episodes;
+mod house_file;
+mod pictures;
+mod plan;
+
+use serde_json::{Value, json};
+use std::{fs, io, path::Path};
+
+pub use plan::{SCAN, viewpoint_id};
+
+/// Writes the building below `data`, laid out as a user's Matterport3D and REVERIE folders are:
+/// `matterport/connectivity`, `matterport/v1/scans`, `reverie` (boxes, `objpos.json`, `REVERIE_val_seen.json`) and
+/// `r2r/R2R_val_seen.json`. The same bytes each time.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_building(data: &Path) -> io::Result<()> {
+    let connectivity = data.join("matterport/connectivity");
+    write(&connectivity, &format!("{SCAN}_connectivity.json"), connectivity_file().to_string())?;
+    write(&connectivity, "scans.txt", format!("{SCAN}\n"))?;
+    let segmentations = data.join(format!("matterport/v1/scans/{SCAN}/house_segmentations"));
+    write(&segmentations, "panorama_to_region.txt", panorama_to_region())?;
+    write(&segmentations, &format!("{SCAN}.house"), house_file::text())?;
+    let reverie = data.join("reverie");
+    for (index, _) in plan::VIEWPOINTS.iter().enumerate() {
+        let file = format!("{SCAN}_{}.json", viewpoint_id(index));
+        write(&reverie.join("BBox"), &file, boxes::file(index).to_string())?;
+    }
+    write(&reverie, "objpos.json", object_positions().to_string())?;
+    write(&reverie, "REVERIE_val_seen.json", episodes::reverie().to_string())?;
+    write(&data.join("r2r"), "R2R_val_seen.json", episodes::r2r().to_string())
+}
+
+/// Adds photographs: a skybox per viewpoint (`VIEWPOINT_skybox_small.jpg`, six faces of 64 pixels), whose walls have
+/// [`wall_colour`]. Call it after [`write_building`].
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_skyboxes(data: &Path) -> io::Result<()> {
+    let folder = data.join(format!("matterport/v1/scans/{SCAN}/matterport_skybox_images"));
+    for (index, _) in plan::VIEWPOINTS.iter().enumerate() {
+        write(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), pictures::skybox()?)?;
+    }
+    Ok(())
+}
+
+pub use pictures::wall_colour;
+
+fn write(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    fs::write(folder.join(name), contents)
+}
+
+fn connectivity_file() -> Value {
+    let count = plan::VIEWPOINTS.len() + 1;
+    let mut items: Vec<Value> = plan::VIEWPOINTS
+        .iter()
+        .enumerate()
+        .map(|(index, viewpoint)| connectivity_item(index, plan::eye(viewpoint).to_array(), true, count))
+        .collect();
+    // A tripod place that was left out, as every real file has some.
+    items.push(connectivity_item(count - 1, [5.0, 4.0, 1.5], false, count));
+    Value::Array(items)
+}
+
+fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: usize) -> Value {
+    let open: Vec<bool> = (0..count).map(|other| plan::joined(index, other)).collect();
+    json!({
+        "image_id": viewpoint_id(index),
+        // The skybox's axes: x east, y down, z north.
+        "pose": [1.0, 0.0, 0.0, x, 0.0, 0.0, 1.0, y, 0.0, -1.0, 0.0, z, 0.0, 0.0, 0.0, 1.0],
+        "included": included,
+        "visible": open,
+        "unobstructed": open,
+        "height": plan::CAMERA_HEIGHT_M,
+    })
+}
+
+fn panorama_to_region() -> String {
+    let line = |(index, viewpoint): (usize, &plan::Viewpoint)| {
+        format!("{index} {} {} {}\n", viewpoint_id(index), viewpoint.room, plan::ROOMS[viewpoint.room].letter)
+    };
+    plan::VIEWPOINTS.iter().enumerate().map(line).collect()
+}
+
+fn object_positions() -> Value {
+    let centres =
+        plan::OBJECTS.iter().enumerate().map(|(id, object)| (id.to_string(), json!(plan::centre(object).to_array())));
+    let centres: serde_json::Map<String, Value> = centres.collect();
+    json!({ SCAN: centres })
+}
