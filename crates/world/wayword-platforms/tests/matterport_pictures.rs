@@ -7,7 +7,7 @@
 )]
 
 use std::{f64::consts::FRAC_PI_6, path::PathBuf};
-use wayword_core::{Gaze, Heading, Platform, SceneId};
+use wayword_core::{Gaze, Heading, Platform, SceneId, ViewpointId};
 use wayword_platforms::Matterport;
 
 fn oracle() -> Option<PathBuf> {
@@ -39,5 +39,32 @@ fn a_look_shows_what_the_simulator_shows() {
         let mean = off as f64 / shown.rgb().len() as f64;
         println!("{name}: mean difference {mean:.4} of 255");
         assert!(mean < 0.5, "{name}: {mean}");
+    }
+}
+
+/// A real panorama's 36 views, put under a viewpoint of the made-up building.
+#[cfg(unix)]
+#[test]
+fn along_the_axis_of_one_of_36_views_that_view_comes_back() {
+    let Some(oracle) = oracle() else { return };
+    let real = oracle.join("../../images/matterport_36_views");
+    let folder = tempfile::tempdir().unwrap();
+    wayword_testkit::write_building(folder.path()).unwrap();
+    let views = folder.path().join("views").join(wayword_testkit::SCAN);
+    std::fs::create_dir_all(&views).unwrap();
+    std::os::unix::fs::symlink(&real, views.join(wayword_testkit::viewpoint_id(0))).unwrap();
+    let platform = Matterport::open(folder.path()).unwrap();
+    let scene = SceneId::new(wayword_testkit::SCAN).unwrap();
+    let first = ViewpointId::new(wayword_testkit::viewpoint_id(0)).unwrap();
+    let frame = platform.graph(&scene).unwrap().walk(&[first], None).unwrap().remove(0);
+    for column in 0..12 {
+        let heading = Heading::new(f64::from(column) * FRAC_PI_6).unwrap();
+        let horizontal_fov_rad = 2.0 * (FRAC_PI_6.tan() * 4.0 / 3.0).atan();
+        let shown = platform.look(&scene, &frame, Gaze { heading, horizontal_fov_rad }).unwrap().image.unwrap();
+        let genuine = image::open(real.join(format!("{}.jpg", 12 + column))).unwrap().into_rgb8();
+        let off: u64 = genuine.as_raw().iter().zip(shown.rgb()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        let mean = off as f64 / shown.rgb().len() as f64;
+        println!("view {}: mean difference {mean:.2} of 255", 12 + column);
+        assert!(mean < 4.0, "view {}: {mean}", 12 + column);
     }
 }

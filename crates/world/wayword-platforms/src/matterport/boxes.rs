@@ -18,6 +18,8 @@ pub(crate) const FOCAL_PX: f64 = 415.692_193_816_530_5;
 
 /// More objects than stand within sight anywhere.
 const MAX_OBJECTS: usize = 10_000;
+/// The largest real file has 40 kB.
+const MAX_BYTES: u64 = 1 << 20;
 const HINT: &str = "take the file again from REVERIE's BBox.zip";
 
 /// An object that REVERIE lists at a viewpoint.
@@ -101,7 +103,7 @@ pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<Ray> {
 /// # Errors
 /// When it is not such a file; the message names the object and the field.
 pub(crate) fn read(file: &Path, viewpoint: &ViewpointId) -> Result<Option<Vec<Listed>>, PlatformError> {
-    let Some(bytes) = read::bytes_if_there(file, read::MAX_JSON_BYTES, HINT)? else {
+    let Some(bytes) = read::bytes_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);
     };
     parse(&bytes, viewpoint).map(Some).map_err(|reason| read::wrong(file, reason, HINT))

@@ -11,6 +11,8 @@ use wayword_core::{PlatformError, ViewpointId};
 
 /// More viewpoints than any building has (the largest has 345); the table of edges grows with the square.
 const MAX_VIEWPOINTS: usize = 4096;
+/// The largest real file has 1.5 MB. A list of zeros becomes a tree of about fifty times its size.
+const MAX_BYTES: u64 = 4 << 20;
 const HINT: &str = "take the file again from Matterport3DSimulator's folder `connectivity`";
 
 /// A building's viewpoints.
@@ -46,7 +48,7 @@ impl Viewpoint {
 /// # Errors
 /// When it is not such a file; the message names the viewpoint and the field.
 pub(crate) fn read(file: &Path) -> Result<Option<Connectivity>, PlatformError> {
-    let Some(bytes) = read::bytes_if_there(file, read::MAX_JSON_BYTES, HINT)? else {
+    let Some(bytes) = read::bytes_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);
     };
     parse(&bytes).map(Some).map_err(|reason| read::wrong(file, reason, HINT))

@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{ObjectId, PlatformError, ViewpointId};
 
-const MAX_BYTES: u64 = 256 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 /// Longest line that is read: the records have under 40 words.
 const MAX_WORDS: usize = 64;
 const HINT: &str = "take the file again from Matterport3D's house_segmentations";

@@ -42,13 +42,14 @@ const SLIPS: &[(&str, &str)] = &[
     ("windowframe", "window frame"),
 ];
 
-/// Words that belong to the building and not to what stands in it: nobody is sent to do something with them.
-const STRUCTURE: &[&str] = &[
+/// Words for parts of the building, and for what the annotators could not name: nobody is sent to do something with these.
+const NO_ERRAND: &[&str] = &[
     "arch",
     "archway",
     "baseboard",
     "beam",
     "ceiling",
+    "clutter",
     "column",
     "doorframe",
     "doorway",
@@ -58,8 +59,15 @@ const STRUCTURE: &[&str] = &[
     "frame",
     "ground",
     "hole",
+    "item",
+    "items",
+    "junk",
     "ledge",
+    "misc",
+    "miscellaneous",
     "molding",
+    "object",
+    "objects",
     "partition",
     "pillar",
     "pipe",
@@ -71,11 +79,12 @@ const STRUCTURE: &[&str] = &[
     "skirting",
     "soffit",
     "space",
+    "stuff",
     "trim",
     "unknown",
     "void",
-    "wall",
     "wainscoting",
+    "wall",
 ];
 
 /// Longest name that is kept, in characters.
@@ -117,7 +126,7 @@ fn mended(word: &str) -> &str {
 
 /// Whether a plain name is of something that one can be sent to do something with.
 pub(crate) fn is_furnishing(name: &str) -> bool {
-    !name.split(' ').any(|word| STRUCTURE.contains(&word))
+    !name.split(' ').any(|word| NO_ERRAND.contains(&word))
 }
 
 #[cfg(test)]

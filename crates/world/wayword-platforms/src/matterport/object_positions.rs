@@ -5,7 +5,8 @@ use glam::DVec3;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::PlatformError;
 
-const MAX_BYTES: u64 = 32 << 20;
+/// The file for all 90 buildings has about 2 MB.
+const MAX_BYTES: u64 = 8 << 20;
 const HINT: &str = "take the file again from REVERIE's repository";
 
 /// Centres by scan and object.

@@ -8,10 +8,6 @@ use std::{
 };
 use wayword_core::PlatformError;
 
-/// The most bytes that one JSON file may have; it is parsed into a tree of about 16 times its size. The largest real one
-/// (a connectivity file of 345 viewpoints) has 1.5 MB.
-pub(crate) const MAX_JSON_BYTES: u64 = 8 << 20;
-
 /// Numbers beyond this are no place in a building, metres.
 const MAX_COORDINATE_M: f64 = 1e6;
 
