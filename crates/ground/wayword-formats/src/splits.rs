@@ -1,8 +1,9 @@
 //! Which scenes are learnt from, and which are kept for judging.
 
 use crate::jsonl::{Record, Split};
+use rand::RngCore;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{SceneId, seed};
+use wayword_core::SceneId;
 
 /// Puts every scene into one of the two splits, and every record where its scene is.
 ///
@@ -21,7 +22,8 @@ fn val_scenes(records: &[Record], val_share: f64, seed: u64) -> BTreeMap<String,
     let mut drawn: BTreeMap<String, BTreeSet<(u64, SceneId)>> = BTreeMap::new();
     for record in records {
         let (platform, scene) = (&record.platform, &record.path.scene);
-        let lot = seed::derive(seed, &["split", platform, scene.as_str()]);
+        // Drawn by a generator: the derived seeds themselves are too much alike where names are.
+        let lot = wayword_core::rng(seed, &["split", platform, scene.as_str()]).next_u64();
         drawn.entry(platform.clone()).or_default().insert((lot, scene.clone()));
     }
     let first = |(platform, scenes): (String, BTreeSet<(u64, SceneId)>)| {

@@ -100,9 +100,12 @@ fn scene_of(item: &Item<'_>, value: &Value) -> Result<SceneId, FormatError> {
     if outside || text.contains('\\') {
         return Err(item.wrong("scene_id", "it leads out of the folder of scenes", HINT));
     }
-    let name = text.rsplit('/').next().unwrap_or(text);
-    let bare = name.rsplit_once('.').map_or(name, |(bare, _)| bare);
-    SceneId::new(bare).map_err(|error| item.wrong("scene_id", error.to_string(), HINT))
+    SceneId::new(bare_scene(text)).map_err(|error| item.wrong("scene_id", error.to_string(), HINT))
+}
+
+fn bare_scene(mesh: &str) -> &str {
+    let name = mesh.rsplit('/').next().unwrap_or(mesh);
+    name.rsplit_once('.').map_or(name, |(bare, _)| bare)
 }
 
 fn take_positions(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), FormatError> {
@@ -226,7 +229,7 @@ fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) ->
         let rotation = serde_json::from_value::<[f64; 4]>(value.clone()).ok();
         rotation.and_then(heading_from_habitat) == Some(heading)
     };
-    let same_scene = |value: &Value| value.as_str().is_some_and(|text| text.contains(scene.as_str()));
+    let same_scene = |value: &Value| value.as_str().map(bare_scene) == Some(scene.as_str());
     let mut put = |key: &str, value: Value| drop(fields.insert(key.to_owned(), value));
     put("trajectory_id", episode.name_field("trajectory_id", &episode.path_id));
     put("scene_id", episode.field("scene_id", same_scene, || format!("mp3d/{scene}/{scene}.glb").into()));

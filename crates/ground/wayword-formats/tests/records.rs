@@ -1,0 +1,130 @@
+//! Records of several platforms in one dataset, split by scene.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use proptest::prelude::*;
+use serde_json::{Value, json};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+use wayword_formats::{
+    Format,
+    jsonl::{self, Record, Split},
+    split,
+};
+
+fn records(folder: &Path, platform: &str, scenes: &[usize]) -> PathBuf {
+    let template = &common::items(Format::Wayword)[0];
+    let record = |(n, scene): (usize, &usize)| {
+        let mut record = template.clone();
+        record.as_object_mut().unwrap().shift_remove("split");
+        record["platform"] = json!(platform);
+        record["path"]["id"] = json!(format!("p{n}"));
+        record["path"]["scene"] = json!(format!("scene{scene}"));
+        record
+    };
+    let records: Vec<Value> = scenes.iter().enumerate().map(record).collect();
+    let file = folder.join(format!("{platform}.jsonl"));
+    std::fs::write(&file, common::text(Format::Wayword, &records)).unwrap();
+    file
+}
+
+fn splits_of_scenes(records: &[Record]) -> BTreeMap<(&str, &str), BTreeSet<Split>> {
+    let mut scenes: BTreeMap<_, BTreeSet<_>> = BTreeMap::new();
+    for record in records {
+        let key = (record.platform.as_str(), record.path.scene.as_str());
+        scenes.entry(key).or_default().insert(record.split.unwrap());
+    }
+    scenes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn a_scene_is_in_one_split_and_each_platform_in_both(
+        a in prop::collection::vec(0usize..9, 1..24),
+        b in prop::collection::vec(0usize..9, 1..24),
+        share in 0.05..0.95f64,
+        seed in any::<u64>(),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        let files = [records(folder.path(), "house", &a), records(folder.path(), "matterport", &b)];
+        let mut merged = jsonl::merge(&files).unwrap();
+        prop_assert_eq!(merged.len(), a.len() + b.len());
+        split(&mut merged, share, seed);
+        let scenes = splits_of_scenes(&merged);
+        prop_assert!(scenes.values().all(|splits| splits.len() == 1));
+        for platform in ["house", "matterport"] {
+            let of_platform: Vec<_> = scenes.iter().filter(|((name, _), _)| *name == platform).collect();
+            let in_val = of_platform.iter().filter(|(_, splits)| splits.contains(&Split::Val)).count();
+            prop_assert!(of_platform.len() < 2 || (1..of_platform.len()).contains(&in_val));
+        }
+
+        let mut backwards = jsonl::merge(&[&files[1], &files[0]]).unwrap();
+        backwards.reverse();
+        split(&mut backwards, share, seed);
+        prop_assert_eq!(splits_of_scenes(&backwards), scenes);
+
+        let file = folder.path().join("all.jsonl.gz");
+        jsonl::write(&file, &merged).unwrap();
+        prop_assert_eq!(jsonl::read(&file).unwrap(), merged);
+    }
+}
+
+#[test]
+fn another_seed_chooses_other_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = records(folder.path(), "house", &(0..40).collect::<Vec<_>>());
+    let val = |seed| {
+        let mut records = jsonl::read(&file).unwrap();
+        split(&mut records, 0.25, seed);
+        records
+            .into_iter()
+            .filter(|record| record.split == Some(Split::Val))
+            .map(|record| record.path.scene)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!((val(1).len(), val(2).len()), (10, 10));
+    assert_ne!(val(1), val(2));
+}
+
+#[test]
+fn what_cannot_be_in_one_dataset_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = records(folder.path(), "house", &[1, 1]);
+    let twice = jsonl::merge(&[&file, &file]).unwrap_err().to_string();
+    assert!(twice.contains("line 1 (id p0): field \"text\": path \"p0\" has this very instruction already"), "{twice}");
+
+    let mut records = jsonl::read(&file).unwrap();
+    records[0].split = Some(Split::Train);
+    records[1].split = Some(Split::Val);
+    let leak = jsonl::write(&file, &records).unwrap_err().to_string();
+    assert!(leak.contains("scene scene1 is in train and in val"), "{leak}");
+
+    records[1].split = None;
+    records[1].path.id = records[0].path.id.clone();
+    records[1].path.frames.truncate(1);
+    let other = jsonl::write(&file, &records).unwrap_err().to_string();
+    assert!(other.contains("another path of the name \"p0\""), "{other}");
+    assert_eq!(jsonl::read(&file).unwrap().len(), 2, "a refused write touched the file");
+}
+
+#[test]
+fn records_come_to_one_episode_per_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = records(folder.path(), "house", &[1, 2]);
+    let mut records = jsonl::read(&file).unwrap();
+    let mut other = records[0].clone();
+    other.instruction.style = "reverie".into();
+    other.instruction.text = "Go to the door".into();
+    other.instruction.mentions.clear();
+    records.push(other);
+    let episodes = jsonl::episodes(&records);
+    assert_eq!(episodes.len(), 2);
+    assert_eq!(episodes[0].instructions, ["Walk to the door and stop.", "Go to the door"]);
+    assert_eq!(episodes[0].viewpoints.len(), 2);
+}

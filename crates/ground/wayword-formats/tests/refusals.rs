@@ -1,0 +1,127 @@
+//! What a refusal says: file, item, field, and what to do.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use serde_json::{Value, json};
+use std::io::Write;
+use wayword_formats::{Format, detect, read};
+
+/// The message, without the folder.
+fn refusal(format: Format, name: &str, bytes: &[u8]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join(name);
+    std::fs::write(&file, bytes).unwrap();
+    let text = format.read(&file).unwrap_err().to_string();
+    text.replace(&format!("{}/", folder.path().display()), "")
+}
+
+fn refusal_of(format: Format, field: &str, value: Value) -> String {
+    let mut items = common::items(format);
+    *items[1].pointer_mut(field).unwrap() = value;
+    refusal(format, "data.json", common::text(format, &items).as_bytes())
+}
+
+#[test]
+fn a_refusal_names_file_item_and_field() {
+    assert_eq!(
+        refusal_of(Format::Reverie, "/heading", json!("abc")),
+        "data.json: item 1 (id 1_66): field \"heading\": expected a finite number, found \"abc\"; write it as a JSON number"
+    );
+    assert_eq!(
+        refusal_of(Format::R2r, "/path/2", json!(5)),
+        "data.json: item 1 (id 1): field \"path[2]\": expected a text, found 5; put it in quotes"
+    );
+    assert_eq!(
+        refusal_of(Format::Rxr, "/scan", json!("a/b")),
+        "data.json: line 2 (id 1): field \"scan\": scene \"a/b\" could name another folder: path separators are not allowed in \
+         an id; give the scan's bare name"
+    );
+    assert_eq!(
+        refusal_of(Format::Vlnce, "/start_rotation", json!([0, 0, 0, 0])),
+        "data.json: item 1 (id 1): field \"start_rotation\": it is no rotation with a heading; write a quaternion of length 1 \
+         as x, y, z, w"
+    );
+    assert_eq!(
+        refusal_of(Format::Wayword, "/path/frames/1/pose/heading", Value::Null),
+        "data.json: line 2 (id house-1): field \"path.frames[1]\": invalid type: null, expected f64; docs/FORMATS.md tells what \
+         it should be"
+    );
+}
+
+#[test]
+fn json_that_is_none_is_refused_where_it_breaks() {
+    let text = common::text(Format::R2r, &common::items(Format::R2r));
+    let at = text.rfind("1.5").unwrap();
+    assert_eq!(
+        refusal(Format::R2r, "data.json", &text.as_bytes()[..at]),
+        format!(
+            "data.json: item 2: field \"heading\": EOF while parsing a value (line 1, column {at}); fetch the file again, or mend it there"
+        )
+    );
+    let twice = text.replacen("\"scan\":", "\"scan\":\"x\",\"scan\":", 1);
+    assert!(
+        refusal(Format::R2r, "data.json", twice.as_bytes())
+            .starts_with("data.json: item 0: field \"scan\": it is given twice")
+    );
+    assert!(refusal(Format::R2r, "data.json", b"{}").contains("expected a list of items"));
+    assert!(refusal(Format::Vlnce, "data.json", b"{}").contains("field \"episodes\" is missing"));
+    assert!(refusal(Format::Vlnce, "data.json", b"{\"episodes\": []}").contains("instruction_vocab.word_list"));
+    assert!(refusal(Format::R2r, "data.json", b"[] []").contains("trailing characters"));
+}
+
+#[test]
+fn evidence_that_leads_out_of_its_text_or_path_is_refused() {
+    for (field, value) in
+        [("/mentions/0/span", json!([12, 999])), ("/mentions/0/span", json!([16, 12])), ("/mentions/0/frame", json!(2))]
+    {
+        let text = refusal_of(Format::Wayword, field, value);
+        assert!(text.contains("field \"mentions[0]\": it leads out of the text or the path"), "{text}");
+    }
+}
+
+#[test]
+fn limits_on_texts_and_lists_hold() {
+    let long = refusal_of(Format::R2r, "/instructions/0", json!("x".repeat(20_001)));
+    assert!(long.contains("field \"instructions[0]\": it has 20001 bytes"), "{long}");
+    let many = refusal_of(Format::R2r, "/instructions", json!(vec!["x"; 1_001]));
+    assert!(many.contains("it has 1001 entries"), "{many}");
+    let parts = refusal_of(Format::R2r, "/distance", json!(vec![0; 200_001]));
+    assert!(parts.contains("it has too many parts"), "{parts}");
+    let line = refusal(Format::Rxr, "data.jsonl", &vec![b' '; (16 << 20) + 2]);
+    assert!(line.contains("line 1"), "{line}");
+}
+
+#[test]
+fn a_gzip_bomb_ends_at_the_limit_of_a_line() {
+    let mut bomb = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    for _ in 0..64 {
+        bomb.write_all(&vec![b' '; 1 << 20]).unwrap();
+    }
+    let bomb = bomb.finish().unwrap();
+    assert!(bomb.len() < 1 << 20);
+    assert!(refusal(Format::Rxr, "bomb.jsonl.gz", &bomb).contains("line 1"));
+}
+
+#[test]
+fn a_file_of_more_than_a_gibibyte_is_not_even_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("huge.json");
+    // Sparse: it takes no room on the disk.
+    std::fs::File::create(&file).unwrap().set_len((1 << 30) + 1).unwrap();
+    assert!(read(&file).unwrap_err().to_string().contains("it is larger than 1 GiB"));
+}
+
+#[test]
+fn what_is_no_dataset_is_told_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("notes.txt");
+    for text in ["", "hello", "[]", "[1]", "{\"a\": 1}", "{\"a\": 1"] {
+        std::fs::write(&file, text).unwrap();
+        let error = detect(&file).unwrap_err().to_string();
+        assert!(error.contains("notes.txt: its beginning is that of no known format"), "{text:?}: {error}");
+    }
+    assert!(detect(folder.path()).unwrap_err().to_string().contains("is not a file"));
+    assert!(detect(&folder.path().join("none")).unwrap_err().to_string().contains("cannot open it"));
+}
