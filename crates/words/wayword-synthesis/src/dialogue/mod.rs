@@ -9,7 +9,7 @@ mod summary;
 
 use wayword_core::{Caption, Exchange};
 
-pub(crate) use answers::{counted, sightings, with_article};
+pub(crate) use answers::{counted, plural, sightings, with_article};
 pub use questions::RulesAsker;
 pub use summary::{RulesSummariser, condense};
 

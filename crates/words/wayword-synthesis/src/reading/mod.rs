@@ -54,7 +54,7 @@ pub struct Place {
     pub is_thing: bool,
     /// Whether the name can be a room's.
     pub is_room: bool,
-    /// It stands after "next to", "across from" and the like, so it need not lie on the path itself.
+    /// A room after "next to", "across from" and the like: it need not lie on the path itself.
     pub related: bool,
     /// The side of the walker on which it is said to be ("on your left").
     pub side: Option<Side>,

@@ -39,7 +39,8 @@ pub(super) fn places(
     }
     let event = |place: Found| {
         let span = [tokens[place.from].span[0], tokens[place.to - 1].span[1]];
-        let (related, side) = (is_related(tokens, place.from), side_after(tokens, place.to));
+        let side = side_after(tokens, place.to);
+        let related = place.is_room && is_related(tokens, place.from);
         let Found { name, is_thing, is_room, .. } = place;
         let what = What::Place(Place { name, is_thing, is_room, related, side, tells_turn: false });
         Event { what, span, clause: clauses[place.from] }

@@ -1,0 +1,33 @@
+//! One file per command.
+
+mod check;
+mod completions;
+mod demo;
+mod export;
+mod generate;
+mod house;
+mod report;
+
+use crate::{
+    cli::Command,
+    error::{Error, Exit},
+    output::Output,
+};
+
+pub use generate::{Summary, generate_into};
+
+/// Runs a command.
+///
+/// # Errors
+/// What went wrong, to be told once.
+pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
+    match command {
+        Command::Demo(args) => demo::run(&args, output),
+        Command::Generate(args) => generate::run(&args, output),
+        Command::Check(args) => check::run(&args, output),
+        Command::Export(args) => export::run(&args, output),
+        Command::Report(args) => report::run(&args, output),
+        Command::House(args) => house::run(&args, output),
+        Command::Completions { shell } => completions::run(shell),
+    }
+}

@@ -1,0 +1,83 @@
+//! What can go wrong, told once, and the exit codes of the program.
+
+use std::{path::PathBuf, process::ExitCode};
+use wayword_core::PlatformError;
+use wayword_formats::FormatError;
+use wayword_synthesis::{observe::ObserveError, style::StyleError};
+
+/// How the program ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exit {
+    /// Everything was done, and every check passed.
+    Done = 0,
+    /// The input was wrong: a flag, a file, a folder. Nothing was written.
+    BadInput = 1,
+    /// Done, but some items were rejected or failed their checks; each with its reason.
+    WithLoss = 3,
+    /// Another process works in the same run folder.
+    Busy = 4,
+}
+// 2 is clap's own: the command line could not be read.
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        ExitCode::from(exit as u8)
+    }
+}
+
+/// An error of a command.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A world's.
+    #[error(transparent)]
+    Platform(#[from] PlatformError),
+    /// A dataset file's.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// A style's.
+    #[error(transparent)]
+    Style(#[from] StyleError),
+    /// A walk could not be seen.
+    #[error(transparent)]
+    Observe(#[from] ObserveError),
+    /// The file system would not.
+    #[error("{}: cannot {doing}: {source}", path.display())]
+    Io {
+        /// Which file or folder.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// What was asked for does not make sense.
+    #[error("{problem}\nhint: {hint}")]
+    Usage {
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        hint: String,
+    },
+    /// Another process has the run folder.
+    #[error("{}: another wayword is at work in this run folder\nhint: wait for it, or give another --out", .0.display())]
+    Busy(PathBuf),
+}
+
+impl Error {
+    /// A mistake of the user's, with the way out.
+    pub fn usage(problem: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self::Usage { problem: problem.into(), hint: hint.into() }
+    }
+
+    /// A failed file operation.
+    pub fn io(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { path, doing, source }
+    }
+
+    /// The exit code that it ends the program with.
+    #[must_use]
+    pub fn exit_code(&self) -> Exit {
+        if matches!(self, Self::Busy(_)) { Exit::Busy } else { Exit::BadInput }
+    }
+}

@@ -1,0 +1,119 @@
+//! What a run works through: paths from episodes, or random ones.
+
+use crate::{error::Error, settings::Settings};
+use std::collections::BTreeSet;
+use wayword_core::{Path, Platform, PlatformError, SceneId, seed};
+use wayword_formats::Episode;
+use wayword_platforms::path_of;
+
+/// Something to write instructions for.
+#[derive(Debug, Clone)]
+pub enum Item {
+    /// An episode of a dataset.
+    Episode(Box<Episode>),
+    /// The n-th random path, in this scene.
+    Random {
+        /// Its number, from 0.
+        number: usize,
+        /// Where it lies.
+        scene: SceneId,
+    },
+}
+
+/// The items of a run, in their order.
+///
+/// # Errors
+/// When the episodes cannot be read, or nothing is left.
+pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
+    let mut items = match &settings.episodes {
+        Some(file) => episodes(wayword_formats::read(file)?, settings)?,
+        None => random(settings, platform)?,
+    };
+    items.truncate(settings.limit.unwrap_or(usize::MAX));
+    if items.is_empty() {
+        return Err(Error::usage("there is nothing to do: no episode is left", "check --scan, --limit and --episodes"));
+    }
+    Ok(items)
+}
+
+fn episodes(episodes: Vec<Episode>, settings: &Settings) -> Result<Vec<Item>, Error> {
+    if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
+        let problem = format!("episode {} names no viewpoints, and the paths of these platforms run over viewpoints", blind.id);
+        return Err(Error::usage(problem, "give an R2R, REVERIE, RxR or Wayword file"));
+    }
+    let wanted = |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
+    Ok(episodes.into_iter().filter(wanted).map(|episode| Item::Episode(Box::new(episode))).collect())
+}
+
+fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
+    let mut scenes = Vec::new();
+    for name in &settings.scan {
+        let scene = SceneId::new(name.as_str()).map_err(|error| Error::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
+        platform.graph(&scene)?;
+        scenes.push(scene);
+    }
+    if scenes.is_empty() {
+        scenes = platform.scenes()?;
+    }
+    if scenes.is_empty() {
+        return Err(Error::usage("the platform offers no scene", "check --data"));
+    }
+    Ok((0..settings.paths).map(|number| Item::Random { number, scene: scenes[number % scenes.len()].clone() }).collect())
+}
+
+impl Item {
+    /// Its name, unique within the run; known before its path is.
+    #[must_use]
+    pub fn id(&self) -> String {
+        match self {
+            Self::Episode(episode) => episode.id.clone(),
+            Self::Random { number, scene } => format!("{scene}_{number}"),
+        }
+    }
+
+    /// Its path.
+    ///
+    /// # Errors
+    /// When an episode does not fit the world, or the scene holds no random path of the kind asked for.
+    pub fn path(&self, settings: &Settings, platform: &dyn Platform) -> Result<Path, PlatformError> {
+        match self {
+            Self::Episode(episode) => {
+                path_of(platform, self.id(), &episode.scene, &episode.viewpoints, episode.start_heading, episode.target_object.as_ref())
+            }
+            Self::Random { number, scene } => {
+                let path = platform.sample_path(scene, &settings.request, seed::derive(settings.seed, &["path", &number.to_string()]))?;
+                Ok(Path { id: self.id(), ..path })
+            }
+        }
+    }
+
+    /// What people said about it.
+    #[must_use]
+    pub fn originals(&self) -> &[String] {
+        match self {
+            Self::Episode(episode) => &episode.instructions,
+            Self::Random { .. } => &[],
+        }
+    }
+
+    /// The name of its path in its dataset, which several items may share.
+    #[must_use]
+    pub fn path_id(&self) -> String {
+        match self {
+            Self::Episode(episode) => episode.path_id.clone(),
+            Self::Random { number, .. } => number.to_string(),
+        }
+    }
+}
+
+/// Refuses items of one name: the run folder tells them apart by it.
+///
+/// # Errors
+/// When two items share a name.
+pub fn distinct(items: &[Item]) -> Result<(), Error> {
+    let mut seen = BTreeSet::new();
+    match items.iter().map(Item::id).find(|id| !seen.insert(id.clone())) {
+        Some(twice) => Err(Error::usage(format!("item {twice} comes twice"), "give each item of the episodes file an id of its own")),
+        None => Ok(()),
+    }
+}

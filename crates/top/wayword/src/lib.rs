@@ -1,0 +1,14 @@
+//! The command line of Wayword: configuration, wiring, progress, run folders and reports.
+//!
+//! A library beside the binary, so that the repository's own measurements run exactly what users run.
+
+pub mod cli;
+pub mod commands;
+pub mod error;
+pub mod item;
+pub mod output;
+pub mod pipeline;
+pub mod run;
+pub mod settings;
+pub mod styles;
+pub mod world;

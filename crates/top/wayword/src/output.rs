@@ -1,0 +1,62 @@
+//! The only place that writes to the terminal: data to standard output, talk and progress to standard error.
+#![allow(clippy::print_stdout, clippy::print_stderr)] // This is the place where that is done.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
+use std::{
+    fmt::Display,
+    io::{self, IsTerminal, Write},
+};
+
+/// How the program speaks.
+#[derive(Debug, Clone, Copy)]
+pub struct Output {
+    json: bool,
+    quiet: bool,
+}
+
+impl Output {
+    /// `json`: data as JSON; `quiet`: no talk, no progress.
+    #[must_use]
+    pub fn new(json: bool, quiet: bool) -> Self {
+        Self { json, quiet }
+    }
+
+    /// Whether data is wanted as JSON.
+    #[must_use]
+    pub fn is_json(&self) -> bool {
+        self.json
+    }
+
+    /// Data: `value` as JSON where that is wanted, else the text. A reader that has gone away is no error.
+    pub fn data(&self, value: &impl Serialize, text: impl Display) {
+        let line = if self.json { serde_json::to_string(value).unwrap_or_default() } else { text.to_string() };
+        let _ = writeln!(io::stdout(), "{}", line.trim_end());
+    }
+
+    /// Talk.
+    pub fn say(&self, text: impl Display) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+
+    /// An error.
+    pub fn error(&self, error: &impl Display) {
+        let red = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+        eprintln!("{}: {error}", if red { "\x1b[31merror\x1b[0m" } else { "error" });
+    }
+
+    /// A progress bar; hidden where nobody looks.
+    #[must_use]
+    pub fn progress(&self, total: usize, what: &'static str) -> ProgressBar {
+        let bar = ProgressBar::new(total as u64);
+        if self.quiet || !io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        let style = ProgressStyle::with_template("{prefix} {bar:32} {pos}/{len}  {msg}  {eta} left");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_prefix(what);
+        bar
+    }
+}

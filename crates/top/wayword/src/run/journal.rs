@@ -1,0 +1,171 @@
+//! A file of JSON lines that is only ever appended to.
+
+use crate::error::Error;
+use serde::{Serialize, de::DeserializeOwned};
+use serde_json::Value;
+use std::{
+    collections::BTreeSet,
+    fs::{self, File},
+    io::{self, BufRead, BufReader, Read, Write},
+    path::{Path, PathBuf},
+};
+
+/// Longest line that is read, bytes.
+const MOST_LINE_BYTES: u64 = 64 << 20;
+
+/// A file of JSON lines with the keys of the lines that it holds.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+    keys: BTreeSet<String>,
+    key_of: fn(&Value) -> Option<String>,
+}
+
+impl Journal {
+    /// Opens or makes it, and cuts off a torn last line: what a killed process was writing.
+    ///
+    /// # Errors
+    /// When it cannot be read or a whole line in it is not one of its kind.
+    pub fn open(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, Error> {
+        let file = File::options().create(true).append(true).read(true).open(path).map_err(Error::io(path, "open"))?;
+        let whole = whole_bytes(path).map_err(Error::io(path, "read"))?;
+        file.set_len(whole).map_err(Error::io(path, "cut off a torn line of"))?;
+        let mut keys = BTreeSet::new();
+        for (number, line) in lines(path)?.enumerate() {
+            let value: Value = parse(path, number, &line?)?;
+            keys.insert(key_of(&value).ok_or_else(|| broken(path, number, "it lacks the fields that name it"))?);
+        }
+        Ok(Self { path: path.to_owned(), file, keys, key_of })
+    }
+
+    /// Whether it holds a line of that key.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.keys.contains(key)
+    }
+
+    /// How many lines it holds.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.keys.len()
+    }
+
+    /// Whether it holds none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.keys.is_empty()
+    }
+
+    /// Appends a line in one write, unless one of its key is there.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn append(&mut self, record: &impl Serialize) -> Result<(), Error> {
+        let fail = |error: serde_json::Error| Error::Io { path: self.path.clone(), doing: "write", source: error.into() };
+        let value = serde_json::to_value(record).map_err(fail)?;
+        let key = (self.key_of)(&value).ok_or_else(|| Error::Io { path: self.path.clone(), doing: "write a record without a name to", source: io::ErrorKind::InvalidData.into() })?;
+        if !self.keys.insert(key) {
+            return Ok(());
+        }
+        let mut line = serde_json::to_vec(&value).map_err(fail)?;
+        line.push(b'\n');
+        self.file.write_all(&line).map_err(Error::io(&self.path, "write"))
+    }
+
+    /// Makes sure that it survives a crash of the machine.
+    ///
+    /// # Errors
+    /// When it cannot be flushed.
+    pub fn sync(&mut self) -> Result<(), Error> {
+        self.file.sync_data().map_err(Error::io(&self.path, "flush"))
+    }
+}
+
+/// The length of a file up to the end of its last whole line.
+fn whole_bytes(path: &Path) -> io::Result<u64> {
+    let mut reader = BufReader::new(File::open(path)?);
+    let (mut read, mut whole) = (0, 0);
+    loop {
+        let buffer = reader.fill_buf()?;
+        if buffer.is_empty() {
+            return Ok(whole);
+        }
+        if let Some(last) = buffer.iter().rposition(|byte| *byte == b'\n') {
+            whole = read + last as u64 + 1;
+        }
+        let length = buffer.len();
+        read += length as u64;
+        reader.consume(length);
+    }
+}
+
+/// The lines of a file, each bounded.
+fn lines(path: &Path) -> Result<impl Iterator<Item = Result<String, Error>> + use<>, Error> {
+    let mut reader = BufReader::new(File::open(path).map_err(Error::io(path, "open"))?);
+    let path = path.to_owned();
+    Ok(std::iter::from_fn(move || {
+        let mut line = String::new();
+        match reader.by_ref().take(MOST_LINE_BYTES).read_line(&mut line) {
+            Ok(0) => None,
+            Ok(_) => Some(Ok(line)),
+            Err(source) => Some(Err(Error::Io { path: path.clone(), doing: "read", source })),
+        }
+    }))
+}
+
+fn parse<T: DeserializeOwned>(path: &Path, number: usize, line: &str) -> Result<T, Error> {
+    serde_json::from_str(line).map_err(|error| broken(path, number, error))
+}
+
+fn broken(path: &Path, number: usize, problem: impl std::fmt::Display) -> Error {
+    Error::usage(format!("{}: line {}: {problem}", path.display(), number + 1), "the file was changed by hand or by another program: use another run folder")
+}
+
+/// Reads every whole line of a file of records; a file that is not there holds none.
+///
+/// # Errors
+/// When it cannot be read, or a line is not of the kind.
+pub fn read_lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, Error> {
+    if !fs::exists(path).map_err(Error::io(path, "look for"))? {
+        return Ok(Vec::new());
+    }
+    let whole = |line: &Result<String, Error>| line.as_ref().map_or(true, |line| line.ends_with('\n'));
+    lines(path)?.enumerate().take_while(|(_, line)| whole(line)).map(|(number, line)| parse(path, number, &line?)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn key(value: &Value) -> Option<String> {
+        Some(value.get("id")?.as_str()?.to_owned())
+    }
+
+    #[test]
+    fn a_torn_line_is_cut_off_and_written_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.jsonl");
+        let mut journal = Journal::open(&path, key).unwrap();
+        journal.append(&json!({"id": "a"})).unwrap();
+        journal.append(&json!({"id": "b"})).unwrap();
+        drop(journal);
+        let whole = fs::read(&path).unwrap();
+        for cut in 0..whole.len() {
+            fs::write(&path, &whole[..cut]).unwrap();
+            let mut journal = Journal::open(&path, key).unwrap();
+            journal.append(&json!({"id": "a"})).unwrap();
+            journal.append(&json!({"id": "b"})).unwrap();
+            assert_eq!(fs::read(&path).unwrap(), whole, "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_no_record_is_refused_with_its_number() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.jsonl");
+        fs::write(&path, "{\"id\": \"a\"}\nnonsense\n").unwrap();
+        assert!(Journal::open(&path, key).unwrap_err().to_string().contains("line 2"));
+    }
+}

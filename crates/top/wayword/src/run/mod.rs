@@ -1,0 +1,142 @@
+//! The run folder: what a run was asked to do, and what it has done so far.
+//!
+//! `config.toml` as resolved, `walks.jsonl` (paths, captions and dialogues), `instructions.jsonl` (Wayword records),
+//! `rejected.jsonl` (with reasons), `frames/`. A process that is killed leaves at most one torn last line in each file; the
+//! next one cuts it off and goes on where it stopped, and the files end up the same byte for byte.
+
+mod journal;
+mod record;
+
+use crate::{error::Error, settings::Settings};
+use std::{
+    collections::BTreeSet,
+    fs::{self, File, TryLockError},
+    path::{Path, PathBuf},
+};
+
+pub use journal::{Journal, read_lines};
+pub use record::{Map, Rejected, WalkRecord, extra};
+
+/// A run folder that this process alone works in.
+#[derive(Debug)]
+pub struct RunFolder {
+    folder: PathBuf,
+    /// Paths and captions, one line per item.
+    pub walks: Journal,
+    /// Accepted instructions, one line each.
+    pub instructions: Journal,
+    /// Rejected ones, and items that failed.
+    pub rejected: Journal,
+    /// Held for as long as the folder is worked in.
+    _lock: File,
+}
+
+/// Names of the files in a run folder.
+pub mod file {
+    /// The settings as resolved.
+    pub const CONFIG: &str = "config.toml";
+    /// Paths and captions.
+    pub const WALKS: &str = "walks.jsonl";
+    /// Accepted instructions.
+    pub const INSTRUCTIONS: &str = "instructions.jsonl";
+    /// Rejected ones.
+    pub const REJECTED: &str = "rejected.jsonl";
+    /// Pictures of frames.
+    pub const FRAMES: &str = "frames";
+    /// The report.
+    pub const REPORT: &str = "report.html";
+    /// Held by the process that works in the folder.
+    pub const LOCK: &str = "run.lock";
+}
+
+impl RunFolder {
+    /// Opens a run folder for work: makes it, or goes on with what is there.
+    ///
+    /// # Errors
+    /// When another process works in it, it holds a run with other settings, or it cannot be written.
+    pub fn open(folder: &Path, settings: &Settings) -> Result<Self, Error> {
+        fs::create_dir_all(folder).map_err(Error::io(folder, "make the run folder"))?;
+        let lock = lock(folder)?;
+        keep_config(folder, settings)?;
+        Ok(Self {
+            walks: Journal::open(&folder.join(file::WALKS), WalkRecord::key_of)?,
+            instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
+            rejected: Journal::open(&folder.join(file::REJECTED), Rejected::key_of)?,
+            folder: folder.to_owned(),
+            _lock: lock,
+        })
+    }
+
+    /// Where pictures of frames go.
+    #[must_use]
+    pub fn frames(&self) -> PathBuf {
+        self.folder.join(file::FRAMES)
+    }
+
+    /// Whether an item needs no more work: each style has its line, or the item itself was rejected.
+    #[must_use]
+    pub fn is_done(&self, item: &str, styles: &[String]) -> bool {
+        let has = |style: &str| {
+            let key = record::key(item, style);
+            self.instructions.has(&key) || self.rejected.has(&key)
+        };
+        self.rejected.has(&record::key(item, "")) || styles.iter().all(|style| has(style))
+    }
+
+    /// Makes sure that what was written survives a crash of the machine.
+    ///
+    /// # Errors
+    /// When a file cannot be flushed.
+    pub fn sync(&mut self) -> Result<(), Error> {
+        self.walks.sync()?;
+        self.instructions.sync()?;
+        self.rejected.sync()
+    }
+}
+
+fn lock(folder: &Path) -> Result<File, Error> {
+    let path = folder.join(file::LOCK);
+    let lock = File::options().create(true).truncate(false).write(true).open(&path).map_err(Error::io(&path, "open"))?;
+    match lock.try_lock() {
+        Ok(()) => Ok(lock),
+        Err(TryLockError::WouldBlock) => Err(Error::Busy(folder.to_owned())),
+        Err(TryLockError::Error(source)) => Err(Error::Io { path, doing: "lock", source }),
+    }
+}
+
+/// Writes the settings, or holds them against those that are there.
+fn keep_config(folder: &Path, settings: &Settings) -> Result<(), Error> {
+    let path = folder.join(file::CONFIG);
+    if !path.exists() {
+        let text = toml::to_string_pretty(settings).map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
+        let temporary = folder.join("config.toml.new");
+        fs::write(&temporary, text).map_err(Error::io(&temporary, "write"))?;
+        return fs::rename(&temporary, &path).map_err(Error::io(&path, "write"));
+    }
+    let before = settings_of(folder)?;
+    if before == *settings {
+        return Ok(());
+    }
+    let differs = differing_keys(&before, settings).into_iter().collect::<Vec<_>>().join(", ");
+    let problem = format!("{} holds a run with other settings ({differs})", folder.display());
+    Err(Error::usage(problem, "give the same command to continue it, or another --out for a new run"))
+}
+
+/// The settings of a run.
+///
+/// # Errors
+/// When the folder is no run folder.
+pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
+    let path = folder.join(file::CONFIG);
+    let text = fs::read_to_string(&path).map_err(Error::io(&path, "read the run's settings"))?;
+    toml::from_str(&text).map_err(|error| {
+        Error::usage(format!("{}: {}", path.display(), error.to_string().trim()), "it was written by another version: use another run folder")
+    })
+}
+
+fn differing_keys(a: &Settings, b: &Settings) -> BTreeSet<String> {
+    let table = |settings: &Settings| toml::Table::try_from(settings).unwrap_or_default();
+    let (a, b) = (table(a), table(b));
+    let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+    keys.into_iter().filter(|key| a.get(*key) != b.get(*key)).cloned().collect()
+}

@@ -1,0 +1,219 @@
+//! Settings of a run: flags and a TOML file, resolved once into what the run folder keeps.
+
+use crate::error::Error;
+use serde::{Deserialize, Serialize};
+use std::{ops::RangeInclusive, path::PathBuf, str::FromStr};
+use wayword_core::PathRequest;
+use wayword_synthesis::{
+    dialogue::{Mode, QUESTIONS},
+    walk::FrameSelection,
+};
+
+/// What a run is asked to do. Everything is optional here: what a flag leaves out comes from the file, then from a default.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Asked {
+    /// `house` or `matterport`.
+    pub platform: Option<String>,
+    /// Folder of the platform's data.
+    pub data: Option<PathBuf>,
+    /// Dataset file whose paths are walked.
+    pub episodes: Option<PathBuf>,
+    /// Number of random paths.
+    pub paths: Option<usize>,
+    /// Scenes to keep to.
+    pub scan: Option<Vec<String>>,
+    /// Hops of random paths, "4..7".
+    pub hops: Option<String>,
+    /// Lengths of random paths, "5..20".
+    pub metres: Option<String>,
+    /// Style names, files, or NAME=DATASET.
+    pub style: Option<Vec<String>>,
+    /// Which views are captioned.
+    pub frames: Option<FrameSelection>,
+    /// Dialogue or fixed queries.
+    pub perception: Option<Perception>,
+    /// Most questions of a dialogue.
+    pub questions: Option<usize>,
+    /// Whether the object of the closing task is given.
+    pub target: Option<TargetMode>,
+    /// How often a text that failed is written again.
+    pub repairs: Option<u32>,
+    /// Seed of everything random.
+    pub seed: Option<u64>,
+    /// Only so many items.
+    pub limit: Option<usize>,
+}
+
+/// What a run does.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// `house` or `matterport`.
+    pub platform: String,
+    /// Folder of the platform's data.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub data: Option<PathBuf>,
+    /// Dataset file whose paths are walked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub episodes: Option<PathBuf>,
+    /// Number of random paths; 0 where episodes are walked.
+    pub paths: usize,
+    /// Scenes to keep to; none means all.
+    pub scan: Vec<String>,
+    /// What random paths have to be like.
+    pub request: PathRequest,
+    /// Style names, files, or NAME=DATASET.
+    pub style: Vec<String>,
+    /// Which views are captioned.
+    pub frames: FrameSelection,
+    /// Dialogue or fixed queries.
+    pub perception: Perception,
+    /// Most questions of a dialogue.
+    pub questions: usize,
+    /// Whether the object of the closing task is given.
+    pub target: TargetMode,
+    /// How often a text that failed is written again.
+    pub repairs: u32,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Only so many items.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit: Option<usize>,
+}
+
+/// How frames are asked about.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Perception {
+    /// Question by question, then a summary.
+    #[default]
+    Dialogue,
+    /// Fixed object and room queries without a dialogue: the paper's ablation.
+    Fixed,
+}
+
+/// Whose choice the object of the closing task is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum TargetMode {
+    /// The episode's, or the random path's: it is named to the writer.
+    #[default]
+    Given,
+    /// The writer's, from what the final frame shows; exports then carry no object id.
+    Free,
+}
+
+/// Random paths where neither a number nor episodes are given.
+const PATHS: usize = 10;
+/// How often a text that failed is written again, unless told otherwise.
+const REPAIRS: u32 = 8;
+/// Most random paths of a run.
+const MOST_PATHS: usize = 1_000_000;
+
+impl Asked {
+    /// What flags ask for, with the rest from a file.
+    #[must_use]
+    pub fn or(self, file: Self) -> Self {
+        Self {
+            platform: self.platform.or(file.platform),
+            data: self.data.or(file.data),
+            // Episodes and random paths exclude each other, so a flag for one wins over a file's other.
+            episodes: self.episodes.or(file.episodes.filter(|_| self.paths.is_none())),
+            paths: self.paths.or(file.paths),
+            scan: self.scan.or(file.scan),
+            hops: self.hops.or(file.hops),
+            metres: self.metres.or(file.metres),
+            style: self.style.or(file.style),
+            frames: self.frames.or(file.frames),
+            perception: self.perception.or(file.perception),
+            questions: self.questions.or(file.questions),
+            target: self.target.or(file.target),
+            repairs: self.repairs.or(file.repairs),
+            seed: self.seed.or(file.seed),
+            limit: self.limit.or(file.limit),
+        }
+    }
+
+    /// Resolves it, with defaults for what nobody asked for.
+    ///
+    /// # Errors
+    /// When a range cannot be read or things exclude each other.
+    pub fn resolve(self) -> Result<Settings, Error> {
+        let default = PathRequest::default();
+        let paths = self.paths.unwrap_or(if self.episodes.is_some() { 0 } else { PATHS });
+        if self.episodes.is_some() && paths > 0 {
+            return Err(Error::usage("--episodes and --paths exclude each other", "give one of them"));
+        }
+        if paths > MOST_PATHS {
+            return Err(Error::usage(format!("--paths {paths} is more than {MOST_PATHS}"), "make several runs with different seeds"));
+        }
+        Ok(Settings {
+            platform: self.platform.unwrap_or_else(|| "house".into()),
+            data: self.data,
+            episodes: self.episodes,
+            paths,
+            scan: self.scan.unwrap_or_default(),
+            request: PathRequest {
+                hops: self.hops.map_or(Ok(default.hops), |text| range("--hops", &text))?,
+                length_m: self.metres.map_or(Ok(default.length_m), |text| range("--metres", &text))?,
+            },
+            style: self.style.filter(|styles| !styles.is_empty()).unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
+            frames: self.frames.unwrap_or_default(),
+            perception: self.perception.unwrap_or_default(),
+            questions: self.questions.unwrap_or(QUESTIONS),
+            target: self.target.unwrap_or_default(),
+            repairs: self.repairs.unwrap_or(REPAIRS),
+            seed: self.seed.unwrap_or(0),
+            limit: self.limit,
+        })
+    }
+}
+
+impl Settings {
+    /// How views are asked about.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        match self.perception {
+            Perception::Dialogue => Mode::Dialogue { questions: self.questions },
+            Perception::Fixed => Mode::Fixed,
+        }
+    }
+}
+
+/// A range as flags have it: "4..7", both ends included, or one number.
+fn range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<RangeInclusive<N>, Error> {
+    let (from, to) = text.split_once("..").unwrap_or((text, text));
+    let parsed = from.trim().parse::<N>().ok().zip(to.trim_start_matches('=').trim().parse::<N>().ok());
+    match parsed {
+        Some((from, to)) if from <= to => Ok(from..=to),
+        _ => Err(Error::usage(format!("{flag} {text}: that is no range"), format!("write it as in {flag} 4..7, the smaller number first"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_win_over_the_file_and_the_file_over_defaults() {
+        let flags = Asked { seed: Some(7), ..Asked::default() };
+        let file: Asked = toml::from_str("seed = 1\nrepairs = 2\nhops = \"2..3\"").unwrap();
+        let settings = flags.or(file).resolve().unwrap();
+        assert_eq!((settings.seed, settings.repairs, settings.request.hops, settings.questions), (7, 2, 2..=3, QUESTIONS));
+    }
+
+    #[test]
+    fn ranges_are_read_or_refused() {
+        assert_eq!(range::<usize>("--hops", "4..7").unwrap(), 4..=7);
+        assert_eq!(range::<f64>("--metres", "5").unwrap(), 5.0..=5.0);
+        for bad in ["7..4", "x", "", "1..", "NaN..3"] {
+            assert!(range::<f64>("--metres", bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_misspelt_key_of_the_file_is_refused() {
+        assert!(toml::from_str::<Asked>("sed = 1").is_err());
+    }
+}

@@ -1,0 +1,64 @@
+//! Finds the styles that a run names.
+
+use crate::error::Error;
+use rand::seq::SliceRandom;
+use std::path::Path;
+use wayword_core::{Constraints, Style, rng};
+use wayword_synthesis::style::{Profile, StyleError, built_in, parse, validated};
+
+/// A style with what its references measure.
+#[derive(Debug, Clone)]
+pub struct Measured {
+    /// The style.
+    pub style: Style,
+    /// What its references are like.
+    pub profile: Profile,
+}
+
+/// How many texts of a dataset show its style: enough to measure, few enough for a prompt.
+const FROM_DATASET: usize = 24;
+/// Largest style file that is read, bytes.
+const MOST_BYTES: u64 = 4 << 20;
+
+/// The styles of a run. A style is named as a built-in one, as a TOML file, or as NAME=DATASET: references from a dataset's
+/// own instructions (drawn by the seed), with the constraints of the built-in style of that name where there is one.
+///
+/// # Errors
+/// When one cannot be found or read, or two have one name.
+pub fn find(names: &[String], seed: u64) -> Result<Vec<Measured>, Error> {
+    let mut styles: Vec<Measured> = Vec::new();
+    for name in names {
+        let style = find_one(name, seed)?;
+        if styles.iter().any(|other| other.style.name == style.name) {
+            return Err(Error::usage(format!("style {} is named twice", style.name), "name each style once"));
+        }
+        styles.push(Measured { profile: Profile::measure(&style.references), style });
+    }
+    Ok(styles)
+}
+
+fn find_one(name: &str, seed: u64) -> Result<Style, Error> {
+    if let Some((name, file)) = name.split_once('=') {
+        return from_dataset(name, Path::new(file), seed);
+    }
+    let file = Path::new(name);
+    if file.extension().is_none_or(|end| end != "toml") {
+        return Ok(built_in(name)?);
+    }
+    let size = std::fs::metadata(file).map_err(Error::io(file, "open the style"))?.len();
+    if size > MOST_BYTES {
+        return Err(StyleError::TooLarge(name.to_owned()).into());
+    }
+    let text = std::fs::read_to_string(file).map_err(Error::io(file, "read the style"))?;
+    Ok(parse(name, &text)?)
+}
+
+fn from_dataset(name: &str, file: &Path, seed: u64) -> Result<Style, Error> {
+    let episodes = wayword_formats::read(file)?;
+    let mut texts: Vec<String> = episodes.into_iter().flat_map(|episode| episode.instructions).filter(|text| !text.trim().is_empty()).collect();
+    texts.sort();
+    texts.dedup();
+    let (references, _) = texts.partial_shuffle(&mut rng(seed, &["references", name]), FROM_DATASET);
+    let constraints = built_in(name).map_or_else(|_| Constraints::default(), |style| style.constraints);
+    Ok(validated(Style { name: name.to_owned(), references: references.to_vec(), constraints })?)
+}

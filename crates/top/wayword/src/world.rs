@@ -1,0 +1,83 @@
+//! Opens platforms, and remembers views so that each is made once per path.
+
+use crate::{error::Error, settings::Settings};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph};
+use wayword_platforms::matterport::Matterport;
+
+/// The platforms that this build knows.
+pub const PLATFORMS: [&str; 2] = ["house", "matterport"];
+
+/// Opens the platform that the settings name.
+///
+/// # Errors
+/// When there is none of that name, or its data cannot be opened.
+pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
+    match settings.platform.as_str() {
+        "matterport" => {
+            let data = settings.data.as_deref().ok_or_else(|| {
+                Error::usage("platform matterport needs --data", "name the folder that holds connectivity/, and what else you have of the dataset")
+            })?;
+            Ok(Box::new(Matterport::open(data)?))
+        }
+        other => Err(Error::usage(format!("there is no platform {other:?}"), format!("name one of: {}", PLATFORMS.join(", ")))),
+    }
+}
+
+/// A platform that remembers the views it has given: perception, evidence and report look at the same ones.
+pub struct Remembering<'a> {
+    platform: &'a dyn Platform,
+    views: Mutex<BTreeMap<Key, View>>,
+}
+
+/// Position, heading and width, as bits: equal looks give equal views.
+type Key = ([u64; 3], u64, u64);
+
+impl<'a> Remembering<'a> {
+    /// Nothing remembered yet.
+    #[must_use]
+    pub fn new(platform: &'a dyn Platform) -> Self {
+        Self { platform, views: Mutex::default() }
+    }
+}
+
+fn key(from: &Frame, gaze: Gaze) -> Key {
+    // Headings that differ by rounding alone look at the same thing.
+    let micro_rad = |rad: f64| (rad * 1e6).round() as u64;
+    (from.pose.position.to_array().map(f64::to_bits), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
+}
+
+impl Platform for Remembering<'_> {
+    fn name(&self) -> &'static str {
+        self.platform.name()
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.scenes()
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.platform.graph(scene)
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        self.platform.sample_path(scene, request, seed)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let key = key(from, gaze);
+        if let Some(view) = self.views.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Ok(view.clone());
+        }
+        let view = self.platform.look(scene, from, gaze)?;
+        self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+        Ok(view)
+    }
+
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        self.platform.object_name(scene, near, object)
+    }
+}

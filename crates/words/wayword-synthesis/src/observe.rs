@@ -1,0 +1,115 @@
+//! Looks around along a path and has each view talked about.
+
+use crate::{
+    dialogue::{Asker, Dialogue, Mode, Need, Summariser, condense},
+    walk::{FrameSelection, Look, Observation},
+};
+use wayword_core::{
+    Answerer, Ask, Caption, Exchange, Frame, Gaze, ModelError, Path, Platform, PlatformError, View, Witness,
+};
+
+/// Who asks, sees and sums up, and how.
+#[derive(Clone, Copy)]
+pub struct Minds<'a> {
+    /// Chooses the questions.
+    pub asker: &'a dyn Asker,
+    /// Answers them.
+    pub answerer: &'a dyn Answerer,
+    /// Sums the answers up.
+    pub summariser: &'a dyn Summariser,
+    /// Dialogue, or fixed queries.
+    pub mode: Mode,
+}
+
+/// A path could not be observed.
+#[derive(Debug, thiserror::Error)]
+pub enum ObserveError {
+    /// The world did not give a view.
+    #[error(transparent)]
+    Platform(#[from] PlatformError),
+    /// A mind did not answer.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+/// A panorama's description has fewer words than this (arXiv 2403.11487).
+const CONDENSED_WORDS: usize = 20;
+
+/// Captions of a path: one observation per frame.
+///
+/// From the last frame of a central run, if nothing is seen ahead, the walker looks all around: a robot that has arrived
+/// would, and the task has to be about something that can be seen from there.
+///
+/// # Errors
+/// When a view cannot be had or a question is not answered.
+pub fn observe(
+    platform: &dyn Platform,
+    path: &Path,
+    selection: FrameSelection,
+    minds: Minds<'_>,
+) -> Result<Vec<Observation>, ObserveError> {
+    let last = path.frames.len().saturating_sub(1);
+    let frames = path.frames.iter().enumerate();
+    frames
+        .map(|(at, frame)| {
+            let looks = look_at(platform, path, frame, &gazes(frame, selection), minds)?;
+            let empty = !looks
+                .iter()
+                .flat_map(|look| &look.caption.sightings)
+                .any(|sighting| sighting.witness == Witness::Seen);
+            let looks = if at == last && empty && selection == FrameSelection::Central {
+                look_at(platform, path, frame, &Gaze::around(frame.pose.heading), minds)?
+            } else {
+                looks
+            };
+            Ok(Observation { summary: summary(&looks), looks })
+        })
+        .collect()
+}
+
+/// Where to look from a frame.
+fn gazes(frame: &Frame, selection: FrameSelection) -> Vec<Gaze> {
+    match selection {
+        FrameSelection::Central => vec![Gaze::quarter(frame.pose.heading)],
+        FrameSelection::Panoramic => Gaze::compass().to_vec(),
+    }
+}
+
+fn look_at(
+    platform: &dyn Platform,
+    path: &Path,
+    frame: &Frame,
+    gazes: &[Gaze],
+    minds: Minds<'_>,
+) -> Result<Vec<Look>, ObserveError> {
+    let looks = gazes.iter().map(|gaze| {
+        let view = platform.look(&path.scene, frame, *gaze)?;
+        Ok(Look { gaze: *gaze, caption: talk_about(&view, minds)? })
+    });
+    looks.collect()
+}
+
+/// Runs one dialogue to its end.
+fn talk_about(view: &View, minds: Minds<'_>) -> Result<Caption, ModelError> {
+    let mut dialogue = Dialogue::new(minds.mode);
+    loop {
+        match dialogue.need() {
+            Need::Question => dialogue.ask(minds.asker.next_question(dialogue.transcript())),
+            Need::Answer(question) => {
+                let history: Vec<Exchange> = dialogue.transcript().to_vec();
+                let ask = Ask { view, question: &question, history: &history };
+                for answer in minds.answerer.answer(&[ask]) {
+                    dialogue.answer(&answer?);
+                }
+            }
+            Need::Summary => return Ok(minds.summariser.sum_up(dialogue.transcript(), minds.answerer.name())),
+        }
+    }
+}
+
+fn summary(looks: &[Look]) -> String {
+    match looks {
+        [only] => only.caption.text.clone(),
+        looks => condense(&looks.iter().map(|look| &look.caption).collect::<Vec<_>>(), CONDENSED_WORDS),
+    }
+}

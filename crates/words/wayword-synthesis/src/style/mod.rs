@@ -1,0 +1,121 @@
+//! Styles: the built-in ones, a user's own, and what reference texts of a style are like.
+
+mod profile;
+
+use sha2::{Digest, Sha256};
+use wayword_core::Style;
+
+pub use profile::Profile;
+
+const BUILT_IN: [(&str, &str); 2] =
+    [("r2r", include_str!("builtin/r2r.toml")), ("reverie", include_str!("builtin/reverie.toml"))];
+
+/// Most reference texts of a style, and most bytes of each.
+const MOST_REFERENCES: usize = 1000;
+const MOST_BYTES: usize = 4000;
+
+/// Why a style cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StyleError {
+    /// A name that is not built in.
+    #[error("there is no style {0:?}: name r2r, reverie, or a file that ends in .toml")]
+    Unknown(String),
+    /// A file that does not hold a style.
+    #[error("style {name}: {reason}")]
+    Unreadable {
+        /// Where it came from.
+        name: String,
+        /// What is wrong, with line and field.
+        reason: String,
+    },
+    /// Nothing to imitate.
+    #[error("style {0} has no reference texts: give at least one in `references`")]
+    NoReferences(String),
+    /// Too much to imitate.
+    #[error("style {0} has too many or too long reference texts: at most 1000 of 4000 bytes each")]
+    TooLarge(String),
+}
+
+/// The names of the built-in styles.
+#[must_use]
+pub fn built_in_names() -> Vec<&'static str> {
+    BUILT_IN.iter().map(|(name, _)| *name).collect()
+}
+
+/// A built-in style.
+///
+/// # Errors
+/// When there is none of that name.
+pub fn built_in(name: &str) -> Result<Style, StyleError> {
+    let (name, text) =
+        BUILT_IN.iter().find(|(built_in, _)| *built_in == name).ok_or_else(|| StyleError::Unknown(name.to_owned()))?;
+    parse(name, text)
+}
+
+/// A style from the text of a TOML file; `name` is told in errors.
+///
+/// # Errors
+/// When it is no style, or has no or too many references.
+pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
+    let style: Style = toml::from_str(text).map_err(|error| StyleError::Unreadable {
+        name: name.to_owned(),
+        reason: error.to_string().trim().replace('\n', " "),
+    })?;
+    validated(style)
+}
+
+/// A style as it may be used: with references, and within bounds.
+///
+/// # Errors
+/// When it has no or too many references.
+pub fn validated(style: Style) -> Result<Style, StyleError> {
+    if style.references.iter().all(|text| text.trim().is_empty()) {
+        return Err(StyleError::NoReferences(style.name));
+    }
+    if style.references.len() > MOST_REFERENCES || style.references.iter().any(|text| text.len() > MOST_BYTES) {
+        return Err(StyleError::TooLarge(style.name));
+    }
+    Ok(style)
+}
+
+/// A short hash of what a style asks for, for provenance.
+#[must_use]
+pub fn hash(style: &Style) -> String {
+    let json = serde_json::to_vec(style).unwrap_or_default();
+    Sha256::digest(json).iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checks::shared_run;
+    use crate::text::{sentence_count, word_count};
+
+    #[test]
+    fn the_built_in_references_keep_their_own_constraints() {
+        for name in built_in_names() {
+            let style = built_in(name).unwrap();
+            for text in &style.references {
+                assert!(style.constraints.fewer_words_than.is_none_or(|limit| word_count(text) < limit), "{text}");
+                assert!(style.constraints.min_sentences.is_none_or(|least| sentence_count(text) >= least), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_reference_repeats_another() {
+        for name in built_in_names() {
+            let style = built_in(name).unwrap();
+            for (at, text) in style.references.iter().enumerate() {
+                assert_eq!(shared_run(text, &style.references[at + 1..]), None, "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_style_is_refused_with_a_reason() {
+        assert!(matches!(built_in("poem"), Err(StyleError::Unknown(_))));
+        assert!(parse("x", "name = 3").unwrap_err().to_string().contains("style x"));
+        assert_eq!(parse("x", "name = \"x\"\nreferences = [\" \"]"), Err(StyleError::NoReferences("x".into())));
+    }
+}

@@ -1,0 +1,78 @@
+//! What the reference texts of a style are like: the parameters that the writer interprets.
+
+use crate::{
+    reading::{What, read},
+    text::{sentence_count, word_count},
+};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Measured on reference texts; shares are of texts, from 0 to 1.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Profile {
+    /// Words of the texts, sorted: the writer draws its length from these.
+    pub words: Vec<usize>,
+    /// Sentences of the texts, sorted.
+    pub sentences: Vec<usize>,
+    /// Turn words per text.
+    pub turns: f64,
+    /// Landmarks and rooms per text.
+    pub places: f64,
+    /// Share that ends in a task.
+    pub tasks: f64,
+    /// Share that names a floor or says "upstairs".
+    pub floors: f64,
+    /// Share that ends in a full stop.
+    pub full_stops: f64,
+}
+
+impl Profile {
+    /// Measures texts; at least one has to hold a word.
+    #[must_use]
+    pub fn measure(references: &[String]) -> Self {
+        let texts: Vec<&String> = references.iter().filter(|text| word_count(text) > 0).collect();
+        let readings: Vec<_> = texts.iter().map(|text| read(text, &BTreeSet::new())).collect();
+        let count = texts.len().max(1) as f64;
+        let share = |holds: &dyn Fn(usize) -> bool| (0..texts.len()).filter(|at| holds(*at)).count() as f64 / count;
+        let events = |is: &dyn Fn(&What) -> bool| {
+            readings.iter().flat_map(|reading| &reading.events).filter(|event| is(&event.what)).count() as f64 / count
+        };
+        let sorted = |measure: &dyn Fn(&str) -> usize| {
+            let mut values: Vec<usize> = texts.iter().map(|text| measure(text)).collect();
+            values.sort_unstable();
+            values
+        };
+        Self {
+            words: sorted(&word_count),
+            sentences: sorted(&sentence_count),
+            turns: events(&|what| matches!(what, What::Turn(_))),
+            places: events(&|what| matches!(what, What::Place(_))),
+            tasks: share(&|at| readings[at].task.is_some()),
+            floors: share(&|at| readings[at].events.iter().any(|event| matches!(event.what, What::Floor(_)))),
+            full_stops: share(&|at| texts[at].trim_end().ends_with(['.', '!'])),
+        }
+    }
+
+    /// Whether the texts tell the way turn by turn.
+    #[must_use]
+    pub fn tells_turns(&self) -> bool {
+        self.turns >= 0.4
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::style::built_in;
+
+    #[test]
+    fn the_built_in_styles_measure_as_what_they_are() {
+        let coarse = Profile::measure(&built_in("reverie").unwrap().references);
+        assert!(
+            !coarse.tells_turns() && coarse.tasks > 0.8 && coarse.sentences.iter().all(|count| *count == 1),
+            "{coarse:?}"
+        );
+        let fine = Profile::measure(&built_in("r2r").unwrap().references);
+        assert!(fine.tells_turns() && fine.tasks < 0.2 && fine.full_stops == 1.0, "{fine:?}");
+    }
+}

@@ -1,0 +1,57 @@
+//! Writing: what a writer is told, and the writer that works by rules.
+
+mod landmarks;
+mod phrases;
+mod realise;
+mod route;
+mod rules;
+mod task;
+
+use crate::{style::Profile, walk::Walk};
+use wayword_core::{Finding, Style};
+
+pub use rules::RulesWriter;
+
+/// Writes instructions.
+pub trait Writer: Send + Sync {
+    /// `rules`, or `provider/model`.
+    fn name(&self) -> &str;
+
+    /// A text for the brief.
+    ///
+    /// # Errors
+    /// When the walk gives nothing to write about.
+    fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError>;
+}
+
+/// All that a writer is told.
+#[derive(Debug, Clone, Copy)]
+pub struct Brief<'a> {
+    /// The path and what was seen along it; its target, where one is given.
+    pub walk: &'a Walk,
+    /// The style to write in.
+    pub style: &'a Style,
+    /// What the style's references are like.
+    pub profile: &'a Profile,
+    /// The run's seed.
+    pub seed: u64,
+    /// What was wrong with earlier texts for this walk, oldest first.
+    pub complaints: &'a [Complaint],
+}
+
+/// A text that failed its checks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Complaint {
+    /// The text.
+    pub text: String,
+    /// What was wrong with it.
+    pub findings: Vec<Finding>,
+}
+
+/// There is nothing to write about.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum WriteError {
+    /// The style ends in a task, and no object is known at the end.
+    #[error("the style ends in a task, and no object was seen from the final frame to give one about")]
+    NoObject,
+}

@@ -1,0 +1,233 @@
+//! The writer that works by rules: an interpreter of what a style's references are like.
+
+use super::{
+    Brief, WriteError, Writer,
+    landmarks::Landmarks,
+    phrases::{self, fill, level_phrase, ordinal, pick, the},
+    realise::{capital, join, sentences},
+    route::{Step, Weighed, steps, usable_room},
+    task,
+};
+use crate::{lexicon::room_name, text::word_count};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use wayword_core::{Climb, rng};
+
+/// Writes from captions and moves. Where the references tell turns it tells the way step by step; where they don't, it
+/// names the place at the end. Length, sentences, floors, task and full stop are drawn from the references too.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RulesWriter;
+
+/// What a step takes on average, words.
+const STEP_WORDS: usize = 6;
+
+impl Writer for RulesWriter {
+    fn name(&self) -> &str {
+        "rules"
+    }
+
+    fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
+        let attempt = brief.complaints.len().to_string();
+        let mut rng = rng(brief.seed, &["rules", &brief.style.name, &brief.walk.path.id, &attempt]);
+        if brief.profile.tells_turns() { the_way(brief, &mut rng) } else { the_place(brief, &mut rng) }
+    }
+}
+
+/// Whether this text ends in a task.
+fn ends_in_task(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> bool {
+    brief.style.constraints.ends_in_task || rng.random_bool(brief.profile.tasks.clamp(0.0, 1.0))
+}
+
+fn drawn(values: &[usize], rng: &mut ChaCha8Rng) -> usize {
+    if values.is_empty() { 1 } else { values[rng.random_range(0..values.len())] }
+}
+
+/// Step by step.
+fn the_way(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
+    let mut landmarks = Landmarks::new(brief);
+    let task = if ends_in_task(brief, rng) { Some(task::task(brief, rng)?) } else { None };
+    if let Some((_, name)) = &task {
+        landmarks.reserve(name);
+    }
+    let mut steps = steps(brief.walk, &mut landmarks, rng);
+    let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
+    keep_within(&mut steps, drawn(&brief.profile.words, rng).min(limit.saturating_sub(1)), task.is_some());
+    let count = sentence_target(brief, rng);
+    let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
+    loop {
+        let mut phrases = in_words(&steps, rng);
+        if let Some((task, _)) = &task {
+            phrases.pop_if(|_| matches!(steps.last(), Some(Weighed { step: Step::Stop { .. }, .. })));
+            phrases.push(task.clone());
+        }
+        let text = sentences(&phrases, count, full_stop, rng);
+        if word_count(&text) < limit || !drop_least(&mut steps) {
+            return Ok(text);
+        }
+    }
+}
+
+fn sentence_target(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> usize {
+    let constraints = &brief.style.constraints;
+    let least = constraints.min_sentences.unwrap_or(1);
+    drawn(&brief.profile.sentences, rng).clamp(least, constraints.max_sentences.unwrap_or(usize::MAX).max(least))
+}
+
+/// Leaves out the steps that matter least until the rest has about so many words.
+fn keep_within(steps: &mut Vec<Weighed>, words: usize, with_task: bool) {
+    let budget = (words / STEP_WORDS).max(2) - usize::from(with_task && words > 2 * STEP_WORDS);
+    for weight in 1..3 {
+        while steps.len() > budget {
+            let Some(at) = steps.iter().rposition(|step| step.weight == weight) else { break };
+            steps.remove(at);
+        }
+    }
+}
+
+/// Leaves out one more step, turns at last; the stop stays.
+fn drop_least(steps: &mut Vec<Weighed>) -> bool {
+    let candidates = steps.iter().enumerate().filter(|(_, step)| !matches!(step.step, Step::Stop { .. }));
+    let Some((at, _)) = candidates.min_by_key(|(at, step)| (step.weight, *at)) else { return false };
+    steps.remove(at);
+    true
+}
+
+fn in_words(steps: &[Weighed], rng: &mut ChaCha8Rng) -> Vec<String> {
+    let mut told_room: Option<String> = None;
+    steps
+        .iter()
+        .map(|Weighed { step, .. }| {
+            let phrase = phrases::phrase(step, told_room.as_deref(), rng);
+            match step {
+                Step::Room { to: room, .. } | Step::Turn { into: Some(room), .. } => told_room = Some(room.clone()),
+                _ => {}
+            }
+            phrase
+        })
+        .collect()
+}
+
+const GO: &[&str] = &[
+    "go to {r}",
+    "head to {r}",
+    "walk to {r}",
+    "enter {r}",
+    "make your way to {r}",
+    "go into {r}",
+    "proceed to {r}",
+    "head over to {r}",
+    "go over to {r}",
+    "walk into {r}",
+    "head into {r}",
+    "move to {r}",
+    "come to {r}",
+    "walk over to {r}",
+    "step into {r}",
+    "go on to {r}",
+];
+const GO_BY: &[&str] = &[
+    "go past {l} to {r}",
+    "walk past {l} into {r}",
+    "head past {l} to {r}",
+    "pass {l} to enter {r}",
+    "go by {l} into {r}",
+];
+
+/// The place at the end, and what to do there.
+fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
+    let mut landmarks = Landmarks::new(brief);
+    let task = if ends_in_task(brief, rng) { Some(task::task(brief, rng)?) } else { None };
+    if let Some((_, name)) = &task {
+        landmarks.reserve(name);
+    }
+    let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
+    let words = drawn(&brief.profile.words, rng).min(limit - 1);
+    let task_words = task.as_ref().map_or(0, |(task, _)| word_count(task) + 1);
+    let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
+    let fits = |text: &str| word_count(text) + task_words <= words.max(task_words + 5).min(limit - 1);
+    let options = goals(brief, &mut landmarks, rng);
+    // The richest description that fits; the first is the barest and always stands.
+    let goal = options.iter().rev().find(|text| fits(text)).or(options.first()).cloned().unwrap_or_default();
+    let count = sentence_target(brief, rng);
+    let phrases: Vec<String> = match task {
+        Some((task, _)) => vec![goal, task],
+        None => vec![goal],
+    };
+    Ok(if count > 1 {
+        sentences(&phrases, count, full_stop, rng)
+    } else {
+        let text = if phrases.len() > 1 && rng.random_bool(0.8) { phrases.join(" and ") } else { join(&phrases, rng) };
+        format!("{}{}", capital(&text), if full_stop { "." } else { "" })
+    })
+}
+
+/// Ways to name the end of the walk, from the barest to the richest.
+fn goals(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<String> {
+    let walk = brief.walk;
+    let last = walk.path.frames.len() - 1;
+    let Some(room) = walk.room(last).and_then(usable_room) else { return vec![without_room(brief, landmarks, rng)] };
+    let go = pick(rng, GO);
+    let mut options = vec![fill(go, &[("{r}", &the(&room))])];
+    let level = walk.path.frames[last].level.filter(|_| rng.random_bool(brief.profile.floors.clamp(0.0, 1.0)));
+    let placed = level.map_or_else(|| the(&room), |level| on_level(&room, level, rng));
+    options.push(fill(go, &[("{r}", &placed)]));
+    let before = (0..last).rev().filter_map(|at| walk.room(at)).find(|other| room_name(other) != room_name(&room));
+    let detail = match rng.random_range(0..10) {
+        0..=2 => landmarks
+            .choose(last, rng)
+            .map(|landmark| fill(go, &[("{r}", &format!("{placed} with {}", landmark.phrase))])),
+        3..=4 => before.map(|other| {
+            fill(
+                go,
+                &[(
+                    "{r}",
+                    &format!("{placed} {} {}", pick(rng, &["next to", "by", "off", "near", "beyond"]), the(other)),
+                )],
+            )
+        }),
+        5..=6 => {
+            let frame = rng.random_range(0..last.max(1));
+            landmarks
+                .choose(frame, rng)
+                .map(|landmark| fill(pick(rng, GO_BY), &[("{l}", &landmark.phrase), ("{r}", &placed)]))
+        }
+        _ => None,
+    };
+    options.extend(detail);
+    options
+}
+
+fn on_level(room: &str, level: u32, rng: &mut ChaCha8Rng) -> String {
+    match (rng.random_range(0..4), ordinal(level)) {
+        (0, Some(ordinal)) => format!("the {ordinal} floor {room}"),
+        (1, _) => format!("the level {level} {room}"),
+        _ => format!("the {room} on {}", level_phrase(level, rng)),
+    }
+}
+
+/// The way to an end whose room has no name.
+fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> String {
+    let walk = brief.walk;
+    let last = walk.path.frames.len() - 1;
+    let rise_m = walk.path.frames[last].pose.position.z - walk.path.frames[0].pose.position.z;
+    match Climb::from_rise(rise_m) {
+        Climb::Up => {
+            return pick(rng, &["go upstairs", "head up the stairs", "walk up the stairs", "climb the stairs"])
+                .to_owned();
+        }
+        Climb::Down => return pick(rng, &["go downstairs", "head down the stairs", "walk down the stairs"]).to_owned(),
+        Climb::Level => {}
+    }
+    let by = (0..=last).rev().find_map(|frame| landmarks.choose(frame, rng));
+    let through = (0..last).rev().find_map(|at| walk.room(at).and_then(usable_room));
+    match (by, through) {
+        (Some(landmark), _) => fill(
+            pick(rng, &["go to {l}", "walk up to {l}", "head over to {l}", "go past {l}"]),
+            &[("{l}", &landmark.phrase)],
+        ),
+        (None, Some(room)) => {
+            fill(pick(rng, &["go through {r}", "walk through {r}", "leave {r}"]), &[("{r}", &the(&room))])
+        }
+        (None, None) => pick(rng, &["go straight ahead", "walk on to the end", "keep going"]).to_owned(),
+    }
+}
