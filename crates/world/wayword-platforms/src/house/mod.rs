@@ -3,15 +3,26 @@
 mod catalogue;
 mod colour;
 mod dice;
+mod drawing;
 mod furnish;
 mod layout;
+mod light;
 pub mod model;
+mod objects;
 mod rect;
+mod scene;
+mod shapes;
+mod stairs;
+mod structure;
+mod surface;
+mod textures;
 
 pub use catalogue::Kind;
 pub use colour::Colour;
 pub use model::House;
+pub use objects::{Object, Role};
 pub use rect::{RectCm, SpanCm, Wall};
+pub use scene::HouseScene;
 
 /// The home of a seed: the same on every machine.
 #[must_use]

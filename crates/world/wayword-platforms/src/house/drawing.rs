@@ -1,0 +1,109 @@
+//! A house as meshes with materials, textures and baked light.
+
+use super::{
+    light::RoomLight,
+    model::{Furniture, House},
+    objects::shell_id,
+    shapes::{Look, Part, Shape, shape},
+    structure,
+    surface::{Pattern, Surface},
+    textures,
+};
+use glam::Vec3;
+use std::collections::BTreeMap;
+use wayword_render::{Material, Mesh, Texture};
+
+/// What a renderer, or a file, needs.
+pub(super) struct Drawing {
+    pub(super) meshes: Vec<Mesh>,
+    pub(super) materials: Vec<Material>,
+    pub(super) textures: Vec<Texture>,
+}
+
+/// Draws up everything in a house.
+pub(super) fn draw(house: &House) -> Drawing {
+    let mut drawing = Collector::default();
+    let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::of(house, index)).collect();
+    for (index, light) in lights.iter().enumerate() {
+        let shell = [structure::floor(house, index), structure::walls(house, index), structure::ceiling(house, index)];
+        for (part, shape) in shell.into_iter().enumerate() {
+            drawing.add(shape, shell_id(house, index, part), |at, normal| light.on_shell(at, normal));
+        }
+    }
+    for opening in &house.openings {
+        let beyond = opening.beyond.unwrap_or(opening.room);
+        let along_x = opening.span.along_x;
+        let line = opening.span.at as f32 / 100.0;
+        let (cx, cy) = house.rooms[opening.room].outline.centre();
+        let is_below = (if along_x { cy } else { cx }) as f32 / 100.0 < line;
+        drawing.add(structure::opening(house, opening), opening.id, |at, normal| {
+            let below = (if along_x { at.y } else { at.x }) < line;
+            lights[if below == is_below { opening.room } else { beyond }].on_thing(at, normal)
+        });
+    }
+    for window in &house.windows {
+        let light = &lights[window.room];
+        drawing.add(structure::window(house, window), window.id, |at, normal| light.on_thing(at, normal));
+    }
+    if let Some(stairs) = &house.stairs {
+        let light = &lights[stairs.room];
+        drawing.add(structure::steps(stairs), stairs.id, |at, normal| light.on_thing(at, normal));
+        drawing.add(structure::railing(stairs), stairs.railing_id, |at, normal| light.on_thing(at, normal));
+    }
+    for piece in &house.furniture {
+        let light = &lights[piece.room];
+        drawing.add(standing(piece), piece.id, |at, normal| light.on_thing(at, normal));
+    }
+    drawing.finish()
+}
+
+/// A piece's shape where it stands.
+fn standing(piece: &Furniture) -> Shape {
+    let mut shape = shape(piece.kind, &Look::of(piece));
+    let area = piece.footprint;
+    let middle = Vec3::new((area.x0 + area.x1) as f32, (area.y0 + area.y1) as f32, 2.0 * piece.base_cm as f32) / 200.0;
+    let turned = |v: Vec3| match piece.quarter_turns % 4 {
+        0 => v,
+        1 => Vec3::new(-v.y, v.x, v.z),
+        2 => Vec3::new(-v.x, -v.y, v.z),
+        _ => Vec3::new(v.y, -v.x, v.z),
+    };
+    for part in &mut shape.parts {
+        part.positions.iter_mut().for_each(|position| *position = turned(*position) + middle);
+        part.normals.iter_mut().for_each(|normal| *normal = turned(*normal));
+    }
+    shape
+}
+
+#[derive(Default)]
+struct Collector {
+    meshes: Vec<Mesh>,
+    materials: Vec<Material>,
+    known: BTreeMap<(Pattern, [u8; 3]), usize>,
+}
+
+impl Collector {
+    fn add(&mut self, shape: Shape, id: u32, light: impl Fn(Vec3, Vec3) -> [f32; 3]) {
+        for part in shape.parts {
+            let Part { surface, positions, normals, uvs, triangles } = part;
+            let material = self.material(surface);
+            let shone = |(at, normal): (&Vec3, &Vec3)| if surface.glows { [1.0; 3] } else { light(*at, *normal) };
+            let colours = positions.iter().zip(&normals).map(shone).collect();
+            self.meshes.push(Mesh { positions, uvs, colours, triangles, material, id });
+        }
+    }
+
+    fn material(&mut self, Surface { pattern, rgb, .. }: Surface) -> usize {
+        let materials = &mut self.materials;
+        *self.known.entry((pattern, rgb)).or_insert_with(|| {
+            let texture = Pattern::ALL.iter().position(|each| *each == pattern).filter(|_| pattern != Pattern::Plain);
+            let [r, g, b] = rgb.map(|channel| f32::from(channel) / 255.0);
+            materials.push(Material { base_colour: [r, g, b, 1.0], texture, double_sided: false });
+            materials.len() - 1
+        })
+    }
+
+    fn finish(self) -> Drawing {
+        Drawing { meshes: self.meshes, materials: self.materials, textures: textures::all() }
+    }
+}

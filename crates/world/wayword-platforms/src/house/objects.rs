@@ -1,0 +1,98 @@
+//! Everything in a house that has a number in its pictures.
+
+use super::{
+    model::{House, Opening},
+    rect::RectCm,
+};
+use std::collections::BTreeMap;
+use wayword_core::DVec3;
+
+/// What a number in a picture means.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// Its name in plain words.
+    pub name: String,
+    /// Word for its main colour.
+    pub colour: Option<&'static str>,
+    /// Lower and upper corner of its box, metres, world frame.
+    pub bounds_m: (DVec3, DVec3),
+    /// The room it is in.
+    pub room: usize,
+    /// What part it plays.
+    pub role: Role,
+}
+
+/// What part an object plays in a house.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// A floor, a wall, a ceiling: always there, so never worth a label.
+    Shell,
+    /// Doors, windows, stairs.
+    Fixture,
+    /// What could be carried in or out.
+    Furniture,
+}
+
+impl Object {
+    /// The middle of its box, metres, world frame.
+    #[must_use]
+    pub fn centre_m(&self) -> DVec3 {
+        (self.bounds_m.0 + self.bounds_m.1) / 2.0
+    }
+}
+
+/// The parts of a room's shell, in the order of their numbers.
+pub(super) const SHELL: [&str; 3] = ["floor", "wall", "ceiling"];
+
+/// The number of a part of a room's shell: above those of everything else.
+pub(super) fn shell_id(house: &House, room: usize, part: usize) -> u32 {
+    let furniture = house.furniture.iter().map(|piece| piece.id).max().unwrap_or(0);
+    let last = furniture.max(house.openings.iter().map(|opening| opening.id).max().unwrap_or(0));
+    last + 1 + (room * SHELL.len() + part) as u32
+}
+
+fn bounds(area: &RectCm, low_cm: i32, high_cm: i32) -> (DVec3, DVec3) {
+    let corner = |x: i32, y: i32, z: i32| DVec3::new(f64::from(x), f64::from(y), f64::from(z)) / 100.0;
+    (corner(area.x0, area.y0, low_cm), corner(area.x1, area.y1, high_cm))
+}
+
+fn opening(each: &Opening) -> Object {
+    let colour = (each.word() != "doorway").then(|| each.colour.word());
+    let area = each.span.thickened(super::model::HALF_WALL_CM);
+    let bounds_m = bounds(&area, each.base_cm, each.base_cm + each.height_cm);
+    Object { name: each.word().to_owned(), colour, bounds_m, room: each.room, role: Role::Fixture }
+}
+
+/// All objects by their numbers.
+pub(super) fn objects(house: &House) -> BTreeMap<u32, Object> {
+    let mut all = BTreeMap::new();
+    for (index, room) in house.rooms.iter().enumerate() {
+        for (part, name) in SHELL.iter().enumerate() {
+            let bounds_m = bounds(&room.outline, room.base_cm(), room.base_cm() + room.height_cm);
+            let shell = Object { name: (*name).to_owned(), colour: None, bounds_m, room: index, role: Role::Shell };
+            all.insert(shell_id(house, index, part), shell);
+        }
+    }
+    all.extend(house.openings.iter().map(|each| (each.id, opening(each))));
+    for window in &house.windows {
+        let bounds_m = bounds(&window.span.thickened(super::model::HALF_WALL_CM), window.sill_cm, window.head_cm);
+        let object =
+            Object { name: "window".to_owned(), colour: None, bounds_m, room: window.room, role: Role::Fixture };
+        all.insert(window.id, object);
+    }
+    if let Some(stairs) = &house.stairs {
+        let bounds_m = bounds(&stairs.well, 0, super::model::STOREY_CM);
+        for (id, name) in [(stairs.id, "stairs"), (stairs.railing_id, "railing")] {
+            let object =
+                Object { name: name.to_owned(), colour: None, bounds_m, room: stairs.room, role: Role::Fixture };
+            all.insert(id, object);
+        }
+    }
+    for piece in &house.furniture {
+        let bounds_m = bounds(&piece.footprint, piece.base_cm, piece.base_cm + piece.height_cm);
+        let colour = Some(piece.colour.word());
+        let object = Object { name: piece.name.clone(), colour, bounds_m, room: piece.room, role: Role::Furniture };
+        all.insert(piece.id, object);
+    }
+    all
+}

@@ -1,0 +1,224 @@
+//! What one keeps things in.
+
+use super::{
+    super::{
+        colour::Colour,
+        surface::{Pattern, Surface},
+    },
+    Look, Shape,
+};
+use glam::{Vec2, Vec3};
+
+const COATS: [Colour; 7] =
+    [Colour::Red, Colour::Blue, Colour::White, Colour::Green, Colour::Purple, Colour::DarkGrey, Colour::Yellow];
+
+/// A carcass with door or drawer fronts in a grid, each with a handle.
+fn fronts(shape: &mut Shape, look: &Look, columns: usize, rows: usize, (z0, z1): (f32, f32), upright: bool) {
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    let (w, h) = (look.w / columns as f32, (z1 - z0) / rows as f32);
+    let knob = Surface::metal(if look.colour == Colour::White { Colour::DarkGrey } else { Colour::Gold });
+    for column in 0..columns {
+        for row in 0..rows {
+            let (x, z) = (-hw + w * column as f32, z0 + h * row as f32);
+            shape.block(
+                wood.shade(1.06),
+                [x + 0.012, x + w - 0.012],
+                [-hd - 0.012, -hd + 0.01],
+                [z + 0.012, z + h - 0.012],
+            );
+            if upright {
+                let x = if column % 2 == 0 { x + w - 0.06 } else { x + 0.06 };
+                shape.block(knob, [x - 0.012, x + 0.012], [-hd - 0.045, -hd - 0.012], [z + h * 0.42, z + h * 0.58]);
+            } else {
+                let x = x + w / 2.0;
+                shape.block(
+                    knob,
+                    [x - 0.06, x + 0.06],
+                    [-hd - 0.04, -hd - 0.012],
+                    [z + h * 0.5 - 0.01, z + h * 0.5 + 0.01],
+                );
+            }
+        }
+    }
+}
+
+/// A tv stand or sideboard: a long low cabinet.
+pub(super) fn low_cabinet(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    shape.legs(wood.shade(0.7), (hw - 0.03, hd - 0.02), 0.05, 0.12);
+    shape.block(wood.shade(0.85), [-hw, hw], [-hd, hd], [0.1, look.h - 0.025]);
+    shape.block(wood, [-hw - 0.01, hw + 0.01], [-hd - 0.015, hd], [look.h - 0.025, look.h]);
+    fronts(&mut shape, look, 4, 1, (0.12, look.h - 0.03), true);
+    shape
+}
+
+/// A chest of drawers.
+pub(super) fn drawers(look: &Look, columns: usize, rows: usize) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    shape.legs(wood.shade(0.7), (hw, hd), 0.05, 0.1);
+    shape.block(wood.shade(0.82), [-hw, hw], [-hd, hd], [0.08, look.h - 0.025]);
+    shape.block(wood, [-hw - 0.01, hw + 0.01], [-hd - 0.015, hd], [look.h - 0.025, look.h]);
+    fronts(&mut shape, look, columns, rows, (0.1, look.h - 0.03), false);
+    shape
+}
+
+/// A metal cabinet of four drawers with label holders.
+pub(super) fn filing_cabinet(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), metal) = (look.half(), Surface::metal(look.colour));
+    shape.block(metal.shade(0.8), [-hw, hw], [-hd, hd], [0.0, look.h]);
+    let h = (look.h - 0.04) / 4.0;
+    for row in 0..4 {
+        let z = 0.03 + h * row as f32;
+        shape.block(metal, [-hw + 0.015, hw - 0.015], [-hd - 0.015, -hd], [z, z + h - 0.02]);
+        shape.block(
+            Surface::metal(Colour::Silver),
+            [-0.07, 0.07],
+            [-hd - 0.04, -hd - 0.015],
+            [z + h * 0.4, z + h * 0.48],
+        );
+        shape.block(
+            Surface::plain([245, 245, 240]),
+            [-0.05, 0.05],
+            [-hd - 0.02, -hd - 0.014],
+            [z + h * 0.62, z + h * 0.8],
+        );
+    }
+    shape
+}
+
+/// Shelves full of books.
+pub(super) fn bookshelf(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    for x in [-hw, hw - 0.03] {
+        shape.block(wood, [x, x + 0.03], [-hd, hd], [0.0, look.h]);
+    }
+    shape.block(wood.shade(0.7), [-hw, hw], [hd - 0.015, hd], [0.0, look.h]);
+    let shelves = 5;
+    let h = (look.h - 0.08) / shelves as f32;
+    for shelf in 0..=shelves {
+        let z = 0.05 + h * shelf as f32;
+        shape.block(wood, [-hw, hw], [-hd, hd], [z, z + 0.025]);
+        if shelf < shelves {
+            // Rows of spines of different height and start, so that no two shelves look alike.
+            let filled = if (shelf as u32 + look.variant).is_multiple_of(4) { 0.62 } else { 0.97 };
+            let (x0, x1) = (-hw + 0.03, -hw + 0.03 + (look.w - 0.06) * filled);
+            let start = 0.37 * shelf as f32 + look.variant as f32 * 0.01;
+            let (corner, u, v) = (Vec3::new(x0, -hd + 0.05, z + 0.025), Vec3::X * (x1 - x0), Vec3::Z * (h * 0.78));
+            let books = Surface::picture(Pattern::Books);
+            shape.quad(books, corner, u, v, Vec2::new(start, 0.0), Vec2::new(start + (x1 - x0) / 0.9, 1.0));
+            shape.block(
+                Surface::plain([214, 206, 190]),
+                [x0, x1],
+                [-hd + 0.055, hd - 0.02],
+                [z + 0.025, z + 0.02 + h * 0.76],
+            );
+        }
+    }
+    shape
+}
+
+/// A tall cupboard with doors.
+pub(super) fn wardrobe(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    shape.block(wood.shade(0.82), [-hw, hw], [-hd + 0.02, hd], [0.0, look.h]);
+    shape.block(wood, [-hw - 0.02, hw + 0.02], [-hd - 0.02, hd], [look.h - 0.05, look.h]);
+    fronts(&mut shape, look, if look.w > 1.5 { 3 } else { 2 }, 1, (0.08, look.h - 0.05), true);
+    shape
+}
+
+/// An open rack with shoes on it.
+pub(super) fn shoe_rack(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    for x in [-hw, hw - 0.03] {
+        shape.block(wood, [x, x + 0.03], [-hd, hd], [0.0, look.h]);
+    }
+    for (shelf, z) in [0.05, 0.27, look.h - 0.03].into_iter().enumerate() {
+        shape.block(wood, [-hw, hw], [-hd, hd], [z, z + 0.03]);
+        if shelf < 2 {
+            for pair in 0..3 {
+                let x = -hw + 0.14 + pair as f32 * (look.w - 0.1) / 3.0;
+                let colour = Surface::plain(COATS[(pair + shelf * 3 + look.variant as usize) % 7].rgb());
+                for side in [-0.05, 0.05] {
+                    shape.soft(
+                        colour,
+                        [x + side - 0.04, x + side + 0.04],
+                        [-hd + 0.02, hd - 0.06],
+                        [z + 0.03, z + 0.1],
+                        0.035,
+                    );
+                    shape.soft(
+                        colour,
+                        [x + side - 0.04, x + side + 0.04],
+                        [hd - 0.16, hd - 0.06],
+                        [z + 0.03, z + 0.15],
+                        0.035,
+                    );
+                }
+            }
+        }
+    }
+    shape
+}
+
+/// Two boards on the wall with bottles and boxes.
+pub(super) fn wall_shelf(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    for z in [0.0, look.h - 0.22] {
+        shape.block(wood, [-hw, hw], [-hd, hd], [z, z + 0.03]);
+        for item in 0..5 {
+            let x = -hw + 0.1 + item as f32 * (look.w - 0.1) / 5.0;
+            let colour = Surface::plain(COATS[(item + look.variant as usize) % 7].rgb());
+            if item % 2 == 0 {
+                shape.tube(colour, (x, 0.0), [0.045, 0.04], [z + 0.03, z + 0.2]);
+            } else {
+                shape.block(colour, [x - 0.06, x + 0.06], [-0.05, 0.05], [z + 0.03, z + 0.17]);
+            }
+        }
+    }
+    shape
+}
+
+/// A rail with clothes on hangers.
+pub(super) fn clothes_rack(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), metal) = (look.half(), Surface::metal(look.colour));
+    for x in [-hw + 0.02, hw - 0.02] {
+        shape.rod(metal, Vec3::new(x, 0.0, 0.03), Vec3::new(x, 0.0, look.h), 0.018);
+        shape.rod(metal, Vec3::new(x, -hd, 0.03), Vec3::new(x, hd, 0.03), 0.018);
+    }
+    shape.rod(metal, Vec3::new(-hw, 0.0, look.h - 0.03), Vec3::new(hw, 0.0, look.h - 0.03), 0.018);
+    let count = (look.w / 0.1) as usize - 1;
+    for item in 0..count {
+        let x = -hw + 0.1 + item as f32 * 0.1;
+        let cloth = Surface::fabric(COATS[(item * 3 + look.variant as usize) % 7]);
+        let bottom = [0.55, 0.8, 0.7][(item + look.variant as usize) % 3];
+        shape.soft(cloth, [x - 0.03, x + 0.03], [-hd + 0.03, hd - 0.03], [bottom, look.h - 0.12], 0.03);
+        shape.rod(metal, Vec3::new(x, 0.0, look.h - 0.13), Vec3::new(x, 0.0, look.h - 0.02), 0.006);
+    }
+    shape
+}
+
+/// A post with hooks and coats.
+pub(super) fn coat_rack(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let wood = Surface::wood(look.colour);
+    shape.tube(wood, (0.0, 0.0), [look.w / 2.0, look.w / 2.2], [0.0, 0.04]);
+    shape.tube(wood, (0.0, 0.0), [0.025, 0.025], [0.0, look.h]);
+    for hook in 0..4_usize {
+        let (x, y) = [(1.0, 0.0), (0.0, -1.0), (-1.0, 0.0), (0.0, 1.0)][hook];
+        shape.rod(wood, Vec3::new(0.0, 0.0, look.h - 0.14), Vec3::new(x * 0.18, y * 0.18, look.h - 0.04), 0.014);
+        if hook < 3 {
+            let coat = Surface::fabric(COATS[(hook * 2 + look.variant as usize) % 7]);
+            let (cx, cy) = (x * 0.13, y * 0.13);
+            shape.soft(coat, [cx - 0.12, cx + 0.12], [cy - 0.1, cy + 0.1], [0.75, look.h - 0.16], 0.09);
+        }
+    }
+    shape
+}

@@ -1,0 +1,45 @@
+//! What one puts things on.
+
+use super::{
+    super::{colour::Colour, surface::Surface},
+    Look, Shape,
+};
+
+/// A top on four legs.
+pub(super) fn table(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    shape.soft(wood, [-hw, hw], [-hd, hd], [look.h - 0.04, look.h], 0.012);
+    let (aw, ad) = (hw - 0.06, hd - 0.05);
+    shape.block(wood.shade(0.85), [-aw, aw], [-ad, ad], [look.h - 0.11, look.h - 0.04]);
+    shape.legs(wood.shade(0.92), (hw - 0.02, hd - 0.01), 0.06, look.h - 0.04);
+    if look.h < 0.6 {
+        shape.block(wood.shade(0.9), [-aw, aw], [-ad, ad], [0.12, 0.14]);
+    }
+    shape
+}
+
+/// A desk with a block of drawers at its right, and a keyboard and papers on it.
+pub(super) fn desk(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    let under = look.h - 0.035;
+    shape.block(wood, [-hw, hw], [-hd, hd], [under, look.h]);
+    shape.block(wood.shade(0.9), [-hw + 0.02, -hw + 0.06], [-hd + 0.04, hd - 0.02], [0.0, under]);
+    shape.block(wood.shade(0.9), [hw - 0.4, hw - 0.02], [-hd + 0.04, hd - 0.02], [0.04, under]);
+    shape.block(wood.shade(0.8), [-hw + 0.05, hw - 0.4], [hd - 0.05, hd - 0.03], [0.35, under]);
+    for row in 0..3 {
+        let z = 0.08 + 0.21 * row as f32;
+        shape.block(wood.shade(1.05), [hw - 0.38, hw - 0.04], [-hd + 0.02, -hd + 0.04], [z, z + 0.19]);
+        let handle = Surface::metal(Colour::Silver);
+        shape.block(handle, [hw - 0.27, hw - 0.15], [-hd, -hd + 0.02], [z + 0.1, z + 0.12]);
+    }
+    shape.block(Surface::plain([52, 52, 56]), [-0.22, 0.22], [-hd + 0.1, -hd + 0.24], [look.h, look.h + 0.02]);
+    shape.block(
+        Surface::plain([240, 240, 235]),
+        [-hw + 0.12, -hw + 0.33],
+        [-hd + 0.12, -hd + 0.41],
+        [look.h, look.h + 0.01],
+    );
+    shape
+}

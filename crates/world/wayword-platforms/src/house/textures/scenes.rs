@@ -1,0 +1,137 @@
+//! Pictures that show something: books, views from windows, screens.
+
+use super::{
+    Rgb,
+    noise::{away, cloudy, hash, mix, smooth},
+};
+
+const SPINES: [Rgb; 9] = [
+    [158.0, 44.0, 40.0],
+    [38.0, 70.0, 122.0],
+    [46.0, 100.0, 66.0],
+    [214.0, 182.0, 92.0],
+    [232.0, 226.0, 210.0],
+    [92.0, 60.0, 98.0],
+    [54.0, 52.0, 56.0],
+    [196.0, 112.0, 52.0],
+    [110.0, 150.0, 168.0],
+];
+
+/// Spines of books of different height and colour, side by side.
+pub(super) fn books(u: f32, v: f32) -> Rgb {
+    let x = u * 26.0;
+    let (book, across) = (x.floor() as i32, x.fract());
+    let top = hash(book, 0, 30) * 0.24;
+    if v < top {
+        return [44.0, 36.0, 30.0];
+    }
+    let spine = SPINES[(hash(book, 1, 31) * 9.0) as usize % 9];
+    if !(0.06..=0.94).contains(&across) {
+        return mix(spine, [0.0; 3], 0.5);
+    }
+    let band = v - top;
+    if (0.1..0.14).contains(&band) || (0.52..0.56).contains(&band) {
+        return mix(spine, [240.0, 220.0, 160.0], 0.7);
+    }
+    mix(spine, [255.0; 3], 0.12 - (across - 0.5).abs() * 0.3)
+}
+
+fn sky(u: f32, v: f32) -> Rgb {
+    let cloud = ((cloudy(u, v, 3, 32) - 0.5) * 4.0).clamp(0.0, 1.0);
+    mix(mix([120.0, 176.0, 232.0], [206.0, 228.0, 246.0], v * 1.5), [255.0; 3], cloud)
+}
+
+fn tree(u: f32, v: f32, at: (f32, f32), radius: f32) -> Option<Rgb> {
+    let ragged = radius * (0.78 + 0.44 * smooth(u, v, (28, 28), 33));
+    if away(u, v, at) < ragged {
+        return Some(mix([44.0, 92.0, 44.0], [116.0, 160.0, 74.0], smooth(u, v, (20, 20), 34) - (v - at.1)));
+    }
+    ((u - at.0).abs() < radius * 0.09 && v > at.1).then_some([92.0, 68.0, 48.0])
+}
+
+/// A lawn with trees and a hedge under the sky.
+pub(super) fn garden(u: f32, v: f32) -> Rgb {
+    let grass = mix([136.0, 178.0, 84.0], [84.0, 136.0, 60.0], (v - 0.66) * 3.0 + smooth(u, v, (48, 32), 35) * 0.3);
+    if v > 0.66 {
+        return grass;
+    }
+    [(0.22, 0.42, 0.2), (0.72, 0.38, 0.24), (0.48, 0.5, 0.1)]
+        .into_iter()
+        .find_map(|(x, y, r)| tree(u, v, (x, y), r))
+        .unwrap_or_else(|| {
+            let hedge = v > 0.58 + smooth(u, 0.0, (24, 1), 36) * 0.03;
+            if hedge { mix([60.0, 104.0, 54.0], [86.0, 132.0, 66.0], smooth(u, v, (32, 32), 37)) } else { sky(u, v) }
+        })
+}
+
+/// The same from upstairs.
+pub(super) fn treetops(u: f32, v: f32) -> Rgb {
+    [(0.16, 0.86, 0.22), (0.52, 0.98, 0.26), (0.86, 0.84, 0.2)]
+        .into_iter()
+        .find_map(|(x, y, r)| tree(u, v, (x, y), r))
+        .unwrap_or_else(|| sky(u, v))
+}
+
+/// The sheen of glass: pale bluish, with two slanting streaks.
+pub(super) fn reflection(u: f32, v: f32) -> Rgb {
+    let base = mix([226.0, 238.0, 244.0], [150.0, 172.0, 186.0], (u * 0.3 + v * 0.7).clamp(0.0, 1.0));
+    let slant = u + v * 0.8;
+    let streak = (0.5..0.64).contains(&slant) || (0.7..0.74).contains(&slant);
+    if streak { mix(base, [255.0; 3], 0.55) } else { base }
+}
+
+pub(super) fn fire(u: f32, v: f32) -> Rgb {
+    let flicker = smooth(u, v, (9, 3), 38) * 0.6 + smooth(u, v, (18, 6), 39) * 0.3;
+    let height = 1.0 - v;
+    let reach = (1.0 - (u - 0.5).abs() * 2.0) * 0.75 + flicker * 0.5 - height;
+    if reach < 0.06 {
+        return [30.0, 22.0, 18.0];
+    }
+    mix([222.0, 70.0, 20.0], [255.0, 226.0, 110.0], reach * 1.6)
+}
+
+/// A screen with a task bar, and a window with lines of text.
+pub(super) fn desktop(u: f32, v: f32) -> Rgb {
+    if v > 0.93 {
+        return if (u * 30.0).fract() < 0.4 && u < 0.3 { [230.0, 230.0, 235.0] } else { [34.0, 40.0, 56.0] };
+    }
+    if (0.12..0.62).contains(&u) && (0.12..0.82).contains(&v) {
+        if v < 0.18 {
+            return [64.0, 110.0, 186.0];
+        }
+        let line =
+            ((v - 0.22) * 18.0).fract() < 0.35 && (0.16..0.34 + 0.24 * hash(0, (v * 18.0) as i32, 40)).contains(&u);
+        return if line { [96.0, 100.0, 108.0] } else { [248.0, 249.0, 250.0] };
+    }
+    mix([44.0, 110.0, 170.0], [120.0, 190.0, 214.0], u * 0.5 + v * 0.5)
+}
+
+/// Twelve marks and two hands at ten past ten.
+pub(super) fn dial(u: f32, v: f32) -> Rgb {
+    let (x, y) = (u - 0.5, 0.5 - v);
+    let radius = (x * x + y * y).sqrt();
+    let dark = [30.0, 30.0, 34.0];
+    let hand = |dx: f32, dy: f32, length: f32| {
+        let along = x * dx + y * dy;
+        (0.0..length).contains(&along) && (x * dy - y * dx).abs() < 0.018
+    };
+    let mark = (0..12).any(|hour| {
+        let angle = std::f32::consts::TAU * hour as f32 / 12.0;
+        let (dx, dy) = (libm::sinf(angle), libm::cosf(angle));
+        (0.38..0.45).contains(&(x * dx + y * dy)) && (x * dy - y * dx).abs() < 0.015
+    });
+    if mark || radius < 0.03 || hand(-0.866, 0.5, 0.22) || hand(0.866, 0.5, 0.33) {
+        return dark;
+    }
+    if radius > 0.47 { [190.0, 190.0, 192.0] } else { [250.0, 250.0, 247.0] }
+}
+
+/// Land and sea.
+pub(super) fn map(u: f32, v: f32) -> Rgb {
+    let land = cloudy(u, v, 5, 41);
+    if land > 0.55 {
+        mix([110.0, 150.0, 80.0], [200.0, 178.0, 110.0], (land - 0.55) * 6.0)
+    } else {
+        [58.0, 112.0, 178.0]
+    }
+}
