@@ -1,6 +1,6 @@
 //! What every format's items come to: a path to walk, and what is said about it.
 
-use crate::{item, item::Item};
+use crate::item;
 use serde_json::{Map, Value};
 use wayword_core::{DVec3, Heading, ObjectId, Path, SceneId, ViewpointId};
 
@@ -100,11 +100,5 @@ impl Episode {
     /// Keeps a known field's spelling.
     pub(crate) fn remember(&mut self, key: &str, value: Value) {
         self.as_read.insert(key.to_owned(), value);
-    }
-
-    /// Keeps the fields that nobody took.
-    pub(crate) fn keep_rest(mut self, item: Item<'_>) -> Self {
-        self.extra = item.rest();
-        self
     }
 }

@@ -167,7 +167,7 @@ impl<'a> Items<'a> {
     fn hand_on(&self, value: Value) -> Result<(), FormatError> {
         let state = &mut *self.state.borrow_mut();
         if state.index >= limits::ITEMS {
-            return Err(FormatError::document(self.file, "it has more than 2,000,000 items", "split it into parts"));
+            return Err(FormatError::document(self.file, "it has more than 1,000,000 items", "split it into parts"));
         }
         (state.take)(Item::new(self.file, Place::Item(state.index), value)?)?;
         state.index += 1;

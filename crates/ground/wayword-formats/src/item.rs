@@ -28,6 +28,10 @@ impl<'a> Item<'a> {
         self.id = Some(id.to_owned());
     }
 
+    pub(crate) fn file(&self) -> &'a Path {
+        self.file
+    }
+
     /// What nobody took, in the order of the file.
     pub(crate) fn rest(self) -> Map<String, Value> {
         self.fields

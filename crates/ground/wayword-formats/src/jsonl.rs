@@ -3,7 +3,7 @@
 //! A line has `format` ("wayword/1"), `platform`, `split`, `path` (a core path with its frames) and the fields of a core
 //! instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`. Unknown fields are kept.
 
-use crate::{Episode, FormatError, Item, input, limits, output};
+use crate::{Episode, FormatError, Item, input, limits, output, tally::Tally};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use std::{
@@ -79,12 +79,15 @@ pub fn read(file: &FilePath) -> Result<Vec<Record>, FormatError> {
 pub fn merge<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<Record>, FormatError> {
     let mut records: Vec<Record> = Vec::new();
     let mut seen = Seen::default();
+    let mut tally = Tally::default();
     for file in files {
         input::each_line(file.as_ref(), |mut item| {
             let record = take_record(&mut item)?;
             seen.check(&records, &record).map_err(|clash| item.wrong(clash.field, clash.problem, clash.hint))?;
             seen.note(&record, records.len());
-            records.push(Record { extra: item.rest(), ..record });
+            let instruction = &record.instruction;
+            let kept = record.path.frames.len() + instruction.mentions.len() + instruction.findings.len();
+            records.push(Record { extra: tally.rest(item, kept)?, ..record });
             Ok(())
         })?;
     }

@@ -20,7 +20,7 @@ pub mod reverie;
 pub mod rxr;
 mod splits;
 mod strict;
-mod unique;
+mod tally;
 pub mod vlnce;
 mod vocabulary;
 

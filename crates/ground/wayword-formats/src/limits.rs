@@ -1,11 +1,13 @@
 //! How much of an untrusted file is believed.
 
-/// Largest file, in bytes: as it lies on the disk, and again after gunzip. RxR's largest is about 0.3 GB.
+/// Largest file, in bytes: as it lies on the disk, and again after gunzip.
 pub(crate) const FILE_BYTES: u64 = 1 << 30;
-/// Most items in a file. R2R's largest augmentation has about a million.
-pub(crate) const ITEMS: usize = 2_000_000;
+/// Most items in a file.
+pub(crate) const ITEMS: usize = 1_000_000;
 /// Most JSON values within one item; without it, a small file of zeros becomes a tree forty times its size.
 pub(crate) const VALUES_PER_ITEM: usize = 200_000;
+/// Most JSON values that are held of a whole file (or of files that are merged).
+pub(crate) const VALUES_KEPT: usize = 20_000_000;
 /// Longest line of a JSON Lines file, bytes.
 pub(crate) const LINE_BYTES: usize = 16 << 20;
 /// Most nodes or positions of one path.

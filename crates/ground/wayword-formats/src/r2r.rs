@@ -2,7 +2,7 @@
 //!
 //! Fields: `distance`, `scan`, `path_id`, `path`, `heading`, `instructions`. `distance` is carried along as unknown fields are.
 
-use crate::{Episode, FormatError, input, matterport, output, unique::Unique};
+use crate::{Episode, FormatError, input, matterport, output, tally::Tally};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::{collections::BTreeMap, path::Path};
@@ -13,13 +13,13 @@ use std::{collections::BTreeMap, path::Path};
 /// When it cannot be read, is not JSON, or an item lacks a field, has it wrong, or has a `path_id` that was given before.
 pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
-    let mut unique = Unique::default();
+    let mut tally = Tally::default();
     input::each_item(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "path_id")?;
-        unique.claim(&item, "path_id", &episode)?;
+        tally.claim(&item, "path_id", &episode)?;
         let instructions = item.take("instructions")?;
         episode.instructions = item.instructions("instructions", &instructions)?;
-        episodes.push(episode.keep_rest(item));
+        episodes.push(tally.finish(episode, item)?);
         Ok(())
     })?;
     Ok(episodes)

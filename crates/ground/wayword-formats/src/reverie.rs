@@ -3,7 +3,7 @@
 //! Fields: `id` ("path_objId"), `scan`, `path_id`, `path`, `objId`, `heading`, `instructions`. The first release adds
 //! `distance`, `ix` and `instructions_l` (R2R's text); they are carried along as unknown fields are.
 
-use crate::{Episode, FormatError, input, item, matterport, output, unique::Unique};
+use crate::{Episode, FormatError, input, item, matterport, output, tally::Tally};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -14,10 +14,10 @@ use std::path::Path;
 /// When it cannot be read, is not JSON, or an item lacks a field, has it wrong, or has an id that was given before.
 pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
-    let mut unique = Unique::default();
+    let mut tally = Tally::default();
     input::each_item(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "id")?;
-        unique.claim(&item, "id", &episode)?;
+        tally.claim(&item, "id", &episode)?;
         // Test splits and free targets have none.
         if let Some(object) = item.take_optional("objId") {
             episode.target_object = Some(item.object("objId", &object)?);
@@ -25,7 +25,7 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
         }
         let instructions = item.take("instructions")?;
         episode.instructions = item.instructions("instructions", &instructions)?;
-        episodes.push(episode.keep_rest(item));
+        episodes.push(tally.finish(episode, item)?);
         Ok(())
     })?;
     Ok(episodes)

@@ -3,7 +3,7 @@
 //! Fields: `split`, `instruction_id`, `annotator_id`, `language`, `path_id`, `scan`, `path`, `heading`, `instruction`,
 //! `timed_instruction` (`word`, and where known `start_time`, `end_time`), `edit_distance`.
 
-use crate::{Episode, FormatError, Item, input, limits, matterport, output, unique::Unique};
+use crate::{Episode, FormatError, Item, input, limits, matterport, output, tally::Tally};
 use matterport::{Numbers, PathNumbers, number_of};
 use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};
@@ -17,10 +17,10 @@ const OF_THE_TEXT: [&str; 4] = ["annotator_id", "language", "timed_instruction",
 /// When it cannot be read, is not JSON, or a line lacks a field, has it wrong, or has an `instruction_id` that was given before.
 pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
-    let mut unique = Unique::default();
+    let mut tally = Tally::default();
     input::each_line(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "instruction_id")?;
-        unique.claim(&item, "instruction_id", &episode)?;
+        tally.claim(&item, "instruction_id", &episode)?;
         let instruction = item.take("instruction")?;
         episode.instructions = vec![item.instruction("instruction", &instruction)?];
         episode.remember("instruction", instruction);
@@ -28,7 +28,7 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
             episode.split = Some(item.name("split", &split)?);
         }
         take_text_fields(&mut item, &mut episode)?;
-        episodes.push(episode.keep_rest(item));
+        episodes.push(tally.finish(episode, item)?);
         Ok(())
     })?;
     Ok(episodes)
@@ -44,6 +44,8 @@ fn take_text_fields(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), Fo
             "language" => drop(item.text(field, &value)?),
             _ => timed_words(item, field, &value)?,
         }
+        // The times of a word take ten times as much memory as values than as text.
+        let value = if field == "timed_instruction" { value.to_string().into() } else { value };
         episode.remember(field, value);
     }
     Ok(())
@@ -98,7 +100,9 @@ fn fields(
 ) -> Result<Map<String, Value>, FormatError> {
     let same_text = episode.as_read.get("instruction").and_then(Value::as_str) == Some(text);
     let of_text = |field: &str, anew: Value| episode.field(field, |_| same_text, || anew);
-    let words: Value = text.split_whitespace().map(|word| json!({ "word": word })).collect();
+    let words = || text.split_whitespace().map(|word| json!({ "word": word })).collect();
+    let timed = episode.as_read.get("timed_instruction").and_then(Value::as_str).filter(|_| same_text);
+    let timed = timed.and_then(|timed| serde_json::from_str(timed).ok()).unwrap_or_else(words);
     let mut fields = Map::new();
     fields.insert("split".to_owned(), episode.split.as_deref().unwrap_or("train").into());
     fields.insert("instruction_id".to_owned(), id);
@@ -109,7 +113,7 @@ fn fields(
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
     fields.insert("heading".to_owned(), episode.heading_field());
     fields.insert("instruction".to_owned(), text.into());
-    fields.insert("timed_instruction".to_owned(), of_text("timed_instruction", words));
+    fields.insert("timed_instruction".to_owned(), timed);
     fields.insert("edit_distance".to_owned(), of_text("edit_distance", 0.0.into()));
     matterport::add_extra(&mut fields, episode);
     Ok(fields)

@@ -12,7 +12,7 @@ use crate::{
     Episode, FormatError, Item,
     habitat::{habitat_from_heading, habitat_from_wayword, heading_from_habitat, wayword_from_habitat},
     input, limits, output,
-    unique::Unique,
+    tally::Tally,
     vocabulary::Vocabulary,
 };
 use serde_json::{Map, Value, json};
@@ -50,11 +50,13 @@ impl Dataset {
 pub fn read(file: &Path) -> Result<Dataset, FormatError> {
     let mut episodes = Vec::new();
     let mut tokens = BTreeMap::new();
-    let mut unique = Unique::default();
+    let mut tally = Tally::default();
     let mut rest = input::each_item_in(file, "episodes", |mut item| {
         let episode = take_episode(&mut item, &mut tokens)?;
-        unique.claim(&item, "episode_id", &episode)?;
-        episodes.push(episode);
+        tally.claim(&item, "episode_id", &episode)?;
+        // Unknown fields cannot be written back, so they are not kept either.
+        let episode = tally.finish(episode, item)?;
+        episodes.push(Episode { extra: Map::new(), ..episode });
         Ok(())
     })?;
     let mut vocabulary = Vocabulary::new(word_list(file, rest.remove("instruction_vocab"))?);

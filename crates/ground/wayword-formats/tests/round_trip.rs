@@ -152,3 +152,48 @@ proptest! {
         comes_back(Format::Wayword, ".jsonl", &changes);
     }
 }
+
+/// Writes one item, reads it and writes it again.
+fn copied(format: Format, item: Value) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, copy) = (folder.path().join("file"), folder.path().join("copy"));
+    std::fs::write(&file, common::text(format, &[item])).unwrap();
+    assert_eq!(wayword_formats::detect(&file).unwrap(), format);
+    common::copy(format, &file, &copy).unwrap();
+    common::items_of(format, &copy).remove(0)
+}
+
+#[test]
+fn reveries_first_release_comes_back_too() {
+    let mut item = common::items(Format::Reverie).remove(0);
+    item["distance"] = json!(11.25);
+    item["ix"] = json!(3);
+    item["instructions_l"] = json!(["Leave the hall.", "Walk on.", "Stop."]);
+    assert_eq!(copied(Format::Reverie, item.clone()), item);
+}
+
+#[test]
+fn an_item_without_an_object_is_reverie_by_its_id() {
+    let mut item = common::items(Format::Reverie).remove(0);
+    item.as_object_mut().unwrap().shift_remove("objId");
+    item["id"] = json!("0_free");
+    assert_eq!(copied(Format::Reverie, item.clone()), item);
+}
+
+#[test]
+fn vlnce_drops_what_its_loader_would_crash_on() {
+    let item = common::items(Format::Vlnce).remove(0);
+    let mut strange = item.clone();
+    strange["style"] = json!("r2r");
+    strange["instruction"]["language"] = json!("en-US");
+    assert_eq!(copied(Format::Vlnce, strange), item);
+}
+
+#[test]
+fn a_vlnce_episode_of_a_test_split_has_neither_goal_nor_path() {
+    let mut item = common::items(Format::Vlnce).remove(0);
+    item["goals"] = Value::Null;
+    item["reference_path"] = Value::Null;
+    item["info"] = Value::Null;
+    assert_eq!(copied(Format::Vlnce, item.clone()), item);
+}

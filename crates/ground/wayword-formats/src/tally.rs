@@ -1,0 +1,78 @@
+//! What a file has given so far: names that may be given once, and how much of it is held in memory.
+
+use crate::{Episode, FormatError, Item, limits};
+use serde_json::{Map, Value};
+use std::collections::BTreeSet;
+
+/// What a file has given so far.
+#[derive(Default)]
+pub(crate) struct Tally {
+    names: BTreeSet<String>,
+    values: usize,
+}
+
+impl Tally {
+    /// Refuses a name that was given before; the field's loaders would silently drop one of the two.
+    pub(crate) fn claim(&mut self, item: &Item<'_>, field: &str, episode: &Episode) -> Result<(), FormatError> {
+        if self.names.insert(episode.id.clone()) {
+            return Ok(());
+        }
+        let problem = format!("{:?} was given to an earlier item", episode.id);
+        Err(item.wrong(field, problem, "give each item a name of its own"))
+    }
+
+    /// An episode with the fields that nobody took.
+    pub(crate) fn finish(&mut self, mut episode: Episode, item: Item<'_>) -> Result<Episode, FormatError> {
+        let lists = episode.viewpoints.len() + episode.floor_positions.len() + episode.instructions.len();
+        episode.extra = self.rest(item, lists + values_in(&episode.as_read))?;
+        Ok(episode)
+    }
+
+    /// The fields that nobody took; `kept` is the number of values that were taken and are held. A short value takes up to
+    /// thirty times its length in the file.
+    pub(crate) fn rest(&mut self, item: Item<'_>, kept: usize) -> Result<Map<String, Value>, FormatError> {
+        let file = item.file();
+        let rest = item.rest();
+        self.values += kept + values_in(&rest);
+        if self.values > limits::VALUES_KEPT {
+            let problem = "it holds more than 20,000,000 values, more than is kept in memory";
+            return Err(FormatError::document(file, problem, "split it into parts"));
+        }
+        Ok(rest)
+    }
+}
+
+fn values_in(map: &Map<String, Value>) -> usize {
+    map.values().map(values).sum()
+}
+
+/// An object counts for eight, since one takes as much memory as that many numbers even where it is short.
+fn values(value: &Value) -> usize {
+    match value {
+        Value::Array(list) => 1 + list.iter().map(values).sum::<usize>(),
+        Value::Object(map) => 8 + values_in(map),
+        _ => 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Place;
+    use serde_json::json;
+    use std::path::Path;
+
+    #[test]
+    fn values_are_counted_at_every_depth() {
+        assert_eq!(values(&json!({"a": [1, 2, {"b": null}], "c": "text"})), 8 + 3 + (8 + 1) + 1);
+    }
+
+    #[test]
+    fn what_is_held_of_a_file_has_a_limit() {
+        let mut tally = Tally::default();
+        let item = || Item::new(Path::new("big.json"), Place::Item(0), json!({"a": [0, 0]})).unwrap();
+        assert_eq!(tally.rest(item(), limits::VALUES_KEPT - 3).unwrap().len(), 1);
+        let error = tally.rest(item(), 0).unwrap_err().to_string();
+        assert!(error.starts_with("big.json: it holds more than 20,000,000 values"), "{error}");
+    }
+}
