@@ -14,6 +14,7 @@ use crate::{
     output::Output,
 };
 
+pub use check::{CheckReport, CheckedText, Counts, check_file};
 pub use generate::{Summary, generate_into};
 
 /// Runs a command.

@@ -13,7 +13,7 @@ const BEND_MOVES: usize = 3;
 /// Least turn of each move of a bend, degrees.
 const BEND_STEP_DEG: f64 = 10.0;
 /// Least turn of a bend, degrees.
-const BEND_DEG: f64 = 45.0;
+const BEND_DEG: f64 = 60.0;
 /// Least turn that is told as turning around, degrees.
 const ABOUT_DEG: f64 = 120.0;
 

@@ -75,7 +75,7 @@ fn absent(place: &Place, evidence: &Evidence) -> Verdict {
     // Labels seldom have walls, doors and the like, and what lies next to a path need not lie on it.
     let part_of_building =
         thing(&place.name).is_some_and(|thing| matches!(thing.class, Class::Structure | Class::Door));
-    let beside_the_path = place.related && place.is_room;
+    let beside_the_path = place.related && place.is_room && !place.is_thing;
     if told_by_nobody || (part_of_building && place.is_thing) || beside_the_path {
         Verdict::Unverified
     } else {

@@ -20,7 +20,10 @@ pub(super) struct Order {
 /// Checks the order of places by themselves, then that of turns among them. `shown` holds the frames of each event.
 pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Vec<usize>]) -> Order {
     let sequence = in_order_of_walk(&reading.events);
-    let steps: Vec<Step> = sequence.iter().map(|at| step(&reading.events[*at], &shown[*at], evidence)).collect();
+    let steps: Vec<Step> = sequence
+        .iter()
+        .map(|at| if is_aside(reading, *at) { Step::Free } else { step(&reading.events[*at], &shown[*at], evidence) })
+        .collect();
     let places_alone: Vec<Step> =
         steps.iter().map(|step| if matches!(step, Step::Turn(_)) { Step::Free } else { step.clone() }).collect();
     let span = |at: usize| Some(reading.events[sequence[at]].span);
@@ -54,6 +57,15 @@ pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Vec<usize>]
     Order { findings, frames }
 }
 
+/// Whether an event is a place that only tells where another place of its clause, or the task's object, is.
+fn is_aside(reading: &Reading, at: usize) -> bool {
+    let event = &reading.events[at];
+    let What::Place(place) = &event.what else { return false };
+    let object = reading.task.as_ref().and_then(|task| task.object);
+    let other_in_clause = reading.events[..at].iter().any(|other| other.clause == event.clause && matches!(other.what, What::Place(_)));
+    (place.related && other_in_clause) || object.is_some_and(|object| object < at)
+}
+
 fn turn_reason(steps: &[Step], at: usize) -> &'static str {
     match &steps[at] {
         Step::Turn(Side::Left) => "no move of the path turns left here",
@@ -76,7 +88,7 @@ fn turns_alone(reading: &Reading, evidence: &Evidence) -> Finding {
 fn step(event: &Event, shown: &[usize], evidence: &Evidence) -> Step {
     match &event.what {
         What::Turn(side) => Step::Turn(*side),
-        What::Place(place) if !shown.is_empty() && !place.related => Step::Place(shown.to_vec()),
+        What::Place(_) if !shown.is_empty() => Step::Place(shown.to_vec()),
         What::Climb(climb) => {
             let frames = evidence.frames_with_climb(*climb);
             if frames.is_empty() { Step::Free } else { Step::Place(frames) }

@@ -79,7 +79,7 @@ fn room_asked(question: &str) -> bool {
 pub(super) fn room(transcript: &[Exchange]) -> Option<String> {
     let answer = &transcript.iter().find(|exchange| room_asked(&exchange.question))?.answer;
     let said = answer.trim_end_matches('.').to_lowercase();
-    let name = ["it is ", "this is ", "a ", "an ", "the "]
+    let name = ["it is ", "this is ", "a ", "an ", "the ", "some "]
         .iter()
         .fold(said.as_str(), |rest, lead| rest.strip_prefix(lead).unwrap_or(rest));
     (!name.is_empty() && !said.contains("not sure") && name.len() <= 40).then(|| name.to_owned())

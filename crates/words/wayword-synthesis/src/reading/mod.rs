@@ -54,7 +54,7 @@ pub struct Place {
     pub is_thing: bool,
     /// Whether the name can be a room's.
     pub is_room: bool,
-    /// A room after "next to", "across from" and the like: it need not lie on the path itself.
+    /// It stands after "next to", "across from", "with" and the like: it tells where something else is.
     pub related: bool,
     /// The side of the walker on which it is said to be ("on your left").
     pub side: Option<Side>,
@@ -171,6 +171,15 @@ mod tests {
         assert_eq!(task("Walk to the kitchen and stop by the sink."), None);
         assert_eq!(task("Clean the sink and go to the bedroom."), None);
         assert_eq!(task("Go to the office with wooden shelves and books"), None);
+    }
+
+    #[test]
+    fn walking_on_is_no_task() {
+        for style in ["r2r"] {
+            for text in crate::style::built_in(style).unwrap().references {
+                assert_eq!(read(&text, &BTreeSet::new()).task, None, "{text}");
+            }
+        }
     }
 
     #[test]

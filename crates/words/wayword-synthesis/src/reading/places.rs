@@ -40,7 +40,7 @@ pub(super) fn places(
     let event = |place: Found| {
         let span = [tokens[place.from].span[0], tokens[place.to - 1].span[1]];
         let side = side_after(tokens, place.to);
-        let related = place.is_room && is_related(tokens, place.from);
+        let related = is_related(tokens, place.from);
         let Found { name, is_thing, is_room, .. } = place;
         let what = What::Place(Place { name, is_thing, is_room, related, side, tells_turn: false });
         Event { what, span, clause: clauses[place.from] }
@@ -142,17 +142,17 @@ fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Foun
     Some(Found { from: at + 1, to, name, is_thing: true, is_room: false })
 }
 
-/// Whether a place stands behind a word of nearness.
+/// Whether a place stands behind a word of nearness or belonging.
 fn is_related(tokens: &[Token], from: usize) -> bool {
-    let before = tokens[..from]
-        .iter()
-        .rev()
-        .take_while(|token| token.is_word() && token.word != "and" && token.word != "then")
-        .take(4);
+    let before = tokens[..from].iter().rev().take_while(|token| token.is_word() && token.word != "and" && token.word != "then").take(5);
     let words: Vec<&str> = before.map(|token| token.word.as_str()).collect();
-    let nearest_preposition =
-        words.iter().find(|word| v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word) && **word != "to");
-    nearest_preposition.is_some_and(|word| v::RELATIONS.contains(word))
+    let is_preposition = |word: &&str| v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word);
+    match words.iter().position(is_preposition) {
+        // "next to" and "closest to", but not "walk to".
+        Some(at) if words[at] == "to" => words.get(at + 1).is_some_and(|word| v::RELATIONS.contains(word)),
+        Some(at) => v::RELATIONS.contains(&words[at]),
+        None => false,
+    }
 }
 
 /// The side that follows a place: "on your left", "to the right", but not "to the right of".

@@ -62,6 +62,8 @@ fn is_walking(tokens: &[Token], at: usize) -> bool {
         "cut" | "get" | "pop" | "drop" | "carry" | "move" | "make" | "back" | "round" | "run" => {
             !(v::DETERMINERS.contains(&word(at + 1)) || matches!(word(at + 1), "me" | "on" | "off" | "all")) || turns()
         }
+        // "find the lamp" is a task, "you find yourself in a hall" is none.
+        "find" => word(at + 1) == "your" || word(at + 1) == "yourself",
         verb => v::WALKING.contains(&verb),
     }
 }

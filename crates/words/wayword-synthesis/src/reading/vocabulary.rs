@@ -6,7 +6,8 @@ pub(super) const WALKING: &[&str] = &[
     "step", "make", "veer", "bear", "keep", "stay", "follow", "cross", "climb", "ascend", "descend", "travel", "come",
     "reach", "approach", "stand", "face", "start", "begin", "navigate", "return", "run", "hang", "rotate", "pause",
     "halt", "end", "finish", "hook", "curve", "cut", "advance", "march", "stroll", "swing", "pivot", "circle", "round",
-    "back", "remain", "steer", "slip", "carry", "get", "pop", "hurry", "drop",
+    "back", "remain", "steer", "slip", "carry", "get", "pop", "hurry", "drop", "arrive", "have", "see", "find", "be",
+    "is", "are", "visit",
 ];
 
 /// Verbs after which "left" or "right" is a turn.
@@ -262,24 +263,11 @@ pub(super) const ABSTRACT: &[&str] = &[
     "start",
 ];
 
-/// Words between a landmark and "next to", "across from": the place that follows need not lie on the path.
+/// Words after which a place tells where something else is.
 pub(super) const RELATIONS: &[&str] = &[
-    "adjacent",
-    "adjoining",
-    "attached",
-    "across",
-    "off",
-    "beside",
-    "near",
-    "nearest",
-    "closest",
-    "next",
-    "opposite",
-    "by",
-    "from",
-    "outside",
-    "connected",
-    "overlooking",
+    "adjacent", "adjoining", "attached", "across", "off", "beside", "near", "nearest", "closest", "close", "next", "opposite",
+    "by", "from", "outside", "connected", "overlooking", "with", "of", "in", "inside", "on", "under", "above", "below", "over",
+    "behind", "between", "at", "that", "which",
 ];
 
 /// Colours, sizes and the like: no verbs, whatever they look like.

@@ -2,7 +2,7 @@
 
 use super::Brief;
 use crate::{
-    lexicon::{agree, is_room, kinds, normal, thing},
+    lexicon::{agree, is_room, normal, thing},
     walk::Seen,
 };
 use rand::Rng;
@@ -48,11 +48,12 @@ impl<'a> Landmarks<'a> {
         self.used.push(normal(name));
     }
 
-    /// The landmark that tells a frame best, if there is one.
-    pub(super) fn choose(&mut self, frame: usize, rng: &mut ChaCha8Rng) -> Option<Landmark> {
+    /// The landmark of at least that salience that tells a frame best, if there is one.
+    pub(super) fn choose(&mut self, frame: usize, salience: u8, rng: &mut ChaCha8Rng) -> Option<Landmark> {
         let walk = self.brief.walk;
-        let told =
-            walk.seen(frame).filter(|seen| is_tellable(&seen.sighting.name) && self.is_free(&seen.sighting.name));
+        let told = walk
+            .seen(frame)
+            .filter(|seen| is_tellable(&seen.sighting.name, salience) && self.is_free(&seen.sighting.name));
         let scored = told.map(|seen| {
             let salience = thing(&seen.sighting.name).map_or(0.0, |thing| f64::from(thing.salience));
             let elsewhere = (0..walk.path.frames.len()).filter(|at| {
@@ -67,10 +68,10 @@ impl<'a> Landmarks<'a> {
 }
 
 /// Whether a name reads as a landmark: known as one, and not a room's or a list's name.
-fn is_tellable(name: &str) -> bool {
+fn is_tellable(name: &str, salience: u8) -> bool {
     let plain =
         name.len() <= 30 && name.chars().all(|c| c.is_alphabetic() || c == ' ' || c == '-') && !name.contains(" and ");
-    plain && !is_room(&normal(name)) && thing(name).is_some_and(|thing| thing.salience >= 1) && kinds(name).len() <= 4
+    plain && !is_room(&normal(name)) && thing(name).is_some_and(|thing| thing.salience >= salience)
 }
 
 fn landmark(seen: &Seen<'_>) -> Landmark {

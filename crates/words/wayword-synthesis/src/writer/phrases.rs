@@ -2,7 +2,7 @@
 
 use super::{
     landmarks::Landmark,
-    route::{Step, side_word},
+    route::{Step, Within, side_word},
 };
 use crate::lexicon::room_name;
 use rand::Rng;
@@ -32,6 +32,8 @@ const TURN_INTO: &[&str] = &[
     "turn {s} and enter {r}",
     "turn {s} to enter {r}",
 ];
+const TURN_WITHIN: &[&str] = &["turn {s} in {r}", "take a {s} in {r}", "in {r} turn {s}", "in {r} take a {s}", "make a {s} in {r}"];
+const TURN_OUT: &[&str] = &["turn {s} out of {r}", "take a {s} out of {r}", "make a {s} out of {r}", "leave {r} and turn {s}", "exit {r} and go {s}"];
 const AROUND: &[&str] = &["turn around", "turn 180 degrees", "turn back around"];
 const UP: &[&str] = &[
     "go up the stairs",
@@ -89,6 +91,25 @@ const PASS: &[&str] = &[
     "go towards {l}",
     "walk straight past {l}",
 ];
+const ALONG: &[&str] = &[
+    "walk across {r}",
+    "go through {r}",
+    "cross {r}",
+    "walk through {r}",
+    "continue through {r}",
+    "keep going through {r}",
+    "go across {r}",
+];
+const ALONG_HALL: &[&str] = &[
+    "walk down {r}",
+    "continue down {r}",
+    "go down {r}",
+    "walk along {r}",
+    "follow {r}",
+    "head down {r}",
+    "continue along {r}",
+    "go straight down {r}",
+];
 const ON: &[&str] = &[
     "walk straight ahead",
     "continue straight",
@@ -137,13 +158,20 @@ pub(super) fn the(room: &str) -> String {
 /// A step in words, in lower case and without a mark at its end.
 pub(super) fn phrase(step: &Step, told_room: Option<&str>, rng: &mut ChaCha8Rng) -> String {
     match step {
-        Step::Turn { turn, at, into } => turn_phrase(*turn, at.as_ref(), into.as_deref(), rng),
+        Step::Turn { turn, at, into, within } => {
+            let within = within.as_ref().filter(|within| told_room != Some(&*within.room) || within.out);
+            turn_phrase(*turn, at.as_ref(), into.as_deref(), within, rng)
+        }
         Step::Climb { climb, to_level } => climb_phrase(*climb, *to_level, rng),
         Step::Room { from: Some(from), to, through: false } => {
             fill(pick(rng, LEAVE), &[("{a}", &the(from)), ("{r}", &the(to))])
         }
         Step::Room { to, through, .. } => fill(pick(rng, if *through { THROUGH } else { ENTER }), &[("{r}", &the(to))]),
         Step::Pass(landmark) => pass_phrase(landmark, rng),
+        Step::Along { room } => {
+            let hall = room_name(room) == Some("hallway");
+            fill(pick(rng, if hall { ALONG_HALL } else { ALONG }), &[("{r}", &the(room))])
+        }
         Step::On => pick(rng, ON).to_owned(),
         Step::Stop { by, room, climbed } => {
             let room = room.as_deref().filter(|room| told_room != Some(*room));
@@ -152,13 +180,14 @@ pub(super) fn phrase(step: &Step, told_room: Option<&str>, rng: &mut ChaCha8Rng)
     }
 }
 
-fn turn_phrase(turn: Turn, at: Option<&Landmark>, into: Option<&str>, rng: &mut ChaCha8Rng) -> String {
+fn turn_phrase(turn: Turn, at: Option<&Landmark>, into: Option<&str>, within: Option<&Within>, rng: &mut ChaCha8Rng) -> String {
     let Some(side) = turn.side() else { return pick(rng, AROUND).to_owned() };
     let side = side_word(side);
-    match (at, into) {
-        (_, Some(room)) => fill(pick(rng, TURN_INTO), &[("{s}", side), ("{r}", &the(room))]),
-        (Some(landmark), None) => fill(pick(rng, TURN_AT), &[("{s}", side), ("{l}", &landmark.phrase)]),
-        (None, None) => {
+    match (at, into, within) {
+        (_, Some(room), _) => fill(pick(rng, TURN_INTO), &[("{s}", side), ("{r}", &the(room))]),
+        (Some(landmark), None, _) => fill(pick(rng, TURN_AT), &[("{s}", side), ("{l}", &landmark.phrase)]),
+        (None, None, Some(Within { room, out })) => fill(pick(rng, if *out { TURN_OUT } else { TURN_WITHIN }), &[("{s}", side), ("{r}", &the(room))]),
+        (None, None, None) => {
             let slight = matches!(turn, Turn::SlightLeft | Turn::SlightRight);
             fill(pick(rng, if slight { TURN_SLIGHTLY } else { TURN }), &[("{s}", side)])
         }

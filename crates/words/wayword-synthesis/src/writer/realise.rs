@@ -15,16 +15,19 @@ pub(super) fn sentences(phrases: &[String], count: usize, full_stop: bool, rng: 
     text
 }
 
-/// Phrases as one sentence without its full stop.
+/// Phrases as one sentence without its full stop. A phrase that holds an "and" of its own is set off by "then".
 pub(super) fn join(phrases: &[String], rng: &mut ChaCha8Rng) -> String {
-    match phrases {
-        [] => String::new(),
-        [only] => only.clone(),
-        [first, second] => format!("{first}{}{second}", pick(rng, &[" and ", ", then ", " and then ", ", "])),
-        [before @ .., last] => {
-            format!("{}{}{last}", before.join(", "), pick(rng, &[" and ", ", then ", " and then ", ", and "]))
-        }
+    let Some((last, before)) = phrases.split_last() else { return String::new() };
+    if before.is_empty() {
+        return last.clone();
     }
+    let has_and = phrases.iter().any(|phrase| phrase.contains(" and "));
+    let link = if has_and {
+        pick(rng, &[", then ", ", and then "])
+    } else {
+        pick(rng, &[" and ", ", then ", " and then ", " and "])
+    };
+    format!("{}{link}{last}", before.join(", "))
 }
 
 /// A text with its first letter as a capital.

@@ -9,18 +9,28 @@ use wayword_core::{Climb, Side, Turn, motion};
 /// Something to tell.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Step {
-    /// A turn on the spot, perhaps at a landmark or into a room.
-    Turn { turn: Turn, at: Option<Landmark>, into: Option<String> },
+    /// A turn on the spot, perhaps at a landmark, into a room, or within or out of one.
+    Turn { turn: Turn, at: Option<Landmark>, into: Option<String>, within: Option<Within> },
     /// A flight of stairs.
     Climb { climb: Climb, to_level: Option<u32> },
     /// Into another room, or through it.
     Room { from: Option<String>, to: String, through: bool },
     /// Past a landmark.
     Pass(Landmark),
+    /// On through the room that one is in.
+    Along { room: String },
     /// On, with nothing to name.
     On,
     /// The end.
     Stop { by: Option<Landmark>, room: Option<String>, climbed: Option<Climb> },
+}
+
+/// The room in which a turn happens.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Within {
+    pub(super) room: String,
+    /// Whether the turn leads out of it.
+    pub(super) out: bool,
 }
 
 /// A step with how much it matters: 3 must be told, 1 is told where there is room.
@@ -30,6 +40,10 @@ pub(super) struct Weighed {
     pub(super) weight: u8,
 }
 
+/// Least salience of a landmark that is walked past or turned at.
+const WALKED_PAST: u8 = 2;
+/// Least salience of one that is stopped at.
+const STOPPED_AT: u8 = 1;
 /// Something longer than this between two turns is worth a word, metres.
 const LONG_M: f64 = 3.5;
 /// Rises of less than this are the floor's, metres.
@@ -47,16 +61,24 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
         let turn = walk.moves[at].turn();
         let mut told_room = false;
         if turn != Turn::Straight {
-            let anchor = rng.random_bool(0.5).then(|| landmarks.choose(at, rng)).flatten().filter(|_| at > 0);
             let into = next_room.clone().filter(|_| flight.is_none() && turn != Turn::Around && rng.random_bool(0.5));
             told_room = into.is_some();
-            steps.push(Weighed { step: Step::Turn { turn, at: anchor.filter(|_| into.is_none()), into }, weight: 3 });
+            let has_anchor = at > 0 && !told_room && turn != Turn::Around && rng.random_bool(0.6);
+            let anchor = has_anchor.then(|| landmarks.choose(at, WALKED_PAST, rng)).flatten();
+            let is_bare = anchor.is_none() && into.is_none() && turn != Turn::Around && rng.random_bool(0.5);
+            let room = is_bare.then(|| walk.room(at).and_then(usable_room)).flatten();
+            let within = room.map(|room| Within { room, out: changed_room(walk, at, at + 1).is_some() });
+            // Two turns in a row need a way between them.
+            if matches!(steps.last(), Some(Weighed { step: Step::Turn { into: None, .. }, .. })) {
+                steps.push(Weighed { step: Step::On, weight: 1 });
+            }
+            steps.push(Weighed { step: Step::Turn { turn, at: anchor, into, within }, weight: 3 });
         }
         if let Some((last, climb)) = flight {
             let to_level = walk.path.frames[last + 1].level.filter(|level| walk.path.frames[at].level != Some(*level));
             steps.push(Weighed { step: Step::Climb { climb, to_level }, weight: 3 });
             let within = walk.moves[at + 1..=last].iter().map(motion::Move::turn).filter(|turn| turn.side().is_some());
-            steps.extend(within.map(|turn| Weighed { step: Step::Turn { turn, at: None, into: None }, weight: 3 }));
+            steps.extend(within.map(|turn| Weighed { step: Step::Turn { turn, at: None, into: None, within: None }, weight: 3 }));
         }
         climbed = flight.map(|(_, climb)| climb);
         if let Some(to) = next_room.filter(|_| !told_room) {
@@ -64,16 +86,8 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
             let is_last = last + 1 == walk.moves.len() || changed_room(walk, last + 1, walk.moves.len()).is_none();
             let through = changed_room(walk, last + 1, last + 2).is_some();
             steps.push(Weighed { step: Step::Room { from, to, through }, weight: if is_last { 3 } else { 2 } });
-        } else if !told_room && flight.is_none() && last + 1 < walk.moves.len() {
-            let step = match landmarks.choose(last + 1, rng) {
-                Some(landmark) => Some(Weighed { step: Step::Pass(landmark), weight: 1 }),
-                None => (walk.moves[at].distance_m >= LONG_M).then_some(Weighed { step: Step::On, weight: 1 }),
-            };
-            steps.extend(
-                step.filter(|step| {
-                    step.step != Step::On || !matches!(steps.last(), Some(Weighed { step: Step::On, .. }))
-                }),
-            );
+        } else if flight.is_none() && last + 1 < walk.moves.len() {
+            steps.extend(onwards(walk, at, &steps, landmarks, rng));
         }
         at = last + 1;
     }
@@ -82,8 +96,33 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
     }
     let end = walk.path.frames.len() - 1;
     let room = walk.room(end).and_then(usable_room);
-    steps.push(Weighed { step: Step::Stop { by: landmarks.choose(end, rng), room, climbed }, weight: 3 });
+    let by = landmarks.choose(end, WALKED_PAST, rng).or_else(|| landmarks.choose(end, STOPPED_AT, rng));
+    steps.push(Weighed { step: Step::Stop { by, room, climbed }, weight: 3 });
     steps
+}
+
+/// What to tell of a walk straight on: a landmark at its end, the room that it leads through, or at least that it goes on.
+fn onwards(
+    walk: &Walk,
+    at: usize,
+    told: &[Weighed],
+    landmarks: &mut Landmarks<'_>,
+    rng: &mut ChaCha8Rng,
+) -> Option<Weighed> {
+    if let Some(landmark) = landmarks.choose(at + 1, WALKED_PAST, rng) {
+        return Some(Weighed { step: Step::Pass(landmark), weight: 2 });
+    }
+    let room = walk.room(at + 1).and_then(usable_room);
+    let is_told = |room: &str| {
+        told.iter().any(|step| matches!(&step.step, Step::Along { room: other } | Step::Room { to: other, through: true, .. } if other == room))
+    };
+    match room.filter(|room| !is_told(room)) {
+        Some(room) => Some(Weighed { step: Step::Along { room }, weight: 2 }),
+        None if matches!(told.last(), Some(Weighed { step: Step::On | Step::Along { .. } | Step::Pass(_), .. })) => {
+            None
+        }
+        None => Some(Weighed { step: Step::On, weight: if walk.moves[at].distance_m >= LONG_M { 2 } else { 1 } }),
+    }
 }
 
 /// The flight of stairs that begins with a move: its last move, and which way it goes.

@@ -18,9 +18,6 @@ use wayword_core::{Climb, rng};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesWriter;
 
-/// What a step takes on average, words.
-const STEP_WORDS: usize = 6;
-
 impl Writer for RulesWriter {
     fn name(&self) -> &str {
         "rules"
@@ -49,19 +46,20 @@ fn the_way(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError
     if let Some((_, name)) = &task {
         landmarks.reserve(name);
     }
-    let mut steps = steps(brief.walk, &mut landmarks, rng);
+    let steps = steps(brief.walk, &mut landmarks, rng);
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-    keep_within(&mut steps, drawn(&brief.profile.words, rng).min(limit.saturating_sub(1)), task.is_some());
+    let mut phrases = in_words(&steps, rng);
+    if let Some((task, _)) = task {
+        phrases.pop();
+        phrases.push(Phrase { text: task, weight: KEPT });
+    }
+    keep_within(&mut phrases, drawn(&brief.profile.words, rng).max(LEAST_WORDS));
     let count = sentence_target(brief, rng);
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
     loop {
-        let mut phrases = in_words(&steps, rng);
-        if let Some((task, _)) = &task {
-            phrases.pop_if(|_| matches!(steps.last(), Some(Weighed { step: Step::Stop { .. }, .. })));
-            phrases.push(task.clone());
-        }
-        let text = sentences(&phrases, count, full_stop, rng);
-        if word_count(&text) < limit || !drop_least(&mut steps) {
+        let texts: Vec<String> = phrases.iter().map(|phrase| phrase.text.clone()).collect();
+        let text = sentences(&texts, count, full_stop, &mut rng.clone());
+        if word_count(&text) < limit || !drop_least(&mut phrases, KEPT) {
             return Ok(text);
         }
     }
@@ -73,38 +71,47 @@ fn sentence_target(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> usize {
     drawn(&brief.profile.sentences, rng).clamp(least, constraints.max_sentences.unwrap_or(usize::MAX).max(least))
 }
 
-/// Leaves out the steps that matter least until the rest has about so many words.
-fn keep_within(steps: &mut Vec<Weighed>, words: usize, with_task: bool) {
-    let budget = (words / STEP_WORDS).max(2) - usize::from(with_task && words > 2 * STEP_WORDS);
-    for weight in 1..3 {
-        while steps.len() > budget {
-            let Some(at) = steps.iter().rposition(|step| step.weight == weight) else { break };
-            steps.remove(at);
-        }
-    }
+/// A step in words, with how much it matters.
+struct Phrase {
+    text: String,
+    weight: u8,
 }
 
-/// Leaves out one more step, turns at last; the stop stays.
-fn drop_least(steps: &mut Vec<Weighed>) -> bool {
-    let candidates = steps.iter().enumerate().filter(|(_, step)| !matches!(step.step, Step::Stop { .. }));
-    let Some((at, _)) = candidates.min_by_key(|(at, step)| (step.weight, *at)) else { return false };
-    steps.remove(at);
+/// What is never left out: the end.
+const KEPT: u8 = 4;
+/// Steps that matter less than this are left out of a text that is longer than its style's.
+const OPTIONAL: u8 = 3;
+/// No text is cut shorter than this, words.
+const LEAST_WORDS: usize = 8;
+
+/// Leaves out the steps that matter least until the rest has about so many words. Turns are kept.
+fn keep_within(phrases: &mut Vec<Phrase>, words: usize) {
+    while phrases.iter().map(|phrase| word_count(&phrase.text) + 1).sum::<usize>() > words + 1
+        && drop_least(phrases, OPTIONAL)
+    {}
+}
+
+/// Leaves out the step that matters least, if one matters less than `below`.
+fn drop_least(phrases: &mut Vec<Phrase>, below: u8) -> bool {
+    let candidates = phrases.iter().enumerate().filter(|(_, phrase)| phrase.weight < below);
+    let Some((at, _)) = candidates.min_by_key(|(at, phrase)| (phrase.weight, *at)) else { return false };
+    phrases.remove(at);
     true
 }
 
-fn in_words(steps: &[Weighed], rng: &mut ChaCha8Rng) -> Vec<String> {
+fn in_words(steps: &[Weighed], rng: &mut ChaCha8Rng) -> Vec<Phrase> {
     let mut told_room: Option<String> = None;
-    steps
-        .iter()
-        .map(|Weighed { step, .. }| {
-            let phrase = phrases::phrase(step, told_room.as_deref(), rng);
-            match step {
-                Step::Room { to: room, .. } | Step::Turn { into: Some(room), .. } => told_room = Some(room.clone()),
-                _ => {}
+    let phrase = |Weighed { step, weight }: &Weighed| {
+        let text = phrases::phrase(step, told_room.as_deref(), rng);
+        match step {
+            Step::Room { to: room, .. } | Step::Along { room } | Step::Turn { into: Some(room), .. } => {
+                told_room = Some(room.clone())
             }
-            phrase
-        })
-        .collect()
+            _ => {}
+        }
+        Phrase { text, weight: if matches!(step, Step::Stop { .. }) { KEPT } else { *weight } }
+    };
+    steps.iter().map(phrase).collect()
 }
 
 const GO: &[&str] = &[
@@ -174,7 +181,7 @@ fn goals(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng)
     let before = (0..last).rev().filter_map(|at| walk.room(at)).find(|other| room_name(other) != room_name(&room));
     let detail = match rng.random_range(0..10) {
         0..=2 => landmarks
-            .choose(last, rng)
+            .choose(last, 2, rng)
             .map(|landmark| fill(go, &[("{r}", &format!("{placed} with {}", landmark.phrase))])),
         3..=4 => before.map(|other| {
             fill(
@@ -188,7 +195,7 @@ fn goals(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng)
         5..=6 => {
             let frame = rng.random_range(0..last.max(1));
             landmarks
-                .choose(frame, rng)
+                .choose(frame, 2, rng)
                 .map(|landmark| fill(pick(rng, GO_BY), &[("{l}", &landmark.phrase), ("{r}", &placed)]))
         }
         _ => None,
@@ -218,7 +225,7 @@ fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaC
         Climb::Down => return pick(rng, &["go downstairs", "head down the stairs", "walk down the stairs"]).to_owned(),
         Climb::Level => {}
     }
-    let by = (0..=last).rev().find_map(|frame| landmarks.choose(frame, rng));
+    let by = (0..=last).rev().find_map(|frame| landmarks.choose(frame, 2, rng));
     let through = (0..last).rev().find_map(|at| walk.room(at).and_then(usable_room));
     match (by, through) {
         (Some(landmark), _) => fill(

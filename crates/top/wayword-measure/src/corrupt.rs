@@ -1,0 +1,104 @@
+//! Makes good instructions wrong. Works on the words and the labels alone: what the checks think has no part in it.
+
+use rand::{Rng, seq::IndexedRandom};
+use std::collections::BTreeSet;
+use wayword_core::{MentionKind, Style};
+use wayword_formats::jsonl::Record;
+use wayword_synthesis::{evidence::Evidence, lexicon::agree};
+
+/// The ways to make an instruction wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    /// A left turned into a right, or the other way round.
+    TurnFlipped,
+    /// A landmark replaced by one that no frame shows.
+    LandmarkAbsent,
+    /// Two places swapped, the first of which is seen only before the second.
+    OrderSwapped,
+    /// Words of a reference text copied in.
+    ReferenceCopied,
+    /// The task's object replaced by one of another viewpoint that the last one does not show.
+    TaskElsewhere,
+}
+
+impl Kind {
+    pub(super) const ALL: [Self; 5] =
+        [Self::TurnFlipped, Self::LandmarkAbsent, Self::OrderSwapped, Self::ReferenceCopied, Self::TaskElsewhere];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::TurnFlipped => "turn flipped",
+            Self::LandmarkAbsent => "landmark replaced by an absent one",
+            Self::OrderSwapped => "two places swapped in order",
+            Self::ReferenceCopied => "a reference's words copied",
+            Self::TaskElsewhere => "the task's object from elsewhere",
+        }
+    }
+}
+
+/// Objects of homes, to replace landmarks by: written for this measurement, not taken from the checks' lexicon.
+const ABSENT: [&str; 24] = [
+    "piano", "treadmill", "fireplace", "refrigerator", "washing machine", "pool table", "bathtub", "chandelier", "dishwasher",
+    "grandfather clock", "aquarium", "bookcase", "wardrobe", "printer", "bicycle", "harp", "couch", "stove", "toilet",
+    "television", "crib", "jukebox", "telescope", "rocking chair",
+];
+
+/// A corrupted text, or `None` where this kind of corruption cannot be done to it.
+pub(super) fn corrupt(kind: Kind, record: &Record, evidence: &Evidence, others: &BTreeSet<String>, style: &Style, rng: &mut impl Rng) -> Option<String> {
+    let text = &record.instruction.text;
+    let spans = |wanted: &[MentionKind]| -> Vec<[usize; 2]> {
+        record.instruction.mentions.iter().filter(|mention| wanted.contains(&mention.kind)).map(|mention| mention.span).collect()
+    };
+    let replace = |span: [usize; 2], by: &str| format!("{}{by}{}", &text[..span[0]], &text[span[1]..]);
+    match kind {
+        Kind::TurnFlipped => {
+            let turns: Vec<[usize; 2]> = spans(&[MentionKind::Turn]).into_iter().filter(|span| matches!(&text[span[0]..span[1]], "left" | "right")).collect();
+            let span = *turns.choose(rng)?;
+            Some(replace(span, if &text[span[0]..span[1]] == "left" { "right" } else { "left" }))
+        }
+        Kind::LandmarkAbsent => {
+            let span = *spans(&[MentionKind::Landmark, MentionKind::Target]).choose(rng)?;
+            let absent: Vec<&str> = ABSENT.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
+            Some(replace(span, absent.choose(rng)?))
+        }
+        Kind::OrderSwapped => swapped(record, evidence, rng),
+        Kind::ReferenceCopied => {
+            let reference = style.references.choose(rng)?.trim_end_matches('.');
+            let words: Vec<&str> = reference.split(' ').collect();
+            let length = rng.random_range(5..=7).min(words.len());
+            let start = rng.random_range(0..=words.len() - length);
+            let run = words[start..start + length].join(" ").replace(". ", " ");
+            Some(format!("{run}, {}", text))
+        }
+        Kind::TaskElsewhere => {
+            let span = *spans(&[MentionKind::Target]).first()?;
+            let elsewhere: Vec<&String> = others.iter().filter(|name| !evidence.final_things().iter().any(|thing| agree(&thing.name, name))).collect();
+            Some(replace(span, elsewhere.choose(rng)?))
+        }
+    }
+}
+
+/// Two places in each other's stead, where every frame that shows the first comes before any that shows the second.
+fn swapped(record: &Record, evidence: &Evidence, rng: &mut impl Rng) -> Option<String> {
+    let text = &record.instruction.text;
+    let places: Vec<_> = record.instruction.mentions.iter().filter(|mention| matches!(mention.kind, MentionKind::Landmark | MentionKind::Room | MentionKind::Target)).collect();
+    let frames = |span: [usize; 2]| {
+        let name = &text[span[0]..span[1]];
+        let mut frames = evidence.frames_with_thing(name);
+        frames.extend(evidence.frames_in_room(name));
+        frames
+    };
+    let mut pairs = Vec::new();
+    for (at, first) in places.iter().enumerate() {
+        for second in &places[at + 1..] {
+            let (a, b) = (frames(first.span), frames(second.span));
+            if let (Some(last_a), Some(first_b)) = (a.iter().max(), b.iter().min()) {
+                if last_a < first_b {
+                    pairs.push((first.span, second.span));
+                }
+            }
+        }
+    }
+    let (a, b) = *pairs.choose(rng)?;
+    Some(format!("{}{}{}{}{}", &text[..a[0]], &text[b[0]..b[1]], &text[a[1]..b[0]], &text[a[0]..a[1]], &text[b[1]..]))
+}
