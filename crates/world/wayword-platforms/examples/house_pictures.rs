@@ -1,43 +1,45 @@
-//! Writes views of generated houses into a folder, to be looked at.
+//! Writes views of generated houses into a folder, to be looked at, with their labels beside them.
 //!
 //! ```text
-//! cargo run --release -p wayword-platforms --example house_pictures -- FOLDER FIRST_SEED HOUSES
+//! cargo run --release -p wayword-platforms --example house_pictures -- FOLDER FIRST_SEED HOUSES VIEWS_EACH
 //! ```
+//!
+//! The views are those ahead at frames of random walks. `FOLDER/labels.txt` holds what they show, one line for each.
 
-use std::{error::Error, path::PathBuf};
-use wayword_core::DVec3;
-use wayword_platforms::house::{HouseScene, generate};
-use wayword_render::Camera;
+use std::{error::Error, fmt::Write, path::PathBuf, time::Instant};
+use wayword_core::{Gaze, PathRequest, Platform};
+use wayword_platforms::house::HousePlatform;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = PathBuf::from(arguments.next().ok_or("give a folder")?);
-    let first: u64 = arguments.next().map_or(Ok(0), |text| text.parse())?;
-    let count: u64 = arguments.next().map_or(Ok(1), |text| text.parse())?;
+    let mut number = |otherwise: u64| arguments.next().map_or(Ok(otherwise), |text| text.parse());
+    let (first, houses, views) = (number(0)?, number(1)?, number(8)?);
     std::fs::create_dir_all(&folder)?;
-    for seed in first..first + count {
-        let scene = HouseScene::new(generate(seed))?;
-        for (index, room) in scene.house.rooms.iter().enumerate() {
-            let inner = room.inner();
-            let (cx, cy) = inner.centre();
-            // From a corner to the opposite one shows most of a room.
-            let eye = DVec3::new(
-                f64::from(inner.x0 + 35) / 100.0,
-                f64::from(inner.y0 + 35) / 100.0,
-                f64::from(room.base_cm()) / 100.0 + 1.5,
-            );
-            let ahead = DVec3::new(f64::from(cx) / 100.0, f64::from(cy) / 100.0, eye.z) - eye;
-            let camera = Camera::looking_along(eye, ahead, 2.0 * 0.75_f64.atan(), 640, 480);
-            let picture = scene.picture(&camera)?;
-            let name = format!("house-{seed}-{index:02}-{}.png", room.kind.word().replace(' ', "-"));
-            image::save_buffer(
-                folder.join(name),
-                &picture.rgb,
-                picture.width,
-                picture.height,
-                image::ExtendedColorType::Rgb8,
-            )?;
+    let platform = HousePlatform::default();
+    let mut told = String::new();
+    for seed in first..first + houses {
+        let scene = HousePlatform::scene_of(seed)?;
+        let begun = Instant::now();
+        platform.graph(&scene)?;
+        let (built, begun) = (begun.elapsed(), Instant::now());
+        for index in 0..views {
+            let path = platform.sample_path(&scene, &PathRequest::default(), index)?;
+            let Some(frame) = path.frames.get((index as usize * 3) % path.frames.len()) else {
+                continue;
+            };
+            let view = platform.look(&scene, frame, Gaze::quarter(frame.pose.heading))?;
+            let (Some(image), Some(truth)) = (&view.image, view.ground_truth()) else {
+                continue;
+            };
+            let name = format!("view-{seed}-{index}.png");
+            let colour = image::ExtendedColorType::Rgb8;
+            image::save_buffer(folder.join(&name), image.rgb(), image.width_px(), image.height_px(), colour)?;
+            let names: Vec<_> = truth.labels.iter().map(|label| label.name.as_str()).collect();
+            writeln!(told, "{name}\t{}\t{}", truth.room.as_deref().unwrap_or("?"), names.join(", "))?;
         }
+        writeln!(told, "{scene}: built in {built:.0?}, {views} walks and views in {:.0?}", begun.elapsed())?;
     }
+    std::fs::write(folder.join("labels.txt"), told)?;
     Ok(())
 }

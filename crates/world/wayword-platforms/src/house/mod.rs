@@ -5,11 +5,16 @@ mod colour;
 mod dice;
 mod drawing;
 mod furnish;
+mod graph;
+mod ground;
+mod labels;
 mod layout;
 mod light;
 pub mod model;
 mod objects;
+mod platform;
 mod rect;
+mod sample;
 mod scene;
 mod shapes;
 mod stairs;
@@ -19,8 +24,11 @@ mod textures;
 
 pub use catalogue::Kind;
 pub use colour::Colour;
+pub use graph::{EYE_M, viewpoint_graph};
+pub use ground::{Ground, NoWay, RADIUS_CM, Way};
 pub use model::House;
 pub use objects::{Object, Role};
+pub use platform::{HouseOptions, HousePlatform};
 pub use rect::{RectCm, SpanCm, Wall};
 pub use scene::HouseScene;
 

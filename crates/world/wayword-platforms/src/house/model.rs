@@ -14,6 +14,9 @@ pub const CEILING_CM: i32 = 270;
 /// Half the thickness of every wall, centimetres: rooms are this much smaller than their outline on each side.
 pub const HALF_WALL_CM: i32 = 6;
 
+/// Thickness of a door's leaf, centimetres.
+pub const LEAF_CM: i32 = 4;
+
 /// A home: rooms joined by openings, and what stands in them. World frame; the ground floor lies at z = 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct House {

@@ -5,7 +5,7 @@ use super::super::{
     colour::Colour,
     dice::Dice,
     layout::{Layout, swing},
-    model::{CEILING_CM, Furniture, Leaf, Opening, Room},
+    model::{CEILING_CM, Furniture, LEAF_CM, Leaf, Opening, Room},
     rect::{RectCm, SpanCm, Wall},
 };
 use super::{Taste, reach};
@@ -22,6 +22,8 @@ pub(super) struct Furnisher<'a> {
     doorsteps: Vec<RectCm>,
     /// Openings of the room, on its walls.
     holes: Vec<SpanCm>,
+    /// Leaves that stand open in the room.
+    leaves: Vec<RectCm>,
     /// Where the house door is, if it is here.
     front_door: Option<SpanCm>,
     /// Windows of the room: where, and the lower edge above the room's floor.
@@ -56,6 +58,10 @@ impl<'a> Furnisher<'a> {
             inner: room.inner(),
             doorsteps: openings().filter_map(|opening| swing(&room.outline, &opening.span)).collect(),
             holes: openings().map(|opening| opening.span).collect(),
+            leaves: openings()
+                .filter(|opening| matches!(opening.leaf, Leaf::Open { into, .. } if into == index))
+                .filter_map(|opening| opening.open_leaf(&layout.rooms, LEAF_CM))
+                .collect(),
             front_door: openings().find(|opening| opening.leaf == Leaf::Closed).map(|opening| opening.span),
             windows: windows.map(|window| (window.span, window.sill_cm - room.base_cm())).collect(),
             reserved: Vec::new(),
@@ -272,7 +278,7 @@ impl<'a> Furnisher<'a> {
     }
 
     fn keeps_ways_open(&self, footprint: &RectCm) -> bool {
-        let obstacles: Vec<_> = self.standing().chain([*footprint]).collect();
+        let obstacles: Vec<_> = self.standing().chain(self.leaves.iter().copied()).chain([*footprint]).collect();
         reach::ways_stay_open(&self.inner, &obstacles, &self.doorsteps)
     }
 

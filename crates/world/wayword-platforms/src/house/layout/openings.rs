@@ -103,17 +103,23 @@ fn door(dice: &mut Dice, rooms: &[Room], link: &Link, edge: &SpanCm, before: &[O
     places.extend((low..=high).step_by(10).flat_map(|from| [(from, true), (from, false)]));
     let candidate =
         |(from, hinge_low): (i32, bool)| (SpanCm { from, to: from + width, ..*edge }, Leaf::Open { into, hinge_low });
+    // No leaf opens into a hallway, where doors face each other all along.
+    let sides =
+        [Some(link.room), link.beyond].into_iter().flatten().filter(|side| rooms[*side].kind != RoomKind::Hallway);
+    let sides: Vec<usize> = sides.collect();
     let is_free = |(span, _): &(SpanCm, Leaf)| {
-        swing(&rooms[into].outline, span)
-            .is_some_and(|swing| !before.iter().any(|other| meets(rooms, other, into, &swing)))
+        sides.iter().all(|side| {
+            let area = swing(&rooms[*side].outline, span);
+            area.is_some_and(|area| !before.iter().any(|other| meets(rooms, other, *side, &area)))
+        })
     };
     places.iter().copied().map(candidate).find(is_free).or_else(|| places.first().copied().map(candidate))
 }
 
-/// Whether an opening of the room `into` needs floor that a swinging leaf needs too.
-fn meets(rooms: &[Room], other: &Opening, into: usize, swing_area: &RectCm) -> bool {
-    let touches = other.room == into || other.beyond == Some(into);
-    touches && swing(&rooms[into].outline, &other.span).is_some_and(|area| area.overlaps(swing_area))
+/// Whether an opening of a room needs floor that a new one's leaf, or whoever comes through it, needs too.
+fn meets(rooms: &[Room], other: &Opening, room: usize, swing_area: &RectCm) -> bool {
+    let touches = other.room == room || other.beyond == Some(room);
+    touches && swing(&rooms[room].outline, &other.span).is_some_and(|area| area.overlaps(swing_area))
 }
 
 /// The floor in front of an opening, as deep as it is wide but 100 cm at most.

@@ -104,14 +104,18 @@ impl Shape {
 
     fn soft_face(&mut self, surface: Surface, centre: Vec3, half: Vec3, radius: f32, axis: usize, sign: f32) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let ticks = |h: f32| [-h, -h + 0.3 * radius, -h + radius, h - radius, h - 0.3 * radius, h];
+        // Small roundings are seen as one bevel; large ones get a corner more.
+        let all = |h: f32| vec![-h, -h + 0.3 * radius, -h + radius, h - radius, h - 0.3 * radius, h];
+        let few = |h: f32| vec![-h, -h + radius, h - radius, h];
+        let ticks = |h: f32| if radius < 0.05 { few(h) } else { all(h) };
         let (us, vs) = (ticks(half[u]), ticks(half[v]));
+        let side = us.len() as u32;
         let scale = surface.pattern.repeat_m();
         let core = half - Vec3::splat(radius);
         let part = self.part(surface);
         let base = part.positions.len() as u32;
         for tv in vs {
-            for tu in us {
+            for tu in us.iter().copied() {
                 let mut at = Vec3::ZERO;
                 (at[axis], at[u], at[v]) = (sign * half[axis], tu, tv);
                 let inner = at.clamp(-core, core);
@@ -119,10 +123,10 @@ impl Shape {
                 part.vertex(centre + inner + normal * radius, normal, Vec2::new(tu, -tv) / scale);
             }
         }
-        for row in 0..5 {
-            for column in 0..5 {
-                let a = base + row * 6 + column;
-                let (b, c, d) = (a + 1, a + 7, a + 6);
+        for row in 0..side - 1 {
+            for column in 0..side - 1 {
+                let a = base + row * side + column;
+                let (b, c, d) = (a + 1, a + side + 1, a + side);
                 if sign > 0.0 {
                     part.triangles.extend([[a, b, c], [a, c, d]]);
                 } else {

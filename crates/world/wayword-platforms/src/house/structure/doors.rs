@@ -2,16 +2,13 @@
 
 use super::super::{
     colour::Colour,
-    model::{HALF_WALL_CM, House, Leaf, Opening},
+    model::{HALF_WALL_CM, House, LEAF_CM, Leaf, Opening},
     rect::{SpanCm, Wall},
     shapes::Shape,
     surface::Surface,
 };
 use super::wall_box;
 use glam::Vec3;
-
-/// Thickness of a leaf, centimetres.
-const LEAF_CM: i32 = 4;
 
 fn add(shape: &mut Shape, surface: Surface, [x, y, z]: [[f32; 2]; 3]) {
     shape.block(surface, x, y, z);

@@ -1,0 +1,205 @@
+//! The viewpoint graph of a house: a road map over its ground.
+
+use super::{
+    ground::{Cell, Ground},
+    model::House,
+};
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
+
+/// Height of the eye above the ground, metres.
+pub const EYE_M: f64 = 1.5;
+/// No viewpoint lies nearer to another than this, except in doorways and on stairs; metres.
+const APART_M: f64 = 1.8;
+/// Longest edge, metres: far enough that two rows of viewpoints see each other.
+const REACH_M: f64 = 3.0;
+
+/// A road map: a viewpoint in every opening, on the stairs and in every room, and others between, joined where the walk
+/// between is straight and free.
+///
+/// # Errors
+/// Never for a house that was generated; names and positions of one that was edited are checked.
+pub fn viewpoint_graph(house: &House, ground: &Ground) -> Result<ViewpointGraph, GraphError> {
+    let mut map = RoadMap { ground, nodes: Vec::new() };
+    map.seed(house);
+    let clearances = ground.clearances();
+    map.enter_rooms(house, &clearances);
+    map.fill(&clearances);
+    let mut edges = map.edges();
+    map.connect(&mut edges);
+    map.into_graph(&edges)
+}
+
+struct RoadMap<'a> {
+    ground: &'a Ground,
+    nodes: Vec<(Cell, DVec3)>,
+}
+
+impl RoadMap<'_> {
+    fn add(&mut self, cell: Cell) {
+        if self.nodes.iter().all(|(other, _)| *other != cell) {
+            self.nodes.push((cell, self.ground.place(cell)));
+        }
+    }
+
+    /// Openings, and what leads up the stairs.
+    fn seed(&mut self, house: &House) {
+        for opening in house.openings.iter().filter(|opening| opening.is_passable()) {
+            let (x, y) = opening.span.middle();
+            self.add_nearest(DVec3::new(f64::from(x), f64::from(y), f64::from(opening.base_cm)) / 100.0);
+        }
+        let Some(stairs) = &house.stairs else {
+            return;
+        };
+        let on_landing = (stairs.flight_cm + stairs.depth_cm()) / 2;
+        for lower in [true, false] {
+            let (from, to) = stairs.flight_across(lower);
+            for deep in [stairs.flight_cm / 2, on_landing] {
+                let (x, y) = stairs.across((from + to) / 2, (from + to) / 2, [deep, deep]).centre();
+                let (x_m, y_m) = (f64::from(x) / 100.0, f64::from(y) / 100.0);
+                self.add_nearest(DVec3::new(x_m, y_m, stairs.height_at(x_m, y_m)));
+            }
+        }
+    }
+
+    /// The free cell nearest to a place, within 60 cm.
+    fn add_nearest(&mut self, place: DVec3) {
+        if let Some(cell) = self.ground.cell_at(place) {
+            return self.add(cell);
+        }
+        let off_m = |cell: &Cell| self.ground.place(*cell).distance(place);
+        let near = self.ground.cells().filter(|cell| off_m(cell) < 0.6);
+        if let Some(cell) = near.min_by(|a, b| off_m(a).total_cmp(&off_m(b))) {
+            self.add(cell);
+        }
+    }
+
+    /// The most open cell of every room.
+    fn enter_rooms(&mut self, house: &House, clearances: &[Vec<u32>]) {
+        for room in &house.rooms {
+            let floor = room.floor as usize;
+            let inside = |cell: &Cell| {
+                let place = self.ground.place(*cell);
+                cell.layer == floor && room.inner().holds_m(place.x, place.y)
+            };
+            let open = |cell: &Cell| (clearances[cell.layer][cell.index], std::cmp::Reverse(*cell));
+            if let Some(cell) = self.ground.cells().filter(inside).max_by_key(open) {
+                self.add(cell);
+            }
+        }
+    }
+
+    /// Cells in the open first, each as far from the others as viewpoints are to be.
+    fn fill(&mut self, clearances: &[Vec<u32>]) {
+        let mut cells: Vec<Cell> = self.ground.cells().collect();
+        cells.sort_by_key(|cell| (std::cmp::Reverse(clearances[cell.layer][cell.index]), *cell));
+        for cell in cells {
+            let place = self.ground.place(cell);
+            let far = |(_, other): &(Cell, DVec3)| (other.z - place.z).abs() > 1.0 || other.distance(place) >= APART_M;
+            if self.nodes.iter().all(far) {
+                self.nodes.push((cell, place));
+            }
+        }
+    }
+
+    fn edges(&self) -> Vec<(usize, usize)> {
+        let mut edges = Vec::new();
+        for (a, (from, place)) in self.nodes.iter().enumerate() {
+            for (b, (to, other)) in self.nodes.iter().enumerate().skip(a + 1) {
+                if place.distance(*other) <= REACH_M && self.ground.is_straight(*from, *to) {
+                    edges.push((a, b));
+                }
+            }
+        }
+        edges
+    }
+
+    /// Joins what is still apart by the corners of the shortest way between.
+    fn connect(&mut self, edges: &mut Vec<(usize, usize)>) {
+        loop {
+            let parts = self.parts(edges);
+            let apart = |a: &usize, b: &usize| parts[*a] != parts[*b];
+            let count = self.nodes.len();
+            let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).filter(|(a, b)| apart(a, b));
+            let length_m = |(a, b): &(usize, usize)| self.nodes[*a].1.distance(self.nodes[*b].1);
+            let mut pairs: Vec<_> = pairs.collect();
+            pairs.sort_by(|a, b| length_m(a).total_cmp(&length_m(b)).then(a.cmp(b)));
+            let places = |(a, b): (usize, usize)| {
+                let way = self.ground.geodesic(self.nodes[a].1, self.nodes[b].1).ok()?;
+                Some((a, b, way.corners))
+            };
+            // A pair with furniture or a floor between may have no short way; the next nearest has.
+            let Some((a, b, corners)) =
+                pairs.into_iter().take(12).filter_map(places).min_by_key(|(_, _, way)| way.len())
+            else {
+                return;
+            };
+            self.add_way(a, b, &corners, edges);
+        }
+    }
+
+    fn add_way(&mut self, a: usize, b: usize, corners: &[DVec3], edges: &mut Vec<(usize, usize)>) {
+        let mut before = a;
+        for corner in corners.iter().skip(1).take(corners.len().saturating_sub(2)) {
+            if let Some(cell) = self.ground.cell_at(*corner) {
+                self.nodes.push((cell, *corner));
+                edges.push((before, self.nodes.len() - 1));
+                before = self.nodes.len() - 1;
+            }
+        }
+        edges.push((before, b));
+    }
+
+    /// The part to which each node belongs.
+    fn parts(&self, edges: &[(usize, usize)]) -> Vec<usize> {
+        let mut part: Vec<usize> = (0..self.nodes.len()).collect();
+        let mut changed = true;
+        while std::mem::take(&mut changed) {
+            for (a, b) in edges {
+                let low = part[*a].min(part[*b]);
+                changed |= part[*a] != low || part[*b] != low;
+                (part[*a], part[*b]) = (low, low);
+            }
+        }
+        part
+    }
+
+    fn into_graph(self, edges: &[(usize, usize)]) -> Result<ViewpointGraph, GraphError> {
+        let mut graph = ViewpointGraph::default();
+        let mut names = Vec::new();
+        for (number, (cell, place)) in self.nodes.iter().enumerate() {
+            let Ok(name) = ViewpointId::new(format!("v{number:03}")) else {
+                continue;
+            };
+            graph.add(name.clone(), *place + DVec3::Z * EYE_M, Some(self.ground.level(*cell)))?;
+            names.push(name);
+        }
+        for (a, b) in edges {
+            graph.join(&names[*a], &names[*b])?;
+        }
+        Ok(graph)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{generate, model::RoomKind};
+    use super::*;
+
+    #[test]
+    fn graphs_are_whole_and_every_room_has_a_viewpoint() {
+        for seed in 0..8 {
+            let house = generate(seed);
+            let graph = viewpoint_graph(&house, &Ground::of(&house)).unwrap();
+            assert_eq!(graph.components(), 1, "house {seed}");
+            let places: Vec<DVec3> = graph.viewpoints().map(|id| graph.position(id).unwrap()).collect();
+            for room in house.rooms.iter().filter(|room| room.kind != RoomKind::Staircase) {
+                let base_m = f64::from(room.base_cm()) / 100.0 + EYE_M;
+                let inside = |place: &&DVec3| room.outline.holds_m(place.x, place.y) && (place.z - base_m).abs() < 0.2;
+                assert!(places.iter().any(|place| inside(&place)), "house {seed}: {room:?}");
+            }
+            let levels: Vec<_> = graph.viewpoints().filter_map(|id| graph.level(id)).collect();
+            assert_eq!(levels.iter().max(), Some(&house.storeys));
+            assert!(graph.edges().all(|(_, _, length_m)| length_m < 6.0));
+        }
+    }
+}

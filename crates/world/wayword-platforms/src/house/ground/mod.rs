@@ -1,0 +1,212 @@
+//! Where one can walk: a grid over each floor and over the stairs.
+//!
+//! One layer for each floor and one for the stairwell; where the stairwell's layer reaches out onto a floor, the two are
+//! linked. So every place has one height in its layer, and a straight walk is a walk over cells.
+
+mod geodesic;
+mod grid;
+mod walk;
+
+use super::{
+    model::{HALF_WALL_CM, House, LEAF_CM, Opening, STOREY_CM, Stairs},
+    rect::RectCm,
+};
+pub use geodesic::Way;
+pub(super) use grid::Cell;
+use grid::{Grid, Layer};
+use wayword_core::DVec3;
+
+/// Radius of the walker, centimetres.
+pub const RADIUS_CM: i32 = 20;
+/// Side of a cell, centimetres.
+pub(super) const CELL_CM: i32 = 5;
+/// How far the stairwell's layer reaches out onto the floors, centimetres.
+const APRON_CM: i32 = 40;
+/// What begins below this height above the floor is in a walker's way, centimetres.
+const HEADROOM_CM: i32 = 175;
+
+/// The walkable ground of a house.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    grid: Grid,
+    stairs: Option<Stairs>,
+    storeys: u32,
+}
+
+/// Why no way can be found.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoWay {
+    /// A place where nobody can stand.
+    #[error("{0} is not on walkable ground: choose a place at least {RADIUS_CM} cm from walls and furniture")]
+    NotWalkable(DVec3),
+    /// Two places in parts that do not touch.
+    #[error("no way leads from {0} to {1}")]
+    NotJoined(DVec3, DVec3),
+}
+
+impl Ground {
+    /// The ground of a house, for a walker of [`RADIUS_CM`].
+    #[must_use]
+    pub fn of(house: &House) -> Self {
+        let mut layers: Vec<Layer> = (0..house.storeys).map(|floor| floor_layer(house, floor)).collect();
+        layers.extend(house.stairs.as_ref().map(|stairs| stairs_layer(house, stairs)));
+        let mut ground = Self { grid: Grid::new(house, &layers), stairs: house.stairs.clone(), storeys: house.storeys };
+        ground.link();
+        ground.keep_largest_part();
+        ground
+    }
+
+    /// Takes away the pockets behind furniture that no way leads to.
+    fn keep_largest_part(&mut self) {
+        let size = self.grid.len();
+        let number = |cell: Cell| cell.layer * size + cell.index;
+        let mut part = vec![0_usize; size * self.grid.layers()];
+        let mut sizes = vec![0_usize];
+        for start in self.cells().collect::<Vec<_>>() {
+            if part[number(start)] != 0 {
+                continue;
+            }
+            let name = sizes.len();
+            sizes.push(0);
+            let mut open = vec![start];
+            part[number(start)] = name;
+            while let Some(cell) = open.pop() {
+                sizes[name] += 1;
+                for (next, _) in self.neighbours(cell) {
+                    if part[number(next)] == 0 {
+                        part[number(next)] = name;
+                        open.push(next);
+                    }
+                }
+            }
+        }
+        let largest = (1..sizes.len()).max_by_key(|name| sizes[*name]).unwrap_or(0);
+        for cell in self.cells().collect::<Vec<_>>() {
+            if part[number(cell)] != largest {
+                self.grid.block(cell);
+            }
+        }
+    }
+
+    /// Links the stairwell's layer with a floor wherever both have a cell at one height.
+    fn link(&mut self) {
+        let stairs = self.storeys as usize;
+        if self.stairs.is_none() {
+            return;
+        }
+        for index in 0..self.grid.len() {
+            for floor in 0..stairs {
+                let (lower, upper) = (Cell { layer: floor, index }, Cell { layer: stairs, index });
+                if self.grid.is_free(lower) && self.grid.is_free(upper) {
+                    let rise_m = self.height_m(lower) - self.height_m(upper);
+                    self.grid.set_linked(index, floor, rise_m.abs() < 0.02);
+                }
+            }
+        }
+    }
+
+    /// Height of the ground in a cell, metres.
+    fn height_m(&self, cell: Cell) -> f64 {
+        let (x_m, y_m) = self.grid.centre_m(cell.index);
+        self.height_at_m(cell.layer, x_m, y_m)
+    }
+
+    fn height_at_m(&self, layer: usize, x_m: f64, y_m: f64) -> f64 {
+        match &self.stairs {
+            Some(stairs) if layer == self.storeys as usize => stairs.height_at(x_m, y_m),
+            _ => layer as f64 * f64::from(STOREY_CM) / 100.0,
+        }
+    }
+
+    /// The cell on which a point of the floor lies, if one can stand there; `place.z` is the floor's height.
+    pub(super) fn cell_at(&self, place: DVec3) -> Option<Cell> {
+        let index = self.grid.index_at(place.x, place.y)?;
+        let cells = (0..self.grid.layers()).map(|layer| Cell { layer, index }).filter(|cell| self.grid.is_free(*cell));
+        let off_m = |cell: &Cell| (self.height_m(*cell) - place.z).abs();
+        cells.filter(|cell| off_m(cell) < 0.3).min_by(|a, b| off_m(a).total_cmp(&off_m(b)))
+    }
+
+    /// Whether somebody can stand at a point of the floor, metres.
+    #[must_use]
+    pub fn is_walkable(&self, place: DVec3) -> bool {
+        self.cell_at(place).is_some()
+    }
+
+    /// The middle of a cell on the ground, metres.
+    pub(super) fn place(&self, cell: Cell) -> DVec3 {
+        let (x_m, y_m) = self.grid.centre_m(cell.index);
+        DVec3::new(x_m, y_m, self.height_at_m(cell.layer, x_m, y_m))
+    }
+
+    /// All cells on which one can stand, layer by layer.
+    pub(super) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
+        let all =
+            (0..self.grid.layers()).flat_map(|layer| (0..self.grid.len()).map(move |index| Cell { layer, index }));
+        all.filter(|cell| self.grid.is_free(*cell))
+    }
+
+    /// How far each free cell is from the next obstacle, in cells along the grid; by layer and index.
+    pub(super) fn clearances(&self) -> Vec<Vec<u32>> {
+        (0..self.grid.layers()).map(|layer| self.grid.clearance(layer)).collect()
+    }
+
+    /// The storey of a cell, the lowest being 1; on stairs that of the nearer floor.
+    pub(super) fn level(&self, cell: Cell) -> u32 {
+        let half_m = f64::from(STOREY_CM) / 200.0;
+        1 + u32::from(self.height_m(cell) > half_m)
+    }
+}
+
+/// A floor: rooms and passages, less what stands there.
+fn floor_layer(house: &House, floor: u32) -> Layer {
+    let base = floor as i32 * STOREY_CM;
+    let is_well = |index: usize| house.stairs.as_ref().is_some_and(|stairs| stairs.room == index);
+    let rooms = house.rooms.iter().enumerate().filter(|(index, room)| room.floor == floor && !is_well(*index));
+    let mut open: Vec<RectCm> = rooms.map(|(_, room)| room.inner().inset(RADIUS_CM)).collect();
+    let here = |opening: &&Opening| opening.base_cm == base && opening.is_passable();
+    let leads_up = |opening: &Opening| is_well(opening.room) || opening.beyond.is_some_and(is_well);
+    for opening in house.openings.iter().filter(here) {
+        match &house.stairs {
+            Some(stairs) if leads_up(opening) => open.push(apron(stairs, floor == 0)),
+            _ => open.push(passage(opening)),
+        }
+    }
+    let in_way = |piece: &&super::model::Furniture| {
+        house.rooms[piece.room].floor == floor
+            && !piece.kind.is_flat()
+            && !piece.kind.is_slim_on_wall()
+            && piece.base_cm < base + HEADROOM_CM
+    };
+    let furniture = house.furniture.iter().filter(in_way).map(|piece| piece.footprint);
+    let leaves = house.openings.iter().filter(here).filter_map(|opening| opening.open_leaf(&house.rooms, LEAF_CM));
+    Layer { open, blocked: furniture.chain(leaves).map(|area| area.inset(-RADIUS_CM)).collect() }
+}
+
+/// The floor in and around an opening on which one can stand.
+fn passage(opening: &Opening) -> RectCm {
+    let mut span = opening.span;
+    (span.from, span.to) = (span.from + RADIUS_CM, span.to - RADIUS_CM);
+    span.thickened(HALF_WALL_CM + RADIUS_CM)
+}
+
+/// The floor before a flight, inside and outside the well's wall.
+fn apron(stairs: &Stairs, lower: bool) -> RectCm {
+    let (from, to) = stairs.flight_across(lower);
+    stairs.across(from + RADIUS_CM, to - RADIUS_CM, [-APRON_CM, 0])
+}
+
+/// Both flights, the landing, and the floor before the flights.
+fn stairs_layer(house: &House, stairs: &Stairs) -> Layer {
+    let end = stairs.depth_cm() - RADIUS_CM;
+    let flight = |lower: bool| {
+        let (from, to) = stairs.flight_across(lower);
+        stairs.across(from + RADIUS_CM, to - RADIUS_CM, [-APRON_CM, end])
+    };
+    let landing = stairs.across(RADIUS_CM, stairs.width_cm() - RADIUS_CM, [stairs.flight_cm + RADIUS_CM, end]);
+    let furniture = house.furniture.iter().filter(|piece| piece.room == stairs.room && piece.base_cm < STOREY_CM);
+    let blocked = furniture.map(|piece| piece.footprint.inset(-RADIUS_CM)).collect();
+    Layer { open: vec![flight(true), flight(false), landing], blocked }
+}
+
+#[cfg(test)]
+mod tests;

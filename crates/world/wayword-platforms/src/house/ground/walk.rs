@@ -1,0 +1,56 @@
+//! Straight walks over the grid.
+
+use super::{Cell, Ground};
+use wayword_core::DVec3;
+
+/// Longest step between two tested places, metres: half a cell.
+const STEP_M: f64 = 0.025;
+
+impl Ground {
+    /// Floors and stairs on which a walker may be who was on `on` and is now at a cell.
+    fn onto(&self, on: u8, index: usize) -> u8 {
+        let (free, linked) = (self.grid.free_layers(index), self.grid.linked_floors(index));
+        let stairs = 1_u8 << self.storeys;
+        let kept = on & free;
+        let down = if kept & stairs != 0 { linked } else { 0 };
+        let up = if kept & linked != 0 { stairs } else { 0 };
+        kept | ((down | up) & free)
+    }
+
+    /// The places of a straight walk between two cells, on the ground, half a cell apart; none where something is in the
+    /// way.
+    pub(super) fn straight(&self, from: Cell, to: Cell) -> Option<Vec<DVec3>> {
+        let mut places = Vec::new();
+        self.march(from, to, |x_m, y_m, on| {
+            let stairs = self.storeys as usize;
+            let layer = if on >> stairs & 1 == 1 { stairs } else { on.trailing_zeros() as usize };
+            places.push(DVec3::new(x_m, y_m, self.height_at_m(layer, x_m, y_m)));
+        })
+        .then_some(places)
+    }
+
+    /// Whether one can walk straight from one cell to another.
+    pub(in super::super) fn is_straight(&self, from: Cell, to: Cell) -> bool {
+        self.march(from, to, |_, _, _| {})
+    }
+
+    fn march(&self, from: Cell, to: Cell, mut visit: impl FnMut(f64, f64, u8)) -> bool {
+        let ((ax, ay), (bx, by)) = (self.grid.centre_m(from.index), self.grid.centre_m(to.index));
+        let (dx, dy) = (bx - ax, by - ay);
+        let count = ((dx * dx + dy * dy).sqrt() / STEP_M).ceil().max(1.0) as usize;
+        let mut on = self.onto(1 << from.layer, from.index);
+        for step in 0..=count {
+            let share = step as f64 / count as f64;
+            let (x_m, y_m) = (ax + dx * share, ay + dy * share);
+            match self.grid.index_at(x_m, y_m) {
+                Some(index) => on = self.onto(on, index),
+                None => return false,
+            }
+            if on == 0 {
+                return false;
+            }
+            visit(x_m, y_m, on);
+        }
+        on >> to.layer & 1 == 1
+    }
+}

@@ -1,0 +1,214 @@
+//! The built-in platform.
+
+use super::{
+    generate,
+    graph::{EYE_M, viewpoint_graph},
+    ground::Ground,
+    labels::labels,
+    sample,
+    scene::HouseScene,
+};
+use std::{
+    collections::VecDeque,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    DVec3, Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
+    View, ViewpointGraph, ViewpointId,
+};
+use wayword_render::Camera;
+
+/// Houses that are kept ready at a time; each takes about 15 MB.
+const READY: usize = 6;
+/// Widest gaze that one flat picture can show, radians.
+const WIDEST_RAD: f64 = 2.6;
+
+/// Homes from seeds: scene `house-7` is the home of seed 7.
+#[derive(Debug)]
+pub struct HousePlatform {
+    options: HouseOptions,
+    ready: Mutex<VecDeque<Arc<Home>>>,
+}
+
+/// What can be chosen about the platform.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HouseOptions {
+    /// How many scenes it lists, from `house-0` on; any other seed can be asked for by its name.
+    pub scenes: u64,
+    /// Width of pictures, pixels.
+    pub width_px: u32,
+    /// Height of pictures, pixels.
+    pub height_px: u32,
+    /// Distance between two frames of a random path, metres.
+    pub interval_m: f64,
+}
+
+impl Default for HouseOptions {
+    fn default() -> Self {
+        Self { scenes: 20, width_px: 640, height_px: 480, interval_m: 1.0 }
+    }
+}
+
+/// A house, drawn up and surveyed.
+#[derive(Debug)]
+pub(super) struct Home {
+    id: SceneId,
+    pub(super) scene: HouseScene,
+    pub(super) ground: Ground,
+    graph: Arc<ViewpointGraph>,
+}
+
+impl HousePlatform {
+    /// The platform with its default options.
+    #[must_use]
+    pub fn new(options: HouseOptions) -> Self {
+        Self { options, ready: Mutex::new(VecDeque::new()) }
+    }
+
+    /// The scene of a seed.
+    ///
+    /// # Errors
+    /// Never: every seed has a house. The signature is that of ids.
+    pub fn scene_of(seed: u64) -> Result<SceneId, PlatformError> {
+        let name = format!("house-{seed}");
+        SceneId::new(name.clone()).map_err(|_| unknown(&name))
+    }
+
+    fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
+        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(at) = ready.iter().position(|home| home.id == *scene) {
+            let home = ready.remove(at).ok_or_else(|| unknown(scene.as_str()))?;
+            ready.push_front(home.clone());
+            return Ok(home);
+        }
+        let home = Arc::new(Home::build(scene)?);
+        ready.push_front(home.clone());
+        ready.truncate(READY);
+        Ok(home)
+    }
+}
+
+impl Default for HousePlatform {
+    fn default() -> Self {
+        Self::new(HouseOptions::default())
+    }
+}
+
+/// The seed in a scene's name, which must be written as [`HousePlatform::scene_of`] does.
+fn seed_of(scene: &SceneId) -> Option<u64> {
+    let digits = scene.as_str().strip_prefix("house-")?;
+    let seed: u64 = digits.parse().ok()?;
+    (seed.to_string() == digits).then_some(seed)
+}
+
+fn unknown(scene: &str) -> PlatformError {
+    PlatformError::UnknownScene {
+        scene: scene.to_owned(),
+        hint: "houses are named by their seed, as in house-7".to_owned(),
+    }
+}
+
+impl Home {
+    fn build(scene: &SceneId) -> Result<Self, PlatformError> {
+        let house = generate(seed_of(scene).ok_or_else(|| unknown(scene.as_str()))?);
+        let ground = Ground::of(&house);
+        let graph =
+            viewpoint_graph(&house, &ground).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+        let scene_of = |error: wayword_render::SceneError| PlatformError::UnknownScene {
+            scene: scene.to_string(),
+            hint: error.to_string(),
+        };
+        let drawn = HouseScene::new(house).map_err(scene_of)?;
+        Ok(Self { id: scene.clone(), scene: drawn, ground, graph: Arc::new(graph) })
+    }
+
+    /// Its viewpoint graph.
+    pub(super) fn viewpoints(&self) -> &ViewpointGraph {
+        &self.graph
+    }
+
+    /// What is seen from a pose, in a picture of a size.
+    pub(super) fn view(&self, pose: Pose, gaze: Gaze, (width, height): (u32, u32)) -> Result<View, PlatformError> {
+        let aspect = f64::from(height) / f64::from(width.max(1));
+        let camera = Camera {
+            position: pose.position,
+            heading_rad: gaze.heading.rad(),
+            elevation_rad: 0.0,
+            vertical_fov_rad: 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect),
+            width,
+            height,
+        };
+        let refused = |reason: String| PlatformError::UnknownScene { scene: self.id.to_string(), hint: reason };
+        let picture = self.scene.picture(&camera).map_err(|error| refused(error.to_string()))?;
+        let truth =
+            GroundTruth { labels: labels(&self.scene, &camera, gaze, &picture), room: self.room_name(pose.position) };
+        let image = Image::new(width, height, picture.rgb).map_err(|error| refused(error.to_string()))?;
+        let pose = Pose::level(pose.position, gaze.heading);
+        Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
+    }
+
+    fn room_name(&self, eye: DVec3) -> Option<String> {
+        let room = self.scene.house.room_at(eye.x, eye.y, eye.z - EYE_M)?;
+        Some(room.kind.word().to_owned())
+    }
+
+    /// Everything visible from a pose, in small pictures: what counts there counts in large ones.
+    pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<Label>, PlatformError> {
+        let mut all = Vec::new();
+        for gaze in Gaze::around(pose.heading) {
+            let view = self.view(pose, gaze, (320, 240))?;
+            all.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
+        }
+        Ok(all)
+    }
+
+    /// Refuses poses outside the house.
+    fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
+        let eye = frame.pose.position;
+        if eye.is_finite() && self.room_name(eye).is_some() {
+            return Ok(());
+        }
+        let place = format!("{:.2} {:.2} {:.2}", eye.x, eye.y, eye.z);
+        let named = frame.viewpoint.clone().map_or_else(|| ViewpointId::new(place), Ok);
+        Err(named.map_or_else(
+            |_| PlatformError::NotAViewpoint { scene: self.id.clone() },
+            |viewpoint| PlatformError::UnknownViewpoint { scene: self.id.clone(), viewpoint },
+        ))
+    }
+}
+
+impl Platform for HousePlatform {
+    fn name(&self) -> &'static str {
+        "house"
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        let mut scenes = (0..self.options.scenes).map(Self::scene_of).collect::<Result<Vec<_>, _>>()?;
+        scenes.sort();
+        Ok(scenes)
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.home(scene)?.graph.clone())
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        sample::path(scene, &*self.home(scene)?, request, seed, self.options.interval_m)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let home = self.home(scene)?;
+        home.check(from)?;
+        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
+        home.view(from.pose, gaze, (self.options.width_px, self.options.height_px))
+    }
+
+    fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        let home = self.home(scene)?;
+        let number: Option<u32> = object.as_str().parse().ok();
+        Ok(number.and_then(|id| home.scene.objects.get(&id)).map(|object| object.name.clone()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

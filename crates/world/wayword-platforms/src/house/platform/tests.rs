@@ -1,0 +1,94 @@
+use super::super::model::House;
+use super::*;
+use wayword_core::Heading;
+
+fn small() -> HousePlatform {
+    HousePlatform::new(HouseOptions { width_px: 160, height_px: 120, ..HouseOptions::default() })
+}
+
+#[test]
+fn scenes_are_named_by_their_seed_and_by_nothing_else() {
+    let platform = small();
+    let scenes = platform.scenes().unwrap();
+    assert_eq!(scenes.len(), 20);
+    assert!(scenes.is_sorted() && scenes.iter().any(|scene| scene.as_str() == "house-7"));
+    for bad in ["house-", "house-07", "house-x", "house--1", "attic-7", "house-99999999999999999999"] {
+        let error = platform.graph(&SceneId::new(bad).unwrap()).unwrap_err().to_string();
+        assert!(error.contains("house-7"), "{error}");
+    }
+}
+
+#[test]
+fn paths_keep_to_their_length_end_at_their_target_and_repeat() {
+    let platform = small();
+    for scene in ["house-1", "house-2"] {
+        let scene = SceneId::new(scene).unwrap();
+        let request = PathRequest { hops: 1..=9, length_m: 4.0..=16.0 };
+        for seed in 0..2 {
+            let path = platform.sample_path(&scene, &request, seed).unwrap();
+            assert!(request.length_m.contains(&path.length_m()));
+            assert!(path.moves().iter().all(|step| step.distance_m < 1.1), "frames lie too far apart");
+            let target = path.target.clone().unwrap();
+            let last = path.frames.last().unwrap();
+            let home = platform.home(&scene).unwrap();
+            assert!(home.labels_around(last.pose).unwrap().iter().any(|label| label.object == target.object));
+            assert_eq!(platform.object_name(&scene, last, &target.object).unwrap(), Some(target.name));
+            assert_eq!(platform.sample_path(&scene, &request, seed).unwrap(), path);
+        }
+    }
+}
+
+#[test]
+fn a_view_has_picture_labels_and_room() {
+    let platform = small();
+    let scene = HousePlatform::scene_of(1).unwrap();
+    let graph = platform.graph(&scene).unwrap();
+    let mut rooms = std::collections::BTreeSet::new();
+    let mut labels = 0;
+    for id in graph.viewpoints().step_by(5) {
+        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
+        let view = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap();
+        let truth = view.ground_truth().unwrap();
+        assert_eq!(view.image.as_ref().unwrap().rgb().len(), 160 * 120 * 3);
+        rooms.insert(truth.room.clone().unwrap());
+        labels += truth.labels.len();
+        for label in &truth.labels {
+            let [x, y, w, h] = label.box_px.unwrap();
+            assert!(x >= 0.0 && y >= 0.0 && x + w <= 160.0 && y + h <= 120.0);
+        }
+    }
+    assert!(rooms.len() >= 3 && labels > 5, "{rooms:?} {labels}");
+}
+
+#[test]
+fn places_outside_the_house_are_refused() {
+    let platform = small();
+    let scene = HousePlatform::scene_of(1).unwrap();
+    for place in [DVec3::new(-50.0, 0.0, 1.5), DVec3::new(1.0, 1.0, 900.0), DVec3::NAN] {
+        let frame = Frame { pose: Pose::level(place, Heading::NORTH), viewpoint: None, level: None };
+        let error = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap_err().to_string();
+        assert!(error.contains("house-1"), "{error}");
+    }
+}
+
+/// FNV-1a, which is enough to see a difference.
+fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+/// Whoever changes how houses come about changes these numbers, and says so in the changelog: recorded paths name places
+/// in these houses.
+#[test]
+fn a_house_and_its_picture_are_the_same_on_every_machine() {
+    let house = generate(7);
+    let json = serde_json::to_vec(&house).unwrap();
+    assert_eq!(serde_json::from_slice::<House>(&json).unwrap(), house);
+    let scene = HousePlatform::scene_of(7).unwrap();
+    let platform = small();
+    let graph = platform.graph(&scene).unwrap();
+    let first = graph.viewpoints().next().unwrap().clone();
+    let frame = graph.walk(&[first], None).unwrap().remove(0);
+    let view = platform.look(&scene, &frame, Gaze::quarter(Heading::new(1.0).unwrap())).unwrap();
+    let picture = hash(view.image.unwrap().rgb());
+    assert_eq!((hash(&json), picture), (3_811_956_744_623_267_283, 3_177_809_720_079_920_006));
+}

@@ -1,0 +1,134 @@
+//! Random walks through a house: a shortest way between two places, with frames along it.
+
+use super::{dice::Dice, graph::EYE_M, ground::Way, objects::Role, platform::Home};
+use wayword_core::{
+    DVec3, Label, Path, PathRequest, PlatformError, Pose, SceneId, Target, ViewpointGraph, ViewpointId, path::Stop,
+    seed::derive,
+};
+
+/// So many pairs of places are tried.
+const TRIES: usize = 400;
+/// Ends at which nothing fit to be a target is visible that are passed over before one is accepted.
+const MAX_BARE_ENDS: usize = 12;
+/// A corner so near to the frame before it gets none of its own, metres.
+const CROWDED_M: f64 = 0.4;
+/// A target is at most so far from the last frame, metres.
+const TARGET_REACH_M: f64 = 4.0;
+
+/// A walk whose length keeps to `request`, with frames at most `interval_m` apart and at every corner.
+///
+/// Both ends are walkable places near random viewpoints; the walk starts looking along its first hop. Hops play no part:
+/// a walk over open ground has none.
+pub(super) fn path(
+    scene: &SceneId,
+    home: &Home,
+    request: &PathRequest,
+    seed: u64,
+    interval_m: f64,
+) -> Result<Path, PlatformError> {
+    let mut dice = Dice::new(derive(seed, &["house path"]), &[scene.as_str()]);
+    let places = home.standing_places();
+    let mut bare = None;
+    let mut bare_ends = 0;
+    for _ in 0..TRIES {
+        let (from, to) = (places[dice.index(places.len())], places[dice.index(places.len())]);
+        if from == to || from.distance(to) > *request.length_m.end() {
+            continue;
+        }
+        let Ok(way) = home.ground.geodesic(from, to) else {
+            continue;
+        };
+        let frames = Path::frames_along(stops(&way, interval_m), None);
+        let mut path = Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None };
+        if !request.length_m.contains(&path.length_m()) {
+            continue;
+        }
+        let Some(last) = path.frames.last() else {
+            continue;
+        };
+        path.target = target(home, &mut dice, last.pose)?;
+        if path.target.is_some() {
+            return Ok(path);
+        }
+        bare_ends += 1;
+        bare.get_or_insert(path);
+        if bare_ends > MAX_BARE_ENDS {
+            break;
+        }
+    }
+    bare.ok_or_else(|| {
+        let length_m = &request.length_m;
+        let request = format!("{} to {} metres", length_m.start(), length_m.end());
+        PlatformError::NoSuchPath { scene: scene.clone(), request }
+    })
+}
+
+/// Where frames are taken: at both ends, at corners, and at equal distances of at most `interval_m` between.
+fn stops(way: &Way, interval_m: f64) -> Vec<Stop> {
+    let interval_m = if interval_m.is_finite() { interval_m.max(0.1) } else { 1.0 };
+    let mut marks = vec![0];
+    let last = way.places.len() - 1;
+    for corner in &way.corners {
+        let at = nearest(&way.places, *corner);
+        let before = marks.last().copied().unwrap_or(0);
+        let far = |a: usize, b: usize| way.places[a].distance(way.places[b]) >= CROWDED_M;
+        if at > before && far(at, before) && far(at, last) {
+            marks.push(at);
+        }
+    }
+    marks.push(last);
+    let mut chosen = vec![0];
+    for leg in marks.windows(2) {
+        let along = &way.places[leg[0]..=leg[1]];
+        let length_m: f64 = along.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let count = (length_m / interval_m).ceil().max(1.0) as usize;
+        chosen.extend((1..=count).map(|step| leg[0] + (leg[1] - leg[0]) * step / count));
+    }
+    chosen.dedup();
+    chosen.into_iter().map(|at| stop(way.places[at])).collect()
+}
+
+fn nearest(places: &[DVec3], to: DVec3) -> usize {
+    let off = |at: &usize| places[*at].distance_squared(to);
+    (0..places.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
+}
+
+fn stop(place: DVec3) -> Stop {
+    let half_storey_m = f64::from(super::model::STOREY_CM) / 200.0;
+    Stop { position: place + DVec3::Z * EYE_M, viewpoint: None, level: Some(1 + u32::from(place.z > half_storey_m)) }
+}
+
+/// One of the pieces of furniture in reach: without a namesake in sight if there is such, else one whose colour tells it.
+fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, PlatformError> {
+    let labels = home.labels_around(last)?;
+    let namesakes = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() - 1;
+    let twins = |label: &Label| {
+        labels.iter().filter(|other| other.name == label.name && other.colour == label.colour).count() - 1
+    };
+    let is_furniture = |label: &&Label| {
+        let id: Option<u32> = label.object.as_str().parse().ok();
+        id.and_then(|id| home.scene.objects.get(&id)).is_some_and(|object| object.role == Role::Furniture)
+    };
+    let in_reach = |label: &&Label| label.distance_m.is_some_and(|distance_m| distance_m <= TARGET_REACH_M);
+    let is_task_for = |label: &&Label| label.name != "ceiling light" && label.name != "curtain";
+    let near: Vec<&Label> = labels.iter().filter(is_furniture).filter(in_reach).filter(is_task_for).collect();
+    let alone: Vec<&Label> = near.iter().copied().filter(|label| namesakes(label) == 0).collect();
+    let by_colour: Vec<&Label> = near.iter().copied().filter(|label| twins(label) == 0).collect();
+    let likely = if alone.is_empty() { by_colour } else { alone };
+    let chosen = (!likely.is_empty()).then(|| likely[dice.index(likely.len())]);
+    Ok(chosen.map(|label| Target {
+        object: label.object.clone(),
+        name: label.name.clone(),
+        told_by: Vec::new(),
+        has_namesake: namesakes(label) > 0,
+    }))
+}
+
+impl Home {
+    /// Ground under every viewpoint.
+    fn standing_places(&self) -> Vec<DVec3> {
+        let graph: &ViewpointGraph = self.viewpoints();
+        let ids: Vec<&ViewpointId> = graph.viewpoints().collect();
+        ids.into_iter().filter_map(|id| graph.position(id)).map(|eye| eye - DVec3::Z * EYE_M).collect()
+    }
+}
