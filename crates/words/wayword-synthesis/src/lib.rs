@@ -8,6 +8,7 @@ pub mod evidence;
 pub mod lexicon;
 pub mod minds;
 pub mod observe;
+pub mod prompts;
 pub mod reading;
 pub mod repair;
 pub mod style;

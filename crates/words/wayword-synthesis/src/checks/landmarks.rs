@@ -38,9 +38,33 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, target: Option<&
             let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
             findings.push(finding(Check::Landmarks, Verdict::Fail, reason, Some(event.span)));
         }
+        findings.extend(
+            colour(place, &shown, evidence)
+                .map(|(verdict, reason)| finding(Check::Landmarks, verdict, reason, Some(event.span))),
+        );
         frames.push(shown);
     }
     Places { findings: or_pass(Check::Landmarks, findings), frames }
+}
+
+/// What is wrong with the colour that a place is told with.
+fn colour(place: &Place, frames: &[usize], evidence: &Evidence) -> Option<(Verdict, String)> {
+    let told = place.colour.as_ref()?;
+    let things =
+        frames.iter().flat_map(|at| &evidence.frames[*at].things).filter(|thing| agree(&thing.name, &place.name));
+    let known: Vec<&String> = things.filter_map(|thing| thing.colour.as_ref()).collect();
+    // "the brown chair" for a dark brown one is no mistake.
+    let fits = known.iter().any(|colour| {
+        *colour == told || colour.ends_with(&format!(" {told}")) || told.ends_with(&format!(" {colour}"))
+    });
+    match (known.is_empty(), fits) {
+        (_, true) => None,
+        (true, false) if frames.is_empty() => None,
+        (true, false) => {
+            Some((Verdict::Unverified, format!("nothing here can tell whether {:?} is {told}", place.name)))
+        }
+        (false, false) => Some((Verdict::Fail, format!("no {:?} along the path is {told}", place.name))),
+    }
 }
 
 fn frames_of(place: &Place, evidence: &Evidence) -> Vec<usize> {

@@ -62,7 +62,8 @@ fn is_aside(reading: &Reading, at: usize) -> bool {
     let event = &reading.events[at];
     let What::Place(place) = &event.what else { return false };
     let object = reading.task.as_ref().and_then(|task| task.object);
-    let other_in_clause = reading.events[..at].iter().any(|other| other.clause == event.clause && matches!(other.what, What::Place(_)));
+    let other_in_clause =
+        reading.events[..at].iter().any(|other| other.clause == event.clause && matches!(other.what, What::Place(_)));
     (place.related && other_in_clause) || object.is_some_and(|object| object < at)
 }
 

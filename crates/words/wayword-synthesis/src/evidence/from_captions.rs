@@ -22,6 +22,7 @@ impl Evidence {
                             Witness::Seen => evidence.things.push(SeenThing {
                                 name: sighting.name.clone(),
                                 object: None,
+                                colour: sighting.colour.clone(),
                                 turn_rad: sighting
                                     .place
                                     .map(|place| off_rad + place.turn_rad(look.gaze.horizontal_fov_rad)),

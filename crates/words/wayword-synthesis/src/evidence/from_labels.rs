@@ -16,6 +16,7 @@ impl Evidence {
                 evidence.things.extend(truth.labels.iter().map(|label| SeenThing {
                     name: label.name.clone(),
                     object: Some(label.object.clone()),
+                    colour: label.colour.clone(),
                     turn_rad: Some(frame.pose.heading.turn_to(label.heading)),
                 }));
             }

@@ -37,6 +37,8 @@ pub struct SeenThing {
     pub name: String,
     /// Its id, where labels vouch for it.
     pub object: Option<ObjectId>,
+    /// Its colour, where that is known.
+    pub colour: Option<String>,
     /// Its direction from the frame's heading, radians in (-π, π], positive right.
     pub turn_rad: Option<f64>,
 }

@@ -58,6 +58,8 @@ pub struct Place {
     pub related: bool,
     /// The side of the walker on which it is said to be ("on your left").
     pub side: Option<Side>,
+    /// The colour that it is said to have.
+    pub colour: Option<String>,
     /// It follows a turn that happens at, by or after it ("turn left at the sofa").
     pub tells_turn: bool,
 }
@@ -171,6 +173,17 @@ mod tests {
         assert_eq!(task("Walk to the kitchen and stop by the sink."), None);
         assert_eq!(task("Clean the sink and go to the bedroom."), None);
         assert_eq!(task("Go to the office with wooden shelves and books"), None);
+    }
+
+    #[test]
+    fn a_colour_belongs_to_the_thing_behind_it() {
+        let colour = |text: &str| match &read(text, &BTreeSet::new()).events[0].what {
+            What::Place(place) => place.colour.clone(),
+            _ => None,
+        };
+        assert_eq!(colour("dust the dark grey sofa"), Some("dark grey".into()));
+        assert_eq!(colour("dust the gray leather sofa"), Some("grey".into()));
+        assert_eq!(colour("dust the old sofa"), None);
     }
 
     #[test]

@@ -41,8 +41,9 @@ pub(super) fn places(
         let span = [tokens[place.from].span[0], tokens[place.to - 1].span[1]];
         let side = side_after(tokens, place.to);
         let related = is_related(tokens, place.from);
+        let colour = colour_before(tokens, place.from);
         let Found { name, is_thing, is_room, .. } = place;
-        let what = What::Place(Place { name, is_thing, is_room, related, side, tells_turn: false });
+        let what = What::Place(Place { name, is_thing, is_room, related, side, colour, tells_turn: false });
         Event { what, span, clause: clauses[place.from] }
     };
     found.into_iter().map(event).collect()
@@ -91,7 +92,6 @@ fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
             | "board"
             | "mop"
             | "tap"
-            | "outside"
             | "landing"
             | "entry"
             | "opening"
@@ -109,8 +109,8 @@ fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
     let before_noun = is_thing(&normal_word(word(at + 1)))
         || is_room(&normal_word(word(at + 1)))
         || v::ADJECTIVES.contains(&word(at + 1));
-    (verb_like && !after_determiner && word(at) != "outside")
-        || (word(at) == "light" && before_noun && !after_determiner)
+    let shade = word(at) == "light" && v::COLOURS.contains(&word(at + 1));
+    (verb_like && !after_determiner) || (word(at) == "light" && before_noun && !after_determiner) || shade
 }
 
 /// A noun phrase that no name covers: "the shiny gizmo".
@@ -144,7 +144,11 @@ fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Foun
 
 /// Whether a place stands behind a word of nearness or belonging.
 fn is_related(tokens: &[Token], from: usize) -> bool {
-    let before = tokens[..from].iter().rev().take_while(|token| token.is_word() && token.word != "and" && token.word != "then").take(5);
+    let before = tokens[..from]
+        .iter()
+        .rev()
+        .take_while(|token| token.is_word() && token.word != "and" && token.word != "then")
+        .take(5);
     let words: Vec<&str> = before.map(|token| token.word.as_str()).collect();
     let is_preposition = |word: &&str| v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word);
     match words.iter().position(is_preposition) {
@@ -153,6 +157,20 @@ fn is_related(tokens: &[Token], from: usize) -> bool {
         Some(at) => v::RELATIONS.contains(&words[at]),
         None => false,
     }
+}
+
+/// The colour that is told among the adjectives before a place.
+fn colour_before(tokens: &[Token], from: usize) -> Option<String> {
+    let adjectives: Vec<&str> = tokens[..from]
+        .iter()
+        .rev()
+        .map(|token| token.word.as_str())
+        .take_while(|word| v::ADJECTIVES.contains(word))
+        .collect();
+    let at = adjectives.iter().position(|word| v::COLOURS.contains(word))?;
+    let colour = if adjectives[at] == "gray" { "grey" } else { adjectives[at] };
+    let shade = adjectives.get(at + 1).filter(|word| matches!(**word, "dark" | "light"));
+    Some(shade.map_or(colour.to_owned(), |shade| format!("{shade} {colour}")))
 }
 
 /// The side that follows a place: "on your left", "to the right", but not "to the right of".

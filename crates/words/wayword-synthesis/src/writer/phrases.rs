@@ -32,8 +32,15 @@ const TURN_INTO: &[&str] = &[
     "turn {s} and enter {r}",
     "turn {s} to enter {r}",
 ];
-const TURN_WITHIN: &[&str] = &["turn {s} in {r}", "take a {s} in {r}", "in {r} turn {s}", "in {r} take a {s}", "make a {s} in {r}"];
-const TURN_OUT: &[&str] = &["turn {s} out of {r}", "take a {s} out of {r}", "make a {s} out of {r}", "leave {r} and turn {s}", "exit {r} and go {s}"];
+const TURN_WITHIN: &[&str] =
+    &["turn {s} in {r}", "take a {s} in {r}", "in {r} turn {s}", "in {r} take a {s}", "make a {s} in {r}"];
+const TURN_OUT: &[&str] = &[
+    "turn {s} out of {r}",
+    "take a {s} out of {r}",
+    "make a {s} out of {r}",
+    "leave {r} and turn {s}",
+    "exit {r} and go {s}",
+];
 const AROUND: &[&str] = &["turn around", "turn 180 degrees", "turn back around"];
 const UP: &[&str] = &[
     "go up the stairs",
@@ -180,13 +187,21 @@ pub(super) fn phrase(step: &Step, told_room: Option<&str>, rng: &mut ChaCha8Rng)
     }
 }
 
-fn turn_phrase(turn: Turn, at: Option<&Landmark>, into: Option<&str>, within: Option<&Within>, rng: &mut ChaCha8Rng) -> String {
+fn turn_phrase(
+    turn: Turn,
+    at: Option<&Landmark>,
+    into: Option<&str>,
+    within: Option<&Within>,
+    rng: &mut ChaCha8Rng,
+) -> String {
     let Some(side) = turn.side() else { return pick(rng, AROUND).to_owned() };
     let side = side_word(side);
     match (at, into, within) {
         (_, Some(room), _) => fill(pick(rng, TURN_INTO), &[("{s}", side), ("{r}", &the(room))]),
         (Some(landmark), None, _) => fill(pick(rng, TURN_AT), &[("{s}", side), ("{l}", &landmark.phrase)]),
-        (None, None, Some(Within { room, out })) => fill(pick(rng, if *out { TURN_OUT } else { TURN_WITHIN }), &[("{s}", side), ("{r}", &the(room))]),
+        (None, None, Some(Within { room, out })) => {
+            fill(pick(rng, if *out { TURN_OUT } else { TURN_WITHIN }), &[("{s}", side), ("{r}", &the(room))])
+        }
         (None, None, None) => {
             let slight = matches!(turn, Turn::SlightLeft | Turn::SlightRight);
             fill(pick(rng, if slight { TURN_SLIGHTLY } else { TURN }), &[("{s}", side)])

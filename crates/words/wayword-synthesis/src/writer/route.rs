@@ -78,7 +78,9 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
             let to_level = walk.path.frames[last + 1].level.filter(|level| walk.path.frames[at].level != Some(*level));
             steps.push(Weighed { step: Step::Climb { climb, to_level }, weight: 3 });
             let within = walk.moves[at + 1..=last].iter().map(motion::Move::turn).filter(|turn| turn.side().is_some());
-            steps.extend(within.map(|turn| Weighed { step: Step::Turn { turn, at: None, into: None, within: None }, weight: 3 }));
+            steps.extend(
+                within.map(|turn| Weighed { step: Step::Turn { turn, at: None, into: None, within: None }, weight: 3 }),
+            );
         }
         climbed = flight.map(|(_, climb)| climb);
         if let Some(to) = next_room.filter(|_| !told_room) {

@@ -1,0 +1,132 @@
+//! Prompts for language models: templates, each of which can be overridden, and what they are filled with.
+//!
+//! The parts of the writing prompt and their order follow arXiv 2403.11487; the words are ours. Beyond it: measured moves,
+//! so that no turn is guessed, and the reasons for which an earlier text was refused.
+
+mod writing;
+
+use minijinja::{Environment, UndefinedBehavior, context};
+use sha2::{Digest, Sha256};
+use wayword_core::{Exchange, Sighting, Witness};
+
+use crate::writer::Brief;
+
+/// The templates: name and source.
+const BUILT_IN: [(&str, &str); 5] = [
+    ("question", include_str!("templates/question.j2")),
+    ("answer", include_str!("templates/answer.j2")),
+    ("summary", include_str!("templates/summary.j2")),
+    ("condense", include_str!("templates/condense.j2")),
+    ("write", include_str!("templates/write.j2")),
+];
+
+/// Filled templates, and the hash that tells which ones they were.
+#[derive(Debug)]
+pub struct Prompts {
+    templates: Environment<'static>,
+    hash: String,
+}
+
+/// A template that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PromptError {
+    /// A name that no prompt has.
+    #[error("there is no prompt {0:?}: name question, answer, summary, condense or write")]
+    Unknown(String),
+    /// It is no template, or asks for what it is not given.
+    #[error("prompt {name}: {source}")]
+    Template {
+        /// Which.
+        name: String,
+        /// What is wrong with it.
+        source: minijinja::Error,
+    },
+}
+
+impl Prompts {
+    /// The built-in prompts, with those of a user's own (name and source) in their stead.
+    ///
+    /// # Errors
+    /// When a name is unknown or a source is no template.
+    pub fn new(own: &[(String, String)]) -> Result<Self, PromptError> {
+        if let Some((name, _)) = own.iter().find(|(name, _)| !BUILT_IN.iter().any(|(built_in, _)| built_in == name)) {
+            return Err(PromptError::Unknown(name.clone()));
+        }
+        let mut templates = Environment::new();
+        // A template that asks for what it is not given is a mistake to be told, not a gap in a prompt.
+        templates.set_undefined_behavior(UndefinedBehavior::Strict);
+        let mut hash = Sha256::new();
+        for (name, source) in BUILT_IN {
+            let source = own.iter().find(|(own, _)| own == name).map_or(source, |(_, source)| source);
+            hash.update(name);
+            hash.update([0]);
+            hash.update(source);
+            hash.update([0]);
+            let failed = |source| PromptError::Template { name: name.to_owned(), source };
+            templates.add_template_owned(name, source.to_owned()).map_err(failed)?;
+        }
+        let hash = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { templates, hash })
+    }
+
+    /// Tells which templates these are, for provenance.
+    #[must_use]
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    fn fill(&self, name: &str, with: minijinja::Value) -> Result<String, PromptError> {
+        let failed = |source| PromptError::Template { name: name.to_owned(), source };
+        let text = self.templates.get_template(name).and_then(|template| template.render(with)).map_err(failed)?;
+        Ok(text.trim().to_owned())
+    }
+
+    /// Asks a language model for the next question.
+    ///
+    /// # Errors
+    /// When an overridden template does not fit.
+    pub fn question(&self, transcript: &[Exchange]) -> Result<String, PromptError> {
+        self.fill("question", context! { transcript })
+    }
+
+    /// Puts a question to a model that sees.
+    ///
+    /// # Errors
+    /// When an overridden template does not fit.
+    pub fn answer(&self, question: &str, history: &[Exchange]) -> Result<String, PromptError> {
+        self.fill("answer", context! { question, history })
+    }
+
+    /// Asks a language model to sum a dialogue up; what was denied is named, so that it stays out.
+    ///
+    /// # Errors
+    /// When an overridden template does not fit.
+    pub fn summary(&self, transcript: &[Exchange], told: &[Sighting]) -> Result<String, PromptError> {
+        let denied: Vec<&str> = told
+            .iter()
+            .filter(|sighting| sighting.witness == Witness::Denied)
+            .map(|sighting| sighting.name.as_str())
+            .collect();
+        self.fill("summary", context! { transcript, denied })
+    }
+
+    /// Asks a language model to condense captions of several directions.
+    ///
+    /// # Errors
+    /// When an overridden template does not fit.
+    pub fn condense(&self, captions: &[(&str, &str)], fewer_words_than: usize) -> Result<String, PromptError> {
+        let captions: Vec<_> = captions.iter().map(|(direction, text)| context! { direction, text }).collect();
+        self.fill("condense", context! { captions, fewer_words_than })
+    }
+
+    /// Asks a language model to write an instruction, or to write it again.
+    ///
+    /// # Errors
+    /// When an overridden template does not fit.
+    pub fn write(&self, brief: &Brief<'_>) -> Result<String, PromptError> {
+        self.fill("write", writing::context(brief))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,79 @@
+use super::*;
+use crate::{
+    style::{Profile, built_in},
+    walk::{Observation, Walk},
+    writer::Complaint,
+};
+use wayword_core::{Check, DVec3, Distinction, Finding, ObjectId, Path, SceneId, Target, Verdict, path::Stop};
+
+fn transcript() -> Vec<Exchange> {
+    [
+        ("Describe in detail what you see.", "There is a bed in the middle."),
+        ("Is there a mirror?", "No, there is no mirror."),
+    ]
+    .map(|(question, answer)| Exchange { question: question.into(), answer: answer.into() })
+    .to_vec()
+}
+
+fn walk() -> Walk {
+    let stop = |x: f64, y: f64, z: f64| Stop { position: DVec3::new(x, y, z), viewpoint: None, level: None };
+    let frames = Path::frames_along(
+        vec![stop(0.0, 0.0, 1.5), stop(0.0, 3.0, 1.5), stop(2.0, 3.0, 1.5), stop(4.0, 3.0, 4.3)],
+        None,
+    );
+    let target = Target {
+        object: ObjectId::new("7").unwrap(),
+        name: "lamp".into(),
+        told_by: vec![Distinction::NextTo { neighbour: "bed".into() }],
+        has_namesake: true,
+    };
+    let path = Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, target: Some(target) };
+    let summaries =
+        ["A hallway with a picture.", "A hallway with a plant.", "Some stairs.", "A bedroom with a bed and two lamps."];
+    Walk::new(path, summaries.map(|summary| Observation { looks: Vec::new(), summary: summary.into() }).to_vec())
+}
+
+#[test]
+fn the_dialogue_prompts() {
+    let prompts = Prompts::new(&[]).unwrap();
+    insta::assert_snapshot!("question", prompts.question(&transcript()).unwrap());
+    insta::assert_snapshot!("answer", prompts.answer("What colour is the bed?", &transcript()).unwrap());
+    let told = crate::dialogue::sightings(&transcript(), "test");
+    insta::assert_snapshot!("summary", prompts.summary(&transcript(), &told).unwrap());
+    insta::assert_snapshot!("condense", prompts.condense(&[("north", "a bed"), ("east", "a window")], 20).unwrap());
+}
+
+#[test]
+fn the_writing_prompts() {
+    let prompts = Prompts::new(&[]).unwrap();
+    let walk = walk();
+    for name in ["r2r", "reverie"] {
+        let style = built_in(name).unwrap();
+        let profile = Profile::measure(&style.references);
+        let findings = vec![Finding {
+            check: Check::Form,
+            verdict: Verdict::Fail,
+            reason: "22 words where the style asks for fewer than 20".into(),
+            span: None,
+        }];
+        let complaints = [Complaint { text: "Go up.".into(), findings }];
+        let complaints = if name == "reverie" { &complaints[..] } else { &[] };
+        let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints };
+        insta::assert_snapshot!(format!("write_{name}"), prompts.write(&brief).unwrap());
+    }
+}
+
+#[test]
+fn a_prompt_of_ones_own_takes_the_place_of_the_built_in_one_and_changes_the_hash() {
+    let own = Prompts::new(&[("answer".into(), "{{ question }}!".into())]).unwrap();
+    assert_eq!(own.answer("What", &[]).unwrap(), "What!");
+    assert_ne!(own.hash(), Prompts::new(&[]).unwrap().hash());
+}
+
+#[test]
+fn prompts_that_cannot_be_used_are_refused() {
+    assert!(matches!(Prompts::new(&[("poem".into(), String::new())]), Err(PromptError::Unknown(_))));
+    assert!(matches!(Prompts::new(&[("answer".into(), "{{ question".into())]), Err(PromptError::Template { .. })));
+    let asks_too_much = Prompts::new(&[("answer".into(), "{{ nothing }}".into())]).unwrap();
+    assert!(asks_too_much.answer("What", &[]).is_err());
+}
