@@ -4,10 +4,10 @@
 //! cargo run --release -p wayword-platforms --example house_pictures -- FOLDER FIRST_SEED HOUSES VIEWS_EACH
 //! ```
 //!
-//! The views are those ahead at frames of random walks. `FOLDER/labels.txt` holds what they show, one line for each.
+//! Each is taken at a random viewpoint: of the four views by the compass, the one that shows the most different things. `FOLDER/labels.txt` holds what they show, one line for each.
 
-use std::{error::Error, fmt::Write, path::PathBuf, time::Instant};
-use wayword_core::{Gaze, PathRequest, Platform};
+use std::{collections::BTreeSet, error::Error, fmt::Write, path::PathBuf, time::Instant};
+use wayword_core::{Gaze, Platform, View, seed::derive};
 use wayword_platforms::house::HousePlatform;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -23,12 +23,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         let begun = Instant::now();
         platform.graph(&scene)?;
         let (built, begun) = (begun.elapsed(), Instant::now());
+        let graph = platform.graph(&scene)?;
+        let viewpoints: Vec<_> = graph.viewpoints().cloned().collect();
         for index in 0..views {
-            let path = platform.sample_path(&scene, &PathRequest::default(), index)?;
-            let Some(frame) = path.frames.get((index as usize * 3) % path.frames.len()) else {
+            let at = derive(seed, &["view", &index.to_string()]) as usize % viewpoints.len();
+            let frame = graph.walk(&viewpoints[at..=at], None)?.remove(0);
+            let looks = Gaze::compass().map(|gaze| platform.look(&scene, &frame, gaze));
+            let looks = looks.into_iter().collect::<Result<Vec<_>, _>>()?;
+            let Some(view) = looks.into_iter().max_by_key(variety) else {
                 continue;
             };
-            let view = platform.look(&scene, frame, Gaze::quarter(frame.pose.heading))?;
             let (Some(image), Some(truth)) = (&view.image, view.ground_truth()) else {
                 continue;
             };
@@ -38,8 +42,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             let names: Vec<_> = truth.labels.iter().map(|label| label.name.as_str()).collect();
             writeln!(told, "{name}\t{}\t{}", truth.room.as_deref().unwrap_or("?"), names.join(", "))?;
         }
-        writeln!(told, "{scene}: built in {built:.0?}, {views} walks and views in {:.0?}", begun.elapsed())?;
+        writeln!(told, "{scene}: built in {built:.0?}, {views} panoramas in {:.0?}", begun.elapsed())?;
     }
     std::fs::write(folder.join("labels.txt"), told)?;
     Ok(())
+}
+
+/// How many different things a view shows.
+fn variety(view: &View) -> usize {
+    let labels = view.ground_truth().map_or(&[][..], |truth| &truth.labels);
+    labels.iter().map(|label| &label.name).collect::<BTreeSet<_>>().len()
 }

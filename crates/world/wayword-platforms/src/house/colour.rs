@@ -42,6 +42,7 @@ palette! {
     Orange "orange" [224, 126, 48];
     Yellow "yellow" [232, 196, 72];
     Green "green" [82, 134, 80];
+    LightGreen "light green" [190, 212, 182];
     Teal "teal" [56, 134, 134];
     LightBlue "light blue" [160, 196, 222];
     Blue "blue" [62, 98, 168];

@@ -10,6 +10,8 @@ use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
 pub const EYE_M: f64 = 1.5;
 /// No viewpoint lies nearer to another than this, except in doorways and on stairs; metres.
 const APART_M: f64 = 1.8;
+/// Nor so near to a wall or a piece of furniture that it would fill the view: cells beyond the walker's radius.
+const LEAST_OPEN: u32 = 4;
 /// Longest edge, metres: far enough that two rows of viewpoints see each other.
 const REACH_M: f64 = 3.0;
 
@@ -90,7 +92,8 @@ impl RoadMap<'_> {
 
     /// Cells in the open first, each as far from the others as viewpoints are to be.
     fn fill(&mut self, clearances: &[Vec<u32>]) {
-        let mut cells: Vec<Cell> = self.ground.cells().collect();
+        let is_open = |cell: &Cell| clearances[cell.layer][cell.index] >= LEAST_OPEN;
+        let mut cells: Vec<Cell> = self.ground.cells().filter(is_open).collect();
         cells.sort_by_key(|cell| (std::cmp::Reverse(clearances[cell.layer][cell.index]), *cell));
         for cell in cells {
             let place = self.ground.place(cell);

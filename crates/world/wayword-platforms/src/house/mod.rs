@@ -15,6 +15,7 @@ mod objects;
 mod platform;
 mod rect;
 mod sample;
+mod save;
 mod scene;
 mod shapes;
 mod stairs;
@@ -30,6 +31,7 @@ pub use model::House;
 pub use objects::{Object, Role};
 pub use platform::{HouseOptions, HousePlatform};
 pub use rect::{RectCm, SpanCm, Wall};
+pub use save::{SaveError, glb, gltf_from_wayword, navigation, save};
 pub use scene::HouseScene;
 
 /// The home of a seed: the same on every machine.

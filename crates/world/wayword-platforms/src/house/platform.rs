@@ -5,6 +5,7 @@ use super::{
     graph::{EYE_M, viewpoint_graph},
     ground::Ground,
     labels::labels,
+    model::{HALF_WALL_CM, Opening},
     sample,
     scene::HouseScene,
 };
@@ -13,8 +14,8 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
-    View, ViewpointGraph, ViewpointId,
+    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
+    SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
 
@@ -140,8 +141,10 @@ impl Home {
         };
         let refused = |reason: String| PlatformError::UnknownScene { scene: self.id.to_string(), hint: reason };
         let picture = self.scene.picture(&camera).map_err(|error| refused(error.to_string()))?;
-        let truth =
-            GroundTruth { labels: labels(&self.scene, &camera, gaze, &picture), room: self.room_name(pose.position) };
+        let truth = GroundTruth {
+            labels: labels(&self.scene, &camera, gaze, &picture),
+            room: self.room_seen(pose.position, gaze.heading),
+        };
         let image = Image::new(width, height, picture.rgb).map_err(|error| refused(error.to_string()))?;
         let pose = Pose::level(pose.position, gaze.heading);
         Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
@@ -150,6 +153,19 @@ impl Home {
     fn room_name(&self, eye: DVec3) -> Option<String> {
         let room = self.scene.house.room_at(eye.x, eye.y, eye.z - EYE_M)?;
         Some(room.kind.word().to_owned())
+    }
+
+    /// The room of an eye; of one that stands in an opening, the room into which it looks.
+    fn room_seen(&self, eye: DVec3, heading: Heading) -> Option<String> {
+        let house = &self.scene.house;
+        let floor_cm = (eye.z - EYE_M) * 100.0;
+        let stands_in = |opening: &Opening| {
+            opening.span.thickened(2 * HALF_WALL_CM).holds_m(eye.x, eye.y)
+                && (f64::from(opening.base_cm) - floor_cm).abs() < 50.0
+        };
+        let ahead = DVec3::new(libm::sin(heading.rad()), libm::cos(heading.rad()), 0.0) * 0.5;
+        let in_opening = house.openings.iter().any(stands_in);
+        in_opening.then(|| self.room_name(eye + ahead)).flatten().or_else(|| self.room_name(eye))
     }
 
     /// Everything visible from a pose, in small pictures: what counts there counts in large ones.

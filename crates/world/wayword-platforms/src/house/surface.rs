@@ -113,7 +113,9 @@ impl Surface {
     }
 
     pub(crate) fn wood(colour: Colour) -> Self {
-        Self::new(Pattern::Wood, colour.rgb())
+        // Painted white, no grain shows.
+        let pattern = if colour == Colour::White { Pattern::Plain } else { Pattern::Wood };
+        Self::new(pattern, colour.rgb())
     }
 
     pub(crate) fn fabric(colour: Colour) -> Self {

@@ -17,7 +17,10 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
         room.hang_over(basin, K::Mirror, 24);
     }
     room.stand_anywhere(K::Toilet, Along::Ends, 50);
-    room.hang(K::Towel, 90);
+    for _ in 0..2 {
+        room.hang(K::Towel, 90);
+    }
+    room.hang(K::WallCabinet, 130);
     if let Some(washed) = washed {
         let mat = K::BathMat.size_cm(&mut room.dice);
         let wall = room.wall_behind(washed);

@@ -28,14 +28,19 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
         room.paint(dresser, wood);
         room.hang_over(dresser, K::Mirror, 12);
     }
-    if room.dice.chance(35) {
+    if room.dice.chance(60) {
         desk(room);
     }
     if room.dice.chance(50) {
         room.stand_anywhere(K::Armchair, Along::Ends, 30);
     }
+    if room.dice.chance(50) {
+        room.stand_anywhere(K::Bookshelf, Along::Ends, 50);
+    }
     room.stand_anywhere(K::Plant, Along::Ends, 0);
-    room.hang(K::Painting, 140);
+    for _ in 0..3 {
+        room.hang(K::Painting, 130);
+    }
     room.curtains();
 }
 

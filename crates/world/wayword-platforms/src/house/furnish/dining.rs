@@ -28,7 +28,10 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
         room.hang_over(sideboard, K::Painting, 50);
     }
     room.stand_anywhere(K::Plant, Along::Ends, 0);
-    room.hang(K::Painting, 140);
+    room.stand_anywhere(K::Bookshelf, Along::Ends, 50);
+    for _ in 0..3 {
+        room.hang(K::Painting, 130);
+    }
     room.curtains();
 }
 

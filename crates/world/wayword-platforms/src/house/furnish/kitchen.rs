@@ -25,12 +25,38 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
         }
     }
     island(room);
-    if let Some(counter) = room.stand_anywhere(K::Counter, Along::Ends, 60) {
-        room.paint(counter, room.taste.kitchen);
+    for _ in 0..2 {
+        more_counter(room);
     }
+    breakfast(room);
     room.stand_anywhere(K::Plant, Along::Ends, 0);
     room.hang(K::Clock, 180);
-    room.hang(K::Painting, 140);
+    room.hang(K::Shelf, 140);
+    room.hang(K::Painting, 130);
+}
+
+/// Another stretch of worktop with a cupboard over it.
+fn more_counter(room: &mut Furnisher<'_>) {
+    let walls = room.shuffled_walls();
+    let colour = room.taste.kitchen;
+    if let Some(counter) = room.stand_sized(K::Counter, [120, 62, 91], &walls, Along::Ends, 70) {
+        room.paint(counter, colour);
+        if let Some(cabinet) = room.hang_over(counter, K::WallCabinet, 54) {
+            room.paint(cabinet, colour);
+        }
+    }
+}
+
+/// A small table with a chair at either end, where there is still room.
+fn breakfast(room: &mut Furnisher<'_>) {
+    let walls = room.shuffled_walls();
+    let Some(table) = room.stand_sized(K::DiningTable, [90, 70, 75], &walls, Along::Anywhere, 70) else {
+        return;
+    };
+    room.paint(table, room.taste.wood);
+    for gap in [2, -2] {
+        room.beside(table, K::Chair, gap);
+    }
 }
 
 fn place_row(room: &mut Furnisher<'_>, wall: Wall) -> Option<Vec<Piece>> {

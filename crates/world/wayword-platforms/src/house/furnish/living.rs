@@ -19,12 +19,21 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     }
     room.stand_anywhere(K::Armchair, Along::Ends, 40);
     room.stand_anywhere(K::Bookshelf, Along::Ends, 50);
+    room.stand_anywhere(K::Armchair, Along::Anywhere, 40);
+    if let Some(sideboard) = room.stand_anywhere(K::Sideboard, Along::Middle, 50) {
+        room.paint(sideboard, room.taste.wood);
+        room.on_top(sideboard, K::Vase, 30, 0);
+        room.hang_over(sideboard, K::Painting, 50);
+    }
     if room.dice.chance(35) {
         room.stand_anywhere(K::Piano, Along::Middle, 60);
     }
     room.stand_anywhere(K::Plant, Along::Ends, 0);
     room.stand_anywhere(K::FloorLamp, Along::Ends, 0);
-    room.hang(K::Painting, 140);
+    room.stand_anywhere(K::Plant, Along::Ends, 0);
+    for _ in 0..3 {
+        room.hang(K::Painting, 130);
+    }
     if room.dice.chance(50) {
         room.hang(K::Clock, 175);
     }

@@ -41,6 +41,9 @@ pub(super) enum Along {
     Anywhere,
 }
 
+/// What hangs keeps so far from its neighbours, centimetres.
+const BESIDE_CM: i32 = 14;
+
 /// A piece in the room: its place in the list.
 pub(super) type Piece = usize;
 
@@ -56,7 +59,10 @@ impl<'a> Furnisher<'a> {
             room,
             index,
             inner: room.inner(),
-            doorsteps: openings().filter_map(|opening| swing(&room.outline, &opening.span)).collect(),
+            doorsteps: openings()
+                .filter(|opening| opening.leaf != Leaf::Garage)
+                .filter_map(|opening| swing(&room.outline, &opening.span))
+                .collect(),
             holes: openings().map(|opening| opening.span).collect(),
             leaves: openings()
                 .filter(|opening| matches!(opening.leaf, Leaf::Open { into, .. } if into == index))
@@ -64,7 +70,11 @@ impl<'a> Furnisher<'a> {
                 .collect(),
             front_door: openings().find(|opening| opening.leaf == Leaf::Closed).map(|opening| opening.span),
             windows: windows.map(|window| (window.span, window.sill_cm - room.base_cm())).collect(),
-            reserved: Vec::new(),
+            // Only a car may stand before a garage door.
+            reserved: openings()
+                .filter(|opening| opening.leaf == Leaf::Garage)
+                .filter_map(|opening| swing(&room.outline, &opening.span))
+                .collect(),
             pieces: Vec::new(),
         }
     }
@@ -335,7 +345,7 @@ impl<'a> Furnisher<'a> {
         let floor = self.room.base_cm();
         let piece = self.pieces.iter().any(|piece| {
             let (low, high) = (piece.base_cm - floor, piece.base_cm - floor + piece.height_cm);
-            low < top && base < high && piece.footprint.overlaps(area)
+            low < top && base < high && piece.footprint.inset(-BESIDE_CM).overlaps(area)
         });
         !(hole || window || piece || self.doorsteps.iter().any(|step| step.overlaps(area)))
     }

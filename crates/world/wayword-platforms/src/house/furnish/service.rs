@@ -22,9 +22,10 @@ pub(super) fn hallway(room: &mut Furnisher<'_>) {
             room.hang_over(table, K::Mirror, 20);
         }
     }
-    for _ in 0..3 {
-        room.hang(K::Painting, 140);
+    for _ in 0..5 {
+        room.hang(K::Painting, 130);
     }
+    room.hang(K::Clock, 170);
     room.stand_anywhere(K::Plant, Along::Ends, 0);
 }
 
@@ -73,11 +74,11 @@ pub(super) fn garage(room: &mut Furnisher<'_>) {
     let (x, y) = room.inner.centre();
     let deep = room.inner.depth() >= room.inner.width();
     let wall = if deep { Wall::North } else { Wall::West };
-    for shift in [0, -30, 30, -60, 60] {
+    for shift in [0, -30, 30, -60, 60, -80, 80] {
         let (x, y) = if deep { (x + shift, y) } else { (x, y + shift) };
         let (w, d) = if deep { (178, 400) } else { (400, 178) };
         let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
-        if room.try_at(K::Car, footprint, wall, false).is_some() {
+        if room.try_at(K::Car, footprint, wall, true).is_some() {
             break;
         }
     }

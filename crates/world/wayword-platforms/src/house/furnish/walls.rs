@@ -47,10 +47,10 @@ impl Furnisher<'_> {
                 continue;
             };
             for from in [span.from - 34, span.to - 16] {
-                let size = [50, 8, 236];
+                let size = [50, 8, 240];
                 let area = self.at_wall(wall, from, size);
                 if self.inner.contains(&area) && !self.overlaps_any(&area) {
-                    let curtain = self.put(Kind::Curtain, area, 6, size[2], wall);
+                    let curtain = self.put(Kind::Curtain, area, 2, size[2], wall);
                     self.paint(curtain, self.taste.curtain);
                 }
             }

@@ -74,6 +74,15 @@ impl Grid {
         self.free.len()
     }
 
+    pub(super) fn columns(&self) -> usize {
+        self.columns.max(0) as usize
+    }
+
+    /// South-western corner of the raster, metres.
+    pub(super) fn origin_m(&self) -> (f64, f64) {
+        (f64::from(self.x0_cm) / 100.0, f64::from(self.y0_cm) / 100.0)
+    }
+
     pub(super) fn layers(&self) -> usize {
         self.layers
     }

@@ -3,6 +3,7 @@
 //! One layer for each floor and one for the stairwell; where the stairwell's layer reaches out onto a floor, the two are
 //! linked. So every place has one height in its layer, and a straight walk is a walk over cells.
 
+mod export;
 mod geodesic;
 mod grid;
 mod walk;

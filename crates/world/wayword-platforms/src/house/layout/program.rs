@@ -114,6 +114,8 @@ pub(super) fn join(dice: &mut Dice, kind: RoomKind, neighbour: Option<RoomKind>)
 /// What one household's taste is.
 pub(super) struct Scheme {
     walls: Colour,
+    hall: Colour,
+    kitchen: Colour,
     planks: Colour,
     tiles: Colour,
     carpet: Colour,
@@ -123,7 +125,9 @@ pub(super) struct Scheme {
 impl Scheme {
     pub(super) fn draw(dice: &mut Dice) -> Self {
         Self {
-            walls: dice.pick([Colour::White, Colour::Cream, Colour::White]),
+            walls: dice.pick([Colour::White, Colour::Cream, Colour::Beige, Colour::LightGreen]),
+            hall: dice.pick([Colour::White, Colour::Cream, Colour::Beige]),
+            kitchen: dice.pick([Colour::White, Colour::Cream, Colour::LightBlue, Colour::LightGreen]),
             planks: dice.pick([Colour::LightBrown, Colour::Brown, Colour::Beige]),
             tiles: dice.pick([Colour::White, Colour::Grey, Colour::Beige]),
             carpet: dice.pick([Colour::Beige, Colour::Grey, Colour::Cream]),
@@ -136,17 +140,28 @@ impl Scheme {
         let planks = (FloorFinish::Planks, self.planks);
         let ((finish, colour), walls) = match kind {
             R::Bathroom | R::LaundryRoom => {
-                ((FloorFinish::Tiles, self.tiles), dice.pick([Colour::White, Colour::LightBlue]))
+                ((FloorFinish::Tiles, self.tiles), dice.pick([Colour::White, Colour::LightBlue, Colour::LightGreen]))
             }
             R::Kitchen | R::Entryway => {
-                (if dice.chance(60) { (FloorFinish::Tiles, self.tiles) } else { planks }, self.walls)
+                let walls = if kind == R::Kitchen { self.kitchen } else { self.hall };
+                (if dice.chance(60) { (FloorFinish::Tiles, self.tiles) } else { planks }, walls)
             }
+            R::Hallway | R::Staircase => (planks, self.hall),
             R::Garage => ((FloorFinish::Concrete, Colour::Grey), Colour::White),
             R::Bedroom => {
-                let walls = dice.pick([self.walls, Colour::LightBlue, Colour::Cream, Colour::Pink, Colour::Beige]);
+                let walls = dice.pick([
+                    self.walls,
+                    Colour::LightBlue,
+                    Colour::Cream,
+                    Colour::Pink,
+                    Colour::Beige,
+                    Colour::LightGreen,
+                ]);
                 (if self.carpeted_bedrooms { (FloorFinish::Carpet, self.carpet) } else { planks }, walls)
             }
-            R::Office | R::DiningRoom => (planks, dice.pick([self.walls, Colour::Beige, Colour::Cream])),
+            R::Office | R::DiningRoom => {
+                (planks, dice.pick([self.walls, Colour::Beige, Colour::Cream, Colour::LightGreen]))
+            }
             _ => (planks, self.walls),
         };
         (walls, finish, colour)

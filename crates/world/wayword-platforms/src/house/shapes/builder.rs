@@ -183,12 +183,12 @@ impl Shape {
         let up = axis.cross(side);
         let part = self.part(surface);
         let base = part.positions.len() as u32;
-        let sides = 8;
+        let sides = if radius > 0.1 { SIDES } else { 8 };
         for step in 0..=sides {
             let (cos, sin) = around(step, sides);
             let normal = side * cos + up * sin;
-            part.vertex(from + normal * radius, normal, Vec2::new(step as f32 / 8.0, 0.0));
-            part.vertex(to + normal * radius, normal, Vec2::new(step as f32 / 8.0, 1.0));
+            part.vertex(from + normal * radius, normal, Vec2::new(step as f32 / sides as f32, 0.0));
+            part.vertex(to + normal * radius, normal, Vec2::new(step as f32 / sides as f32, 1.0));
         }
         for step in 0..sides as u32 {
             let a = base + step * 2;

@@ -25,7 +25,7 @@ pub(in super::super) fn window(house: &House, window: &Window) -> Shape {
     bar([from - 5, from + 2], deep, [sill - 5, head + 5]);
     bar([to - 2, to + 5], deep, [sill - 5, head + 5]);
     bar([from, to], deep, [head - 2, head + 5]);
-    bar([from - 8, to + 8], [0, HALF_WALL_CM + 7], [sill - 4, sill]);
+    bar([from - 8, to + 8], [0, HALF_WALL_CM + 3], [sill - 4, sill]);
     let (middle, across) = ((from + to) / 2, sill + (head - sill) * 62 / 100);
     bar([middle - 2, middle + 2], [1, 4], [sill, head]);
     bar([from, to], [1, 4], [across - 2, across + 2]);

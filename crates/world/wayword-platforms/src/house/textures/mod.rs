@@ -8,6 +8,7 @@ mod patterns;
 mod scenes;
 
 use super::surface::Pattern;
+use std::sync::LazyLock;
 use wayword_render::Texture;
 
 /// Side of a texture, texels.
@@ -16,9 +17,10 @@ pub(super) const SIDE: u32 = 256;
 /// Gamma-encoded colour, 0..=255 per channel.
 pub(super) type Rgb = [f32; 3];
 
-/// All textures, in the order of [`Pattern::ALL`].
+/// All textures, in the order of [`Pattern::ALL`]; painted once, since every house has the same.
 pub(super) fn all() -> Vec<Texture> {
-    Pattern::ALL.iter().map(|pattern| paint(*pattern)).collect()
+    static PAINTED: LazyLock<Vec<Texture>> = LazyLock::new(|| Pattern::ALL.map(paint).into());
+    PAINTED.clone()
 }
 
 fn paint(pattern: Pattern) -> Texture {

@@ -7,7 +7,7 @@ use super::{
 
 /// The painting of a number.
 pub(super) fn painting(which: u8, u: f32, v: f32) -> Rgb {
-    let canvas = (hash((u * 128.0) as i32, (v * 128.0) as i32, 60) - 0.5) * 14.0;
+    let canvas = (hash((u * 128.0) as i32, (v * 128.0) as i32, 60) - 0.5) * 6.0;
     let colour = match which {
         0 => seascape(u, v),
         1 => sunset(u, v),

@@ -63,7 +63,7 @@ pub(super) fn marble(u: f32, v: f32) -> Rgb {
 }
 
 pub(super) fn brushed(u: f32, v: f32) -> Rgb {
-    grey(250.0 - smooth(u, v, (128, 4), 20) * 20.0 - smooth(u, v, (2, 3), 21) * 14.0)
+    grey(250.0 - smooth(u, v, (96, 2), 20) * 9.0 - smooth(u, v, (2, 3), 21) * 14.0)
 }
 
 /// One leaf with its veins fills the texture.

@@ -1,0 +1,78 @@
+use super::super::{drawing, generate};
+use super::*;
+use glam::Vec3;
+use gltf_reader::{Gltf, mesh::util::ReadColors};
+
+/// All vertices of a file, with their light, in glTF's frame.
+fn vertices(file: &Gltf) -> Vec<([f32; 3], [f32; 3])> {
+    let blob = file.blob.as_deref().unwrap();
+    let mut all = Vec::new();
+    for mesh in file.meshes() {
+        for primitive in mesh.primitives() {
+            let reader = primitive.reader(|_| Some(blob));
+            let ReadColors::RgbF32(colours) = reader.read_colors(0).unwrap() else { panic!("colours are floats") };
+            all.extend(reader.read_positions().unwrap().zip(colours));
+            let count = reader.read_positions().unwrap().len() as u32;
+            assert!(reader.read_indices().unwrap().into_u32().all(|index| index < count));
+            assert_eq!(reader.read_tex_coords(0).unwrap().into_f32().count(), count as usize);
+        }
+    }
+    all
+}
+
+#[test]
+fn a_saved_house_is_read_back_by_others() {
+    let house = generate(4);
+    let file = Gltf::from_slice(&glb(&house).unwrap()).unwrap();
+    let drawing = drawing::draw(&house);
+    let drawn: usize = drawing.meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    let read = vertices(&file);
+    assert_eq!(read.len(), drawn);
+    let high = read.iter().map(|(position, _)| position[1]).fold(0.0, f32::max);
+    let ceiling = 2.7 + 3.0 * (house.storeys - 1) as f32;
+    assert!((high - ceiling).abs() < 0.01, "y is up: {high}");
+    assert!(read.iter().all(|(_, light)| light.iter().all(|factor| (0.0..=2.0).contains(factor))));
+    let names: Vec<_> = file.nodes().filter_map(|node| node.name()).collect();
+    for piece in &house.furniture {
+        assert!(names.contains(&format!("{} {}", piece.name, piece.id).as_str()), "{} is missing", piece.name);
+    }
+    for image in file.images() {
+        let gltf_reader::image::Source::View { view, mime_type } = image.source() else { panic!("images are inside") };
+        assert_eq!(mime_type, "image/png");
+        let bytes = &file.blob.as_ref().unwrap()[view.offset()..view.offset() + view.length()];
+        assert_eq!(image::load_from_memory(bytes).unwrap().width(), 256);
+    }
+}
+
+#[test]
+fn north_is_minus_z_and_up_is_y_in_gltf() {
+    assert_eq!(gltf_from_wayword(Vec3::Y), Vec3::NEG_Z);
+    assert_eq!(gltf_from_wayword(Vec3::Z), Vec3::Y);
+    // A rotation, not a mirror image.
+    let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(gltf_from_wayword);
+    assert_eq!(x.cross(y), z);
+}
+
+#[test]
+fn navigation_data_names_rooms_objects_and_ways() {
+    let folder = tempfile::tempdir().unwrap();
+    let house = generate(4);
+    let [looks, ways] = save(&house, folder.path()).unwrap();
+    assert!(looks.ends_with("house-4.glb") && looks.metadata().unwrap().len() > 100_000);
+    let read: serde_json::Value = serde_json::from_slice(&std::fs::read(ways).unwrap()).unwrap();
+    assert_eq!(read["rooms"].as_array().unwrap().len(), house.rooms.len());
+    assert_eq!(serde_json::from_value::<House>(read["house"].clone()).unwrap(), house);
+    let ground = Ground::of(&house);
+    let (cell_m, origin) = (read["walkable"]["cell_m"].as_f64().unwrap(), &read["walkable"]["origin_m"]);
+    for run in read["walkable"]["layers"][0]["runs"].as_array().unwrap() {
+        let middle =
+            |index: usize, cell: usize| origin[index].as_f64().unwrap() + cell_m * (run[cell].as_f64().unwrap() + 0.5);
+        assert!(ground.is_walkable(wayword_core::DVec3::new(middle(0, 2), middle(1, 0), 0.0)));
+    }
+}
+
+#[test]
+fn a_folder_that_is_not_there_is_named() {
+    let error = save(&generate(4), std::path::Path::new("/nowhere/at all")).unwrap_err().to_string();
+    assert!(error.contains("/nowhere/at all/house-4.glb"), "{error}");
+}
