@@ -8,6 +8,7 @@ pub mod error;
 pub mod item;
 pub mod output;
 pub mod pipeline;
+pub mod report;
 pub mod run;
 pub mod settings;
 pub mod styles;

@@ -1,0 +1,179 @@
+//! The frames of an item: picture, place, caption, dialogue, and the move to the next.
+
+use super::{
+    model::{frame_anchor, side_words},
+    palette::{Colour, colour},
+    pictures::{Picture, Pictures},
+};
+use crate::run::WalkRecord;
+use serde::Serialize;
+use wayword_core::{Climb, Compass, Exchange, Heading, Move, Sighting, Turn, Where, Witness};
+use wayword_synthesis::walk::{Look, Observation};
+
+/// Most sightings that a frame's card names.
+const MOST_ON_CARD: usize = 6;
+
+/// A frame.
+#[derive(Debug, Serialize)]
+pub(super) struct FrameView {
+    /// From 1.
+    number: usize,
+    anchor: String,
+    colour: Colour,
+    picture: Option<Picture>,
+    /// What the picture shows, for those who do not see it.
+    alt: String,
+    room: Option<String>,
+    level: Option<u32>,
+    caption: String,
+    /// The first things that were seen, where no picture shows them.
+    seen: Vec<String>,
+    seen_left_out: usize,
+    /// Name of the sign for the turn that follows, and the move in words; none at the last frame.
+    turn: Option<&'static str>,
+    then: Option<String>,
+    looks: Vec<LookView>,
+}
+
+/// A view that was asked about.
+#[derive(Debug, Serialize)]
+struct LookView {
+    /// Where it looked.
+    direction: &'static str,
+    caption: String,
+    transcript: Vec<Exchange>,
+    /// What was said to be there, not to be there, or not known: a word for each and the names.
+    said: Vec<(&'static str, String)>,
+}
+
+/// The first `shown` frames of a walk.
+pub(super) fn frames(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut Pictures) -> Vec<FrameView> {
+    let moves = walk.path.moves();
+    let nothing = Observation::default();
+    let frame = |(at, frame): (usize, &wayword_core::Frame)| {
+        let observation = walk.observations.get(at).unwrap_or(&nothing);
+        let seen: Vec<&Sighting> = sightings(&observation.looks, Witness::Seen).collect();
+        let next = moves.get(at);
+        FrameView {
+            number: at + 1,
+            anchor: frame_anchor(item, at),
+            colour: colour(at, shown),
+            picture: if walk.has_pictures { pictures.take(&walk.path.id, at) } else { None },
+            alt: format!("View at frame {}. {}", at + 1, observation.summary),
+            room: observation.looks.iter().find_map(|look| look.caption.room.clone()),
+            level: frame.level,
+            caption: observation.summary.clone(),
+            seen: seen.iter().take(MOST_ON_CARD).map(|sighting| sighting_words(sighting)).collect(),
+            seen_left_out: seen.len().saturating_sub(MOST_ON_CARD),
+            turn: next.map(|next| turn_sign(next.turn())),
+            then: next.map(move_words),
+            looks: observation.looks.iter().map(|look| look_view(look, frame.pose.heading)).collect(),
+        }
+    };
+    walk.path.frames.iter().take(shown).enumerate().map(frame).collect()
+}
+
+fn sightings(looks: &[Look], witness: Witness) -> impl Iterator<Item = &Sighting> {
+    looks.iter().flat_map(|look| &look.caption.sightings).filter(move |sighting| sighting.witness == witness)
+}
+
+fn sighting_words(sighting: &Sighting) -> String {
+    let several = if sighting.several { "several " } else { "" };
+    let colour = sighting.colour.as_ref().map_or_else(String::new, |colour| format!("{colour} "));
+    let place = match sighting.place {
+        Some(Where::Left) => ", left",
+        Some(Where::Middle) => ", middle",
+        Some(Where::Right) => ", right",
+        None => "",
+    };
+    format!("{several}{colour}{}{place}", sighting.name)
+}
+
+fn look_view(look: &Look, heading: Heading) -> LookView {
+    let names = |witness| {
+        let of = look.caption.sightings.iter().filter(|sighting| sighting.witness == witness);
+        of.map(sighting_words).collect::<Vec<_>>().join("; ")
+    };
+    let said = [("seen", Witness::Seen), ("denied", Witness::Denied), ("unsure", Witness::Unsure)];
+    LookView {
+        direction: direction(look.gaze.heading, heading),
+        caption: look.caption.text.clone(),
+        transcript: look.caption.transcript.clone(),
+        said: said
+            .map(|(word, witness)| (word, names(witness)))
+            .into_iter()
+            .filter(|(_, names)| !names.is_empty())
+            .collect(),
+    }
+}
+
+/// Where a gaze looks: ahead, where it follows the walker, else by the compass or by the walker's side.
+fn direction(gaze: Heading, walker: Heading) -> &'static str {
+    let is = |other: Heading| gaze.turn_to(other).abs() < 0.01;
+    if is(walker) {
+        return "ahead";
+    }
+    Compass::ALL
+        .into_iter()
+        .find(|point| is(point.heading()))
+        .map_or_else(|| side_words(walker.side_of(gaze)), Compass::word)
+}
+
+/// The name of the sign for a turn, in the page's set of signs.
+fn turn_sign(turn: Turn) -> &'static str {
+    match turn {
+        Turn::Straight => "straight",
+        Turn::SlightLeft => "slight-left",
+        Turn::SlightRight => "slight-right",
+        Turn::Left => "left",
+        Turn::Right => "right",
+        Turn::Around => "around",
+    }
+}
+
+fn move_words(step: &Move) -> String {
+    let deg = step.turn_rad.to_degrees().abs().round();
+    let side = if step.turn_rad < 0.0 { "left" } else { "right" };
+    let turn = match step.turn() {
+        Turn::Straight => String::new(),
+        Turn::Around => format!("turn around ({deg}° {side}), "),
+        Turn::SlightLeft | Turn::SlightRight => format!("bear {deg}° {side}, "),
+        Turn::Left | Turn::Right => format!("turn {deg}° {side}, "),
+    };
+    let climb = match step.climb() {
+        Climb::Level => String::new(),
+        Climb::Up => format!(", {:.1} m up", step.rise_m),
+        Climb::Down => format!(", {:.1} m down", -step.rise_m),
+    };
+    format!("{turn}go {:.1} m{climb}", step.distance_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(deg: f64, rise_m: f64) -> Move {
+        Move { turn_rad: deg.to_radians(), distance_m: 2.04, rise_m }
+    }
+
+    #[test]
+    fn moves_are_told_as_they_are() {
+        let told =
+            [step(5.0, 0.0), step(-40.0, 0.0), step(91.0, 1.25), step(-170.0, -2.0)].map(|step| move_words(&step));
+        let expected = [
+            "go 2.0 m",
+            "bear 40° left, go 2.0 m",
+            "turn 91° right, go 2.0 m, 1.2 m up",
+            "turn around (170° left), go 2.0 m, 2.0 m down",
+        ];
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn directions_of_a_panorama_are_told_by_the_compass() {
+        let heading = Heading::new(1.0).unwrap();
+        assert_eq!(direction(heading, heading), "ahead");
+        assert_eq!(direction(Compass::West.heading(), heading), "west");
+        assert_eq!(direction(heading.turned(1.5), heading), "on the right");
+    }
+}

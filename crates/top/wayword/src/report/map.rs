@@ -1,0 +1,263 @@
+//! The numbers of an item's map: metres in the world to units of an SVG, north up.
+
+use super::palette::{Colour, colour};
+use crate::run::Map;
+use serde::Serialize;
+use std::fmt::Write;
+use wayword_core::{Climb, DVec3, Path};
+
+/// A map, ready to be drawn.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct MapView {
+    pub(super) width: f64,
+    pub(super) height: f64,
+    /// Edges of the viewpoint graph, as path data.
+    pub(super) edges: String,
+    /// Its nodes, as path data: strokes of no length, round at the ends.
+    pub(super) nodes: String,
+    /// The walk, hop by hop.
+    pub(super) hops: Vec<Hop>,
+    /// Where the frames are.
+    pub(super) spots: Vec<Spot>,
+    /// Which way the walker looks at first, degrees clockwise from north.
+    pub(super) start_deg: f64,
+    /// Length of the scale bar.
+    pub(super) bar: f64,
+    /// What that is in the world.
+    pub(super) bar_m: u32,
+}
+
+/// A straight line between two frames.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Hop {
+    pub(super) data: String,
+    pub(super) fill: String,
+    /// Whether it goes up or down stairs.
+    pub(super) climbs: bool,
+}
+
+/// A frame on the map.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Spot {
+    /// Where the frame is.
+    pub(super) at: [f64; 2],
+    /// Where its number is: aside, where another number is in the way.
+    pub(super) badge: [f64; 2],
+    pub(super) is_aside: bool,
+    pub(super) colour: Colour,
+}
+
+/// Largest map: the width of a phone, so that numbers are read there.
+const MOST: [f64; 2] = [360.0, 330.0];
+/// Smallest, so that north arrow and scale bar find room.
+const LEAST: [f64; 2] = [220.0, 170.0];
+/// Around the drawing; below it stands the scale bar.
+const PADDING: f64 = 28.0;
+/// Most units per metre: a short path does not become a huge one.
+const MOST_SCALE: f64 = 42.0;
+/// Radius of a frame's number.
+pub(super) const RADIUS: f64 = 9.5;
+/// How near two numbers may come: they may touch, but each has to be read.
+const LEAST_APART: f64 = 1.5 * RADIUS;
+/// Widest stretch of the world that is drawn, metres.
+const MOST_SPAN_M: f64 = 2_000.0;
+/// Most nodes and edges of the graph that are drawn.
+const MOST_NODES: usize = 4_000;
+
+impl MapView {
+    /// The map of the first `frames` frames, or `None` where their positions make no map.
+    pub(super) fn new(path: &Path, map: &Map, frames: usize) -> Option<Self> {
+        let stops: Vec<DVec3> = path.frames.iter().take(frames).map(|frame| frame.pose.position).collect();
+        let first = *stops.first()?;
+        let is_near = |x: f64, y: f64| (x - first.x).abs() <= MOST_SPAN_M && (y - first.y).abs() <= MOST_SPAN_M;
+        if !stops.iter().all(|stop| is_near(stop.x, stop.y) && stop.z.is_finite()) {
+            return None;
+        }
+        let nodes: Vec<Option<[f64; 2]>> =
+            map.nodes.iter().take(MOST_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
+        let points = stops.iter().map(|stop| [stop.x, stop.y]).chain(nodes.iter().copied().flatten());
+        let sheet = Sheet::around(points)?;
+        let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place(node))).collect();
+        let at: Vec<[f64; 2]> = stops.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
+        let bar_m = [1, 2, 5, 10, 20, 50, 100, 200, 500]
+            .into_iter()
+            .rfind(|m| f64::from(*m) * sheet.scale <= 90.0)
+            .unwrap_or(1);
+        Some(Self {
+            width: sheet.size[0],
+            height: sheet.size[1],
+            edges: edges(&places, &map.edges),
+            nodes: dots(&places),
+            hops: hops(&stops, &at),
+            spots: spots(&at, sheet.size),
+            start_deg: tenth(path.frames.first()?.pose.heading.deg()),
+            bar: tenth(f64::from(bar_m) * sheet.scale),
+            bar_m,
+        })
+    }
+}
+
+/// How the world lies on the sheet.
+struct Sheet {
+    scale: f64,
+    /// The sheet's upper left corner in the world, metres.
+    corner: [f64; 2],
+    size: [f64; 2],
+}
+
+impl Sheet {
+    fn around(points: impl Iterator<Item = [f64; 2]>) -> Option<Self> {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for point in points {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+        let span = [high[0] - low[0], high[1] - low[1]];
+        if !span.iter().all(|span| span.is_finite()) {
+            return None;
+        }
+        let fits = |axis: usize| (MOST[axis] - 2.0 * PADDING) / span[axis].max(0.1);
+        let scale = fits(0).min(fits(1)).min(MOST_SCALE);
+        let size = [0, 1].map(|axis| tenth((span[axis] * scale + 2.0 * PADDING).max(LEAST[axis])));
+        let margin_m = [0, 1].map(|axis| (size[axis] / scale - span[axis]) / 2.0);
+        Some(Self { scale, corner: [low[0] - margin_m[0], high[1] + margin_m[1]], size })
+    }
+
+    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [tenth((x - self.corner[0]) * self.scale), tenth((self.corner[1] - y) * self.scale)]
+    }
+}
+
+fn tenth(units: f64) -> f64 {
+    (units * 10.0).round() / 10.0
+}
+
+fn edges(places: &[Option<[f64; 2]>], edges: &[[usize; 2]]) -> String {
+    let mut data = String::new();
+    for [from, to] in edges.iter().take(2 * MOST_NODES) {
+        if let (Some(Some(from)), Some(Some(to))) = (places.get(*from), places.get(*to)) {
+            data.push_str(&line(*from, *to));
+        }
+    }
+    data
+}
+
+fn dots(places: &[Option<[f64; 2]>]) -> String {
+    places.iter().flatten().fold(String::new(), |mut data, [x, y]| {
+        // Writing to a text cannot fail.
+        let _ = write!(data, "M{x} {y}h0");
+        data
+    })
+}
+
+fn line(from: [f64; 2], to: [f64; 2]) -> String {
+    format!("M{} {}L{} {}", from[0], from[1], to[0], to[1])
+}
+
+fn hops(stops: &[DVec3], at: &[[f64; 2]]) -> Vec<Hop> {
+    let hop = |from: usize| Hop {
+        data: line(at[from], at[from + 1]),
+        fill: colour(from, at.len()).fill,
+        climbs: Climb::from_rise(stops[from + 1].z - stops[from].z) != Climb::Level,
+    };
+    (0..at.len().saturating_sub(1)).map(hop).collect()
+}
+
+/// The eight ways out of a crowd, nearest to the reader's habit first.
+const WAYS: [[f64; 2]; 8] =
+    [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0], [0.7, -0.7], [-0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
+
+/// Puts each number on its frame, or beside it where an earlier number is there (stairs, loops, close frames).
+fn spots(at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
+    let mut badges: Vec<[f64; 2]> = Vec::new();
+    for place in at {
+        let is_free = |spot: &[f64; 2]| {
+            let is_inside = (0..2).all(|axis| spot[axis] >= RADIUS && spot[axis] <= size[axis] - RADIUS);
+            is_inside && badges.iter().all(|other| (spot[0] - other[0]).hypot(spot[1] - other[1]) >= LEAST_APART)
+        };
+        let beside = [2.3, 3.6, 5.0]
+            .into_iter()
+            .flat_map(|far| WAYS.map(|way| [0, 1].map(|axis| tenth(place[axis] + way[axis] * far * RADIUS))));
+        let badge = std::iter::once(*place).chain(beside).find(is_free).unwrap_or(*place);
+        badges.push(badge);
+    }
+    let frames = at.len();
+    at.iter()
+        .zip(badges)
+        .enumerate()
+        .map(|(number, (at, badge))| Spot { at: *at, badge, is_aside: *at != badge, colour: colour(number, frames) })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::{Frame, Heading, Pose, SceneId};
+
+    fn path(stops: &[[f64; 3]]) -> Path {
+        let frame = |[x, y, z]: &[f64; 3]| Frame {
+            pose: Pose::level(DVec3::new(*x, *y, *z), Heading::NORTH),
+            viewpoint: None,
+            level: None,
+        };
+        Path {
+            id: "p".into(),
+            scene: SceneId::new("s").unwrap(),
+            frames: stops.iter().map(frame).collect(),
+            target: None,
+        }
+    }
+
+    fn map_of(stops: &[[f64; 3]]) -> Option<MapView> {
+        MapView::new(&path(stops), &Map::default(), stops.len())
+    }
+
+    #[test]
+    fn north_is_up_and_the_bar_is_to_scale() {
+        let map = map_of(&[[0.0, 0.0, 0.0], [0.0, 4.0, 0.0], [3.0, 4.0, 0.0]]).unwrap();
+        let at: Vec<[f64; 2]> = map.spots.iter().map(|spot| spot.at).collect();
+        assert!(at[1][1] < at[0][1] && at[1][0] == at[0][0] && at[2][0] > at[1][0]);
+        let units_per_m = (at[0][1] - at[1][1]) / 4.0;
+        assert!((map.bar - units_per_m * f64::from(map.bar_m)).abs() < 0.2);
+    }
+
+    #[test]
+    fn everything_lies_on_the_sheet() {
+        for stops in [
+            vec![[0.0; 3]],
+            vec![[0.0; 3], [900.0, 0.1, 0.0]],
+            vec![[5.0, 1.0, 0.0]; 40],
+            vec![[0.0; 3], [0.0, 60.0, 0.0]],
+        ] {
+            let map = map_of(&stops).unwrap();
+            for place in map.spots.iter().flat_map(|spot| [spot.at, spot.badge]) {
+                assert!((0.0..=map.width).contains(&place[0]) && (0.0..=map.height).contains(&place[1]), "{place:?}");
+            }
+            assert!(map.width <= MOST[0] && map.height <= MOST[1]);
+        }
+    }
+
+    #[test]
+    fn numbers_of_stacked_frames_stand_side_by_side() {
+        let map = map_of(&[[0.0, 0.0, 0.0], [0.1, 0.0, 1.0], [0.0, 0.1, 2.0]]).unwrap();
+        for (at, spot) in map.spots.iter().enumerate() {
+            for other in &map.spots[..at] {
+                let apart = (spot.badge[0] - other.badge[0]).hypot(spot.badge[1] - other.badge[1]);
+                assert!(apart >= LEAST_APART);
+            }
+        }
+        assert_eq!(map.spots.iter().map(|spot| spot.is_aside).collect::<Vec<_>>(), [false, true, true]);
+        assert!(map.hops.iter().all(|hop| hop.climbs));
+    }
+
+    #[test]
+    fn hostile_numbers_make_no_map_and_hostile_edges_are_left_out() {
+        assert_eq!(map_of(&[[0.0; 3], [1e300, 0.0, 0.0]]), None);
+        assert_eq!(map_of(&[]), None);
+        let map = Map { nodes: vec![[0.0, 0.0], [f64::MAX, 0.0], [1.0, 1.0]], edges: vec![[0, 1], [0, 99], [0, 2]] };
+        let view = MapView::new(&path(&[[0.0; 3]]), &map, 1).unwrap();
+        assert_eq!((view.edges.matches('M').count(), view.nodes.matches('M').count()), (1, 2));
+    }
+}

@@ -1,0 +1,105 @@
+//! One item as the page shows it.
+
+use super::{
+    frames::{FrameView, frames},
+    map::{MapView, RADIUS},
+    pictures::Pictures,
+    records::ItemRecord,
+    texts::{Places, TextView, texts},
+};
+use serde::Serialize;
+use wayword_core::{Distinction, Side, Target};
+
+/// Most frames of an item that are shown.
+const MOST_FRAMES: usize = 200;
+
+/// An item.
+#[derive(Debug, Serialize)]
+pub(super) struct ItemView {
+    /// From 1.
+    pub(super) number: usize,
+    /// Of its heading, within the page.
+    pub(super) anchor: String,
+    id: String,
+    scene: String,
+    length_m: String,
+    target: Option<String>,
+    levels: Option<String>,
+    map: Option<MapView>,
+    map_radius: f64,
+    map_words: String,
+    texts: Vec<TextView>,
+    originals: Vec<String>,
+    frames: Vec<FrameView>,
+    frames_left_out: usize,
+}
+
+/// The anchor of an item's heading; numbered and not named, for names come from anywhere.
+pub(super) fn anchor(number: usize) -> String {
+    format!("w{number}")
+}
+
+/// The anchor of a frame (from 0) of an item.
+pub(super) fn frame_anchor(item: &str, frame: usize) -> String {
+    format!("{item}-f{}", frame + 1)
+}
+
+impl ItemView {
+    /// An item with its pictures; `number` from 1.
+    pub(super) fn new(number: usize, record: &ItemRecord, pictures: &mut Pictures) -> Self {
+        let (path, anchor) = (&record.walk.path, anchor(number));
+        let shown = path.frames.len().min(MOST_FRAMES);
+        let map = MapView::new(path, &record.walk.map, shown);
+        let length_m = format!("{:.1}", path.length_m());
+        Self {
+            number,
+            id: path.id.clone(),
+            scene: path.scene.to_string(),
+            target: path.target.as_ref().map(target_words),
+            levels: levels(path.frames.iter().filter_map(|frame| frame.level)),
+            map_words: format!("Map of the walk from frame 1 to frame {shown}, {length_m} m, north up"),
+            length_m,
+            map,
+            map_radius: RADIUS,
+            texts: texts(record, Places { item: &anchor, frames: path.frames.len(), shown }),
+            originals: record.walk.originals.clone(),
+            frames: frames(&record.walk, &anchor, shown, pictures),
+            frames_left_out: path.frames.len() - shown,
+            anchor,
+        }
+    }
+}
+
+fn levels(levels: impl Iterator<Item = u32> + Clone) -> Option<String> {
+    let (low, high) = (levels.clone().min()?, levels.max()?);
+    Some(if low == high { format!("floor {low}") } else { format!("floors {low} to {high}") })
+}
+
+fn target_words(target: &Target) -> String {
+    let told: Vec<String> = target.told_by.iter().take(3).map(distinction).collect();
+    let name = &target.name;
+    match (told.is_empty(), target.has_namesake) {
+        (true, false) => name.clone(),
+        (true, true) => format!("{name} (one of several)"),
+        (false, _) => format!("{name} ({})", told.join(", ")),
+    }
+}
+
+fn distinction(distinction: &Distinction) -> String {
+    match distinction {
+        Distinction::Colour { colour } => format!("the {colour} one"),
+        Distinction::OnSide { side } => format!("the one {}", side_words(*side)),
+        Distinction::NextTo { neighbour } => format!("the one next to the {neighbour}"),
+        Distinction::Range { nearest } => if *nearest { "the nearest" } else { "the farthest" }.to_owned(),
+    }
+}
+
+/// Where that is for the walker.
+pub(super) fn side_words(side: Side) -> &'static str {
+    match side {
+        Side::Ahead => "ahead",
+        Side::Right => "on the right",
+        Side::Behind => "behind",
+        Side::Left => "on the left",
+    }
+}

@@ -1,0 +1,167 @@
+//! What stands above the items: what the run was, who did it, what came of it, and where to find each item.
+
+use super::{
+    model::anchor,
+    records::{Counts, ItemRecord, Minds, Records},
+    texts::{State, state},
+};
+use crate::settings::{Perception, Settings, TargetMode};
+use serde::Serialize;
+use std::path::Path;
+use wayword_synthesis::walk::FrameSelection;
+
+/// The page around its items.
+#[derive(Debug, Serialize)]
+pub(super) struct PageView {
+    platform: String,
+    walks: usize,
+    settings: Vec<(&'static str, String)>,
+    minds: Vec<MindsView>,
+    styles: Vec<StyleView>,
+    entries: Vec<EntryView>,
+    left_out: usize,
+    failed: Vec<FailedView>,
+    failed_left_out: usize,
+}
+
+/// Who perceived, wrote and checked: lines of a name and what it did.
+#[derive(Debug, Serialize)]
+struct MindsView {
+    lines: Vec<(String, String)>,
+}
+
+#[derive(Debug, Serialize)]
+struct StyleView {
+    name: String,
+    passed: usize,
+    unverified: usize,
+    rejected: usize,
+}
+
+/// A line of the table of contents.
+#[derive(Debug, Serialize)]
+struct EntryView {
+    number: usize,
+    anchor: String,
+    id: String,
+    /// Styles whose instruction is not all good, with what became of it.
+    lacks: Vec<(String, State)>,
+}
+
+#[derive(Debug, Serialize)]
+struct FailedView {
+    id: String,
+    reason: String,
+}
+
+impl PageView {
+    pub(super) fn new(records: &Records) -> Self {
+        let style = |(name, counts): (&String, &Counts)| StyleView {
+            name: name.clone(),
+            passed: counts.passed,
+            unverified: counts.unverified,
+            rejected: counts.rejected,
+        };
+        Self {
+            platform: records.settings.platform.clone(),
+            walks: records.items.len() + records.left_out,
+            settings: settings(&records.settings),
+            minds: records.minds.iter().map(minds).collect(),
+            styles: records.counts.iter().map(style).collect(),
+            entries: records.items.iter().enumerate().map(|(at, item)| entry(at + 1, item)).collect(),
+            left_out: records.left_out,
+            failed: records
+                .failed
+                .iter()
+                .map(|failed| FailedView { id: failed.item.clone(), reason: failed.reason.clone() })
+                .collect(),
+            failed_left_out: records.failed_left_out,
+        }
+    }
+}
+
+fn entry(number: usize, item: &ItemRecord) -> EntryView {
+    let accepted = item.accepted.iter().map(|instruction| (instruction.style.clone(), state(instruction.verdict)));
+    let rejected = item.rejected.iter().map(|rejected| (rejected.style.clone(), State::Rejected));
+    EntryView {
+        number,
+        anchor: anchor(number),
+        id: item.walk.path.id.clone(),
+        lacks: accepted.filter(|(_, state)| *state != State::Passed).chain(rejected).collect(),
+    }
+}
+
+/// Who did what, said so that nobody takes ground truth for perception.
+fn minds(minds: &Minds) -> MindsView {
+    let answered = match minds.answerer.as_str() {
+        "labels" => "answered: ground truth of the platform, not perception",
+        _ => "answered: perception by a model",
+    };
+    let checked = match minds.checked_against.as_str() {
+        "labels" => "is what the checks went by: ground truth of the platform",
+        "captions" => "are what the checks went by: they share the answerer's mistakes",
+        _ => "is what the checks went by",
+    };
+    let line = |who: &str, did: &str| (who.to_owned(), did.to_owned());
+    MindsView {
+        lines: vec![
+            line(&minds.asker, "asked"),
+            line(&minds.answerer, answered),
+            line(&minds.summariser, "summed up"),
+            line(&minds.writer, if minds.writer == "rules" { "wrote: no language model" } else { "wrote" }),
+            line(&minds.checked_against, checked),
+            line(&format!("Wayword {}", minds.wayword), "put it together"),
+        ],
+    }
+}
+
+/// The settings as a reader wants them; no folders, for a page that is passed on should not tell of its maker's machine.
+fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
+    let file = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let (hops, length_m) = (&settings.request.hops, &settings.request.length_m);
+    let paths = settings.episodes.as_deref().map_or_else(
+        || {
+            format!(
+                "{} random, {} to {} hops, {} to {} m",
+                settings.paths,
+                hops.start(),
+                hops.end(),
+                length_m.start(),
+                length_m.end()
+            )
+        },
+        |episodes| format!("of {}", file(episodes)),
+    );
+    let style = |style: &String| match style.split_once('=') {
+        Some((name, dataset)) => format!("{name} (texts of {})", file(Path::new(dataset))),
+        None => file(Path::new(style)),
+    };
+    let views = match settings.frames {
+        FrameSelection::Central => "central: the view along the heading",
+        FrameSelection::Panoramic => "panoramic: four views, condensed",
+    };
+    let questions = match settings.perception {
+        Perception::Dialogue => format!("dialogue, at most {} per view", settings.questions),
+        Perception::Fixed => "fixed object and room queries, no dialogue".to_owned(),
+    };
+    let target = match settings.target {
+        TargetMode::Given => "given to the writer",
+        TargetMode::Free => "the writer's choice",
+    };
+    let mut told = vec![
+        ("Paths", paths),
+        ("Styles", settings.style.iter().map(style).collect::<Vec<_>>().join(", ")),
+        ("Views", views.to_owned()),
+        ("Questions", questions),
+        ("Object of the task", target.to_owned()),
+        ("Repairs", format!("at most {}", settings.repairs)),
+        ("Seed", settings.seed.to_string()),
+    ];
+    if !settings.scan.is_empty() {
+        told.insert(1, ("Scenes", settings.scan.join(", ")));
+    }
+    if let Some(limit) = settings.limit {
+        told.insert(1, ("Limit", format!("the first {limit}")));
+    }
+    told
+}

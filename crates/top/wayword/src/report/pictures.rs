@@ -1,0 +1,146 @@
+//! Pictures of frames, from the run's own folder and nowhere else.
+
+use super::data_uri;
+use crate::run::file;
+use image::{ImageFormat, ImageReader};
+use serde::Serialize;
+use std::{
+    fs::{self, File},
+    io::{Cursor, Read},
+    path::{Component, Path, PathBuf},
+};
+
+/// Largest picture, bytes.
+const MOST_BYTES: u64 = 4 << 20;
+/// Largest side of a picture, pixels: a small file can unfold into a picture that takes a browser's memory.
+const MOST_SIDE_PX: u32 = 4096;
+/// All pictures of a page together, bytes: a phone has to open it.
+const MOST_BYTES_TOGETHER: u64 = 64 << 20;
+
+/// A picture as the page holds it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub(super) struct Picture {
+    /// `data:` address.
+    pub(super) address: String,
+    pub(super) width_px: u32,
+    pub(super) height_px: u32,
+}
+
+/// The pictures of a run.
+pub(super) struct Pictures {
+    folder: PathBuf,
+    left_bytes: u64,
+    /// How many were given out.
+    pub(super) shown: usize,
+    /// How many are not shown: they are missing, too large, no JPEG, or the page was full.
+    pub(super) left_out: usize,
+}
+
+impl Pictures {
+    pub(super) fn of(run: &Path) -> Self {
+        Self { folder: run.join(file::FRAMES), left_bytes: MOST_BYTES_TOGETHER, shown: 0, left_out: 0 }
+    }
+
+    /// The picture of a frame (from 0) of an item.
+    pub(super) fn take(&mut self, item: &str, frame: usize) -> Option<Picture> {
+        let picture = self.load(item, frame);
+        *if picture.is_some() { &mut self.shown } else { &mut self.left_out } += 1;
+        picture
+    }
+
+    fn load(&mut self, item: &str, frame: usize) -> Option<Picture> {
+        let path = inside(&self.folder, &format!("{item}_{frame}.jpg"))?;
+        // Not followed: a link could lead out of the folder.
+        let found = fs::symlink_metadata(&path).ok()?;
+        if !found.is_file() || found.len() > MOST_BYTES.min(self.left_bytes) {
+            return None;
+        }
+        let mut bytes = Vec::new();
+        File::open(&path).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
+        let (width_px, height_px) =
+            ImageReader::with_format(Cursor::new(&bytes), ImageFormat::Jpeg).into_dimensions().ok()?;
+        if !(1..=MOST_SIDE_PX).contains(&width_px) || !(1..=MOST_SIDE_PX).contains(&height_px) {
+            return None;
+        }
+        self.left_bytes = self.left_bytes.saturating_sub(bytes.len() as u64);
+        Some(Picture { address: data_uri::jpeg(&bytes), width_px, height_px })
+    }
+}
+
+/// A file directly inside a folder, or `None` where its name leads elsewhere: ids of paths are free text.
+fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+    let mut parts = Path::new(name).components();
+    match (parts.next(), parts.next()) {
+        (Some(Component::Normal(only)), None) if only == name => Some(folder.join(only)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn jpeg(width_px: u32, height_px: u32) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let picture = image::RgbImage::from_pixel(width_px, height_px, image::Rgb([90, 120, 200]));
+        picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Jpeg).unwrap();
+        bytes
+    }
+
+    fn run() -> tempfile::TempDir {
+        let run = tempfile::tempdir().unwrap();
+        fs::create_dir(run.path().join(file::FRAMES)).unwrap();
+        run
+    }
+
+    #[test]
+    fn a_picture_is_given_with_its_size() {
+        let run = run();
+        fs::write(run.path().join("frames/a_0.jpg"), jpeg(6, 4)).unwrap();
+        let mut pictures = Pictures::of(run.path());
+        let picture = pictures.take("a", 0).unwrap();
+        assert_eq!((picture.width_px, picture.height_px), (6, 4));
+        assert!(picture.address.starts_with("data:image/jpeg;base64,/9j/"));
+        assert_eq!(pictures.take("a", 1), None);
+        assert_eq!((pictures.shown, pictures.left_out), (1, 1));
+    }
+
+    #[test]
+    fn names_that_lead_out_of_the_folder_are_refused() {
+        let run = run();
+        fs::write(run.path().join("secret_0.jpg"), jpeg(6, 4)).unwrap();
+        fs::create_dir(run.path().join("frames/deep")).unwrap();
+        fs::write(run.path().join("frames/deep/a_0.jpg"), jpeg(6, 4)).unwrap();
+        let absolute = run.path().join("secret").display().to_string();
+        for bad in ["../secret", "deep/a", "./../secret", absolute.as_str(), "a\0"] {
+            assert_eq!(Pictures::of(run.path()).take(bad, 0), None, "{bad:?}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_followed() {
+        let run = run();
+        fs::write(run.path().join("secret.jpg"), jpeg(6, 4)).unwrap();
+        std::os::unix::fs::symlink("../secret.jpg", run.path().join("frames/a_0.jpg")).unwrap();
+        assert_eq!(Pictures::of(run.path()).take("a", 0), None);
+    }
+
+    #[test]
+    fn what_is_no_jpeg_or_too_large_is_left_out() {
+        let run = run();
+        fs::write(run.path().join("frames/a_0.jpg"), "<svg onload='alert(1)'/>").unwrap();
+        fs::write(run.path().join("frames/a_1.jpg"), vec![0xff; MOST_BYTES as usize + 1]).unwrap();
+        fs::write(run.path().join("frames/a_2.jpg"), jpeg(MOST_SIDE_PX + 1, 1)).unwrap();
+        let mut pictures = Pictures::of(run.path());
+        assert!((0..3).all(|frame| pictures.take("a", frame).is_none()));
+    }
+
+    #[test]
+    fn a_full_page_takes_no_more() {
+        let run = run();
+        fs::write(run.path().join("frames/a_0.jpg"), jpeg(6, 4)).unwrap();
+        let mut pictures = Pictures { left_bytes: 10, ..Pictures::of(run.path()) };
+        assert_eq!(pictures.take("a", 0), None);
+    }
+}
