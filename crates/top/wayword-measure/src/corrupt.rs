@@ -38,27 +38,65 @@ impl Kind {
 
 /// Objects of homes, to replace landmarks by: written for this measurement, not taken from the checks' lexicon.
 const ABSENT: [&str; 24] = [
-    "piano", "treadmill", "fireplace", "refrigerator", "washing machine", "pool table", "bathtub", "chandelier", "dishwasher",
-    "grandfather clock", "aquarium", "bookcase", "wardrobe", "printer", "bicycle", "harp", "couch", "stove", "toilet",
-    "television", "crib", "jukebox", "telescope", "rocking chair",
+    "piano",
+    "treadmill",
+    "fireplace",
+    "refrigerator",
+    "washing machine",
+    "pool table",
+    "bathtub",
+    "chandelier",
+    "dishwasher",
+    "grandfather clock",
+    "aquarium",
+    "bookcase",
+    "wardrobe",
+    "printer",
+    "bicycle",
+    "harp",
+    "couch",
+    "stove",
+    "toilet",
+    "television",
+    "crib",
+    "jukebox",
+    "telescope",
+    "rocking chair",
 ];
 
 /// A corrupted text, or `None` where this kind of corruption cannot be done to it.
-pub(super) fn corrupt(kind: Kind, record: &Record, evidence: &Evidence, others: &BTreeSet<String>, style: &Style, rng: &mut impl Rng) -> Option<String> {
+pub(super) fn corrupt(
+    kind: Kind,
+    record: &Record,
+    evidence: &Evidence,
+    others: &BTreeSet<String>,
+    style: &Style,
+    rng: &mut impl Rng,
+) -> Option<String> {
     let text = &record.instruction.text;
     let spans = |wanted: &[MentionKind]| -> Vec<[usize; 2]> {
-        record.instruction.mentions.iter().filter(|mention| wanted.contains(&mention.kind)).map(|mention| mention.span).collect()
+        record
+            .instruction
+            .mentions
+            .iter()
+            .filter(|mention| wanted.contains(&mention.kind))
+            .map(|mention| mention.span)
+            .collect()
     };
     let replace = |span: [usize; 2], by: &str| format!("{}{by}{}", &text[..span[0]], &text[span[1]..]);
     match kind {
         Kind::TurnFlipped => {
-            let turns: Vec<[usize; 2]> = spans(&[MentionKind::Turn]).into_iter().filter(|span| matches!(&text[span[0]..span[1]], "left" | "right")).collect();
+            let turns: Vec<[usize; 2]> = spans(&[MentionKind::Turn])
+                .into_iter()
+                .filter(|span| matches!(&text[span[0]..span[1]], "left" | "right"))
+                .collect();
             let span = *turns.choose(rng)?;
             Some(replace(span, if &text[span[0]..span[1]] == "left" { "right" } else { "left" }))
         }
         Kind::LandmarkAbsent => {
             let span = *spans(&[MentionKind::Landmark, MentionKind::Target]).choose(rng)?;
-            let absent: Vec<&str> = ABSENT.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
+            let absent: Vec<&str> =
+                ABSENT.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
             Some(replace(span, absent.choose(rng)?))
         }
         Kind::OrderSwapped => swapped(record, evidence, rng),
@@ -68,11 +106,14 @@ pub(super) fn corrupt(kind: Kind, record: &Record, evidence: &Evidence, others: 
             let length = rng.random_range(5..=7).min(words.len());
             let start = rng.random_range(0..=words.len() - length);
             let run = words[start..start + length].join(" ").replace(". ", " ");
-            Some(format!("{run}, {}", text))
+            Some(format!("{run}, {text}"))
         }
         Kind::TaskElsewhere => {
             let span = *spans(&[MentionKind::Target]).first()?;
-            let elsewhere: Vec<&String> = others.iter().filter(|name| !evidence.final_things().iter().any(|thing| agree(&thing.name, name))).collect();
+            let elsewhere: Vec<&String> = others
+                .iter()
+                .filter(|name| !evidence.final_things().iter().any(|thing| agree(&thing.name, name)))
+                .collect();
             Some(replace(span, elsewhere.choose(rng)?))
         }
     }
@@ -81,7 +122,12 @@ pub(super) fn corrupt(kind: Kind, record: &Record, evidence: &Evidence, others: 
 /// Two places in each other's stead, where every frame that shows the first comes before any that shows the second.
 fn swapped(record: &Record, evidence: &Evidence, rng: &mut impl Rng) -> Option<String> {
     let text = &record.instruction.text;
-    let places: Vec<_> = record.instruction.mentions.iter().filter(|mention| matches!(mention.kind, MentionKind::Landmark | MentionKind::Room | MentionKind::Target)).collect();
+    let places: Vec<_> = record
+        .instruction
+        .mentions
+        .iter()
+        .filter(|mention| matches!(mention.kind, MentionKind::Landmark | MentionKind::Room | MentionKind::Target))
+        .collect();
     let frames = |span: [usize; 2]| {
         let name = &text[span[0]..span[1]];
         let mut frames = evidence.frames_with_thing(name);
@@ -92,10 +138,8 @@ fn swapped(record: &Record, evidence: &Evidence, rng: &mut impl Rng) -> Option<S
     for (at, first) in places.iter().enumerate() {
         for second in &places[at + 1..] {
             let (a, b) = (frames(first.span), frames(second.span));
-            if let (Some(last_a), Some(first_b)) = (a.iter().max(), b.iter().min()) {
-                if last_a < first_b {
-                    pairs.push((first.span, second.span));
-                }
+            if a.iter().max().zip(b.iter().min()).is_some_and(|(last_a, first_b)| last_a < first_b) {
+                pairs.push((first.span, second.span));
             }
         }
     }

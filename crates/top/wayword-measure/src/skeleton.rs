@@ -21,7 +21,12 @@ pub(super) fn measure(folders: &[PathBuf], show: usize, output: &Output) -> Resu
         let mut ranked: Vec<_> = skeletons.iter().collect();
         ranked.sort_by_key(|(skeleton, count)| (std::cmp::Reverse(**count), *skeleton));
         lines.push(format!("{style}: {total} sentences, {} skeletons", skeletons.len()));
-        lines.extend(ranked.iter().take(show).map(|(skeleton, count)| format!("  {:>5.2} %  {skeleton}", 100.0 * **count as f64 / total as f64)));
+        lines.extend(
+            ranked
+                .iter()
+                .take(show)
+                .map(|(skeleton, count)| format!("  {:>5.2} %  {skeleton}", 100.0 * **count as f64 / total as f64)),
+        );
     }
     output.data(&(), lines.join("\n"));
     Ok(())
@@ -40,5 +45,9 @@ fn skeletons_of(instruction: &Instruction) -> Vec<String> {
         };
         masked.replace_range(mention.span[0]..mention.span[1], mask);
     }
-    masked.split_inclusive(['.', '!', '?']).map(|sentence| sentence.trim().to_lowercase()).filter(|sentence| !sentence.is_empty()).collect()
+    masked
+        .split_inclusive(['.', '!', '?'])
+        .map(|sentence| sentence.trim().to_lowercase())
+        .filter(|sentence| !sentence.is_empty())
+        .collect()
 }

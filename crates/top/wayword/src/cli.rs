@@ -232,7 +232,9 @@ pub struct Export {
 
 /// `wayword report`.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --out page.html")]
+#[command(
+    after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --out page.html"
+)]
 pub struct Report {
     /// Run folder.
     #[arg(long, value_name = "DIR")]
@@ -247,12 +249,12 @@ pub struct Report {
 
 /// `wayword house`.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  wayword house --seed 7 --out house-7.glb")]
+#[command(after_long_help = "Examples:\n  wayword house --seed 7 --out houses")]
 pub struct House {
     /// Which house.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// The .glb file; navigation data goes beside it as .json.
-    #[arg(long, value_name = "FILE")]
+    /// Folder for house-SEED.glb and house-SEED.navigation.json.
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

@@ -40,6 +40,9 @@ pub enum Error {
     /// A walk could not be seen.
     #[error(transparent)]
     Observe(#[from] ObserveError),
+    /// A house could not be saved.
+    #[error(transparent)]
+    House(#[from] wayword_platforms::house::SaveError),
     /// The file system would not.
     #[error("{}: cannot {doing}: {source}", path.display())]
     Io {

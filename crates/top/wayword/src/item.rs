@@ -2,7 +2,7 @@
 
 use crate::{error::Error, settings::Settings};
 use std::collections::BTreeSet;
-use wayword_core::{Path, Platform, PlatformError, SceneId, seed};
+use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, seed};
 use wayword_formats::Episode;
 use wayword_platforms::path_of;
 
@@ -11,12 +11,14 @@ use wayword_platforms::path_of;
 pub enum Item {
     /// An episode of a dataset.
     Episode(Box<Episode>),
-    /// The n-th random path, in this scene.
+    /// A random path.
     Random {
-        /// Its number, from 0.
-        number: usize,
-        /// Where it lies.
-        scene: SceneId,
+        /// Its name.
+        id: String,
+        /// The scene that it is to lie in, and those that take its place where that one holds no such path.
+        scenes: Vec<SceneId>,
+        /// Its own seed.
+        seed: u64,
     },
 }
 
@@ -38,17 +40,20 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
 
 fn episodes(episodes: Vec<Episode>, settings: &Settings) -> Result<Vec<Item>, Error> {
     if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
-        let problem = format!("episode {} names no viewpoints, and the paths of these platforms run over viewpoints", blind.id);
+        let problem =
+            format!("episode {} names no viewpoints, and the paths of these platforms run over viewpoints", blind.id);
         return Err(Error::usage(problem, "give an R2R, REVERIE, RxR or Wayword file"));
     }
-    let wanted = |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
+    let wanted =
+        |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
     Ok(episodes.into_iter().filter(wanted).map(|episode| Item::Episode(Box::new(episode))).collect())
 }
 
 fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
     let mut scenes = Vec::new();
     for name in &settings.scan {
-        let scene = SceneId::new(name.as_str()).map_err(|error| Error::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
+        let scene = SceneId::new(name.as_str())
+            .map_err(|error| Error::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
         platform.graph(&scene)?;
         scenes.push(scene);
     }
@@ -58,7 +63,14 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
     if scenes.is_empty() {
         return Err(Error::usage("the platform offers no scene", "check --data"));
     }
-    Ok((0..settings.paths).map(|number| Item::Random { number, scene: scenes[number % scenes.len()].clone() }).collect())
+    // Scene after scene: a world keeps the last few of them ready.
+    let first = |number: usize| number * scenes.len() / settings.paths.max(1);
+    let item = |number: usize| Item::Random {
+        id: format!("random-{}-{number}", settings.seed),
+        scenes: (0..scenes.len()).map(|off| scenes[(first(number) + off) % scenes.len()].clone()).collect(),
+        seed: seed::derive(settings.seed, &["path", &number.to_string()]),
+    };
+    Ok((0..settings.paths).map(item).collect())
 }
 
 impl Item {
@@ -67,7 +79,7 @@ impl Item {
     pub fn id(&self) -> String {
         match self {
             Self::Episode(episode) => episode.id.clone(),
-            Self::Random { number, scene } => format!("{scene}_{number}"),
+            Self::Random { id, .. } => id.clone(),
         }
     }
 
@@ -77,12 +89,24 @@ impl Item {
     /// When an episode does not fit the world, or the scene holds no random path of the kind asked for.
     pub fn path(&self, settings: &Settings, platform: &dyn Platform) -> Result<Path, PlatformError> {
         match self {
-            Self::Episode(episode) => {
-                path_of(platform, self.id(), &episode.scene, &episode.viewpoints, episode.start_heading, episode.target_object.as_ref())
-            }
-            Self::Random { number, scene } => {
-                let path = platform.sample_path(scene, &settings.request, seed::derive(settings.seed, &["path", &number.to_string()]))?;
-                Ok(Path { id: self.id(), ..path })
+            Self::Episode(episode) => path_of(
+                platform,
+                self.id(),
+                &episode.scene,
+                &episode.viewpoints,
+                episode.start_heading,
+                episode.target_object.as_ref(),
+            ),
+            Self::Random { id, scenes, seed } => {
+                let sample = |scene: &SceneId| platform.sample_path(scene, &settings.request, *seed);
+                let mut sampled = scenes.iter().map(sample);
+                let fits = |path: &Result<Path, PlatformError>| !matches!(path, Err(PlatformError::NoSuchPath { .. }));
+                let first = sampled.next();
+                let path = match first.filter(fits).or_else(|| sampled.find(fits)) {
+                    Some(path) => path?,
+                    None => sample(&scenes[0])?,
+                };
+                Ok(Path { id: id.clone(), ..path })
             }
         }
     }
@@ -101,19 +125,27 @@ impl Item {
     pub fn path_id(&self) -> String {
         match self {
             Self::Episode(episode) => episode.path_id.clone(),
-            Self::Random { number, .. } => number.to_string(),
+            Self::Random { id, .. } => id.clone(),
         }
     }
 }
 
-/// Refuses items of one name: the run folder tells them apart by it.
+/// Refuses names that the run folder cannot use: it tells items apart by them, and names files after them.
 ///
 /// # Errors
-/// When two items share a name.
-pub fn distinct(items: &[Item]) -> Result<(), Error> {
+/// When two items share a name, or one cannot be a file's.
+pub fn check_names(items: &[Item]) -> Result<(), Error> {
     let mut seen = BTreeSet::new();
-    match items.iter().map(Item::id).find(|id| !seen.insert(id.clone())) {
-        Some(twice) => Err(Error::usage(format!("item {twice} comes twice"), "give each item of the episodes file an id of its own")),
-        None => Ok(()),
+    for id in items.iter().map(Item::id) {
+        ObjectId::new(id.as_str()).map_err(|error| {
+            Error::usage(format!("an item cannot be named so: {error}"), "change its id in the episodes file")
+        })?;
+        if !seen.insert(id.clone()) {
+            return Err(Error::usage(
+                format!("item {id} comes twice"),
+                "give each item of the episodes file an id of its own",
+            ));
+        }
     }
+    Ok(())
 }

@@ -54,7 +54,8 @@ pub fn make(item: &Item, settings: &Settings, platform: &dyn Platform, styles: &
     let walk = Walk::new(path, observations);
     let evidence = evidence(&walk, &panoramas);
     let outcomes = styles.iter().map(|Measured { style, profile }| {
-        let order = Order { walk: &walk, evidence: &evidence, style, profile, seed: settings.seed, repairs: settings.repairs };
+        let order =
+            Order { walk: &walk, evidence: &evidence, style, profile, seed: settings.seed, repairs: settings.repairs };
         write_and_repair(&RulesWriter, minds, order)
     });
     let outcomes = outcomes.collect();
@@ -67,7 +68,9 @@ pub fn make(item: &Item, settings: &Settings, platform: &dyn Platform, styles: &
 /// # Errors
 /// When a view cannot be had.
 pub fn panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
-    let around = |frame: &Frame| Gaze::around(frame.pose.heading).map(|gaze| platform.look(&path.scene, frame, gaze)).into_iter().collect();
+    let around = |frame: &Frame| {
+        Gaze::around(frame.pose.heading).map(|gaze| platform.look(&path.scene, frame, gaze)).into_iter().collect()
+    };
     path.frames.iter().map(around).collect()
 }
 

@@ -115,12 +115,13 @@ impl Asked {
     /// What flags ask for, with the rest from a file.
     #[must_use]
     pub fn or(self, file: Self) -> Self {
+        // Episodes and random paths exclude each other, so a flag for one wins over a file's other.
+        let (has_episodes, has_paths) = (self.episodes.is_some(), self.paths.is_some());
         Self {
             platform: self.platform.or(file.platform),
             data: self.data.or(file.data),
-            // Episodes and random paths exclude each other, so a flag for one wins over a file's other.
-            episodes: self.episodes.or(file.episodes.filter(|_| self.paths.is_none())),
-            paths: self.paths.or(file.paths),
+            episodes: self.episodes.or(file.episodes.filter(|_| !has_paths)),
+            paths: self.paths.or(file.paths.filter(|_| !has_episodes)),
             scan: self.scan.or(file.scan),
             hops: self.hops.or(file.hops),
             metres: self.metres.or(file.metres),
@@ -146,7 +147,10 @@ impl Asked {
             return Err(Error::usage("--episodes and --paths exclude each other", "give one of them"));
         }
         if paths > MOST_PATHS {
-            return Err(Error::usage(format!("--paths {paths} is more than {MOST_PATHS}"), "make several runs with different seeds"));
+            return Err(Error::usage(
+                format!("--paths {paths} is more than {MOST_PATHS}"),
+                "make several runs with different seeds",
+            ));
         }
         Ok(Settings {
             platform: self.platform.unwrap_or_else(|| "house".into()),
@@ -158,7 +162,10 @@ impl Asked {
                 hops: self.hops.map_or(Ok(default.hops), |text| range("--hops", &text))?,
                 length_m: self.metres.map_or(Ok(default.length_m), |text| range("--metres", &text))?,
             },
-            style: self.style.filter(|styles| !styles.is_empty()).unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
+            style: self
+                .style
+                .filter(|styles| !styles.is_empty())
+                .unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
             frames: self.frames.unwrap_or_default(),
             perception: self.perception.unwrap_or_default(),
             questions: self.questions.unwrap_or(QUESTIONS),
@@ -187,7 +194,10 @@ fn range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<Range
     let parsed = from.trim().parse::<N>().ok().zip(to.trim_start_matches('=').trim().parse::<N>().ok());
     match parsed {
         Some((from, to)) if from <= to => Ok(from..=to),
-        _ => Err(Error::usage(format!("{flag} {text}: that is no range"), format!("write it as in {flag} 4..7, the smaller number first"))),
+        _ => Err(Error::usage(
+            format!("{flag} {text}: that is no range"),
+            format!("write it as in {flag} 4..7, the smaller number first"),
+        )),
     }
 }
 
@@ -200,7 +210,10 @@ mod tests {
         let flags = Asked { seed: Some(7), ..Asked::default() };
         let file: Asked = toml::from_str("seed = 1\nrepairs = 2\nhops = \"2..3\"").unwrap();
         let settings = flags.or(file).resolve().unwrap();
-        assert_eq!((settings.seed, settings.repairs, settings.request.hops, settings.questions), (7, 2, 2..=3, QUESTIONS));
+        assert_eq!(
+            (settings.seed, settings.repairs, settings.request.hops, settings.questions),
+            (7, 2, 2..=3, QUESTIONS)
+        );
     }
 
     #[test]

@@ -55,7 +55,8 @@ fn find_one(name: &str, seed: u64) -> Result<Style, Error> {
 
 fn from_dataset(name: &str, file: &Path, seed: u64) -> Result<Style, Error> {
     let episodes = wayword_formats::read(file)?;
-    let mut texts: Vec<String> = episodes.into_iter().flat_map(|episode| episode.instructions).filter(|text| !text.trim().is_empty()).collect();
+    let mut texts: Vec<String> =
+        episodes.into_iter().flat_map(|episode| episode.instructions).filter(|text| !text.trim().is_empty()).collect();
     texts.sort();
     texts.dedup();
     let (references, _) = texts.partial_shuffle(&mut rng(seed, &["references", name]), FROM_DATASET);

@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph};
-use wayword_platforms::matterport::Matterport;
+use wayword_platforms::{house::HousePlatform, matterport::Matterport};
 
 /// The platforms that this build knows.
 pub const PLATFORMS: [&str; 2] = ["house", "matterport"];
@@ -17,13 +17,20 @@ pub const PLATFORMS: [&str; 2] = ["house", "matterport"];
 /// When there is none of that name, or its data cannot be opened.
 pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
     match settings.platform.as_str() {
+        "house" => Ok(Box::new(HousePlatform::default())),
         "matterport" => {
             let data = settings.data.as_deref().ok_or_else(|| {
-                Error::usage("platform matterport needs --data", "name the folder that holds connectivity/, and what else you have of the dataset")
+                Error::usage(
+                    "platform matterport needs --data",
+                    "name the folder that holds connectivity/, and what else you have of the dataset",
+                )
             })?;
             Ok(Box::new(Matterport::open(data)?))
         }
-        other => Err(Error::usage(format!("there is no platform {other:?}"), format!("name one of: {}", PLATFORMS.join(", ")))),
+        other => Err(Error::usage(
+            format!("there is no platform {other:?}"),
+            format!("name one of: {}", PLATFORMS.join(", ")),
+        )),
     }
 }
 

@@ -73,7 +73,12 @@ pub struct CheckedText {
 /// # Errors
 /// When the file, the world or the style cannot be read. A path that does not fit the world is an error too: nothing about
 /// it could be checked.
-pub fn check_file(file: &FilePath, settings: &Settings, style: Option<&str>, output: &Output) -> Result<CheckReport, Error> {
+pub fn check_file(
+    file: &FilePath,
+    settings: &Settings,
+    style: Option<&str>,
+    output: &Output,
+) -> Result<CheckReport, Error> {
     let platform = world::open(settings)?;
     let style = match style {
         Some(name) => styles::find(&[name.to_owned()], settings.seed)?.remove(0).style,
@@ -111,7 +116,14 @@ fn subjects(file: &FilePath, platform: &dyn Platform) -> Result<Vec<(Path, Vec<S
     let episodes = wayword_formats::read(file)?;
     let paths = episodes.into_iter().map(|episode| {
         // A scene that is not here is told once, with its name.
-        let path = path_of(platform, &episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, episode.target_object.as_ref())?;
+        let path = path_of(
+            platform,
+            &episode.id,
+            &episode.scene,
+            &episode.viewpoints,
+            episode.start_heading,
+            episode.target_object.as_ref(),
+        )?;
         Ok((path, episode.instructions))
     });
     paths.collect()
@@ -128,7 +140,10 @@ fn check_path(platform: &dyn Platform, path: &Path, texts: &[String], style: &St
         // People call a target what they like, so any object of the final viewpoint will do.
         let checked = check(text, Subject { evidence: &evidence, style, target: None });
         let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
-        (CheckedText { path: path.id.clone(), text: text.clone(), verdict: checked.verdict(), findings }, checked.findings)
+        (
+            CheckedText { path: path.id.clone(), text: text.clone(), verdict: checked.verdict(), findings },
+            checked.findings,
+        )
     });
     Ok((evidence.source.name(), checked.collect()))
 }

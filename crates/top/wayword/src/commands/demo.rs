@@ -1,6 +1,95 @@
 //! `wayword demo`.
-use crate::{cli::Demo, error::{Error, Exit}, output::Output};
 
-pub(super) fn run(_args: &Demo, _output: &Output) -> Result<Exit, Error> {
-    Err(Error::usage("not yet", "not yet"))
+use super::generate_into;
+use crate::{
+    cli::Demo,
+    error::{Error, Exit},
+    output::Output,
+    report,
+    run::{WalkRecord, file, read_lines},
+    settings::Asked,
+};
+use serde::Serialize;
+use std::{fmt, path::PathBuf};
+use wayword_core::{Climb, Move, Turn, Verdict};
+use wayword_formats::jsonl::{self, Record};
+
+/// The report of a demo shows its one walk.
+const ITEMS: usize = 1;
+
+pub(super) fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
+    let asked = Asked {
+        scan: Some(vec![format!("house-{}", args.seed)]),
+        paths: Some(1),
+        seed: Some(args.seed),
+        ..Asked::default()
+    };
+    output.say(format_args!("drawing house-{} and walking through it ...", args.seed));
+    generate_into(&args.out, &asked.resolve()?, output)?;
+    let report = args.out.join(file::REPORT);
+    report::write(&args.out, &report, ITEMS)?;
+    let shown = Shown {
+        walks: read_lines(&args.out.join(file::WALKS))?,
+        records: jsonl::read(&args.out.join(file::INSTRUCTIONS))?,
+        report,
+    };
+    output.data(&shown, &shown);
+    Ok(Exit::Done)
+}
+
+/// What the demo shows.
+#[derive(Serialize)]
+struct Shown {
+    walks: Vec<WalkRecord>,
+    records: Vec<Record>,
+    report: PathBuf,
+}
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for walk in &self.walks {
+            writeln!(f, "{}: {:.1} m in {} frames", walk.path.id, walk.path.length_m(), walk.path.frames.len())?;
+            let moves = walk.path.moves();
+            for (at, observation) in walk.observations.iter().enumerate() {
+                let then = moves.get(at).map_or(String::new(), motion);
+                writeln!(f, "  {at:>2}  {}{then}", observation.summary)?;
+            }
+        }
+        for record in &self.records {
+            let verdict = if record.instruction.verdict == Verdict::Pass {
+                "every check passed"
+            } else {
+                "not everything could be checked"
+            };
+            writeln!(f, "\n{} ({verdict}):\n  {}", record.instruction.style, record.instruction.text)?;
+        }
+        if let Some(record) = self.records.first() {
+            let provenance = &record.instruction.provenance;
+            let (answerer, writer) = (&provenance.answerer, &provenance.writer);
+            writeln!(
+                f,
+                "\nNo model took part: {answerer} (ground truth) answered the questions, {writer} asked them and wrote."
+            )?;
+        }
+        write!(f, "Report: {}", self.report.display())
+    }
+}
+
+/// What happens after a frame, in brackets.
+fn motion(step: &Move) -> String {
+    let turn = match step.turn() {
+        Turn::Straight => None,
+        Turn::SlightLeft => Some("slightly left"),
+        Turn::SlightRight => Some("slightly right"),
+        Turn::Left => Some("left"),
+        Turn::Right => Some("right"),
+        Turn::Around => Some("around"),
+    };
+    let climb = match step.climb() {
+        Climb::Level => None,
+        Climb::Up => Some("up"),
+        Climb::Down => Some("down"),
+    };
+    let words: Vec<&str> = turn.into_iter().chain(climb).collect();
+    if words.is_empty() { String::new() } else { format!("  [{}]", words.join(", ")) }
 }

@@ -3,7 +3,7 @@
 use crate::{
     cli::Generate,
     error::{Error, Exit},
-    item::{Item, distinct, items},
+    item::{Item, check_names, items},
     output::Output,
     pipeline::{Made, make},
     run::{Map, Rejected, RunFolder, WalkRecord, extra},
@@ -31,7 +31,12 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
 
 fn read_config(path: &Path) -> Result<Asked, Error> {
     let text = std::fs::read_to_string(path).map_err(Error::io(path, "read the settings"))?;
-    toml::from_str(&text).map_err(|error| Error::usage(format!("{}: {}", path.display(), error.to_string().trim()), "see wayword generate --help for the names"))
+    toml::from_str(&text).map_err(|error| {
+        Error::usage(
+            format!("{}: {}", path.display(), error.to_string().trim()),
+            "see wayword generate --help for the names",
+        )
+    })
 }
 
 /// What a run came to.
@@ -53,7 +58,11 @@ pub struct Summary {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} items: {} instructions passed every check, {} unverified, {} rejected", self.items, self.passed, self.unverified, self.rejected)?;
+        writeln!(
+            f,
+            "{} items: {} instructions passed every check, {} unverified, {} rejected",
+            self.items, self.passed, self.unverified, self.rejected
+        )?;
         writeln!(f, "minds: {}", self.minds)?;
         write!(f, "run folder: {}", self.run)
     }
@@ -67,7 +76,7 @@ pub fn generate_into(folder: &Path, settings: &Settings, output: &Output) -> Res
     let platform = world::open(settings)?;
     let styles = styles::find(&settings.style, settings.seed)?;
     let items = items(settings, platform.as_ref())?;
-    distinct(&items)?;
+    check_names(&items)?;
     let mut run = RunFolder::open(folder, settings)?;
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
     let left: Vec<&Item> = items.iter().filter(|item| !run.is_done(&item.id(), &names)).collect();
@@ -77,7 +86,8 @@ pub fn generate_into(folder: &Path, settings: &Settings, output: &Output) -> Res
     let bar = output.progress(items.len(), "items");
     bar.set_position((items.len() - left.len()) as u64);
     for batch in left.chunks(BATCH) {
-        let made: Vec<_> = batch.par_iter().map(|item| (*item, make(item, settings, platform.as_ref(), &styles))).collect();
+        let made: Vec<_> =
+            batch.par_iter().map(|item| (*item, make(item, settings, platform.as_ref(), &styles))).collect();
         for (item, made) in made {
             keep(&mut run, platform.as_ref(), item, made, &styles)?;
             bar.inc(1);
@@ -90,8 +100,15 @@ pub fn generate_into(folder: &Path, settings: &Settings, output: &Output) -> Res
 }
 
 /// Writes what became of an item: pictures and walk first, so that an instruction never stands without its evidence.
-fn keep(run: &mut RunFolder, platform: &dyn Platform, item: &Item, made: Result<Made, Error>, styles: &[Measured]) -> Result<(), Error> {
-    let reject = |style: &str, reason: String, last| Rejected { item: item.id(), style: style.to_owned(), reason, last };
+fn keep(
+    run: &mut RunFolder,
+    platform: &dyn Platform,
+    item: &Item,
+    made: Result<Made, Error>,
+    styles: &[Measured],
+) -> Result<(), Error> {
+    let reject =
+        |style: &str, reason: String, last| Rejected { item: item.id(), style: style.to_owned(), reason, last };
     let made = match made {
         Ok(made) => made,
         Err(error) => return run.rejected.append(&reject("", error.to_string(), None)),
@@ -122,7 +139,8 @@ fn keep(run: &mut RunFolder, platform: &dyn Platform, item: &Item, made: Result<
 const JPEG_QUALITY: u8 = 80;
 
 fn keep_pictures(folder: &Path, made: &Made) -> Result<bool, Error> {
-    let pictures: Vec<(usize, &Image)> = made.views.iter().enumerate().filter_map(|(at, view)| Some((at, view.image.as_deref()?))).collect();
+    let pictures: Vec<(usize, &Image)> =
+        made.views.iter().enumerate().filter_map(|(at, view)| Some((at, view.image.as_deref()?))).collect();
     if pictures.is_empty() {
         return Ok(false);
     }
@@ -131,8 +149,16 @@ fn keep_pictures(folder: &Path, made: &Made) -> Result<bool, Error> {
         let path = folder.join(format!("{}_{at}.jpg", made.walk.path.id));
         let mut bytes = Vec::new();
         let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY);
-        let encoded = image::ImageEncoder::write_image(encoder, picture.rgb(), picture.width_px(), picture.height_px(), image::ExtendedColorType::Rgb8);
-        encoded.map_err(|error| Error::usage(format!("{}: {error}", path.display()), "the platform gave a picture that cannot be kept"))?;
+        let encoded = image::ImageEncoder::write_image(
+            encoder,
+            picture.rgb(),
+            picture.width_px(),
+            picture.height_px(),
+            image::ExtendedColorType::Rgb8,
+        );
+        encoded.map_err(|error| {
+            Error::usage(format!("{}: {error}", path.display()), "the platform gave a picture that cannot be kept")
+        })?;
         std::fs::write(&path, bytes).map_err(Error::io(&path, "write"))?;
     }
     Ok(true)
@@ -143,7 +169,10 @@ fn summary(folder: &Path, run: &RunFolder, items: usize) -> Result<Summary, Erro
     let count = |verdict| records.iter().filter(|record| record.instruction.verdict == verdict).count();
     let minds = records.first().map_or_else(String::new, |record| {
         let provenance = &record.instruction.provenance;
-        format!("{} asked, {} answered, {} wrote, checked against {}", provenance.asker, provenance.answerer, provenance.writer, provenance.checked_against)
+        format!(
+            "{} asked, {} answered, {} wrote, checked against {}",
+            provenance.asker, provenance.answerer, provenance.writer, provenance.checked_against
+        )
     });
     Ok(Summary {
         run: folder.display().to_string(),

@@ -51,8 +51,10 @@ pub(super) struct Spot {
 const MOST: [f64; 2] = [360.0, 330.0];
 /// Smallest, so that north arrow and scale bar find room.
 const LEAST: [f64; 2] = [220.0, 170.0];
-/// Around the drawing; below it stands the scale bar.
-const PADDING: f64 = 28.0;
+/// Around the walk: room for the first and the last frame's signs, and for north arrow and scale bar beside it.
+const PADDING: f64 = 34.0;
+/// How much of the world is seen around the walk, metres; the graph goes on beyond the edge of the map.
+const MARGIN_M: f64 = 1.2;
 /// Most units per metre: a short path does not become a huge one.
 const MOST_SCALE: f64 = 42.0;
 /// Radius of a frame's number.
@@ -75,8 +77,7 @@ impl MapView {
         }
         let nodes: Vec<Option<[f64; 2]>> =
             map.nodes.iter().take(MOST_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
-        let points = stops.iter().map(|stop| [stop.x, stop.y]).chain(nodes.iter().copied().flatten());
-        let sheet = Sheet::around(points)?;
+        let sheet = Sheet::around(stops.iter().map(|stop| [stop.x, stop.y]))?;
         let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place(node))).collect();
         let at: Vec<[f64; 2]> = stops.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
         let bar_m = [1, 2, 5, 10, 20, 50, 100, 200, 500]
@@ -114,11 +115,15 @@ impl Sheet {
                 high[axis] = high[axis].max(point[axis]);
             }
         }
+        for axis in 0..2 {
+            low[axis] -= MARGIN_M;
+            high[axis] += MARGIN_M;
+        }
         let span = [high[0] - low[0], high[1] - low[1]];
         if !span.iter().all(|span| span.is_finite()) {
             return None;
         }
-        let fits = |axis: usize| (MOST[axis] - 2.0 * PADDING) / span[axis].max(0.1);
+        let fits = |axis: usize| (MOST[axis] - 2.0 * PADDING) / span[axis];
         let scale = fits(0).min(fits(1)).min(MOST_SCALE);
         let size = [0, 1].map(|axis| tenth((span[axis] * scale + 2.0 * PADDING).max(LEAST[axis])));
         let margin_m = [0, 1].map(|axis| (size[axis] / scale - span[axis]) / 2.0);

@@ -62,9 +62,14 @@ impl Journal {
     /// # Errors
     /// When it cannot be written.
     pub fn append(&mut self, record: &impl Serialize) -> Result<(), Error> {
-        let fail = |error: serde_json::Error| Error::Io { path: self.path.clone(), doing: "write", source: error.into() };
+        let fail =
+            |error: serde_json::Error| Error::Io { path: self.path.clone(), doing: "write", source: error.into() };
         let value = serde_json::to_value(record).map_err(fail)?;
-        let key = (self.key_of)(&value).ok_or_else(|| Error::Io { path: self.path.clone(), doing: "write a record without a name to", source: io::ErrorKind::InvalidData.into() })?;
+        let key = (self.key_of)(&value).ok_or_else(|| Error::Io {
+            path: self.path.clone(),
+            doing: "write a record without a name to",
+            source: io::ErrorKind::InvalidData.into(),
+        })?;
         if !self.keys.insert(key) {
             return Ok(());
         }
@@ -119,7 +124,10 @@ fn parse<T: DeserializeOwned>(path: &Path, number: usize, line: &str) -> Result<
 }
 
 fn broken(path: &Path, number: usize, problem: impl std::fmt::Display) -> Error {
-    Error::usage(format!("{}: line {}: {problem}", path.display(), number + 1), "the file was changed by hand or by another program: use another run folder")
+    Error::usage(
+        format!("{}: line {}: {problem}", path.display(), number + 1),
+        "the file was changed by hand or by another program: use another run folder",
+    )
 }
 
 /// Reads every whole line of a file of records; a file that is not there holds none.
@@ -131,7 +139,11 @@ pub fn read_lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, Error> {
         return Ok(Vec::new());
     }
     let whole = |line: &Result<String, Error>| line.as_ref().map_or(true, |line| line.ends_with('\n'));
-    lines(path)?.enumerate().take_while(|(_, line)| whole(line)).map(|(number, line)| parse(path, number, &line?)).collect()
+    lines(path)?
+        .enumerate()
+        .take_while(|(_, line)| whole(line))
+        .map(|(number, line)| parse(path, number, &line?))
+        .collect()
 }
 
 #[cfg(test)]

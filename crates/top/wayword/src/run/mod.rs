@@ -96,7 +96,8 @@ impl RunFolder {
 
 fn lock(folder: &Path) -> Result<File, Error> {
     let path = folder.join(file::LOCK);
-    let lock = File::options().create(true).truncate(false).write(true).open(&path).map_err(Error::io(&path, "open"))?;
+    let lock =
+        File::options().create(true).truncate(false).write(true).open(&path).map_err(Error::io(&path, "open"))?;
     match lock.try_lock() {
         Ok(()) => Ok(lock),
         Err(TryLockError::WouldBlock) => Err(Error::Busy(folder.to_owned())),
@@ -108,7 +109,8 @@ fn lock(folder: &Path) -> Result<File, Error> {
 fn keep_config(folder: &Path, settings: &Settings) -> Result<(), Error> {
     let path = folder.join(file::CONFIG);
     if !path.exists() {
-        let text = toml::to_string_pretty(settings).map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
+        let text = toml::to_string_pretty(settings)
+            .map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
         let temporary = folder.join("config.toml.new");
         fs::write(&temporary, text).map_err(Error::io(&temporary, "write"))?;
         return fs::rename(&temporary, &path).map_err(Error::io(&path, "write"));
@@ -130,7 +132,10 @@ pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
     let path = folder.join(file::CONFIG);
     let text = fs::read_to_string(&path).map_err(Error::io(&path, "read the run's settings"))?;
     toml::from_str(&text).map_err(|error| {
-        Error::usage(format!("{}: {}", path.display(), error.to_string().trim()), "it was written by another version: use another run folder")
+        Error::usage(
+            format!("{}: {}", path.display(), error.to_string().trim()),
+            "it was written by another version: use another run folder",
+        )
     })
 }
 

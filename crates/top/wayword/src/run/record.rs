@@ -95,7 +95,9 @@ impl Map {
         };
         let mut map = Self::default();
         let mut places = std::collections::BTreeMap::new();
-        for (id, position) in graph.viewpoints().filter_map(|id| Some((id, graph.position(id)?))).filter(|(_, position)| near(*position)) {
+        for (id, position) in
+            graph.viewpoints().filter_map(|id| Some((id, graph.position(id)?))).filter(|(_, position)| near(*position))
+        {
             places.insert(id, map.nodes.len());
             map.nodes.push([centimetres(position.x), centimetres(position.y)]);
         }

@@ -93,16 +93,13 @@ fn at_the_end(place: &Place, evidence: &Evidence) -> Vec<usize> {
 
 /// What it means that no frame shows a place.
 fn absent(place: &Place, evidence: &Evidence) -> Verdict {
-    let told_by_nobody = evidence.source == Source::Nothing
-        || (place.is_room && !place.is_thing && !evidence.knows_rooms())
-        || (place.is_thing && !place.is_room && !evidence.knows_things());
-    // Labels seldom have walls, doors and the like, and what lies next to a path need not lie on it.
-    let part_of_building =
-        thing(&place.name).is_some_and(|thing| matches!(thing.class, Class::Structure | Class::Door));
-    let beside_the_path = place.related && place.is_room && !place.is_thing;
-    if told_by_nobody || (part_of_building && place.is_thing) || beside_the_path {
-        Verdict::Unverified
-    } else {
+    let thing_denied = place.is_thing && evidence.could_tell(&place.name);
+    // What lies next to a path need not lie on it.
+    let room_denied = place.is_room && evidence.knows_rooms() && !place.related;
+    // A name that means either is denied where one of them is.
+    if evidence.source != Source::Nothing && (thing_denied || (room_denied && !place.is_thing)) {
         Verdict::Fail
+    } else {
+        Verdict::Unverified
     }
 }

@@ -3,7 +3,7 @@
 mod from_captions;
 mod from_labels;
 
-use crate::lexicon::{agree, same_room};
+use crate::lexicon::{Class, agree, same_room, thing};
 use wayword_core::{Climb, Move, ObjectId, Path};
 
 /// What is known of a path, frame by frame.
@@ -84,6 +84,16 @@ impl Evidence {
     #[must_use]
     pub fn knows_things(&self) -> bool {
         self.frames.iter().any(|frame| !frame.things.is_empty())
+    }
+
+    /// Whether the witnesses could have named a thing of that name. Most leave doors and walls out: where they name none at
+    /// all, they deny none.
+    #[must_use]
+    pub fn could_tell(&self, name: &str) -> bool {
+        let class = thing(name).map(|thing| thing.class);
+        let left_out = matches!(class, Some(Class::Fabric | Class::Door));
+        let things = || self.frames.iter().flat_map(|frame| &frame.things);
+        self.knows_things() && (!left_out || things().any(|seen| thing(&seen.name).map(|thing| thing.class) == class))
     }
 
     /// Whether rooms are known at all along the path.

@@ -20,8 +20,10 @@ pub enum Class {
     WallArt,
     Glass,
     Door,
-    /// A part of the building; labels seldom have them, so what they don't confirm is unverified rather than wrong.
+    /// A fitting of the building.
     Structure,
+    /// The building itself: walls, floors, doorways. Most labels leave it out.
+    Fabric,
     Stairs,
     Water,
     Plant,
@@ -100,6 +102,7 @@ fn class_named(name: &str) -> Class {
         "glass" => Class::Glass,
         "door" => Class::Door,
         "structure" => Class::Structure,
+        "fabric" => Class::Fabric,
         "stairs" => Class::Stairs,
         "water" => Class::Water,
         "plant" => Class::Plant,

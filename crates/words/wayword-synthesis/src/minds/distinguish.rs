@@ -52,9 +52,9 @@ fn by_neighbour(own: &Label, likes: &[&Label], labels: &[&Label]) -> Option<Dist
     let here = own.position?;
     let unique = |name: &str| labels.iter().filter(|label| agree(&label.name, name)).count() == 1;
     let tells = |label: &&&Label| {
-        thing(&label.name)
-            .is_some_and(|thing| thing.salience >= 1 && !matches!(thing.class, Class::Structure | Class::Unknown))
-            && label.object != own.object
+        thing(&label.name).is_some_and(|thing| {
+            thing.salience >= 1 && !matches!(thing.class, Class::Structure | Class::Fabric | Class::Unknown)
+        }) && label.object != own.object
             && !agree(&label.name, &own.name)
             && unique(&label.name)
     };

@@ -59,9 +59,10 @@ fn is_walking(tokens: &[Token], at: usize) -> bool {
                 .any(|word| matches!(word, "on" | "off" | "over" | "down" | "up"))
                 || matches!(word(at + 1), "left" | "right" | "around")
         }
-        "cut" | "get" | "pop" | "drop" | "carry" | "move" | "make" | "back" | "round" | "run" => {
+        "cut" | "get" | "pop" | "drop" | "carry" | "make" | "back" | "round" | "run" => {
             !(v::DETERMINERS.contains(&word(at + 1)) || matches!(word(at + 1), "me" | "on" | "off" | "all")) || turns()
         }
+        "move" => !(v::DETERMINERS.contains(&word(at + 1)) || word(at + 1) == "all"),
         // "find the lamp" is a task, "you find yourself in a hall" is none.
         "find" => word(at + 1) == "your" || word(at + 1) == "yourself",
         verb => v::WALKING.contains(&verb),

@@ -417,6 +417,10 @@ pub(super) const ADVERBS: &[&str] = &[
 
 /// Words that begin no task.
 pub(super) const FUNCTION: &[&str] = &[
+    "closer",
+    "further",
+    "farther",
+    "nearer",
     "on",
     "in",
     "at",

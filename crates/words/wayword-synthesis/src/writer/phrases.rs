@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use wayword_core::{Climb, Side, Turn};
 
 const TURN: &[&str] = &["turn {s}", "take a {s}", "make a {s}", "go {s}", "make a {s} turn", "head {s}", "hang a {s}"];
+const TURN_AGAIN: &[&str] = &["turn {s} again", "take another {s}", "make another {s}", "go {s} again"];
 const TURN_SLIGHTLY: &[&str] = &["bear {s}", "veer {s}", "turn slightly {s}", "make a slight {s}", "veer slightly {s}"];
 const TURN_AT: &[&str] = &[
     "turn {s} at {l}",
@@ -215,6 +216,11 @@ fn climb_phrase(climb: Climb, to_level: Option<u32>, rng: &mut ChaCha8Rng) -> St
         Some(level) => format!("{stairs} to {}", level_phrase(level, rng)),
         None => stairs.to_owned(),
     }
+}
+
+/// A bare turn to the side that the last turn went to.
+pub(super) fn turn_again(side: Side, rng: &mut ChaCha8Rng) -> String {
+    fill(pick(rng, TURN_AGAIN), &[("{s}", side_word(side))])
 }
 
 /// A floor in words: "level 2", "the second floor".

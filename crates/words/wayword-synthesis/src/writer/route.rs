@@ -84,7 +84,11 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
         }
         climbed = flight.map(|(_, climb)| climb);
         if let Some(to) = next_room.filter(|_| !told_room) {
-            let from = walk.room(at).and_then(usable_room).filter(|_| rng.random_bool(0.4));
+            let told_out = matches!(
+                steps.last(),
+                Some(Weighed { step: Step::Turn { within: Some(Within { out: true, .. }), .. }, .. })
+            );
+            let from = walk.room(at).and_then(usable_room).filter(|_| !told_out && rng.random_bool(0.4));
             let is_last = last + 1 == walk.moves.len() || changed_room(walk, last + 1, walk.moves.len()).is_none();
             let through = changed_room(walk, last + 1, last + 2).is_some();
             steps.push(Weighed { step: Step::Room { from, to, through }, weight: if is_last { 3 } else { 2 } });
@@ -137,6 +141,11 @@ fn flight(walk: &Walk, first: usize) -> Option<(usize, Climb)> {
         Climb::Level => None,
         climb => Some((last, climb)),
     }
+}
+
+/// Which way the last flight of stairs of a walk goes.
+pub(super) fn last_climb(walk: &Walk) -> Option<Climb> {
+    (0..walk.moves.len()).rev().find_map(|at| flight(walk, at)).map(|(_, climb)| climb)
 }
 
 /// The room of frame `to`, where it is another than that of frame `from` and has a usable name.

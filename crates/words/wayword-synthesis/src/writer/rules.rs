@@ -5,7 +5,7 @@ use super::{
     landmarks::Landmarks,
     phrases::{self, fill, level_phrase, ordinal, pick, the},
     realise::{capital, join, sentences},
-    route::{Step, Weighed, steps, usable_room},
+    route::{Step, Weighed, last_climb, steps, usable_room},
     task,
 };
 use crate::{lexicon::room_name, text::word_count};
@@ -101,11 +101,24 @@ fn drop_least(phrases: &mut Vec<Phrase>, below: u8) -> bool {
 
 fn in_words(steps: &[Weighed], rng: &mut ChaCha8Rng) -> Vec<Phrase> {
     let mut told_room: Option<String> = None;
+    let mut last_turn = None;
     let phrase = |Weighed { step, weight }: &Weighed| {
-        let text = phrases::phrase(step, told_room.as_deref(), rng);
+        let bare_side = match step {
+            Step::Turn { turn, at: None, into: None, within: None } => turn.side(),
+            _ => None,
+        };
+        let text = match bare_side.filter(|side| last_turn == Some(*side)) {
+            Some(side) => phrases::turn_again(side, rng),
+            None => phrases::phrase(step, told_room.as_deref(), rng),
+        };
+        last_turn = match step {
+            Step::Turn { turn, .. } => turn.side(),
+            Step::On => last_turn,
+            _ => None,
+        };
         match step {
             Step::Room { to: room, .. } | Step::Along { room } | Step::Turn { into: Some(room), .. } => {
-                told_room = Some(room.clone())
+                told_room = Some(room.clone());
             }
             _ => {}
         }
@@ -216,14 +229,15 @@ fn on_level(room: &str, level: u32, rng: &mut ChaCha8Rng) -> String {
 fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> String {
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
-    let rise_m = walk.path.frames[last].pose.position.z - walk.path.frames[0].pose.position.z;
-    match Climb::from_rise(rise_m) {
-        Climb::Up => {
+    match last_climb(walk) {
+        Some(Climb::Up) => {
             return pick(rng, &["go upstairs", "head up the stairs", "walk up the stairs", "climb the stairs"])
                 .to_owned();
         }
-        Climb::Down => return pick(rng, &["go downstairs", "head down the stairs", "walk down the stairs"]).to_owned(),
-        Climb::Level => {}
+        Some(Climb::Down) => {
+            return pick(rng, &["go downstairs", "head down the stairs", "walk down the stairs"]).to_owned();
+        }
+        Some(Climb::Level) | None => {}
     }
     let by = (0..=last).rev().find_map(|frame| landmarks.choose(frame, 2, rng));
     let through = (0..last).rev().find_map(|at| walk.room(at).and_then(usable_room));

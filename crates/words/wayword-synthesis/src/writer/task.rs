@@ -61,7 +61,7 @@ fn affordances(class: Class) -> &'static [&'static str] {
             &["clean {o}", "wipe {o}", "wash {o}", "polish {o}", "look into {o}", "wipe down {o}", "look through {o}"]
         }
         Class::Door => &["open {o}", "close {o}", "knock on {o}", "lock {o}", "clean {o}"],
-        Class::Structure | Class::Stairs => {
+        Class::Structure | Class::Fabric | Class::Stairs => {
             &["dust {o}", "inspect {o}", "wipe down {o}", "clean {o}", "check {o}", "touch {o}"]
         }
         Class::Water => &["clean {o}", "check {o}", "look into {o}"],
@@ -150,15 +150,16 @@ fn free_object(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Option<String> {
     };
     let seen: Vec<_> = brief.walk.seen(last).collect();
     let alone = |name: &str| seen.iter().filter(|other| agree(&other.sighting.name, name)).count() == 1;
-    let known =
-        |name: &str| thing(name).is_some_and(|thing| thing.class != Class::Structure && thing.class != Class::Stairs);
-    let candidates =
-        seen.iter().filter(|seen| !seen.sighting.several && !blamed(&seen.sighting.name) && known(&seen.sighting.name));
+    let plain = |name: &str| name.len() <= 40 && name.chars().all(|c| c.is_alphabetic() || c == ' ');
+    let candidates = seen.iter().filter(|seen| plain(&seen.sighting.name) && !blamed(&seen.sighting.name));
     let scored = candidates.map(|seen| {
-        let salience = thing(&seen.sighting.name).map_or(0, |thing| thing.salience);
-        let score =
-            f64::from(salience) + if alone(&seen.sighting.name) { 4.0 } else { 0.0 } + rng.random_range(0.0..2.0);
-        (score, seen.sighting.name.clone())
+        let name = &seen.sighting.name;
+        let (salience, class) = thing(name).map_or((0, Class::Unknown), |thing| (thing.salience, thing.class));
+        // One of several, or a part of the building, only where there is nothing else.
+        let poor =
+            seen.sighting.several || matches!(class, Class::Structure | Class::Fabric | Class::Stairs | Class::Unknown);
+        let score = f64::from(salience) + if alone(name) { 4.0 } else { 0.0 } - if poor { 20.0 } else { 0.0 };
+        (score + rng.random_range(0.0..2.0), name.clone())
     });
     scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }
