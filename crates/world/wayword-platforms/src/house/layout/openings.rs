@@ -61,7 +61,12 @@ fn edge_between(plan: &Plan, link: &Link) -> Option<SpanCm> {
     let outline = plan.rooms[link.room].outline;
     match link.beyond {
         Some(beyond) => Some(outline.shared_edge(&plan.rooms[beyond].outline)?.1),
-        None => Wall::ALL.into_iter().map(|wall| outline.edge(wall)).find(|edge| is_outer(plan, link.room, edge)),
+        // At the narrow end, where house doors are, and so that a car stands square to its garage door.
+        None => {
+            let outer =
+                Wall::ALL.into_iter().map(|wall| outline.edge(wall)).filter(|edge| is_outer(plan, link.room, edge));
+            outer.min_by_key(SpanCm::length)
+        }
     }
 }
 

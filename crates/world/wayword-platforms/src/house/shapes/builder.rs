@@ -35,6 +35,11 @@ impl Part {
     }
 }
 
+/// Corners around something of a radius, metres: small things need few.
+fn sides(radius: f32) -> usize {
+    if radius > 0.06 { SIDES } else { SIDES / 2 }
+}
+
 /// Unit vector around the z axis.
 fn around(step: usize, sides: usize) -> (f32, f32) {
     let angle = std::f32::consts::TAU * step as f32 / sides as f32;
@@ -139,22 +144,23 @@ impl Shape {
     /// A turned part around a vertical axis: radius and height from bottom to top, `squeeze` scales it along y.
     pub(crate) fn turned(&mut self, surface: Surface, at: (f32, f32), squeeze: f32, profile: &[(f32, f32)]) {
         let scale = surface.pattern.repeat_m();
+        let sides = sides(profile.iter().map(|(radius, _)| *radius).fold(0.0, f32::max));
         let part = self.part(surface);
         for pair in profile.windows(2) {
             let ((r0, z0), (r1, z1)) = (pair[0], pair[1]);
             // The outside of a profile that goes up lies to its right.
             let slope = Vec2::new(z1 - z0, r0 - r1).normalize_or_zero();
             let base = part.positions.len() as u32;
-            for step in 0..=SIDES {
-                let (cos, sin) = around(step, SIDES);
+            for step in 0..=sides {
+                let (cos, sin) = around(step, sides);
                 let normal = Vec3::new(cos * slope.x, sin * slope.x / squeeze.max(0.1), slope.y).normalize_or_zero();
-                let turn = step as f32 / SIDES as f32 * std::f32::consts::TAU * r0.max(r1);
+                let turn = step as f32 / sides as f32 * std::f32::consts::TAU * r0.max(r1);
                 for (radius, z) in [(r0, z0), (r1, z1)] {
                     let position = Vec3::new(at.0 + radius * cos, at.1 + radius * sin * squeeze, z);
                     part.vertex(position, normal, Vec2::new(turn, -z) / scale);
                 }
             }
-            for step in 0..SIDES as u32 {
+            for step in 0..sides as u32 {
                 let a = base + step * 2;
                 part.triangles.extend([[a, a + 2, a + 3], [a, a + 3, a + 1]]);
             }
@@ -168,11 +174,12 @@ impl Shape {
 
     /// A ball.
     pub(crate) fn ball(&mut self, surface: Surface, centre: Vec3, radius: f32) {
+        let half = sides(radius) / 2;
         let ring = |step: usize| {
-            let (cos, sin) = around(step, 16);
+            let (cos, sin) = around(step, 2 * half);
             (radius * sin, centre.z - radius * cos)
         };
-        let profile: Vec<_> = (0..=8).map(ring).collect();
+        let profile: Vec<_> = (0..=half).map(ring).collect();
         self.turned(surface, (centre.x, centre.y), 1.0, &profile);
     }
 
@@ -183,7 +190,7 @@ impl Shape {
         let up = axis.cross(side);
         let part = self.part(surface);
         let base = part.positions.len() as u32;
-        let sides = if radius > 0.1 { SIDES } else { 8 };
+        let sides = sides(radius);
         for step in 0..=sides {
             let (cos, sin) = around(step, sides);
             let normal = side * cos + up * sin;
@@ -210,7 +217,7 @@ impl Shape {
         part.triangles.extend((0..SIDES).map(|step| [middle, rim(step), rim(step + 1)]));
     }
 
-    /// A ring that stands upright across the x axis' direction `axis`: wheels, hoops.
+    /// A ring around `axis`, which is level: wheels, hoops.
     pub(crate) fn hoop(&mut self, surface: Surface, centre: Vec3, axis: Vec3, radius: f32, thick: f32) {
         let side = Vec3::Z.cross(axis).normalize_or_zero();
         let up = axis.cross(side);

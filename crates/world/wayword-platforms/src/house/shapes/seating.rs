@@ -69,7 +69,6 @@ pub(super) fn stool(look: &Look) -> Shape {
         let top = Vec3::new(sx * r * 0.5, sy * r * 0.5, look.h - 0.04);
         shape.rod(wood, Vec3::new(sx * foot, sy * foot, 0.0), top, 0.018);
     }
-    shape.hoop(Surface::metal(Colour::Silver), Vec3::new(0.0, 0.0, 0.25), Vec3::Y, 0.001, 0.001);
     shape.tube(Surface::metal(Colour::Silver), (0.0, 0.0), [r * 0.8, r * 0.8], [0.24, 0.26]);
     shape
 }
