@@ -5,7 +5,7 @@ use super::{
     graph::{EYE_M, viewpoint_graph},
     ground::Ground,
     labels::labels,
-    model::{HALF_WALL_CM, Opening},
+    model::Opening,
     sample,
     scene::HouseScene,
 };
@@ -21,6 +21,8 @@ use wayword_render::Camera;
 
 /// Houses that are kept ready at a time; each takes about 15 MB.
 const READY: usize = 6;
+/// Who stands no farther from the middle of a wall stands in its opening, centimetres.
+const THRESHOLD_CM: i32 = 25;
 /// Widest gaze that one flat picture can show, radians.
 const WIDEST_RAD: f64 = 2.6;
 
@@ -160,7 +162,7 @@ impl Home {
         let house = &self.scene.house;
         let floor_cm = (eye.z - EYE_M) * 100.0;
         let stands_in = |opening: &Opening| {
-            opening.span.thickened(2 * HALF_WALL_CM).holds_m(eye.x, eye.y)
+            opening.span.thickened(THRESHOLD_CM).holds_m(eye.x, eye.y)
                 && (f64::from(opening.base_cm) - floor_cm).abs() < 50.0
         };
         let ahead = DVec3::new(libm::sin(heading.rad()), libm::cos(heading.rad()), 0.0) * 0.5;
