@@ -161,10 +161,10 @@ fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteErr
         landmarks.reserve(name);
     }
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-    let words = drawn(&brief.profile.words, rng).min(limit - 1);
+    let words = drawn(&brief.profile.words, rng).min(limit.saturating_sub(1));
     let task_words = task.as_ref().map_or(0, |(task, _)| word_count(task) + 1);
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
-    let fits = |text: &str| word_count(text) + task_words <= words.max(task_words + 5).min(limit - 1);
+    let fits = |text: &str| word_count(text) + task_words <= words.max(task_words + 5).min(limit.saturating_sub(1));
     let options = goals(brief, &mut landmarks, rng);
     // The richest description that fits; the first is the barest and always stands.
     let goal = options.iter().rev().find(|text| fits(text)).or(options.first()).cloned().unwrap_or_default();
