@@ -1,0 +1,57 @@
+//! Items per second of whole runs, from path to checked instructions on the disk: where labels carry the perception, and
+//! in a house, whose pictures are drawn.
+
+#![allow(clippy::expect_used, missing_docs, reason = "a benchmark may fail")]
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use wayword::{
+    commands::{Summary, generate_into},
+    output::Output,
+    settings::Asked,
+};
+
+/// A run into a new folder; the default is both styles.
+fn run(asked: Asked) -> Summary {
+    let folder = tempfile::tempdir().expect("a folder for the run");
+    let settings = asked.resolve().expect("settings that make sense");
+    generate_into(folder.path(), &settings, &Output::new(true, true)).expect("the run succeeds")
+}
+
+fn labels(criterion: &mut Criterion) {
+    let data = tempfile::tempdir().expect("a folder for the building");
+    wayword_testkit::write_building(data.path()).expect("the building is written");
+    let asked = |episodes: Option<&str>, paths: Option<usize>| Asked {
+        platform: Some("matterport".into()),
+        data: Some(data.path().to_owned()),
+        episodes: episodes.map(|file| data.path().join(file)),
+        paths,
+        hops: Some("3..7".into()),
+        ..Asked::default()
+    };
+    let mut group = criterion.benchmark_group("run on labels, both styles");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements(10));
+    group.bench_function("10 episodes", |bencher| {
+        let asked = || asked(Some("reverie/REVERIE_val_seen.json"), None);
+        bencher.iter_batched(asked, run, BatchSize::PerIteration);
+    });
+    group.throughput(Throughput::Elements(500));
+    group.bench_function("500 random paths", |bencher| {
+        bencher.iter_batched(|| asked(None, Some(500)), run, BatchSize::PerIteration);
+    });
+    group.finish();
+}
+
+fn house(criterion: &mut Criterion) {
+    let asked = || Asked { paths: Some(1), scan: Some(vec!["house-3".into()]), seed: Some(3), ..Asked::default() };
+    let mut group = criterion.benchmark_group("run in a house, both styles");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements(1));
+    group.bench_function("1 path with its pictures, house built anew", |bencher| {
+        bencher.iter_batched(asked, run, BatchSize::PerIteration);
+    });
+    group.finish();
+}
+
+criterion_group!(benches, labels, house);
+criterion_main!(benches);
