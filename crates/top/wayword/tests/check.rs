@@ -1,0 +1,249 @@
+//! `wayword check` from the outside: good texts pass, each kind of mistake is caught, and nothing passes without evidence.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, Ran};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword::{pipeline::panoramas, run::settings_of, world};
+use wayword_synthesis::{evidence::Evidence, style::built_in};
+use wayword_testkit::{SCAN, viewpoint_id};
+
+/// From the refrigerator through the kitchen and the hallway to the entryway, and right into the living room.
+const TO_THE_LAMP: [usize; 5] = [5, 4, 1, 0, 2];
+/// Looking along the first hop, radians.
+const SOUTH: f64 = 3.3;
+const COARSE: &str = "Go to the living room and dust the lamp";
+const FINE: &str = "Leave the kitchen and walk to the entryway. Turn right at the coat rack and go into the living room. Stop at the lamp.";
+
+/// A dataset of one path with these texts, in R2R's format or, with an object, in REVERIE's.
+fn episodes(building: &Building, texts: &[&str], object: Option<u32>) -> String {
+    let path: Vec<String> = TO_THE_LAMP.iter().map(|index| viewpoint_id(*index)).collect();
+    let mut item =
+        json!({ "path_id": 1, "scan": SCAN, "path": path, "heading": SOUTH, "distance": 12.0, "instructions": texts });
+    if let Some(object) = object {
+        item["id"] = format!("1_{object}").into();
+        item["objId"] = object.into();
+    }
+    building.write("texts.json", json!([item]).to_string());
+    "texts.json".to_owned()
+}
+
+fn check(building: &Building, file: &str, more: &[&str]) -> Ran {
+    let mut arguments = vec!["check", file, "--platform", "matterport", "--data", "data"];
+    arguments.extend(more);
+    building.wayword(&arguments)
+}
+
+/// Checks one text and returns its findings: check, verdict, and the words that it is about or its reason.
+fn findings(building: &Building, text: &str, style: &str) -> (Option<i32>, Vec<(String, String, String)>) {
+    let file = episodes(building, &[text], (style == "reverie").then_some(9));
+    let ran = check(building, &file, &["--style", style, "--json"]);
+    let report = ran.json();
+    let of = |text: &Value| text["findings"].as_array().unwrap().clone();
+    let told = |finding: Value| {
+        let words = finding["span"]
+            .as_array()
+            .map_or("", |span| &text[span[0].as_u64().unwrap() as usize..span[1].as_u64().unwrap() as usize]);
+        let reason = finding["reason"].as_str().unwrap();
+        assert!(!reason.is_empty());
+        (
+            finding["check"].as_str().unwrap().to_owned(),
+            finding["verdict"].as_str().unwrap().to_owned(),
+            format!("{reason} [{words}]"),
+        )
+    };
+    (ran.code, report["not_passed"].as_array().unwrap().iter().flat_map(of).map(told).collect())
+}
+
+#[test]
+fn good_texts_pass() {
+    let building = Building::new();
+    assert_eq!(findings(&building, COARSE, "reverie"), (Some(0), vec![]));
+    assert_eq!(findings(&building, FINE, "r2r"), (Some(0), vec![]));
+}
+
+#[test]
+fn what_generate_wrote_passes_when_it_is_checked_as_anyones() {
+    let building = Building::new();
+    for style in ["reverie", "r2r"] {
+        assert_eq!(building.generate(style, &["--episodes", common::EPISODES, "--style", style]).code, Some(0));
+        let ran = check(&building, &format!("{style}/instructions.jsonl"), &["--style", style, "--json"]);
+        assert_eq!(
+            (ran.code, &ran.json()["passed"], &ran.json()["failed"]),
+            (Some(0), &10.into(), &0.into()),
+            "{ran:?}"
+        );
+        let format = if style == "r2r" { "r2r" } else { "reverie" };
+        building.wayword(&["export", "--run", style, "--style", style, "--format", format, "--out", "exported.json"]);
+        let ran = check(&building, "exported.json", &["--style", style, "--json"]);
+        assert_eq!((ran.code, &ran.json()["passed"]), (Some(0), &10.into()), "{ran:?}");
+    }
+}
+
+#[test]
+fn each_kind_of_mistake_is_caught_with_its_words() {
+    let copied = &built_in("r2r").unwrap().references[0];
+    let copied: Vec<&str> = copied.split(' ').take(6).collect();
+    let copied = format!("{}. {FINE}", copied.join(" "));
+    let cases: [(&str, &str, String, &str, &str); 12] = [
+        ("a turn flipped", "r2r", FINE.replace("right", "left"), "turns", "left"),
+        ("an absent landmark", "r2r", FINE.replace("the lamp", "the piano"), "landmarks", "piano"),
+        (
+            "a room that the path does not touch",
+            "r2r",
+            FINE.replace("living room", "bathroom"),
+            "landmarks",
+            "bathroom",
+        ),
+        (
+            "two rooms swapped",
+            "r2r",
+            FINE.replace("kitchen", "X").replace("living room", "kitchen").replace('X', "living room"),
+            "order",
+            "entryway",
+        ),
+        (
+            "two landmarks swapped",
+            "r2r",
+            "Walk past the coat rack. Go on and pass the microwave, then stop.".into(),
+            "order",
+            "microwave",
+        ),
+        ("a reference's words", "r2r", copied, "leak", "pantry"),
+        ("one sentence", "r2r", "Leave the kitchen and stop at the lamp.".into(), "form", "1 sentences"),
+        (
+            "a task on an object of another room",
+            "reverie",
+            COARSE.replace("dust the lamp", "open the refrigerator"),
+            "task",
+            "refrigerator",
+        ),
+        ("no task", "reverie", "Go to the living room".into(), "task", "does not end in a task"),
+        ("a wrong floor", "reverie", COARSE.replace("living room", "living room on level 2"), "floors", "level 2"),
+        (
+            "stairs that nobody takes",
+            "r2r",
+            FINE.replace("Leave the kitchen", "Leave the kitchen, climb the stairs"),
+            "floors",
+            "up any stairs",
+        ),
+        (
+            "too many words",
+            "reverie",
+            format!("{COARSE} with the soft old cloth that was left there by someone else long ago"),
+            "form",
+            "words",
+        ),
+    ];
+    let building = Building::new();
+    for (mistake, style, text, check, words) in cases {
+        let (code, found) = findings(&building, &text, style);
+        assert_eq!(code, Some(3), "{mistake}: {text}: {found:?}");
+        let caught = found.iter().find(|(by, verdict, told)| by == check && verdict == "fail" && told.contains(words));
+        assert!(caught.is_some(), "{mistake}: {text}: {found:?}");
+    }
+}
+
+#[test]
+fn people_read_the_text_the_check_and_the_reason() {
+    let building = Building::new();
+    let wrong = FINE.replace("the lamp", "the piano");
+    let file = episodes(&building, &[FINE, &wrong], None);
+    let ran = check(&building, &file, &["--style", "r2r"]);
+    assert_eq!(ran.code, Some(3));
+    assert!(ran.out.contains(&wrong) && ran.out.contains("no frame of the path shows \"piano\""), "{}", ran.out);
+    assert!(!ran.out.contains(FINE) && ran.out.contains("checked against: labels"), "{}", ran.out);
+    let none = check(&building, &file, &["--style", "r2r", "--show", "0"]);
+    assert!(!none.out.contains(&wrong) && none.code == Some(3), "{}", none.out);
+}
+
+#[test]
+fn the_json_report_counts_texts_and_checks() {
+    let building = Building::new();
+    let wrong = FINE.replace("the lamp", "the piano");
+    let file = episodes(&building, &[FINE, &wrong], None);
+    let report = check(&building, &file, &["--style", "r2r", "--json"]).json();
+    assert_eq!((&report["passed"], &report["unverified"], &report["failed"]), (&1.into(), &0.into(), &1.into()));
+    assert_eq!(report["checked_against"], json!(["labels"]));
+    assert_eq!(report["by_check"]["landmarks"], json!({"passed": 1, "unverified": 0, "failed": 1}));
+    assert_eq!(report["by_check"]["form"], json!({"passed": 2, "unverified": 0, "failed": 0}));
+    let not_passed = &report["not_passed"][0];
+    assert_eq!(
+        (&not_passed["path"], &not_passed["text"], &not_passed["verdict"]),
+        (&"1".into(), &wrong.as_str().into(), &"fail".into())
+    );
+    let finding = &not_passed["findings"][0];
+    let start = wrong.find("piano").unwrap();
+    assert_eq!((&finding["check"], &finding["verdict"]), (&"landmarks".into(), &"fail".into()));
+    let end = finding["span"][1].as_u64().unwrap() as usize;
+    assert!(finding["span"][0].as_u64().unwrap() as usize <= start && end == start + "piano".len(), "{finding}");
+}
+
+/// Leaves the building its connectivity graph and nothing else.
+fn without_labels() -> Building {
+    let building = Building::new();
+    std::fs::rename(building.path("data/reverie"), building.path("reverie")).unwrap();
+    std::fs::rename(building.path("data/r2r"), building.path("r2r")).unwrap();
+    std::fs::remove_dir_all(building.path("data/matterport/v1")).unwrap();
+    building
+}
+
+#[test]
+fn without_evidence_nothing_passes() {
+    let building = without_labels();
+    for (file, style) in [("reverie/REVERIE_val_seen.json", "reverie"), ("r2r/R2R_val_seen.json", "r2r")] {
+        let report = check(&building, file, &["--style", style, "--json"]).json();
+        assert_eq!((&report["passed"], report["unverified"].as_u64() > Some(10)), (&0.into(), true), "{report}");
+        assert_eq!(report["checked_against"], json!(["nothing"]));
+    }
+    for (text, style) in [(COARSE, "reverie"), (FINE, "r2r")] {
+        let (code, found) = findings(&building, text, style);
+        assert!(code == Some(0) && found.iter().any(|(_, verdict, _)| verdict == "unverified"), "{text}: {found:?}");
+    }
+    // What the path alone can tell is wrong is wrong all the same.
+    assert_eq!(findings(&building, &FINE.replace("right", "left"), "r2r").0, Some(3));
+}
+
+#[test]
+fn without_evidence_a_run_writes_what_it_can_and_claims_nothing() {
+    let building = without_labels();
+    let ran = building.generate("run", &["--episodes", "r2r/R2R_val_seen.json", "--style", "r2r", "--json"]);
+    let summary = ran.json();
+    assert_eq!(summary["passed"], 0, "{summary}");
+}
+
+#[test]
+fn a_wrong_colour_is_caught_in_a_house() {
+    let building = Building::new();
+    let ran = building
+        .wayword(&["generate", "--paths", "1", "--scan", "house-3", "--seed", "3", "--style", "r2r", "--out", "run"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let record = building.records("run").remove(0);
+    let platform = world::open(&settings_of(&building.path("run")).unwrap()).unwrap();
+    let views = panoramas(platform.as_ref(), &record.path).unwrap();
+    let evidence = Evidence::from_labels(&record.path, &views).unwrap();
+    let mut colours: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for thing in evidence.frames.iter().flat_map(|frame| &frame.things) {
+        colours.entry(&thing.name).or_default().extend(thing.colour.as_deref());
+    }
+    let of_one_word = |name: &str| !name.contains(' ') && wayword_synthesis::lexicon::thing(name).is_some();
+    let (name, known) = colours.iter().find(|(name, colours)| of_one_word(name) && colours.len() == 1).unwrap();
+    let right = known.first().unwrap();
+    let wrong = ["purple", "orange", "green", "yellow"].into_iter().find(|colour| !right.contains(colour)).unwrap();
+
+    let mut line = building.lines("run/instructions.jsonl").remove(0);
+    let mut verdict = |colour: &str| {
+        line["text"] = format!("Walk on until you see the {colour} {name}. Wait there.").into();
+        (line["mentions"], line["findings"]) = (json!([]), json!([]));
+        building.write("told.jsonl", format!("{line}\n"));
+        building.wayword(&["check", "told.jsonl", "--platform", "house"])
+    };
+    let good = verdict(right);
+    assert_eq!(good.code, Some(0), "{good:?}");
+    let bad = verdict(wrong);
+    assert_eq!(bad.code, Some(3), "{bad:?}");
+    assert!(bad.out.contains(&format!("no {name:?} along the path is {wrong}")), "{}", bad.out);
+}
