@@ -1,0 +1,172 @@
+//! `wayword export` from the outside: every format is read back with the texts and paths of the run.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, files};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{Heading, Path, ViewpointId};
+use wayword_formats::{Format, jsonl, jsonl::Split};
+
+fn export(building: &Building, format: &str, out: &str) -> Value {
+    let ran =
+        building.wayword(&["export", "--run", "run", "--style", "reverie", "--format", format, "--out", out, "--json"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    ran.json()
+}
+
+fn viewpoints(path: &Path) -> Vec<ViewpointId> {
+    path.frames.iter().map(|frame| frame.viewpoint.clone().unwrap()).collect()
+}
+
+#[test]
+fn each_format_is_read_back_with_the_same_texts_and_paths() {
+    let building = Building::new();
+    let mut records = building.run_over_episodes("run");
+    records.retain(|record| record.instruction.style == "reverie");
+    for format in Format::ALL {
+        let out = format!("out.{format}.json");
+        let written = export(&building, format.name(), &out);
+        assert_eq!(written["instructions"], 10, "{written}");
+        let episodes = format.read(&building.path(&out)).unwrap();
+        assert_eq!(wayword_formats::detect(&building.path(&out)).unwrap(), format);
+        assert_eq!(episodes.len(), records.len());
+        for (episode, record) in episodes.iter().zip(&records) {
+            let path = &record.path;
+            assert_eq!((&episode.scene, &episode.instructions), (&path.scene, &vec![record.instruction.text.clone()]));
+            let start: Heading = path.frames[0].pose.heading;
+            assert!(start.turn_to(episode.start_heading.unwrap()).abs() < 1e-6, "{format}");
+            if format == Format::Vlnce {
+                let off = |(floor, frame): (&wayword_core::DVec3, &wayword_core::Frame)| {
+                    floor.truncate().distance(frame.pose.position.truncate())
+                };
+                assert_eq!(episode.floor_positions.len(), path.frames.len());
+                assert!(episode.floor_positions.iter().zip(&path.frames).map(off).all(|off_m| off_m < 1e-6));
+            } else {
+                assert_eq!(episode.viewpoints, viewpoints(path), "{format}");
+            }
+            if matches!(format, Format::Reverie | Format::Wayword) {
+                assert_eq!(episode.target_object.as_ref(), path.target.as_ref().map(|target| &target.object));
+            }
+        }
+    }
+}
+
+#[test]
+fn provenance_is_within_or_beside() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    for format in ["reverie", "rxr"] {
+        let out = format!("within.{format}");
+        assert!(export(&building, format, &out).get("provenance").is_none());
+        let episodes = wayword_formats::read(&building.path(&out)).unwrap();
+        assert!(
+            episodes.iter().all(|episode| episode.extra["wayword"]["provenance"]["answerer"] == "labels"),
+            "{format}"
+        );
+        assert!(episodes.iter().all(|episode| episode.extra["wayword"]["verdict"] == "pass"), "{format}");
+    }
+    for format in ["r2r", "vlnce"] {
+        let out = format!("beside.{format}");
+        let beside = export(&building, format, &out)["provenance"].as_str().unwrap().to_owned();
+        let lines = building.lines(&beside);
+        let texts: BTreeSet<String> = lines.iter().map(|line| line["text"].as_str().unwrap().to_owned()).collect();
+        let episodes = wayword_formats::read(&building.path(&out)).unwrap();
+        assert_eq!(texts, episodes.into_iter().flat_map(|episode| episode.instructions).collect(), "{format}");
+        assert!(lines.iter().all(|line| line["wayword"]["provenance"]["writer"] == "rules"), "{format}");
+    }
+}
+
+#[test]
+fn what_is_exported_as_reverie_keeps_the_ids_of_its_episodes() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    export(&building, "reverie", "out.json");
+    let ids = |file: &str| -> Vec<(String, String)> {
+        let episodes = Format::Reverie.read(&building.path(file)).unwrap();
+        episodes.into_iter().map(|episode| (episode.id, episode.path_id)).collect()
+    };
+    assert_eq!(ids("out.json"), ids(common::EPISODES));
+}
+
+/// Two short walks in houses, of which pictures are drawn: one scene each.
+fn houses(building: &Building) {
+    for (out, scene) in [("a", "house-3"), ("b", "house-4")] {
+        let arguments = ["generate", "--paths", "1", "--metres", "5..7", "--scan", scene, "--seed"];
+        let ran = building.wayword(&[&arguments[..], &[&scene[6..], "--out", out]].concat());
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+    }
+}
+
+#[test]
+fn runs_merge_and_no_scene_is_in_both_splits() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    houses(&building);
+    let merge = |out: &str, seed: &str| {
+        let arguments = ["export", "--run", "run", "--run", "a", "--run", "b", "--format", "wayword"];
+        let more = ["--val-share", "0.5", "--seed", seed, "--out", out];
+        let ran = building.wayword(&[&arguments[..], &more[..]].concat());
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        jsonl::read(&building.path(out)).unwrap()
+    };
+    let merged = merge("merged.jsonl", "0");
+    assert_eq!(merged.len(), 20 + 2 + 2);
+    let mut splits: BTreeMap<(&str, &str), BTreeSet<Split>> = BTreeMap::new();
+    for record in &merged {
+        let scene = (record.platform.as_str(), record.path.scene.as_str());
+        splits.entry(scene).or_default().insert(record.split.unwrap());
+    }
+    assert_eq!(splits.len(), 3);
+    assert!(splits.values().all(|of_scene| of_scene.len() == 1), "{splits:?}");
+    let of_houses: BTreeSet<&Split> =
+        splits.iter().filter(|((platform, _), _)| *platform == "house").flat_map(|(_, split)| split).collect();
+    assert_eq!(of_houses.len(), 2, "each split has a house: {splits:?}");
+    assert!(merge("again.jsonl", "0") == merged);
+    let val_of = |seed: u64| {
+        let merged = merge("seeded.jsonl", &seed.to_string());
+        merged
+            .into_iter()
+            .find(|record| record.split == Some(Split::Val) && record.platform == "house")
+            .unwrap()
+            .path
+            .scene
+    };
+    assert!((1..8).map(val_of).collect::<BTreeSet<_>>().len() == 2, "the seed decides");
+}
+
+#[test]
+fn bad_combinations_are_refused_with_what_to_do() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let before = files(&building.path("."));
+    let cases: [(&[&str], &str, &str); 8] = [
+        (&["--run", "run", "--format", "reverie"], "does not say which style", "--style"),
+        (&["--run", "run", "--run", "run", "--style", "r2r", "--format", "r2r"], "very instruction", "leave one"),
+        (&["--run", "run", "--style", "r2r", "--format", "r2r", "--val-share", "0.1"], "no splits", "--format wayword"),
+        (&["--run", "run", "--format", "wayword", "--val-share", "1.5"], "no share", "from 0 to 1"),
+        (&["--run", "run", "--format", "wayword", "--val-share", "nan"], "no share", "from 0 to 1"),
+        (&["--run", "run", "--style", "poem", "--format", "r2r"], "no instruction to export", "r2r, reverie"),
+        (&["--run", "run", "--style", "r2r", "--format", "csv"], "\"csv\"", "r2r, reverie, rxr, vlnce, wayword"),
+        (&["--run", "nowhere", "--style", "r2r", "--format", "r2r"], "nowhere", "instructions.jsonl"),
+    ];
+    for (arguments, problem, hint) in cases {
+        let ran = building.wayword(&[&["export", "--out", "out"], arguments].concat());
+        let error = ran.refused();
+        assert!(error.contains(problem) && error.contains(hint), "{arguments:?}: {error}");
+        assert!(files(&building.path(".")) == before, "{arguments:?} left something behind");
+    }
+}
+
+#[test]
+fn two_runs_are_one_file_only_as_records() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    assert!(building.generate("more", &["--paths", "2", "--hops", "3..7", "--style", "r2r"]).code.is_some());
+    let both = ["export", "--run", "run", "--run", "more", "--style", "r2r", "--out", "out"];
+    let ran = building.wayword(&[&both[..], &["--format", "r2r"]].concat());
+    assert!(ran.refused().contains("--format wayword"), "{ran:?}");
+    assert_eq!(building.wayword(&[&both[..], &["--format", "wayword"]].concat()).code, Some(0));
+}
