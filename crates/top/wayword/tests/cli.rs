@@ -1,0 +1,244 @@
+//! The command line itself: help, exit codes, completions, the demo, and what wrong input is told.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, EPISODES, command, files, run};
+use serde_json::{Value, json};
+use std::fs;
+
+const COMMANDS: [&str; 6] = ["demo", "generate", "check", "export", "report", "house"];
+
+#[test]
+fn the_help_of_every_command_has_examples_that_name_it() {
+    for name in COMMANDS {
+        let ran = run(&mut command(&[name, "--help"]));
+        assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+        let (_, examples) = ran.out.split_once("Examples:").unwrap_or_else(|| panic!("{name}: {}", ran.out));
+        assert!(examples.contains(&format!("wayword {name}")), "{examples}");
+    }
+    let ran = run(&mut command(&["--help"]));
+    assert!(COMMANDS.iter().all(|name| ran.out.contains(name)) && ran.out.contains("Examples:"), "{}", ran.out);
+}
+
+#[test]
+fn the_examples_of_the_help_are_command_lines_that_can_be_read() {
+    use clap::{CommandFactory, Parser};
+    use wayword::cli::Cli;
+    for name in COMMANDS {
+        // Not as printed: a narrow terminal breaks the lines.
+        let told = Cli::command().find_subcommand(name).unwrap().get_after_long_help().unwrap().to_string();
+        let lines: Vec<&str> = told.lines().map(str::trim).filter(|line| line.starts_with("wayword ")).collect();
+        assert!(!lines.is_empty());
+        for line in lines {
+            let words = line.split("  ").next().unwrap().split(' ');
+            assert!(Cli::try_parse_from(words).is_ok(), "{line}");
+        }
+    }
+}
+
+#[test]
+fn exit_codes_are_told_in_the_help_and_kept() {
+    let help = run(&mut command(&["--help"])).out;
+    let codes = help.split_once("Exit codes:").unwrap().1;
+    for code in 0..=4 {
+        assert!(codes.lines().any(|line| line.trim().starts_with(&format!("{code}  "))), "{codes}");
+    }
+    // 0, 3 and 4 are kept where they belong: in the tests of generate and check.
+    assert_eq!(run(&mut command(&["generate"])).code, Some(2));
+    assert_eq!(run(&mut command(&["generate", "--out", "x", "--frames", "sideways"])).code, Some(2));
+    assert_eq!(run(&mut command(&["no-such-command"])).code, Some(2));
+    assert_eq!(run(&mut command(&["export", "--run", "/nowhere", "--format", "wayword", "--out", "x"])).code, Some(1));
+}
+
+#[test]
+fn completions_know_the_commands_and_flags() {
+    for shell in ["bash", "zsh", "fish"] {
+        let ran = run(&mut command(&["completions", shell]));
+        assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+        assert!(COMMANDS.iter().all(|name| ran.out.contains(name)) && ran.out.contains("val-share"), "{shell}");
+    }
+}
+
+#[test]
+fn the_demo_shows_a_walk_with_both_instructions_and_writes_its_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let ran = run(command(&["demo"]).current_dir(folder.path()));
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let told: Vec<Value> = fs::read_to_string(folder.path().join("wayword-demo/instructions.jsonl"))
+        .unwrap()
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!(told.len(), 2);
+    let page = fs::read_to_string(folder.path().join("wayword-demo/report.html")).unwrap();
+    for record in &told {
+        let text = record["text"].as_str().unwrap();
+        assert_eq!(record["verdict"], "pass", "{text}");
+        assert!(ran.out.contains(text), "{}", ran.out);
+        let last_word = text.trim_end_matches('.').rsplit(' ').next().unwrap();
+        assert!(page.contains(last_word), "{last_word}");
+    }
+    assert!(ran.out.contains("No model took part") && ran.out.contains("report.html"), "{}", ran.out);
+    assert!(page.contains("data:image/jpeg;base64,") && page.contains("<svg"), "pictures and a map");
+    assert!(!page.contains("http://") || !page.contains("src=\"http"), "nothing is fetched");
+
+    // The same command goes on where there is nothing left to do.
+    let again = run(command(&["demo", "--json"]).current_dir(folder.path())).json();
+    assert_eq!(again["records"].as_array().unwrap().len(), 2, "{again}");
+}
+
+#[test]
+fn a_report_is_written_for_a_run_and_refused_for_what_is_none() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let ran = building.wayword(&["report", "--run", "run", "--items", "3", "--json"]);
+    let written = ran.json();
+    assert_eq!((&written["items"], &written["left_out"]), (&3.into(), &7.into()), "{written}");
+    assert!(building.path("run/report.html").is_file());
+    let before = files(&building.path("."));
+    assert!(building.wayword(&["report", "--run", "data"]).refused().contains("data"));
+    assert!(files(&building.path(".")) == before);
+}
+
+#[test]
+fn a_house_is_saved_with_its_navigation_data() {
+    let building = Building::new();
+    let ran = building.wayword(&["house", "--seed", "2", "--out", "houses"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(fs::read(building.path("houses/house-2.glb")).unwrap().starts_with(b"glTF"));
+    let navigation = fs::read(building.path("houses/house-2.navigation.json")).unwrap();
+    assert!(serde_json::from_slice::<Value>(&navigation).unwrap().is_object());
+}
+
+/// Runs a command that has to be refused, and makes sure that it left nothing behind.
+fn refused(building: &Building, arguments: &[&str]) -> String {
+    let before = files(&building.path("."));
+    let ran = building.wayword(arguments);
+    let error = ran.refused().to_owned();
+    assert!(files(&building.path(".")) == before, "{arguments:?} left something behind");
+    assert!(!building.path("run").exists(), "{arguments:?} made its run folder");
+    error
+}
+
+#[test]
+fn wrong_flags_are_refused_with_what_is_wrong_and_what_to_do() {
+    let building = Building::new();
+    let matterport = ["--platform", "matterport", "--data", "data"];
+    let cases: [(&[&str], &[&str]); 16] = [
+        (&["--platform", "matterport"], &["--data", "connectivity"]),
+        (&["--platform", "matterport", "--data", "nowhere"], &["nowhere", "--data"]),
+        (&["--platform", "matterport", "--data", "data/r2r"], &["data/r2r", "connectivity"]),
+        (&["--platform", "moon"], &["\"moon\"", "house, matterport"]),
+        (&["--style", "poem"], &["\"poem\"", "r2r, reverie", ".toml"]),
+        (&["--style", "none.toml"], &["none.toml"]),
+        (&["--style", "x=none.json"], &["none.json"]),
+        (&["--style", "r2r", "--style", "r2r"], &["r2r", "once"]),
+        (&["--hops", "7..4"], &["--hops 7..4", "4..7"]),
+        (&["--hops", "four"], &["--hops four"]),
+        (&["--hops=-1..3"], &["--hops -1..3"]),
+        (&["--metres", "NaN..3"], &["--metres NaN..3"]),
+        (&["--paths", "2000000"], &["2000000", "1000000"]),
+        (&["--episodes", EPISODES, "--paths", "3"], &["--episodes", "--paths", "exclude"]),
+        (&["--episodes", "nowhere.json"], &["nowhere.json"]),
+        (&["--config", "nowhere.toml"], &["nowhere.toml"]),
+    ];
+    for (arguments, told) in cases {
+        let base: &[&str] = if arguments.contains(&"--platform") { &[] } else { &matterport };
+        let error = refused(&building, &[&["generate", "--out", "run"], base, arguments].concat());
+        assert!(told.iter().all(|words| error.contains(words)), "{arguments:?}: {error}");
+    }
+    let error = refused(
+        &building,
+        &["generate", "--out", "run", "--platform", "matterport", "--data", "data", "--scan", "elsewhere"],
+    );
+    assert!(error.contains("elsewhere"), "{error}");
+    let error = refused(&building, &["check", EPISODES, "--platform", "matterport"]);
+    assert!(error.contains("--data"), "{error}");
+    let error = refused(&building, &["check", "data/r2r", "--platform", "matterport", "--data", "data"]);
+    assert!(error.contains("data/r2r"), "{error}");
+}
+
+/// The episodes with something done to the second of them.
+fn broken(building: &Building, spoil: impl Fn(&mut Value)) -> &'static str {
+    let mut items: Value = serde_json::from_slice(&fs::read(building.reverie()).unwrap()).unwrap();
+    spoil(&mut items[1]);
+    building.write("broken.json", items.to_string());
+    "broken.json"
+}
+
+#[test]
+fn a_broken_episodes_file_is_refused_with_file_item_and_field() {
+    let building = Building::new();
+    let cases: [(&str, Value); 8] = [
+        ("heading", json!("north")),
+        ("heading", json!(null)),
+        ("path", json!([])),
+        ("path[0]", json!(["../../etc/passwd"])),
+        ("scan", json!("../../x")),
+        ("instructions", json!("go")),
+        ("objId", json!({"id": 3})),
+        ("id", json!("../../x")),
+    ];
+    for (field, value) in cases {
+        let key = field.trim_end_matches("[0]");
+        let file = broken(&building, |item| item[key] = value.clone());
+        for arguments in
+            [["generate", "--out", "run", "--episodes", file], ["check", file, "--style", "reverie", "--quiet"]]
+        {
+            let error = refused(&building, &[&arguments[..], &["--platform", "matterport", "--data", "data"]].concat());
+            let told = error.contains("broken.json")
+                && error.contains("item 1")
+                && error.contains(&format!("field \"{field}\""));
+            assert!(told, "{field} = {value}: {error}");
+        }
+    }
+}
+
+#[test]
+fn names_that_could_leave_the_run_folder_are_refused() {
+    let building = Building::new();
+    for name in ["../../x", "a/b", "..", "/etc/passwd", "a\\b", "line\nbreak"] {
+        let file = broken(&building, |item| item["id"] = name.into());
+        let error = refused(
+            &building,
+            &["generate", "--out", "run", "--episodes", file, "--platform", "matterport", "--data", "data"],
+        );
+        assert!(error.lines().next().unwrap().contains("name") || error.contains("id"), "{name:?}: {error}");
+    }
+    let twice = broken(&building, |item| item["id"] = "100_27".into());
+    let error = refused(
+        &building,
+        &["generate", "--out", "run", "--episodes", twice, "--platform", "matterport", "--data", "data"],
+    );
+    assert!(error.contains("100_27"), "{error}");
+}
+
+#[test]
+fn an_episode_that_does_not_fit_the_building_costs_that_item_alone() {
+    let building = Building::new();
+    let file = broken(&building, |item| item["path"] = json!([wayword_testkit::viewpoint_id(0), "0123456789abcdef"]));
+    let ran = building.generate("run", &["--episodes", file, "--style", "r2r"]);
+    assert_eq!(ran.code, Some(3), "{ran:?}");
+    let rejected = building.lines("run/rejected.jsonl");
+    assert_eq!((rejected.len(), building.records("run").len()), (1, 9));
+    assert!(rejected[0]["reason"].as_str().unwrap().contains("0123456789abcdef"), "{}", rejected[0]);
+}
+
+#[test]
+fn a_reader_that_has_gone_away_is_no_error() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    for arguments in [
+        &["completions", "bash"][..],
+        &["report", "--run", "run"],
+        &["check", EPISODES, "--platform", "matterport", "--data", "data"],
+    ] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = building.command(arguments).stdout(writer).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(matches!(output.status.code(), Some(0 | 3)) && !told.contains("panicked"), "{arguments:?}: {told}");
+    }
+}
