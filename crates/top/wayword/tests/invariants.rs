@@ -1,0 +1,126 @@
+//! What ARCHITECTURE.md promises about the source, held against the source.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..").canonicalize().unwrap()
+}
+
+/// Every Rust file below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|end| end == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Ground truth is for the mind that answers from labels and for the evidence of the checks: a writer or an asker that
+/// looked at it would make results that no robot can have. The platforms that know it, and the program that measures, may.
+#[test]
+fn only_labels_and_evidence_look_at_ground_truth() {
+    let allowed = [
+        "crates/ground/wayword-core/src/view.rs",
+        "crates/top/wayword-measure/src/",
+        "crates/words/wayword-synthesis/src/evidence/from_labels.rs",
+        "crates/words/wayword-synthesis/src/minds/",
+        "crates/world/wayword-platforms/src/",
+    ];
+    let root = workspace();
+    let mut used: BTreeSet<&str> = BTreeSet::new();
+    for file in sources(&root.join("crates")) {
+        let name = file.strip_prefix(&root).unwrap().to_str().unwrap().to_owned();
+        let is_source = name.split('/').nth(3) == Some("src");
+        if !is_source || !fs::read_to_string(&file).unwrap().contains("ground_truth") {
+            continue;
+        }
+        let place = allowed.iter().find(|place| name.starts_with(**place));
+        assert!(place.is_some(), "{name} looks at ground truth");
+        used.extend(place);
+    }
+    assert_eq!(used.into_iter().collect::<Vec<_>>(), allowed, "a place that needs no permission has one");
+}
+
+/// The Wayword crates that each crate is built on.
+fn edges() -> BTreeMap<String, BTreeSet<String>> {
+    let root = workspace();
+    let manifest = |folder: &Path| -> toml::Table {
+        toml::from_str(&fs::read_to_string(folder.join("Cargo.toml")).unwrap()).unwrap()
+    };
+    let members = manifest(&root)["workspace"]["members"].as_array().unwrap().clone();
+    let crates = members.iter().map(|member| manifest(&root.join(member.as_str().unwrap())));
+    crates
+        .map(|manifest| {
+            let name = manifest["package"]["name"].as_str().unwrap().to_owned();
+            let depends = manifest.get("dependencies").and_then(toml::Value::as_table).cloned().unwrap_or_default();
+            (name, depends.keys().filter(|on| on.starts_with("wayword")).cloned().collect())
+        })
+        .collect()
+}
+
+#[test]
+fn no_crate_is_built_on_one_above_it() {
+    let allowed: [(&str, &[&str]); 8] = [
+        ("wayword-core", &[]),
+        ("wayword-testkit", &[]),
+        ("wayword-formats", &["wayword-core"]),
+        ("wayword-render", &["wayword-core"]),
+        ("wayword-platforms", &["wayword-core", "wayword-formats", "wayword-render"]),
+        ("wayword-synthesis", &["wayword-core"]),
+        ("wayword", &["wayword-core", "wayword-formats", "wayword-platforms", "wayword-render", "wayword-synthesis"]),
+        ("wayword-measure", &["wayword", "wayword-core", "wayword-formats", "wayword-platforms", "wayword-synthesis"]),
+    ];
+    let edges = edges();
+    let names: BTreeSet<&str> = allowed.iter().map(|(name, _)| *name).collect();
+    assert_eq!(
+        edges.keys().map(String::as_str).collect::<BTreeSet<_>>(),
+        names,
+        "a new crate needs a place in this list"
+    );
+    for (name, below) in allowed {
+        for on in &edges[name] {
+            assert!(below.contains(&on.as_str()), "{name} is built on {on}");
+        }
+    }
+}
+
+/// Synthesis is told views and paths and gives back words: what it does is the same for every world and every caller.
+#[test]
+fn synthesis_opens_no_file_and_no_connection() {
+    for file in sources(&workspace().join("crates/words/wayword-synthesis/src")) {
+        let text = fs::read_to_string(&file).unwrap();
+        for way_out in ["std::fs", "std::net", "std::process", "File::open", "fs::read"] {
+            assert!(!text.contains(way_out), "{} uses {way_out}", file.display());
+        }
+    }
+}
+
+/// Only one module speaks to the terminal, so that `--json` and `--quiet` hold everywhere.
+#[test]
+fn only_the_output_module_prints() {
+    let root = workspace();
+    let mut printing = Vec::new();
+    for file in sources(&root.join("crates")) {
+        let name = file.strip_prefix(&root).unwrap().to_str().unwrap().to_owned();
+        let text = fs::read_to_string(&file).unwrap();
+        let prints = ["println!(", "print!(", "io::stdout()", "io::stderr()"].iter().any(|way| text.contains(way));
+        if prints && name.split('/').nth(3) == Some("src") {
+            printing.push(name);
+        }
+    }
+    // Completions are a script, neither text nor JSON.
+    let allowed = ["crates/top/wayword/src/commands/completions.rs", "crates/top/wayword/src/output.rs"];
+    assert_eq!(printing, allowed);
+}
