@@ -17,26 +17,22 @@ fn name(floor: usize, x: usize, y: usize) -> ViewpointId {
     ViewpointId::new(format!("{floor}-{x}-{y}")).expect("a plain name")
 }
 
-/// Three floors of rooms: neighbours on a floor are joined unless there is a wall between them; stairs join the floors.
+/// Three floors of rooms: neighbours on a floor are joined unless there is a wall between them, and stairs join the floors.
 fn building() -> ViewpointGraph {
     let mut graph = ViewpointGraph::default();
     let mut rng = rng(7, &["building"]);
     for floor in 0..FLOORS {
         for (x, y) in places() {
-            let off = || 0.4;
-            let position = DVec3::new(
-                2.0 * x as f64 + rng.random_range(-off()..off()),
-                2.0 * y as f64 + rng.random_range(-off()..off()),
-                1.5 + 2.9 * floor as f64,
-            );
+            let [x_m, y_m] = [x, y].map(|at| 2.0 * at as f64 + rng.random_range(-0.4..0.4));
+            let position = DVec3::new(x_m, y_m, 1.5 + 2.9 * floor as f64);
             graph.add(name(floor, x, y), position, Some(floor as u32 + 1)).expect("names are unique");
         }
     }
     for floor in 0..FLOORS {
         for (x, y) in places() {
             for (dx, dy) in [(1, 0), (0, 1), (1, 1)] {
-                // The corridor along y = 2 has no walls.
-                let is_open = y == 2 && dy == 0 || rng.random_bool(0.6);
+                // Rooms open onto a corridor along y = 2; there are doors between some of them.
+                let is_open = dx == 0 || (y == 2 && dy == 0) || rng.random_bool(0.4);
                 if is_open && x + dx < FLOOR[0] && y + dy < FLOOR[1] {
                     graph.join(&name(floor, x, y), &name(floor, x + dx, y + dy)).expect("both are there");
                 }

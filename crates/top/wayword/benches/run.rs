@@ -4,6 +4,7 @@
 #![allow(clippy::expect_used, missing_docs, reason = "a benchmark may fail")]
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use std::time::Duration;
 use wayword::{
     commands::{Summary, generate_into},
     output::Output,
@@ -29,7 +30,7 @@ fn labels(criterion: &mut Criterion) {
         ..Asked::default()
     };
     let mut group = criterion.benchmark_group("run on labels, both styles");
-    group.sample_size(10);
+    group.sample_size(10).measurement_time(Duration::from_secs(10));
     group.throughput(Throughput::Elements(10));
     group.bench_function("10 episodes", |bencher| {
         let asked = || asked(Some("reverie/REVERIE_val_seen.json"), None);
@@ -45,7 +46,7 @@ fn labels(criterion: &mut Criterion) {
 fn house(criterion: &mut Criterion) {
     let asked = || Asked { paths: Some(1), scan: Some(vec!["house-3".into()]), seed: Some(3), ..Asked::default() };
     let mut group = criterion.benchmark_group("run in a house, both styles");
-    group.sample_size(10);
+    group.sample_size(10).measurement_time(Duration::from_secs(30));
     group.throughput(Throughput::Elements(1));
     group.bench_function("1 path with its pictures, house built anew", |bencher| {
         bencher.iter_batched(asked, run, BatchSize::PerIteration);
