@@ -2,9 +2,9 @@
 
 use crate::corrupt::{Kind, corrupt};
 use rand::seq::IndexedRandom;
+use rayon::prelude::*;
 use std::{
-    collections::BTreeMap,
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 use wayword::{
@@ -12,11 +12,10 @@ use wayword::{
     output::Output,
     pipeline::panoramas,
     run::{file, settings_of},
-    settings::Settings,
     styles,
     world::{self, Remembering},
 };
-use wayword_core::{Platform, Style, Verdict, rng};
+use wayword_core::{Platform, SceneId, Style, Verdict, rng};
 use wayword_formats::jsonl::{self, Record};
 use wayword_synthesis::{
     checks::{Subject, check},
@@ -24,15 +23,18 @@ use wayword_synthesis::{
     lexicon::thing,
 };
 
-/// A run's records with what is needed to check them again.
+/// A run's good records with what is needed to check them again.
 struct Run {
-    platform: Box<dyn Platform>,
     styles: Vec<Style>,
     records: Vec<Record>,
+    /// By path.
+    evidence: BTreeMap<String, Evidence>,
+    /// Names of what is seen along the paths of each scene.
+    names: BTreeMap<SceneId, BTreeSet<String>>,
 }
 
 pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize, output: &Output) -> Result<(), Error> {
-    let runs = folders.iter().map(|folder| open(folder)).collect::<Result<Vec<_>, _>>()?;
+    let runs = folders.iter().map(|folder| open(folder, output)).collect::<Result<Vec<_>, _>>()?;
     let all: Vec<(&Run, &Record)> =
         runs.iter().flat_map(|run| run.records.iter().map(move |record| (run, record))).collect();
     let mut rng = rng(seed, &["corruptions"]);
@@ -43,60 +45,69 @@ pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize,
         while counts.entry(kind).or_default().1 < count / Kind::ALL.len() && tries < 100 * count {
             tries += 1;
             let Some((run, record)) = all.choose(&mut rng) else { break };
-            let Some(style) = run.styles.iter().find(|style| style.name == record.instruction.style) else { continue };
-            let world = Remembering::new(run.platform.as_ref());
-            let views = panoramas(&world, &record.path)?;
-            let Some(evidence) = Evidence::from_labels(&record.path, &views) else { continue };
-            let others = nameable(run, record)?;
-            let Some(text) = corrupt(kind, record, &evidence, &others, style, &mut rng) else { continue };
-            let verdict =
-                check(&text, Subject { evidence: &evidence, style, target: record.path.target.as_ref() }).verdict();
+            let Some((evidence, style, others)) = run.needed_for(record) else { continue };
+            let Some(text) = corrupt(kind, record, evidence, others, style, &mut rng) else { continue };
+            let verdict = check(&text, Subject { evidence, style, target: record.path.target.as_ref() }).verdict();
             let (caught, total) = counts.entry(kind).or_default();
             *total += 1;
             *caught += usize::from(verdict == Verdict::Fail);
             if verdict != Verdict::Fail {
-                missed.push(format!(
-                    "{} [{}] {:?}: {text}\n    was: {}",
-                    kind.name(),
-                    record.path.id,
-                    verdict,
-                    record.instruction.text
-                ));
+                let was = &record.instruction.text;
+                missed.push(format!("{} [{}] {verdict:?}: {text}\n    was: {was}", kind.name(), record.path.id));
             }
         }
     }
     for line in missed.iter().take(show) {
         output.say(line);
     }
-    let (caught, total) = counts.values().fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
-    let line = |name: &str, caught: usize, total: usize| {
-        format!("{name:<36} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
-    };
-    let mut lines: Vec<String> =
-        counts.iter().map(|(kind, (caught, total))| line(kind.name(), *caught, *total)).collect();
-    lines.push(line("all", caught, total));
-    output.data(&(), lines.join("\n"));
+    output.data(&(), table(&counts));
     Ok(())
 }
 
-fn open(folder: &Path) -> Result<Run, Error> {
-    let settings: Settings = settings_of(folder)?;
-    let styles = styles::find(&settings.style, settings.seed)?.into_iter().map(|measured| measured.style).collect();
-    let records = jsonl::read(&folder.join(file::INSTRUCTIONS))?;
-    let good = records.into_iter().filter(|record| record.instruction.verdict == Verdict::Pass);
-    Ok(Run { platform: world::open(&settings)?, styles, records: good.collect() })
+fn table(counts: &BTreeMap<Kind, (usize, usize)>) -> String {
+    let line = |name: &str, (caught, total): (usize, usize)| {
+        format!("{name:<36} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
+    };
+    let sum = counts.values().fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+    let kinds = counts.iter().map(|(kind, count)| line(kind.name(), *count));
+    kinds.chain([line("all", sum)]).collect::<Vec<_>>().join("\n")
 }
 
-/// Plain names of objects that are seen along other paths of the same scene.
-fn nameable(run: &Run, record: &Record) -> Result<BTreeSet<String>, Error> {
-    let mut names = BTreeSet::new();
-    for other in run.records.iter().filter(|other| other.path.scene == record.path.scene).take(8) {
-        for view in panoramas(run.platform.as_ref(), &other.path)?.into_iter().flatten() {
-            names.extend(
-                view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().map(|label| label.name.clone())),
-            );
-        }
+fn open(folder: &Path, output: &Output) -> Result<Run, Error> {
+    let settings = settings_of(folder)?;
+    let platform = world::open(&settings)?;
+    let styles = styles::find(&settings.style, settings.seed)?.into_iter().map(|measured| measured.style).collect();
+    let mut records = jsonl::read(&folder.join(file::INSTRUCTIONS))?;
+    records.retain(|record| record.instruction.verdict == Verdict::Pass);
+    let mut paths: Vec<_> = records.iter().map(|record| &record.path).collect();
+    paths.dedup_by_key(|path| &path.id);
+    let bar = output.progress(paths.len(), "paths seen again");
+    let seen: Vec<(String, SceneId, Evidence)> = paths
+        .par_iter()
+        .filter_map(|path| {
+            bar.inc(1);
+            let evidence = labels(platform.as_ref(), path).transpose()?;
+            Some(evidence.map(|evidence| (path.id.clone(), path.scene.clone(), evidence)))
+        })
+        .collect::<Result<_, _>>()?;
+    bar.finish_and_clear();
+    let mut names: BTreeMap<SceneId, BTreeSet<String>> = BTreeMap::new();
+    for (_, scene, evidence) in &seen {
+        let things = evidence.frames.iter().flat_map(|frame| &frame.things).map(|thing| thing.name.clone());
+        names.entry(scene.clone()).or_default().extend(things.filter(|name| thing(name).is_some()));
     }
-    names.retain(|name| thing(name).is_some());
-    Ok(names)
+    let evidence = seen.into_iter().map(|(id, _, evidence)| (id, evidence)).collect();
+    Ok(Run { styles, records, evidence, names })
+}
+
+fn labels(platform: &dyn Platform, path: &wayword_core::Path) -> Result<Option<Evidence>, Error> {
+    let world = Remembering::new(platform);
+    Ok(Evidence::from_labels(path, &panoramas(&world, path)?))
+}
+
+impl Run {
+    fn needed_for(&self, record: &Record) -> Option<(&Evidence, &Style, &BTreeSet<String>)> {
+        let style = self.styles.iter().find(|style| style.name == record.instruction.style)?;
+        Some((self.evidence.get(&record.path.id)?, style, self.names.get(&record.path.scene)?))
+    }
 }

@@ -137,7 +137,7 @@ pub struct Generate {
     /// How often a text that failed a check is written again. [default: 8]
     #[arg(long, value_name = "N")]
     pub repairs: Option<u32>,
-    /// Seed of everything random. [default: 0]
+    /// Seed of everything random; random paths are named by it, so runs that are to be merged need different ones. [default: 0]
     #[arg(long)]
     pub seed: Option<u64>,
     /// Only the first so many items.

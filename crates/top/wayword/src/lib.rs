@@ -12,4 +12,5 @@ pub mod report;
 pub mod run;
 pub mod settings;
 pub mod styles;
+mod text_file;
 pub mod world;

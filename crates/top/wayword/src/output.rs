@@ -15,6 +15,19 @@ pub struct Output {
     quiet: bool,
 }
 
+/// Longest error that is printed, characters: parsers quote the line that they choke on, however long.
+const MOST_ERROR_CHARS: usize = 1000;
+
+/// A text that may hold anything, made fit for a terminal.
+fn tame(text: &str) -> String {
+    let mut tamed: String =
+        text.chars().take(MOST_ERROR_CHARS).map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect();
+    if text.chars().nth(MOST_ERROR_CHARS).is_some() {
+        tamed.push_str(" ...");
+    }
+    tamed
+}
+
 impl Output {
     /// `json`: data as JSON; `quiet`: no talk, no progress.
     #[must_use]
@@ -44,7 +57,7 @@ impl Output {
     /// An error.
     pub fn error(&self, error: &impl Display) {
         let red = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-        eprintln!("{}: {error}", if red { "\x1b[31merror\x1b[0m" } else { "error" });
+        eprintln!("{}: {}", if red { "\x1b[31merror\x1b[0m" } else { "error" }, tame(&error.to_string()));
     }
 
     /// A progress bar; hidden where nobody looks.
@@ -58,5 +71,16 @@ impl Output {
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(what);
         bar
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_fit_for_a_terminal() {
+        assert_eq!(tame("a\x1b[31mb\nc"), "a\u{fffd}[31mb\nc");
+        assert_eq!(tame(&"x".repeat(5000)).chars().count(), MOST_ERROR_CHARS + 4);
     }
 }

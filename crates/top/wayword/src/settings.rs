@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
-use std::{ops::RangeInclusive, path::PathBuf, str::FromStr};
+use std::{collections::BTreeMap, ops::RangeInclusive, path::PathBuf, str::FromStr};
 use wayword_core::PathRequest;
 use wayword_synthesis::{
     dialogue::{Mode, QUESTIONS},
@@ -80,6 +80,9 @@ pub struct Settings {
     /// Only so many items.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<usize>,
+    /// Hashes of the files and styles that the run was begun with, by name; a run is not continued with others.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
 }
 
 /// How frames are asked about.
@@ -108,6 +111,8 @@ pub enum TargetMode {
 const PATHS: usize = 10;
 /// How often a text that failed is written again, unless told otherwise.
 const REPAIRS: u32 = 8;
+/// Most repairs that can be asked for.
+const MOST_REPAIRS: u32 = 100;
 /// Most random paths of a run.
 const MOST_PATHS: usize = 1_000_000;
 
@@ -152,6 +157,12 @@ impl Asked {
                 "make several runs with different seeds",
             ));
         }
+        if self.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
+            return Err(Error::usage(
+                format!("--repairs is more than {MOST_REPAIRS}"),
+                "a text that fails so often will not come right",
+            ));
+        }
         Ok(Settings {
             platform: self.platform.unwrap_or_else(|| "house".into()),
             data: self.data,
@@ -173,6 +184,7 @@ impl Asked {
             repairs: self.repairs.unwrap_or(REPAIRS),
             seed: self.seed.unwrap_or(0),
             limit: self.limit,
+            inputs: BTreeMap::new(),
         })
     }
 }

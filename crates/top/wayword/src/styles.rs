@@ -1,10 +1,10 @@
 //! Finds the styles that a run names.
 
-use crate::error::Error;
+use crate::{error::Error, text_file};
 use rand::seq::SliceRandom;
 use std::path::Path;
 use wayword_core::{Constraints, Style, rng};
-use wayword_synthesis::style::{Profile, StyleError, built_in, parse, validated};
+use wayword_synthesis::style::{Profile, built_in, parse, validated};
 
 /// A style with what its references measure.
 #[derive(Debug, Clone)]
@@ -17,8 +17,6 @@ pub struct Measured {
 
 /// How many texts of a dataset show its style: enough to measure, few enough for a prompt.
 const FROM_DATASET: usize = 24;
-/// Largest style file that is read, bytes.
-const MOST_BYTES: u64 = 4 << 20;
 
 /// The styles of a run. A style is named as a built-in one, as a TOML file, or as NAME=DATASET: references from a dataset's
 /// own instructions (drawn by the seed), with the constraints of the built-in style of that name where there is one.
@@ -45,11 +43,7 @@ fn find_one(name: &str, seed: u64) -> Result<Style, Error> {
     if file.extension().is_none_or(|end| end != "toml") {
         return Ok(built_in(name)?);
     }
-    let size = std::fs::metadata(file).map_err(Error::io(file, "open the style"))?.len();
-    if size > MOST_BYTES {
-        return Err(StyleError::TooLarge(name.to_owned()).into());
-    }
-    let text = std::fs::read_to_string(file).map_err(Error::io(file, "read the style"))?;
+    let text = text_file::read(file, "read the style")?;
     Ok(parse(name, &text)?)
 }
 

@@ -199,7 +199,7 @@ fn without_evidence_nothing_passes() {
         assert_eq!((&report["passed"], report["unverified"].as_u64() > Some(10)), (&0.into(), true), "{report}");
         assert_eq!(report["checked_against"], json!(["nothing"]));
     }
-    for (text, style) in [(COARSE, "reverie"), (FINE, "r2r")] {
+    for (text, style) in [(COARSE, "reverie"), (FINE, "r2r"), ("Walk ahead. Stop.", "r2r")] {
         let (code, found) = findings(&building, text, style);
         assert!(code == Some(0) && found.iter().any(|(_, verdict, _)| verdict == "unverified"), "{text}: {found:?}");
     }

@@ -63,10 +63,10 @@ fn provenance_is_within_or_beside() {
         assert!(export(&building, format, &out).get("provenance").is_none());
         let episodes = wayword_formats::read(&building.path(&out)).unwrap();
         assert!(
-            episodes.iter().all(|episode| episode.extra["wayword"]["provenance"]["answerer"] == "labels"),
+            episodes.iter().all(|episode| episode.extra["wayword"][0]["provenance"]["answerer"] == "labels"),
             "{format}"
         );
-        assert!(episodes.iter().all(|episode| episode.extra["wayword"]["verdict"] == "pass"), "{format}");
+        assert!(episodes.iter().all(|episode| episode.extra["wayword"][0]["verdict"] == "pass"), "{format}");
     }
     for format in ["r2r", "vlnce"] {
         let out = format!("beside.{format}");

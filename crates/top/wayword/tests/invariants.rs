@@ -33,7 +33,6 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 fn only_labels_and_evidence_look_at_ground_truth() {
     let allowed = [
         "crates/ground/wayword-core/src/view.rs",
-        "crates/top/wayword-measure/src/",
         "crates/words/wayword-synthesis/src/evidence/from_labels.rs",
         "crates/words/wayword-synthesis/src/minds/",
         "crates/world/wayword-platforms/src/",

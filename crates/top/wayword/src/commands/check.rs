@@ -13,7 +13,10 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path as FilePath};
 use wayword_core::{Check, Constraints, Finding, Path, Platform, Style, Verdict};
-use wayword_formats::{Format, jsonl};
+use wayword_formats::{
+    Format,
+    jsonl::{self, Record},
+};
 use wayword_platforms::path_of;
 use wayword_synthesis::{
     checks::{Subject, check},
@@ -110,8 +113,9 @@ pub fn check_file(
 /// Paths with what is said about each.
 fn subjects(file: &FilePath, platform: &dyn Platform) -> Result<Vec<(Path, Vec<String>)>, Error> {
     if wayword_formats::detect(file)? == Format::Wayword {
-        let records = jsonl::read(file)?;
-        return Ok(records.into_iter().map(|record| (record.path, vec![record.instruction.text])).collect());
+        let records = jsonl::read(file)?.into_iter();
+        let subject = |record: Record| Ok((on_graph(platform, record.path)?, vec![record.instruction.text]));
+        return records.map(subject).collect();
     }
     let episodes = wayword_formats::read(file)?;
     let paths = episodes.into_iter().map(|episode| {
@@ -127,6 +131,15 @@ fn subjects(file: &FilePath, platform: &dyn Platform) -> Result<Vec<(Path, Vec<S
         Ok((path, episode.instructions))
     });
     paths.collect()
+}
+
+/// A record's path with the platform's own poses and floors where its frames are viewpoints: a file is not believed.
+fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
+    let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
+    let Some(viewpoints) = viewpoints else { return Ok(path) };
+    let heading = path.frames.first().map(|frame| frame.pose.heading);
+    let object = path.target.as_ref().map(|target| &target.object);
+    Ok(path_of(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
 }
 
 /// Each text with everything that was found, and what it was held against.
@@ -189,7 +202,9 @@ impl fmt::Display for Shown<'_> {
         for text in report.not_passed.iter().take(*most) {
             writeln!(f, "{} {:?}: {}", text.path, text.verdict, text.text)?;
             for finding in &text.findings {
-                writeln!(f, "    {} ({:?}): {}", finding.check.name(), finding.verdict, finding.reason)?;
+                let words = finding.span.and_then(|[from, to]| text.text.get(from..to));
+                let words = words.map_or(String::new(), |words| format!(" \"{words}\""));
+                writeln!(f, "    {} ({:?}){words}: {}", finding.check.name(), finding.verdict, finding.reason)?;
             }
         }
         writeln!(f, "{:<10} {:>7} {:>11} {:>7}", "check", "passed", "unverified", "failed")?;

@@ -8,7 +8,10 @@ use crate::{
 };
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 use wayword_formats::{
     Episode, Format, jsonl,
     jsonl::Record,
@@ -91,6 +94,7 @@ fn refuse_what_only_records_bear(args: &Export) -> Result<(), Error> {
 fn write_as(format: Format, file: &Path, records: &[Record]) -> Result<Option<PathBuf>, Error> {
     let within = matches!(format, Format::Reverie | Format::Rxr);
     let episodes: Vec<Episode> = records.iter().map(|record| episode(record, within)).collect();
+    let episodes = if format == Format::Reverie { gathered(episodes) } else { episodes };
     match format {
         Format::R2r => r2r::write(file, &episodes)?,
         Format::Reverie => reverie::write(file, &episodes)?,
@@ -108,7 +112,43 @@ fn write_as(format: Format, file: &Path, records: &[Record]) -> Result<Option<Pa
     Ok(Some(write_sidecar(file, &lines)?))
 }
 
-/// A record as an item of a dataset.
+/// REVERIE names an item by its path and object. Items without an object that share a path and a start become one item
+/// with several instructions; those that start with another heading become another path.
+fn gathered(episodes: Vec<Episode>) -> Vec<Episode> {
+    let mut items: Vec<Episode> = Vec::new();
+    let mut starts: BTreeMap<(String, Option<u64>), usize> = BTreeMap::new();
+    let mut starts_of_path: BTreeMap<String, usize> = BTreeMap::new();
+    for mut episode in episodes {
+        if episode.target_object.is_some() {
+            items.push(episode);
+            continue;
+        }
+        let start = (episode.path_id.clone(), episode.start_heading.map(|heading| heading.rad().to_bits()));
+        if let Some(at) = starts.get(&start) {
+            join(&mut items[*at], episode);
+            continue;
+        }
+        let others = starts_of_path.entry(episode.path_id.clone()).or_default();
+        if *others > 0 {
+            episode.path_id = format!("{}-{others}", episode.path_id);
+        }
+        *others += 1;
+        starts.insert(start, items.len());
+        items.push(episode);
+    }
+    items
+}
+
+fn join(item: &mut Episode, other: Episode) {
+    item.instructions.extend(other.instructions);
+    for (key, value) in other.extra {
+        if let (Some(Value::Array(all)), Value::Array(more)) = (item.extra.get_mut(&key), value) {
+            all.extend(more);
+        }
+    }
+}
+
+/// A record as an item of a dataset. Provenance is a list, one entry for each instruction.
 fn episode(record: &Record, with_provenance: bool) -> Episode {
     let mut episode =
         Episode::from_path(&record.path, vec![record.instruction.text.clone()]).on_floor_of(&record.path, EYE_HEIGHT_M);
@@ -116,7 +156,7 @@ fn episode(record: &Record, with_provenance: bool) -> Episode {
         path_id.clone_into(&mut episode.path_id);
     }
     if with_provenance {
-        episode.extra.insert("wayword".into(), about(record));
+        episode.extra.insert("wayword".into(), json!([about(record)]));
     }
     episode
 }
@@ -126,4 +166,32 @@ fn about(record: &Record) -> Value {
         "verdict": record.instruction.verdict,
         "provenance": record.instruction.provenance,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::{Heading, ObjectId, SceneId};
+
+    fn episode(path_id: &str, object: Option<&str>, heading: f64, text: &str) -> Episode {
+        let mut episode = Episode::new(text, path_id, SceneId::new("s").unwrap());
+        episode.target_object = object.map(|object| ObjectId::new(object).unwrap());
+        episode.start_heading = Some(Heading::new(heading).unwrap());
+        episode.instructions = vec![text.to_owned()];
+        episode.extra.insert("wayword".into(), json!([text]));
+        episode
+    }
+
+    #[test]
+    fn items_without_an_object_gather_by_path_and_start() {
+        let items = gathered(vec![
+            episode("7", None, 1.0, "a"),
+            episode("7", Some("3"), 1.0, "b"),
+            episode("7", None, 1.0, "c"),
+            episode("7", None, 2.0, "d"),
+        ]);
+        let told: Vec<_> = items.iter().map(|item| (item.path_id.as_str(), item.instructions.join(" "))).collect();
+        assert_eq!(told, [("7", "a c".into()), ("7", "b".into()), ("7-1", "d".into())]);
+        assert_eq!(items[0].extra["wayword"], json!(["a", "c"]));
+    }
 }

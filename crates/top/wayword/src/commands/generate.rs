@@ -9,14 +9,15 @@ use crate::{
     run::{Map, Rejected, RunFolder, WalkRecord, extra},
     settings::{Asked, Settings},
     styles::{self, Measured},
-    world,
+    text_file, world,
 };
 use rayon::prelude::*;
 use serde::Serialize;
-use std::{fmt, path::Path};
+use sha2::{Digest, Sha256};
+use std::{collections::BTreeMap, fmt, fs::File, path::Path};
 use wayword_core::{Image, Platform, Verdict};
 use wayword_formats::jsonl::Record;
-use wayword_synthesis::repair::Outcome;
+use wayword_synthesis::{repair::Outcome, style};
 
 /// Items that are made at a time: enough for every core, few enough to lose little when killed.
 const BATCH: usize = 16;
@@ -30,7 +31,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
 }
 
 fn read_config(path: &Path) -> Result<Asked, Error> {
-    let text = std::fs::read_to_string(path).map_err(Error::io(path, "read the settings"))?;
+    let text = text_file::read(path, "read the settings")?;
     toml::from_str(&text).map_err(|error| {
         Error::usage(
             format!("{}: {}", path.display(), error.to_string().trim()),
@@ -77,6 +78,7 @@ pub fn generate_into(folder: &Path, settings: &Settings, output: &Output) -> Res
     let styles = styles::find(&settings.style, settings.seed)?;
     let items = items(settings, platform.as_ref())?;
     check_names(&items)?;
+    let settings = &Settings { inputs: inputs(settings, &styles)?, ..settings.clone() };
     let mut run = RunFolder::open(folder, settings)?;
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
     let left: Vec<&Item> = items.iter().filter(|item| !run.is_done(&item.id(), &names)).collect();
@@ -97,6 +99,19 @@ pub fn generate_into(folder: &Path, settings: &Settings, output: &Output) -> Res
     }
     bar.finish_and_clear();
     summary(folder, &run, items.len())
+}
+
+/// Hashes of what the settings only name, so that a run is not continued with other episodes or styles.
+fn inputs(settings: &Settings, styles: &[Measured]) -> Result<BTreeMap<String, String>, Error> {
+    let mut inputs: BTreeMap<String, String> =
+        styles.iter().map(|Measured { style, .. }| (format!("style {}", style.name), style::hash(style))).collect();
+    if let Some(file) = &settings.episodes {
+        let mut hash = Sha256::new();
+        let copied = File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash));
+        copied.map_err(Error::io(file, "read the episodes"))?;
+        inputs.insert("episodes".into(), hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect());
+    }
+    Ok(inputs)
 }
 
 /// Writes what became of an item: pictures and walk first, so that an instruction never stands without its evidence.

@@ -5,7 +5,6 @@
 
 mod data_uri;
 mod frames;
-mod lines;
 mod map;
 mod model;
 mod page;

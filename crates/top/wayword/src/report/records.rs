@@ -1,9 +1,12 @@
 //! What the page needs of a run: its first items whole, the rest only counted.
 
-use super::lines::{self, Line};
 use crate::{
     error::Error,
-    run::{Rejected, WalkRecord, file, settings_of},
+    run::{
+        Rejected, WalkRecord, file,
+        lines::{self, Line},
+        settings_of,
+    },
     settings::Settings,
 };
 use serde::Deserialize;

@@ -1,17 +1,15 @@
 //! A file of JSON lines that is only ever appended to.
 
+use super::lines;
 use crate::error::Error;
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use std::{
     collections::BTreeSet,
-    fs::{self, File},
-    io::{self, BufRead, BufReader, Read, Write},
+    fs::File,
+    io::{self, BufRead, BufReader, Write},
     path::{Path, PathBuf},
 };
-
-/// Longest line that is read, bytes.
-const MOST_LINE_BYTES: u64 = 64 << 20;
 
 /// A file of JSON lines with the keys of the lines that it holds.
 #[derive(Debug)]
@@ -32,10 +30,11 @@ impl Journal {
         let whole = whole_bytes(path).map_err(Error::io(path, "read"))?;
         file.set_len(whole).map_err(Error::io(path, "cut off a torn line of"))?;
         let mut keys = BTreeSet::new();
-        for (number, line) in lines(path)?.enumerate() {
-            let value: Value = parse(path, number, &line?)?;
-            keys.insert(key_of(&value).ok_or_else(|| broken(path, number, "it lacks the fields that name it"))?);
-        }
+        lines::each(path, |line| {
+            let key = key_of(&line.parse()?).ok_or_else(|| line.broken("it lacks the fields that name it"))?;
+            keys.insert(key);
+            Ok(())
+        })?;
         Ok(Self { path: path.to_owned(), file, keys, key_of })
     }
 
@@ -105,51 +104,24 @@ fn whole_bytes(path: &Path) -> io::Result<u64> {
     }
 }
 
-/// The lines of a file, each bounded.
-fn lines(path: &Path) -> Result<impl Iterator<Item = Result<String, Error>> + use<>, Error> {
-    let mut reader = BufReader::new(File::open(path).map_err(Error::io(path, "open"))?);
-    let path = path.to_owned();
-    Ok(std::iter::from_fn(move || {
-        let mut line = String::new();
-        match reader.by_ref().take(MOST_LINE_BYTES).read_line(&mut line) {
-            Ok(0) => None,
-            Ok(_) => Some(Ok(line)),
-            Err(source) => Some(Err(Error::Io { path: path.clone(), doing: "read", source })),
-        }
-    }))
-}
-
-fn parse<T: DeserializeOwned>(path: &Path, number: usize, line: &str) -> Result<T, Error> {
-    serde_json::from_str(line).map_err(|error| broken(path, number, error))
-}
-
-fn broken(path: &Path, number: usize, problem: impl std::fmt::Display) -> Error {
-    Error::usage(
-        format!("{}: line {}: {problem}", path.display(), number + 1),
-        "the file was changed by hand or by another program: use another run folder",
-    )
-}
-
 /// Reads every whole line of a file of records; a file that is not there holds none.
 ///
 /// # Errors
 /// When it cannot be read, or a line is not of the kind.
 pub fn read_lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, Error> {
-    if !fs::exists(path).map_err(Error::io(path, "look for"))? {
-        return Ok(Vec::new());
-    }
-    let whole = |line: &Result<String, Error>| line.as_ref().map_or(true, |line| line.ends_with('\n'));
-    lines(path)?
-        .enumerate()
-        .take_while(|(_, line)| whole(line))
-        .map(|(number, line)| parse(path, number, &line?))
-        .collect()
+    let mut records = Vec::new();
+    lines::each(path, |line| {
+        records.push(line.parse()?);
+        Ok(())
+    })?;
+    Ok(records)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use serde_json::json;
+    use std::fs;
 
     fn key(value: &Value) -> Option<String> {
         Some(value.get("id")?.as_str()?.to_owned())

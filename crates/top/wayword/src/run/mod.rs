@@ -5,9 +5,10 @@
 //! next one cuts it off and goes on where it stopped, and the files end up the same byte for byte.
 
 mod journal;
+pub(crate) mod lines;
 mod record;
 
-use crate::{error::Error, settings::Settings};
+use crate::{error::Error, settings::Settings, text_file};
 use std::{
     collections::BTreeSet,
     fs::{self, File, TryLockError},
@@ -130,7 +131,7 @@ fn keep_config(folder: &Path, settings: &Settings) -> Result<(), Error> {
 /// When the folder is no run folder.
 pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
     let path = folder.join(file::CONFIG);
-    let text = fs::read_to_string(&path).map_err(Error::io(&path, "read the run's settings"))?;
+    let text = text_file::read(&path, "read the run's settings")?;
     toml::from_str(&text).map_err(|error| {
         Error::usage(
             format!("{}: {}", path.display(), error.to_string().trim()),

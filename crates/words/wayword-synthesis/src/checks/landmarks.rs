@@ -44,6 +44,14 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, target: Option<&
         );
         frames.push(shown);
     }
+    if evidence.source == Source::Nothing && findings.is_empty() {
+        findings.push(finding(
+            Check::Landmarks,
+            Verdict::Unverified,
+            "nothing is known of what is seen along the path",
+            None,
+        ));
+    }
     Places { findings: or_pass(Check::Landmarks, findings), frames }
 }
 

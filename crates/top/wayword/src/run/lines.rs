@@ -13,7 +13,7 @@ use std::{
 const MOST_LINE_BYTES: usize = 16 << 20;
 
 /// A whole line of a file.
-pub(super) struct Line<'a> {
+pub(crate) struct Line<'a> {
     path: &'a Path,
     number: usize,
     bytes: &'a [u8],
@@ -24,7 +24,7 @@ pub(super) struct Line<'a> {
 ///
 /// # Errors
 /// When the file cannot be read, a line is too long, or `take` fails.
-pub(super) fn each(path: &Path, mut take: impl FnMut(Line<'_>) -> Result<(), Error>) -> Result<(), Error> {
+pub(crate) fn each(path: &Path, mut take: impl FnMut(Line<'_>) -> Result<(), Error>) -> Result<(), Error> {
     if !fs::exists(path).map_err(Error::io(path, "look for"))? {
         return Ok(());
     }
@@ -48,7 +48,7 @@ pub(super) fn each(path: &Path, mut take: impl FnMut(Line<'_>) -> Result<(), Err
 
 impl Line<'_> {
     /// Its length, bytes.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.bytes.len()
     }
 
@@ -56,11 +56,12 @@ impl Line<'_> {
     ///
     /// # Errors
     /// When it is not of that kind.
-    pub(super) fn parse<T: DeserializeOwned>(&self) -> Result<T, Error> {
+    pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, Error> {
         serde_json::from_slice(self.bytes).map_err(|error| self.broken(error))
     }
 
-    fn broken(&self, problem: impl Display) -> Error {
+    /// The error that it is not what it should be.
+    pub(crate) fn broken(&self, problem: impl Display) -> Error {
         let problem = format!("{}: line {}: {problem}", self.path.display(), self.number);
         Error::usage(problem, "the file was changed by hand or by another program: make the run again")
     }
