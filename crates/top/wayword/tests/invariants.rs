@@ -28,7 +28,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Ground truth is for the mind that answers from labels and for the evidence of the checks: a writer or an asker that
-/// looked at it would make results that no robot can have. The platforms that know it, and the program that measures, may.
+/// looked at it would make results that no robot can have. The platforms that know it may.
 #[test]
 fn only_labels_and_evidence_look_at_ground_truth() {
     let allowed = [

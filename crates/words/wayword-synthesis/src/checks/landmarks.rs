@@ -6,7 +6,7 @@ use crate::{
     lexicon::{Class, agree, thing},
     reading::{Place, Reading, What},
 };
-use wayword_core::{Check, Climb, Finding, Target, Verdict};
+use wayword_core::{Check, Finding, Target, Verdict};
 
 /// What was found about the places of a text.
 pub(super) struct Places {
@@ -84,9 +84,7 @@ fn frames_of(place: &Place, evidence: &Evidence) -> Vec<usize> {
         frames.extend(evidence.frames_with_thing(&place.name));
     }
     if thing(&place.name).is_some_and(|thing| thing.class == Class::Stairs) {
-        // The foot and the head of a flight that is climbed.
-        let climbs = [Climb::Up, Climb::Down].into_iter().flat_map(|climb| evidence.frames_with_climb(climb));
-        frames.extend(climbs.flat_map(|at| [at, at + 1]));
+        frames.extend(evidence.frames_on_stairs());
     }
     frames.sort_unstable();
     frames.dedup();

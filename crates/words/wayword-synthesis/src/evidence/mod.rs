@@ -43,6 +43,9 @@ pub struct SeenThing {
     pub turn_rad: Option<f64>,
 }
 
+/// Rises of less than this are the floor's, metres.
+const FLAT_M: f64 = 0.05;
+
 /// Who vouches for evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
@@ -121,16 +124,26 @@ impl Evidence {
     /// The frames from which a climb begins that gains or loses a flight of stairs. Small rises add up.
     #[must_use]
     pub fn frames_with_climb(&self, climb: Climb) -> Vec<usize> {
+        let climbs = |at: &usize| self.flight_from(*at, climb).is_some();
+        (0..self.moves.len()).filter(climbs).collect()
+    }
+
+    /// The frames on a flight of stairs that is climbed either way, its foot and its head among them.
+    #[must_use]
+    pub fn frames_on_stairs(&self) -> Vec<usize> {
+        let flights = [Climb::Up, Climb::Down].into_iter().flat_map(|climb| {
+            self.frames_with_climb(climb).into_iter().filter_map(move |at| Some(at..=self.flight_from(at, climb)? + 1))
+        });
+        flights.flatten().collect()
+    }
+
+    /// The last move of the flight that begins with a move, where it gains or loses enough from there.
+    fn flight_from(&self, first: usize, climb: Climb) -> Option<usize> {
         let sign = if climb == Climb::Up { 1.0 } else { -1.0 };
-        let rises: Vec<f64> = self.moves.iter().map(|step| step.rise_m * sign).collect();
-        let climbs_from = |at: usize| {
-            let mut gained_m = 0.0;
-            rises[at..].iter().take_while(|rise_m| **rise_m > 0.05).any(|rise_m| {
-                gained_m += rise_m;
-                Climb::from_rise(gained_m) == Climb::Up
-            })
-        };
-        (0..rises.len()).filter(|at| climbs_from(*at)).collect()
+        let rise_m = |at: &usize| self.moves[*at].rise_m * sign;
+        let last = (first..self.moves.len()).take_while(|at| rise_m(at) > FLAT_M).last()?;
+        let total_m: f64 = (first..=last).map(|at| rise_m(&at)).sum();
+        (Climb::from_rise(total_m) == Climb::Up).then_some(last)
     }
 
     /// The things that are seen from the last frame.
