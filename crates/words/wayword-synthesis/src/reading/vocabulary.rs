@@ -1,485 +1,117 @@
 //! Closed lists of words that steer the reading of an instruction.
 
+use std::sync::LazyLock;
+
+/// A list of words.
+type Words = LazyLock<Vec<&'static str>>;
+
 /// Verbs of walking: a clause that begins with one is no task.
-pub(super) const WALKING: &[&str] = &[
-    "go", "walk", "turn", "head", "stop", "wait", "enter", "exit", "leave", "continue", "proceed", "pass", "move",
-    "step", "make", "veer", "bear", "keep", "stay", "follow", "cross", "climb", "ascend", "descend", "travel", "come",
-    "reach", "approach", "stand", "face", "start", "begin", "navigate", "return", "run", "hang", "rotate", "pause",
-    "halt", "end", "finish", "hook", "curve", "cut", "advance", "march", "stroll", "swing", "pivot", "circle", "round",
-    "back", "remain", "steer", "slip", "carry", "get", "pop", "hurry", "drop", "arrive", "have", "see", "find", "be",
-    "is", "are", "visit",
-];
+pub(super) static WALKING: Words = LazyLock::new(|| {
+    split(
+        "go walk turn head stop wait enter exit leave continue proceed pass move step make veer bear keep stay follow \
+     cross climb ascend descend travel come reach approach stand face start begin navigate return run hang rotate \
+     pause halt end finish hook curve cut advance march stroll swing pivot circle round back remain steer slip \
+     carry get pop hurry drop arrive have see find be is are visit",
+    )
+});
 
 /// Verbs after which "left" or "right" is a turn.
-pub(super) const TURNING: &[&str] = &[
-    "turn", "turning", "veer", "veering", "bear", "bearing", "take", "taking", "make", "making", "hang", "hook",
-    "rotate", "curve", "curving", "swing", "pivot", "cut", "steer", "turns", "turned",
-];
+pub(super) static TURNING: Words = LazyLock::new(|| {
+    split(
+        "turn turning veer veering bear bearing take taking make making hang hook rotate curve curving swing pivot \
+     cut steer turns turned",
+    )
+});
 
 /// Verbs after which "left" or "right" is a turn when it follows at once, or after "to the" and "to your".
-pub(super) const GOING: &[&str] = &[
-    "go", "going", "head", "heading", "walk", "walking", "move", "step", "keep", "face", "exit", "leave", "proceed",
-    "enter",
-];
+pub(super) static GOING: Words =
+    LazyLock::new(|| split("go going head heading walk walking move step keep face exit leave proceed enter"));
 
 /// Words that may stand between a turning verb and its side.
-pub(super) const BEFORE_SIDE: &[&str] = &[
-    "a",
-    "an",
-    "the",
-    "your",
-    "to",
-    "first",
-    "second",
-    "third",
-    "next",
-    "immediate",
-    "immediately",
-    "slight",
-    "slightly",
-    "sharp",
-    "sharply",
-    "hard",
-    "quick",
-    "another",
-    "then",
-    "and",
-    "again",
-    "towards",
-    "toward",
-    "back",
-    "around",
-    "small",
-    "gentle",
-    "soft",
-    "far",
-    "immediately,",
-    "one",
-    "more",
-];
+pub(super) static BEFORE_SIDE: Words = LazyLock::new(|| {
+    split(
+        "a an the your to first second third next immediate immediately slight slightly sharp sharply hard quick \
+     another then and again towards toward back around small gentle soft far one more",
+    )
+});
 
 /// Words after which "right" is no side ("stop right before the sofa").
-pub(super) const AFTER_ADVERB_RIGHT: &[&str] =
-    &["before", "next", "in", "outside", "beside", "there", "inside", "beyond", "above"];
+pub(super) static AFTER_ADVERB_RIGHT: Words =
+    LazyLock::new(|| split("before next in outside beside there inside beyond above"));
 
 /// Words that begin a noun phrase.
-pub(super) const DETERMINERS: &[&str] =
-    &["the", "a", "an", "this", "that", "these", "those", "your", "its", "another", "some"];
+pub(super) static DETERMINERS: Words = LazyLock::new(|| split("the a an this that these those your its another some"));
 
 /// Words that end a noun phrase.
-pub(super) const BREAKERS: &[&str] = &[
-    "of",
-    "on",
-    "in",
-    "at",
-    "to",
-    "and",
-    "or",
-    "with",
-    "that",
-    "which",
-    "is",
-    "are",
-    "until",
-    "till",
-    "then",
-    "into",
-    "through",
-    "past",
-    "by",
-    "near",
-    "behind",
-    "next",
-    "before",
-    "after",
-    "from",
-    "for",
-    "along",
-    "towards",
-    "toward",
-    "between",
-    "across",
-    "under",
-    "above",
-    "over",
-    "it",
-    "you",
-    "there",
-    "straight",
-    "ahead",
-    "outside",
-    "inside",
-    "beside",
-    "as",
-    "up",
-    "down",
-    "off",
-    "out",
-    "so",
-    "when",
-    "where",
-    "while",
-    "who",
-    "whose",
-    "below",
-    "against",
-    "around",
-    "beyond",
-    "the",
-    "a",
-    "an",
-    "your",
-    "its",
-    "be",
-    "has",
-    "have",
-    "will",
-    "should",
-    "if",
-    "without",
-    "opposite",
-    "facing",
-    "leading",
-    "hanging",
-    "standing",
-    "sitting",
-    "closest",
-    "nearest",
-    "adjacent",
-    "adjoining",
-    "attached",
-    "located",
-    "again",
-    "not",
-    "but",
-    "please",
-    "turn",
-    "stop",
-    "walk",
-    "go",
-    "wait",
-    "leads",
-    "more",
-    "please",
-    "away",
-    "back",
-    "onto",
-    "upon",
-    "within",
-];
+pub(super) static BREAKERS: Words = LazyLock::new(|| {
+    split(
+        "of on in at to and or with that which is are until till then into through past by near behind next before \
+     after from for along towards toward between across under above over it you there straight ahead outside \
+     inside beside as up down off out so when where while who whose below against around beyond the a an your its \
+     be has have will should if without opposite facing leading hanging standing sitting closest nearest adjacent \
+     adjoining attached located again not but please turn stop walk go wait leads more away back onto upon within",
+    )
+});
 
 /// Heads of noun phrases that name no landmark.
-pub(super) const ABSTRACT: &[&str] = &[
-    "way",
-    "left",
-    "right",
-    "side",
-    "end",
-    "front",
-    "back",
-    "top",
-    "bottom",
-    "middle",
-    "center",
-    "centre",
-    "room",
-    "area",
-    "space",
-    "place",
-    "direction",
-    "other",
-    "first",
-    "second",
-    "third",
-    "fourth",
-    "last",
-    "one",
-    "next",
-    "hand",
-    "house",
-    "building",
-    "home",
-    "level",
-    "story",
-    "storey",
-    "path",
-    "rest",
-    "edge",
-    "same",
-    "entire",
-    "length",
-    "distance",
-    "turn",
-    "bit",
-    "few",
-    "couple",
-    "feet",
-    "foot",
-    "meter",
-    "metre",
-    "degree",
-    "point",
-    "part",
-    "half",
-    "line",
-    "row",
-    "set",
-    "pair",
-    "group",
-    "lot",
-    "number",
-    "view",
-    "spot",
-    "position",
-    "inside",
-    "outside",
-    "far",
-    "near",
-    "opposite",
-    "person",
-    "robot",
-    "ground",
-    "main",
-    "upper",
-    "lower",
-    "wing",
-    "base",
-    "head",
-    "moment",
-    "time",
-    "far",
-    "section",
-    "region",
-    "piece",
-    "straight",
-    "around",
-    "surface",
-    "dust",
-    "minute",
-    "upstairs",
-    "downstairs",
-    "goal",
-    "destination",
-    "start",
-];
+pub(super) static ABSTRACT: Words = LazyLock::new(|| {
+    split(
+        "way left right side end front back top bottom middle center centre room area space place direction other \
+     first second third fourth last one next hand house building home level story storey path rest edge same \
+     entire length distance turn bit few couple feet foot meter metre degree point part half line row set pair \
+     group lot number view spot position inside outside far near opposite person robot ground main upper lower \
+     wing base head moment time section region piece straight around surface dust minute upstairs downstairs goal \
+     destination start",
+    )
+});
 
 /// Words after which a place tells where something else is.
-pub(super) const RELATIONS: &[&str] = &[
-    "adjacent",
-    "adjoining",
-    "attached",
-    "across",
-    "off",
-    "beside",
-    "near",
-    "nearest",
-    "closest",
-    "close",
-    "next",
-    "opposite",
-    "by",
-    "from",
-    "outside",
-    "connected",
-    "overlooking",
-    "with",
-    "of",
-    "in",
-    "inside",
-    "on",
-    "under",
-    "above",
-    "below",
-    "over",
-    "behind",
-    "between",
-    "at",
-    "that",
-    "which",
-];
+pub(super) static RELATIONS: Words = LazyLock::new(|| {
+    split(
+        "adjacent adjoining attached across off beside near nearest closest close next opposite by from outside \
+     connected overlooking with of in inside on under above below over behind between at that which",
+    )
+});
 
 /// Colours, sizes and the like: no verbs, whatever they look like.
-pub(super) const ADJECTIVES: &[&str] = &[
-    "black",
-    "white",
-    "grey",
-    "gray",
-    "brown",
-    "red",
-    "blue",
-    "green",
-    "yellow",
-    "orange",
-    "purple",
-    "pink",
-    "beige",
-    "tan",
-    "gold",
-    "silver",
-    "wooden",
-    "wood",
-    "metal",
-    "large",
-    "small",
-    "big",
-    "little",
-    "long",
-    "tall",
-    "short",
-    "round",
-    "square",
-    "leather",
-    "striped",
-    "open",
-    "two",
-    "three",
-    "four",
-    "five",
-    "several",
-    "many",
-    "other",
-    "dark",
-    "light",
-    "old",
-    "new",
-    "cream",
-    "teal",
-    "navy",
-    "turquoise",
-    "glass",
-    "marble",
-    "stone",
-    "brick",
-    "double",
-    "single",
-    "upper",
-    "lower",
-    "left",
-    "right",
-    "first",
-    "second",
-    "third",
-];
+pub(super) static ADJECTIVES: Words = LazyLock::new(|| {
+    split(
+        "black white grey gray brown red blue green yellow orange purple pink beige tan gold silver wooden wood metal \
+     large small big little long tall short round square leather striped open two three four five several many \
+     other dark light old new cream teal navy turquoise glass marble stone brick double single upper lower left \
+     right first second third",
+    )
+});
 
 /// Those adjectives that are colours.
-pub(super) const COLOURS: &[&str] = &[
-    "black",
-    "white",
-    "grey",
-    "gray",
-    "brown",
-    "red",
-    "blue",
-    "green",
-    "yellow",
-    "orange",
-    "purple",
-    "pink",
-    "beige",
-    "tan",
-    "gold",
-    "silver",
-    "cream",
-    "teal",
-    "navy",
-    "turquoise",
-];
+pub(super) static COLOURS: Words = LazyLock::new(|| {
+    split(
+        "black white grey gray brown red blue green yellow orange purple pink beige tan gold silver cream teal navy \
+     turquoise",
+    )
+});
 
 /// Words that can stand before a clause's verb.
-pub(super) const ADVERBS: &[&str] = &[
-    "then",
-    "and",
-    "please",
-    "now",
-    "also",
-    "finally",
-    "carefully",
-    "quickly",
-    "once",
-    "just",
-    "afterwards",
-    "next",
-    "there",
-    "slowly",
-    "immediately",
-    "to",
-    "you",
-    "can",
-    "should",
-    "will",
-    "need",
-    "must",
-    "after",
-    "that",
-    "gently",
-    "thoroughly",
-];
+pub(super) static ADVERBS: Words = LazyLock::new(|| {
+    split(
+        "then and please now also finally carefully quickly once just afterwards next there slowly immediately to you \
+     can should will need must after that gently thoroughly",
+    )
+});
 
 /// Words that begin no task.
-pub(super) const FUNCTION: &[&str] = &[
-    "closer",
-    "further",
-    "farther",
-    "nearer",
-    "on",
-    "in",
-    "at",
-    "with",
-    "of",
-    "the",
-    "a",
-    "an",
-    "by",
-    "it",
-    "its",
-    "his",
-    "her",
-    "into",
-    "through",
-    "past",
-    "near",
-    "until",
-    "when",
-    "where",
-    "which",
-    "while",
-    "as",
-    "if",
-    "up",
-    "down",
-    "is",
-    "are",
-    "for",
-    "from",
-    "your",
-    "my",
-    "so",
-    "straight",
-    "forward",
-    "ahead",
-    "between",
-    "across",
-    "behind",
-    "under",
-    "over",
-    "before",
-    "beside",
-    "towards",
-    "toward",
-    "out",
-    "off",
-    "or",
-    "not",
-    "no",
-    "this",
-    "these",
-    "those",
-    "upstairs",
-    "downstairs",
-    "directly",
-    "slight",
-    "slightly",
-];
+pub(super) static FUNCTION: Words = LazyLock::new(|| {
+    split(
+        "closer further farther nearer on in at with of the a an by it its his her into through past near until when \
+     where which while as if up down is are for from your my so straight forward ahead between across behind \
+     under over before beside towards toward out off or not no this these those upstairs downstairs directly \
+     slight slightly",
+    )
+});
+
+fn split(words: &'static str) -> Vec<&'static str> {
+    words.split_whitespace().collect()
+}
 
 /// The number that an ordinal or a numeral says, where it is one that floors bear.
 pub(super) fn floor_number(word: &str) -> Option<u32> {
