@@ -64,7 +64,7 @@ pub enum Command {
 
 /// `wayword demo`.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  wayword demo\n  wayword demo --seed 7 --out /tmp/walk")]
+#[command(after_long_help = "Examples:\n  wayword demo\n  wayword demo --seed 7 --out walk")]
 pub struct Demo {
     /// Which house, and which walk through it.
     #[arg(long, default_value_t = 3)]
