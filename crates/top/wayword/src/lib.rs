@@ -7,6 +7,7 @@ pub mod commands;
 pub mod error;
 pub mod item;
 pub mod output;
+pub mod pictures;
 pub mod pipeline;
 pub mod report;
 pub mod run;

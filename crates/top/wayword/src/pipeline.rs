@@ -3,6 +3,7 @@
 use crate::{
     error::Error,
     item::Item,
+    pictures::{self, Picture},
     settings::{Settings, TargetMode},
     styles::Measured,
     world::Remembering,
@@ -25,8 +26,8 @@ pub struct Made {
     pub walk: Walk,
     /// One per style, in the order of the run's styles.
     pub outcomes: Vec<Outcome>,
-    /// The central view of each frame, where the platform has pictures.
-    pub views: Vec<View>,
+    /// What is seen ahead from each frame, where the platform has pictures.
+    pub pictures: Vec<Picture>,
 }
 
 /// The embedded default: rules ask, labels answer, rules sum up.
@@ -59,8 +60,8 @@ pub fn make(item: &Item, settings: &Settings, platform: &dyn Platform, styles: &
         write_and_repair(&RulesWriter, minds, order)
     });
     let outcomes = outcomes.collect();
-    let views = panoramas.into_iter().filter_map(|views| views.into_iter().next()).collect();
-    Ok(Made { walk, outcomes, views })
+    let pictures = pictures::encode(&panoramas)?;
+    Ok(Made { walk, outcomes, pictures })
 }
 
 /// What is all around each frame: ahead, right, behind, left.

@@ -5,6 +5,7 @@ use crate::{
     error::{Error, Exit},
     item::{Item, check_names, items},
     output::Output,
+    pictures,
     pipeline::{Made, make},
     run::{Map, Rejected, RunFolder, WalkRecord, extra},
     settings::{Asked, Settings},
@@ -15,7 +16,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, fmt, fs::File, path::Path};
-use wayword_core::{Image, Platform, Verdict};
+use wayword_core::{Platform, Verdict};
 use wayword_formats::jsonl::Record;
 use wayword_synthesis::{repair::Outcome, style};
 
@@ -128,7 +129,7 @@ fn keep(
         Ok(made) => made,
         Err(error) => return run.rejected.append(&reject("", error.to_string(), None)),
     };
-    let has_pictures = keep_pictures(&run.frames(), &made)?;
+    let has_pictures = pictures::keep(&run.frames(), &item.id(), &made.pictures)?;
     run.walks.append(&WalkRecord {
         platform: platform.name().to_owned(),
         map: Map::around(&made.walk.path, platform)?,
@@ -148,35 +149,6 @@ fn keep(
         }
     }
     Ok(())
-}
-
-/// Quality of kept pictures, percent.
-const JPEG_QUALITY: u8 = 80;
-
-fn keep_pictures(folder: &Path, made: &Made) -> Result<bool, Error> {
-    let pictures: Vec<(usize, &Image)> =
-        made.views.iter().enumerate().filter_map(|(at, view)| Some((at, view.image.as_deref()?))).collect();
-    if pictures.is_empty() {
-        return Ok(false);
-    }
-    std::fs::create_dir_all(folder).map_err(Error::io(folder, "make"))?;
-    for (at, picture) in pictures {
-        let path = folder.join(format!("{}_{at}.jpg", made.walk.path.id));
-        let mut bytes = Vec::new();
-        let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY);
-        let encoded = image::ImageEncoder::write_image(
-            encoder,
-            picture.rgb(),
-            picture.width_px(),
-            picture.height_px(),
-            image::ExtendedColorType::Rgb8,
-        );
-        encoded.map_err(|error| {
-            Error::usage(format!("{}: {error}", path.display()), "the platform gave a picture that cannot be kept")
-        })?;
-        std::fs::write(&path, bytes).map_err(Error::io(&path, "write"))?;
-    }
-    Ok(true)
 }
 
 fn summary(folder: &Path, run: &RunFolder, items: usize) -> Result<Summary, Error> {

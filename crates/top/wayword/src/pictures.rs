@@ -1,0 +1,56 @@
+//! Pictures of a run's frames, as files.
+
+use crate::error::Error;
+use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::jpeg::JpegEncoder};
+use std::{fs, path::Path};
+use wayword_core::{Image, View};
+
+/// Quality of kept pictures, percent.
+const JPEG_QUALITY: u8 = 80;
+
+/// A frame's picture as a JPEG file's bytes.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    frame: usize,
+    jpeg: Vec<u8>,
+}
+
+/// Encodes what is seen ahead from each frame, where the platform has pictures: `panoramas` holds, for each frame, the views
+/// around it, ahead first.
+///
+/// # Errors
+/// When the platform gave a picture that no JPEG can hold.
+pub fn encode(panoramas: &[Vec<View>]) -> Result<Vec<Picture>, Error> {
+    let ahead = panoramas.iter().enumerate();
+    let images = ahead.filter_map(|(frame, views)| Some((frame, views.first()?.image.as_deref()?)));
+    let encoded = images.map(|(frame, image)| {
+        let jpeg = jpeg(image).map_err(|error| {
+            Error::usage(format!("the picture of frame {frame} cannot be kept: {error}"), "report this as a bug")
+        })?;
+        Ok(Picture { frame, jpeg })
+    });
+    encoded.collect()
+}
+
+fn jpeg(image: &Image) -> Result<Vec<u8>, ImageError> {
+    let mut jpeg = Vec::new();
+    let encoder = JpegEncoder::new_with_quality(&mut jpeg, JPEG_QUALITY);
+    encoder.write_image(image.rgb(), image.width_px(), image.height_px(), ExtendedColorType::Rgb8)?;
+    Ok(jpeg)
+}
+
+/// Writes pictures as ITEM_FRAME.jpg; `item` has been checked to be a file's name. Returns whether there were any.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn keep(folder: &Path, item: &str, pictures: &[Picture]) -> Result<bool, Error> {
+    if pictures.is_empty() {
+        return Ok(false);
+    }
+    fs::create_dir_all(folder).map_err(Error::io(folder, "make"))?;
+    for Picture { frame, jpeg } in pictures {
+        let path = folder.join(format!("{item}_{frame}.jpg"));
+        fs::write(&path, jpeg).map_err(Error::io(&path, "write"))?;
+    }
+    Ok(true)
+}
