@@ -163,16 +163,18 @@ impl Asked {
                 "a text that fails so often will not come right",
             ));
         }
+        let length_m: RangeInclusive<f64> =
+            self.metres.map_or(Ok(default.length_m), |text| range("--metres", &text))?;
+        if !length_m.end().is_finite() {
+            return Err(Error::usage("--metres must be finite", "write it as in --metres 5..20"));
+        }
         Ok(Settings {
             platform: self.platform.unwrap_or_else(|| "house".into()),
             data: self.data,
             episodes: self.episodes,
             paths,
             scan: self.scan.unwrap_or_default(),
-            request: PathRequest {
-                hops: self.hops.map_or(Ok(default.hops), |text| range("--hops", &text))?,
-                length_m: self.metres.map_or(Ok(default.length_m), |text| range("--metres", &text))?,
-            },
+            request: PathRequest { hops: self.hops.map_or(Ok(default.hops), |text| range("--hops", &text))?, length_m },
             style: self
                 .style
                 .filter(|styles| !styles.is_empty())
@@ -235,6 +237,12 @@ mod tests {
         for bad in ["7..4", "x", "", "1..", "NaN..3"] {
             assert!(range::<f64>("--metres", bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn lengths_are_finite() {
+        let asked = |text: &str| Asked { metres: Some(text.into()), ..Asked::default() }.resolve();
+        assert!(asked("5..1e400").is_err() && asked("5..20").is_ok());
     }
 
     #[test]

@@ -65,7 +65,9 @@ impl fmt::Display for Summary {
             "{} items: {} instructions passed every check, {} unverified, {} rejected",
             self.items, self.passed, self.unverified, self.rejected
         )?;
-        writeln!(f, "minds: {}", self.minds)?;
+        if !self.minds.is_empty() {
+            writeln!(f, "minds: {}", self.minds)?;
+        }
         write!(f, "run folder: {}", self.run)
     }
 }
