@@ -79,6 +79,21 @@ impl Move {
     }
 }
 
+/// Rises of less than this are the floor's, metres.
+const FLAT_M: f64 = 0.05;
+
+/// The flight of stairs that begins with a move: its last move, and which way it goes. Rises of one direction add up.
+#[must_use]
+pub fn flight(moves: &[Move], first: usize) -> Option<(usize, Climb)> {
+    let way = moves.get(first)?.rise_m.signum();
+    let last = (first..moves.len()).take_while(|at| moves[*at].rise_m * way > FLAT_M).last()?;
+    let total_m: f64 = moves[first..=last].iter().map(|step| step.rise_m).sum();
+    match Climb::from_rise(total_m) {
+        Climb::Level => None,
+        climb => Some((last, climb)),
+    }
+}
+
 impl Turn {
     /// The word for a turn of so many radians, positive right.
     #[must_use]

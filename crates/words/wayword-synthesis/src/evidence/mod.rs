@@ -4,7 +4,7 @@ mod from_captions;
 mod from_labels;
 
 use crate::lexicon::{Class, agree, same_room, thing};
-use wayword_core::{Climb, Move, ObjectId, Path};
+use wayword_core::{Climb, Move, ObjectId, Path, motion};
 
 /// What is known of a path, frame by frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,9 +42,6 @@ pub struct SeenThing {
     /// Its direction from the frame's heading, radians in (-π, π], positive right.
     pub turn_rad: Option<f64>,
 }
-
-/// Rises of less than this are the floor's, metres.
-const FLAT_M: f64 = 0.05;
 
 /// Who vouches for evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,11 +136,7 @@ impl Evidence {
 
     /// The last move of the flight that begins with a move, where it gains or loses enough from there.
     fn flight_from(&self, first: usize, climb: Climb) -> Option<usize> {
-        let sign = if climb == Climb::Up { 1.0 } else { -1.0 };
-        let rise_m = |at: &usize| self.moves[*at].rise_m * sign;
-        let last = (first..self.moves.len()).take_while(|at| rise_m(at) > FLAT_M).last()?;
-        let total_m: f64 = (first..=last).map(|at| rise_m(&at)).sum();
-        (Climb::from_rise(total_m) == Climb::Up).then_some(last)
+        motion::flight(&self.moves, first).filter(|(_, way)| *way == climb).map(|(last, _)| last)
     }
 
     /// The things that are seen from the last frame.

@@ -46,8 +46,6 @@ const WALKED_PAST: u8 = 2;
 const STOPPED_AT: u8 = 1;
 /// Something longer than this between two turns is worth a word, metres.
 const LONG_M: f64 = 3.5;
-/// Rises of less than this are the floor's, metres.
-const FLAT_M: f64 = 0.05;
 
 /// The steps of a walk, the stop last.
 pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Weighed> {
@@ -55,7 +53,7 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
     let mut climbed = None;
     let mut at = 0;
     while at < walk.moves.len() {
-        let flight = flight(walk, at);
+        let flight = motion::flight(&walk.moves, at);
         let last = flight.map_or(at, |(last, _)| last);
         let next_room = changed_room(walk, at, last + 1);
         let turn = walk.moves[at].turn();
@@ -131,21 +129,9 @@ fn onwards(
     }
 }
 
-/// The flight of stairs that begins with a move: its last move, and which way it goes.
-fn flight(walk: &Walk, first: usize) -> Option<(usize, Climb)> {
-    let rise_m = walk.moves[first].rise_m;
-    let same_way = |at: &usize| walk.moves[*at].rise_m * rise_m.signum() > FLAT_M;
-    let last = (first..walk.moves.len()).take_while(same_way).last()?;
-    let total_m: f64 = walk.moves[first..=last].iter().map(|step| step.rise_m).sum();
-    match Climb::from_rise(total_m) {
-        Climb::Level => None,
-        climb => Some((last, climb)),
-    }
-}
-
 /// Which way the last flight of stairs of a walk goes.
 pub(super) fn last_climb(walk: &Walk) -> Option<Climb> {
-    (0..walk.moves.len()).rev().find_map(|at| flight(walk, at)).map(|(_, climb)| climb)
+    (0..walk.moves.len()).rev().find_map(|at| motion::flight(&walk.moves, at)).map(|(_, climb)| climb)
 }
 
 /// The room of frame `to`, where it is another than that of frame `from` and has a usable name.
