@@ -1,6 +1,6 @@
 //! What is said about a view, and who vouches for it.
 
-use crate::{Side, View};
+use crate::{ModelError, Side, View};
 use serde::{Deserialize, Serialize};
 
 /// A view in words, with the evidence behind them.
@@ -15,6 +15,9 @@ pub struct Caption {
     pub sightings: Vec<Sighting>,
     /// The whole dialogue.
     pub transcript: Vec<Exchange>,
+    /// Who wrote the text, where that is another than the run's summariser: it failed, or there was nothing to sum up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
 }
 
 /// One object, and what a witness said of it.
@@ -101,8 +104,33 @@ impl Where {
 pub struct Exchange {
     /// What was asked.
     pub question: String,
-    /// What was answered.
+    /// What was answered; empty where no answer could be used.
     pub answer: String,
+    /// Why it was asked a second time, in other words, where it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trouble: Option<Trouble>,
+}
+
+impl Exchange {
+    /// A question that was answered at once.
+    #[must_use]
+    pub fn new(question: impl Into<String>, answer: impl Into<String>) -> Self {
+        Self { question: question.into(), answer: answer.into(), trouble: None }
+    }
+}
+
+/// What is wrong with an answer that cannot be used (all of these are known of BLIP-2: ChatCaptioner #4 and #7).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Trouble {
+    /// There is none.
+    Empty,
+    /// It is the question.
+    Echo,
+    /// It says the same words over and over.
+    Loop,
+    /// It is the answer to another question, word for word.
+    Repeat,
 }
 
 /// A question about a view, with what was said before.
@@ -128,19 +156,4 @@ pub trait Answerer: Send + Sync {
 
     /// One result per question, in their order. One that fails does not fail the others.
     fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>>;
-}
-
-/// A mind could not do what it was asked.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ModelError {
-    /// The view lacks what this mind looks at.
-    #[error("{mind} needs {needs}, and this view has none: {hint}")]
-    NothingToSee {
-        /// Which mind.
-        mind: String,
-        /// Labels, or an image.
-        needs: &'static str,
-        /// What to do.
-        hint: &'static str,
-    },
 }

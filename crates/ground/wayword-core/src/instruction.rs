@@ -66,6 +66,12 @@ pub struct Provenance {
     pub seed: u64,
     /// Hash of the style's reference texts and constraints.
     pub style_hash: String,
+    /// Hash of the prompts, where a language model took part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prompts_hash: Option<String>,
     /// How often it was written again because a check failed.
     pub repairs: u32,
+    /// The writer whose texts all failed their checks, where another finished for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finished_for: Option<String>,
 }

@@ -33,7 +33,13 @@ pub struct Made {
 /// The embedded default: rules ask, labels answer, rules sum up.
 #[must_use]
 pub fn offline_minds(settings: &Settings) -> Minds<'static> {
-    Minds { asker: &RulesAsker, answerer: &Labels, summariser: &RulesSummariser, mode: settings.mode() }
+    Minds {
+        asker: &RulesAsker,
+        answerer: &Labels,
+        summariser: &RulesSummariser,
+        mode: settings.mode(),
+        prompts_hash: None,
+    }
 }
 
 /// Makes an item's instructions.

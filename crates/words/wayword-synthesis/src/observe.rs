@@ -1,11 +1,11 @@
 //! Looks around along a path and has each view talked about.
 
 use crate::{
-    dialogue::{Asker, Dialogue, Mode, Need, Summariser, condense},
+    dialogue::{Asker, Dialogue, Mode, Need, Summariser},
     walk::{FrameSelection, Look, Observation},
 };
 use wayword_core::{
-    Answerer, Ask, Caption, Exchange, Frame, Gaze, ModelError, Path, Platform, PlatformError, View, Witness,
+    Answerer, Ask, Caption, Exchange, Frame, Gaze, ModelError, Path, Platform, PlatformError, Side, View, Witness,
 };
 
 /// Who asks, sees and sums up, and how.
@@ -19,6 +19,8 @@ pub struct Minds<'a> {
     pub summariser: &'a dyn Summariser,
     /// Dialogue, or fixed queries.
     pub mode: Mode,
+    /// Hash of the prompts, where a language model takes part.
+    pub prompts_hash: Option<&'a str>,
 }
 
 /// A path could not be observed.
@@ -62,7 +64,7 @@ pub fn observe(
             } else {
                 looks
             };
-            Ok(Observation { summary: summary(&looks), looks })
+            Ok(Observation { summary: summary(frame, &looks, minds)?, looks })
         })
         .collect()
 }
@@ -94,7 +96,7 @@ fn talk_about(view: &View, minds: Minds<'_>) -> Result<Caption, ModelError> {
     let mut dialogue = Dialogue::new(minds.mode);
     loop {
         match dialogue.need() {
-            Need::Question => dialogue.ask(minds.asker.next_question(dialogue.transcript())),
+            Need::Question => dialogue.ask(minds.asker.next_question(dialogue.transcript())?),
             Need::Answer(question) => {
                 let history: Vec<Exchange> = dialogue.transcript().to_vec();
                 let ask = Ask { view, question: &question, history: &history };
@@ -102,14 +104,25 @@ fn talk_about(view: &View, minds: Minds<'_>) -> Result<Caption, ModelError> {
                     dialogue.answer(&answer?);
                 }
             }
-            Need::Summary => return Ok(minds.summariser.sum_up(dialogue.transcript(), minds.answerer.name())),
+            Need::Summary => return minds.summariser.sum_up(dialogue.transcript(), minds.answerer.name()),
         }
     }
 }
 
-fn summary(looks: &[Look]) -> String {
-    match looks {
-        [only] => only.caption.text.clone(),
-        looks => condense(&looks.iter().map(|look| &look.caption).collect::<Vec<_>>(), CONDENSED_WORDS),
+fn summary(frame: &Frame, looks: &[Look], minds: Minds<'_>) -> Result<String, ModelError> {
+    if let [only] = looks {
+        return Ok(only.caption.text.clone());
+    }
+    let directed = |look| (direction(frame, look), &look.caption);
+    minds.summariser.condense(&looks.iter().map(directed).collect::<Vec<_>>(), CONDENSED_WORDS)
+}
+
+/// The direction of a look in words, for somebody who walks.
+fn direction(frame: &Frame, look: &Look) -> &'static str {
+    match frame.pose.heading.side_of(look.gaze.heading) {
+        Side::Ahead => "ahead",
+        Side::Right => "on the right",
+        Side::Behind => "behind",
+        Side::Left => "on the left",
     }
 }

@@ -106,6 +106,8 @@ fn provenance(writer: &dyn Writer, minds: Minds<'_>, order: Order<'_>, repairs: 
         checked_against: order.evidence.source.name().to_owned(),
         seed: order.seed,
         style_hash: hash(order.style),
+        prompts_hash: minds.prompts_hash.map(str::to_owned),
         repairs,
+        finished_for: None,
     }
 }

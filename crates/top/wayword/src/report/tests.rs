@@ -45,7 +45,8 @@ fn observation(room: &str, thing: &str) -> Observation {
         text: text.clone(),
         room: Some(room.into()),
         sightings: vec![sighting(thing, Witness::Seen), sighting("piano", Witness::Denied)],
-        transcript: vec![Exchange { question: "Is there a piano?".into(), answer: "No.".into() }],
+        transcript: vec![Exchange::new("Is there a piano?", "No.")],
+        by: None,
     };
     Observation { looks: vec![Look { gaze: Gaze::quarter(Heading::NORTH), caption }], summary: text }
 }
@@ -85,7 +86,9 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<F
             checked_against: "labels".into(),
             seed: 0,
             style_hash: "0123456789abcdef".into(),
+            prompts_hash: None,
             repairs: 1,
+            finished_for: None,
         },
     }
 }
@@ -170,7 +173,8 @@ fn what_comes_from_files_and_models_stays_text() {
         text: SCRIPT.into(),
         room: Some(SCRIPT.into()),
         sightings: vec![Sighting { name: SCRIPT.into(), ..walk.observations[0].looks[0].caption.sightings[0].clone() }],
-        transcript: vec![Exchange { question: SCRIPT.into(), answer: "\" onload=\"alert(1)".into() }],
+        transcript: vec![Exchange::new(SCRIPT, "\" onload=\"alert(1)")],
+        by: None,
     };
     walk.path.target.as_mut().unwrap().name = SCRIPT.into();
     let mut hostile = instruction(

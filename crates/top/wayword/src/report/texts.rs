@@ -179,7 +179,7 @@ fn findings(instruction: &Instruction) -> Vec<FindingView> {
 }
 
 fn provenance(provenance: &Provenance) -> String {
-    let Provenance { wayword, asker, answerer, summariser, writer, checked_against, seed, style_hash, repairs } =
+    let Provenance { wayword, asker, answerer, summariser, writer, checked_against, seed, style_hash, repairs, .. } =
         provenance;
     let repairs = match repairs {
         0 => "at the first attempt".to_owned(),

@@ -38,7 +38,7 @@ fn join(before: &mut Sighting, later: Sighting) {
 }
 
 fn of_exchange(exchange: &Exchange, by: &str) -> Vec<Sighting> {
-    let Exchange { question, answer } = exchange;
+    let Exchange { question, answer, .. } = exchange;
     let sighting = |name: &str, witness| Sighting {
         name: name.to_owned(),
         witness,
@@ -231,10 +231,7 @@ mod tests {
     use super::*;
 
     fn read_all(pairs: &[(&str, &str)]) -> Vec<Sighting> {
-        let transcript: Vec<_> = pairs
-            .iter()
-            .map(|(question, answer)| Exchange { question: (*question).into(), answer: (*answer).into() })
-            .collect();
+        let transcript: Vec<_> = pairs.iter().map(|(question, answer)| Exchange::new(*question, *answer)).collect();
         sightings(&transcript, "test")
     }
 

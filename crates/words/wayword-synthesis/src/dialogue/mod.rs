@@ -7,11 +7,11 @@ mod answers;
 mod questions;
 mod summary;
 
-use wayword_core::{Caption, Exchange};
+use wayword_core::{Caption, Exchange, ModelError};
 
 pub(crate) use answers::{counted, plural, sightings, with_article};
 pub use questions::RulesAsker;
-pub use summary::{RulesSummariser, condense};
+pub use summary::RulesSummariser;
 
 /// The fixed first request of a dialogue (ChatCaptioner opens every dialogue with a request for a description).
 pub const OPENING: &str = "Describe in detail what you see.";
@@ -27,7 +27,10 @@ pub trait Asker: Send + Sync {
     /// `rules`, or `provider/model`.
     fn name(&self) -> &str;
     /// The next question after what was said so far, or `None` where nothing is left to ask.
-    fn next_question(&self, transcript: &[Exchange]) -> Option<String>;
+    ///
+    /// # Errors
+    /// When a model was to choose it and gave nothing.
+    fn next_question(&self, transcript: &[Exchange]) -> Result<Option<String>, ModelError>;
 }
 
 /// Sums a dialogue up.
@@ -35,7 +38,16 @@ pub trait Summariser: Send + Sync {
     /// `rules`, or `provider/model`.
     fn name(&self) -> &str;
     /// A caption of what `answerer` said. It holds no object that was denied.
-    fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Caption;
+    ///
+    /// # Errors
+    /// When a model was to write it and gave nothing.
+    fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError>;
+
+    /// Captions of one place, each with its direction in words ("north"), as one description of fewer words than that.
+    ///
+    /// # Errors
+    /// When a model was to write it and gave nothing.
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<String, ModelError>;
 }
 
 /// How a view is asked about.
@@ -48,6 +60,8 @@ pub enum Mode {
     },
     /// [`FIXED_QUERIES`] and no dialogue.
     Fixed,
+    /// [`OPENING`] alone: its answer is the caption.
+    Single,
 }
 
 /// What a dialogue needs next.
@@ -75,7 +89,7 @@ impl Dialogue {
     #[must_use]
     pub fn new(mode: Mode) -> Self {
         let first = match mode {
-            Mode::Dialogue { .. } => OPENING,
+            Mode::Dialogue { .. } | Mode::Single => OPENING,
             Mode::Fixed => FIXED_QUERIES[0],
         };
         Self { mode, pending: Some(first.to_owned()), exhausted: false, transcript: Vec::new() }
@@ -103,9 +117,10 @@ impl Dialogue {
     /// Tells it the answer to the question that it needed one for.
     pub fn answer(&mut self, answer: &str) {
         let Some(question) = self.pending.take() else { return };
-        self.transcript.push(Exchange { question, answer: answer.trim().to_owned() });
+        self.transcript.push(Exchange::new(question, answer.trim()));
         match self.mode {
             Mode::Dialogue { questions } => self.exhausted = self.transcript.len() > questions,
+            Mode::Single => self.exhausted = true,
             Mode::Fixed => {
                 self.pending = FIXED_QUERIES.get(self.transcript.len()).map(|query| (*query).to_owned());
                 self.exhausted = self.pending.is_none();

@@ -5,7 +5,7 @@ use super::{
     answers::{counted, is_denied, room, sightings, with_article},
 };
 use crate::lexicon::thing;
-use wayword_core::{Caption, Exchange, Sighting, Where, Witness};
+use wayword_core::{Caption, Exchange, ModelError, Sighting, Where, Witness};
 
 /// Writes a caption from what was said to be there, and leaves out what was denied or not known.
 #[derive(Debug, Clone, Copy, Default)]
@@ -16,7 +16,7 @@ impl Summariser for RulesSummariser {
         "rules"
     }
 
-    fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Caption {
+    fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError> {
         let told = sightings(transcript, answerer);
         let room = room(transcript);
         let seen: Vec<&Sighting> = told
@@ -24,7 +24,12 @@ impl Summariser for RulesSummariser {
             .filter(|sighting| sighting.witness == Witness::Seen && !is_denied(&sighting.name, &told))
             .collect();
         let text = caption(room.as_deref(), &seen);
-        Caption { text, room, sightings: told, transcript: transcript.to_vec() }
+        Ok(Caption { text, room, sightings: told, transcript: transcript.to_vec(), by: None })
+    }
+
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<String, ModelError> {
+        let captions: Vec<&Caption> = captions.iter().map(|(_, caption)| *caption).collect();
+        Ok(condense(&captions, fewer_words_than))
     }
 }
 
@@ -57,8 +62,7 @@ fn enumerate(items: &[String]) -> String {
 
 /// Several captions of one place as one description of under `fewer_words_than` words: the room, then the landmarks that
 /// stand out most (arXiv 2403.11487 condenses four captions to under 20 words).
-#[must_use]
-pub fn condense(captions: &[&Caption], fewer_words_than: usize) -> String {
+fn condense(captions: &[&Caption], fewer_words_than: usize) -> String {
     let room = captions.iter().find_map(|caption| caption.room.as_deref());
     let seen =
         captions.iter().flat_map(|caption| &caption.sightings).filter(|sighting| sighting.witness == Witness::Seen);
@@ -83,7 +87,7 @@ mod tests {
     use super::*;
 
     fn exchange(question: &str, answer: &str) -> Exchange {
-        Exchange { question: question.to_owned(), answer: answer.to_owned() }
+        Exchange::new(question, answer)
     }
 
     #[test]
@@ -93,7 +97,7 @@ mod tests {
             exchange("Which room is this?", "It is a bedroom."),
             exchange("Is there a mirror?", "No, there is no mirror."),
         ];
-        let caption = RulesSummariser.sum_up(&transcript, "test");
+        let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
         assert_eq!(caption.text, "A bedroom with a bed in the middle.");
         assert!(caption.sightings.iter().any(|s| s.name == "mirror" && s.witness == Witness::Denied));
     }
@@ -103,7 +107,7 @@ mod tests {
         let list = "There is a bed in the middle, a side table on the left, a floor lamp on the left, a picture on the right, \
                     a window on the right, a rug in the middle and a chair on the right.";
         let transcript = [exchange(super::super::OPENING, list), exchange("Which room is this?", "It is a bedroom.")];
-        let caption = RulesSummariser.sum_up(&transcript, "test");
+        let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
         let short = condense(&[&caption, &caption], 20);
         assert!(crate::text::word_count(&short) < 20, "{short}");
         assert!(short.starts_with("a bedroom with a bed"), "{short}");

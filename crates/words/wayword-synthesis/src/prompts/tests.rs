@@ -11,7 +11,7 @@ fn transcript() -> Vec<Exchange> {
         ("Describe in detail what you see.", "There is a bed in the middle."),
         ("Is there a mirror?", "No, there is no mirror."),
     ]
-    .map(|(question, answer)| Exchange { question: question.into(), answer: answer.into() })
+    .map(|(question, answer)| Exchange::new(question, answer))
     .to_vec()
 }
 

@@ -1,0 +1,1 @@
+//! Every call of a model, made once and kept.
