@@ -4,12 +4,18 @@
 //! way against a model, a recording or a test.
 
 mod answers;
+mod clean;
+mod faults;
+mod news;
 mod questions;
 mod summary;
+mod trouble;
 
-use wayword_core::{Caption, Exchange, ModelError};
+use crate::text::words;
+use wayword_core::{Caption, Exchange, ModelError, Trouble};
 
-pub(crate) use answers::{counted, plural, sightings, with_article};
+pub(crate) use answers::{Asked, Wanted, asked, counted, plural, sightings, with_article};
+pub use faults::{CaptionFault, caption_faults};
 pub use questions::RulesAsker;
 pub use summary::RulesSummariser;
 
@@ -79,10 +85,23 @@ pub enum Need {
 #[derive(Debug, Clone)]
 pub struct Dialogue {
     mode: Mode,
-    pending: Option<String>,
+    pending: Option<Pending>,
     exhausted: bool,
+    /// Rounds in a row that brought nothing new.
+    stale: usize,
     transcript: Vec<Exchange>,
 }
+
+/// A question that waits for its answer.
+#[derive(Debug, Clone)]
+struct Pending {
+    question: String,
+    /// Why the first answer could not be used, where there was one.
+    trouble: Option<Trouble>,
+}
+
+/// After so many rounds in a row that bring nothing new the asking ends.
+const STALE_ROUNDS: usize = 2;
 
 impl Dialogue {
     /// A dialogue that has not begun.
@@ -92,40 +111,68 @@ impl Dialogue {
             Mode::Dialogue { .. } | Mode::Single => OPENING,
             Mode::Fixed => FIXED_QUERIES[0],
         };
-        Self { mode, pending: Some(first.to_owned()), exhausted: false, transcript: Vec::new() }
+        let mut dialogue = Self { mode, pending: None, exhausted: false, stale: 0, transcript: Vec::new() };
+        dialogue.put(Some(first.to_owned()));
+        dialogue
     }
 
     /// What it needs next.
     #[must_use]
     pub fn need(&self) -> Need {
         match &self.pending {
-            Some(question) => Need::Answer(question.clone()),
+            Some(Pending { question, trouble: None }) => Need::Answer(question.clone()),
+            Some(Pending { question, trouble: Some(_) }) => Need::Answer(trouble::rephrased(question)),
             None if self.exhausted => Need::Summary,
             None => Need::Question,
         }
     }
 
-    /// Tells it the asker's question; `None`, an empty or a repeated one ends the asking.
+    /// Tells it the asker's question, with whatever a model has put around it. `None`, no question, or one that was asked
+    /// before in the same words ends the asking.
     pub fn ask(&mut self, question: Option<String>) {
-        let question = question.map(|question| question.trim().to_owned()).filter(|question| !question.is_empty());
-        let is_new =
-            |question: &String| !self.transcript.iter().any(|before| before.question.eq_ignore_ascii_case(question));
-        self.pending = question.filter(is_new);
-        self.exhausted = self.pending.is_none();
+        let question = question.and_then(|question| clean::question(&question));
+        let is_new = |question: &String| {
+            !self.transcript.iter().any(|before| same_words(&before.question) == same_words(question))
+        };
+        let question = question.filter(is_new);
+        self.put(question);
     }
 
-    /// Tells it the answer to the question that it needed one for.
+    /// Tells it the answer to the question that it needed one for. The same question is asked once more, in other words, where
+    /// the answer cannot be used.
     pub fn answer(&mut self, answer: &str) {
-        let Some(question) = self.pending.take() else { return };
-        self.transcript.push(Exchange::new(question, answer.trim()));
-        match self.mode {
-            Mode::Dialogue { questions } => self.exhausted = self.transcript.len() > questions,
-            Mode::Single => self.exhausted = true,
-            Mode::Fixed => {
-                self.pending = FIXED_QUERIES.get(self.transcript.len()).map(|query| (*query).to_owned());
-                self.exhausted = self.pending.is_none();
-            }
+        let Some(Pending { question, trouble }) = self.pending.take() else { return };
+        let asked = if trouble.is_some() { trouble::rephrased(&question) } else { question.clone() };
+        let answer = clean::answer(answer, &asked);
+        let found = trouble::trouble(&asked, &answer, &self.transcript)
+            .or_else(|| trouble::trouble(&question, &answer, &self.transcript));
+        if found.is_some() && trouble.is_none() {
+            self.pending = Some(Pending { question, trouble: found });
+            return;
         }
+        let answer = if found.is_some() { String::new() } else { answer };
+        self.transcript.push(Exchange { question, answer, trouble });
+        self.go_on();
+    }
+
+    /// Decides what follows an exchange.
+    fn go_on(&mut self) {
+        match self.mode {
+            Mode::Dialogue { questions } => {
+                // The opening has nothing before it, and the first question often is a formality: which room it is.
+                let counts = self.transcript.len() > 2 && !news::is_new(&self.transcript);
+                self.stale = if counts { self.stale + 1 } else { 0 };
+                self.exhausted = self.transcript.len() > questions || self.stale >= STALE_ROUNDS;
+            }
+            Mode::Single => self.exhausted = true,
+            Mode::Fixed => self.put(FIXED_QUERIES.get(self.transcript.len()).map(|query| (*query).to_owned())),
+        }
+    }
+
+    /// Puts a question; without one nothing more is asked.
+    fn put(&mut self, question: Option<String>) {
+        self.exhausted = question.is_none();
+        self.pending = question.map(|question| Pending { question, trouble: None });
     }
 
     /// What was said so far.
@@ -133,6 +180,12 @@ impl Dialogue {
     pub fn transcript(&self) -> &[Exchange] {
         &self.transcript
     }
+}
+
+/// The words of a question but for articles: by these two are the same.
+fn same_words(question: &str) -> Vec<String> {
+    let is_article = |word: &String| matches!(word.as_str(), "a" | "an" | "the" | "any" | "some");
+    words(question).into_iter().filter(|word| !is_article(word)).collect()
 }
 
 #[cfg(test)]
@@ -170,5 +223,89 @@ mod tests {
     #[test]
     fn the_fixed_variant_asks_its_two_queries_and_no_asker() {
         assert_eq!(run(Mode::Fixed, |_| panic!("no asker has a say here")), FIXED_QUERIES);
+    }
+
+    #[test]
+    fn the_same_question_in_another_case_and_with_another_article_ends_it() {
+        let again = ["Is there a lamp?", "is there any LAMP"];
+        assert_eq!(run(Mode::Dialogue { questions: 9 }, |step| again.get(step / 2).map(|q| (*q).to_owned())).len(), 2);
+    }
+
+    /// A dialogue after its opening and one question, to which these answers are given until it takes one.
+    fn asked_twice(answers: &[&str]) -> (Vec<String>, Exchange) {
+        let mut dialogue = Dialogue::new(Mode::Dialogue { questions: 9 });
+        dialogue.answer("There is a large bed beside a tall window.");
+        dialogue.ask(Some("What colour is the bed?".to_owned()));
+        let mut asked = Vec::new();
+        for answer in answers {
+            match dialogue.need() {
+                Need::Answer(question) => asked.push(question),
+                need => panic!("{need:?}"),
+            }
+            dialogue.answer(answer);
+        }
+        assert_eq!(dialogue.need(), Need::Question);
+        (asked, dialogue.transcript()[1].clone())
+    }
+
+    #[test]
+    fn an_answer_that_cannot_be_used_is_asked_for_once_more_in_other_words() {
+        for (bad, trouble) in [
+            ("  ", Trouble::Empty),
+            ("What colour is the bed?", Trouble::Echo),
+            ("the bed the bed the bed the bed", Trouble::Loop),
+            ("There is a large bed beside a tall window.", Trouble::Repeat),
+        ] {
+            let (asked, exchange) = asked_twice(&[bad, "It is red."]);
+            assert_eq!(
+                asked,
+                ["What colour is the bed?", "Look again and answer in one short sentence: What colour is the bed?"]
+            );
+            assert_eq!(
+                exchange,
+                Exchange {
+                    question: "What colour is the bed?".into(),
+                    answer: "It is red.".into(),
+                    trouble: Some(trouble)
+                }
+            );
+            let (_, exchange) = asked_twice(&[bad, bad]);
+            assert_eq!((exchange.answer.as_str(), exchange.trouble), ("", Some(trouble)));
+        }
+        assert_eq!(asked_twice(&["It is red."]).1.trouble, None);
+    }
+
+    #[test]
+    fn what_models_add_to_questions_and_answers_is_taken_off() {
+        let mut dialogue = Dialogue::new(Mode::Dialogue { questions: 1 });
+        dialogue.answer("A bed.\nQuestion: Is there a lamp? Answer: Yes.");
+        dialogue.ask(Some("Sure! Question: \"Is there a rug?\" Answer: no".to_owned()));
+        assert_eq!(dialogue.need(), Need::Answer("Is there a rug?".to_owned()));
+        dialogue.answer("Question: Is there a rug? Answer: No.");
+        let said: Vec<_> = dialogue.transcript().iter().map(|exchange| exchange.answer.as_str()).collect();
+        assert_eq!(said, ["A bed.", "No."]);
+    }
+
+    #[test]
+    fn two_rounds_without_news_end_it() {
+        let talk = |answers: &[&str]| {
+            let mut dialogue = Dialogue::new(Mode::Dialogue { questions: 9 });
+            dialogue.answer("There is a bed.");
+            let mut asked = 0;
+            while let Need::Question = dialogue.need() {
+                dialogue.ask(Some(format!("What else can be told of the bed, part {asked}?")));
+                dialogue.answer(answers[asked % answers.len()]);
+                asked += 1;
+            }
+            asked
+        };
+        assert_eq!(talk(&["It is there.", "It is a bed.", "There is a bed.", "I see a bed."]), 3);
+        let news = ["Red", "Wood", "Soft", "Old", "Wide", "Clean", "High", "Square", "Royal"];
+        assert_eq!(talk(&news), 9);
+    }
+
+    #[test]
+    fn a_single_description_is_asked_for_and_no_asker() {
+        assert_eq!(run(Mode::Single, |_| panic!("no asker has a say here")), [OPENING]);
     }
 }

@@ -1,12 +1,32 @@
 //! The asker that works by rules.
 
-use super::{Asker, sightings};
-use crate::lexicon::{agree, room_name, thing};
+use super::{
+    Asker,
+    answers::{is_plural, plural, room, sightings, with_article},
+};
+use crate::lexicon::{Class, agree, room_name, thing};
 use wayword_core::{Exchange, ModelError, Sighting, Witness};
 
-/// Asks which room it is, looks for what such a room usually has and nobody named, and asks for colours of landmarks.
+/// Asks which room it is, whether what the opening named is really there, where that may be doubted, looks for what such a room
+/// usually has and nobody named, and asks for colours of landmarks.
+///
+/// The default doubts nothing, which suits an answerer that names only what is there, as `labels` does.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct RulesAsker;
+pub struct RulesAsker {
+    /// Most things whose presence is asked about though the opening named them.
+    doubts: usize,
+}
+
+/// A model's description holds ghosts: most of nine questions go against them, and two are left for colours.
+const DOUBTS: usize = 6;
+
+impl RulesAsker {
+    /// An asker for an answerer that may name what is not there.
+    #[must_use]
+    pub fn for_models() -> Self {
+        Self { doubts: DOUBTS }
+    }
+}
 
 /// Most objects whose presence is asked about: a "no" is evidence too, but each costs a question.
 const PROBES: usize = 3;
@@ -42,19 +62,47 @@ impl Asker for RulesAsker {
         if !asked(room_question) {
             return Ok(Some(room_question.to_owned()));
         }
+        if let Some(doubt) = doubts(transcript).into_iter().take(self.doubts).find(|question| !asked(question)) {
+            return Ok(Some(doubt));
+        }
         let told = sightings(transcript, "");
         let probe = probes(transcript, &told).into_iter().find(|question| !asked(question));
-        let probed = transcript.iter().filter(|exchange| exchange.question.starts_with("Is there ")).count();
+        let is_probe = |question: &str| question.starts_with("Is there ") && !question.starts_with("Is there really ");
+        let probed = transcript.iter().filter(|exchange| is_probe(&exchange.question)).count();
         Ok(probe.filter(|_| probed < PROBES).or_else(|| colours(&told).into_iter().find(|question| !asked(question))))
     }
 }
 
+/// Questions for what the opening named, the most salient first. Neither walls nor small things are worth one.
+fn doubts(transcript: &[Exchange]) -> Vec<String> {
+    let opening = transcript.get(..1).unwrap_or_default();
+    let named = sightings(opening, "");
+    let salience = |sighting: &Sighting| {
+        let judged = thing(&sighting.name).filter(|thing| !matches!(thing.class, Class::Fabric | Class::Door));
+        judged.map_or(0, |thing| thing.salience)
+    };
+    let mut named: Vec<&Sighting> = named.iter().filter(|sighting| salience(sighting) > 0).collect();
+    named.sort_by_key(|sighting| std::cmp::Reverse(salience(sighting)));
+    let mut questions: Vec<String> = Vec::new();
+    for sighting in named {
+        let question = if sighting.several || is_plural(&sighting.name) {
+            format!("Are there really any {}?", plural(&sighting.name))
+        } else {
+            format!("Is there really {}?", with_article(&sighting.name))
+        };
+        if !questions.contains(&question) {
+            questions.push(question);
+        }
+    }
+    questions
+}
+
 fn probes(transcript: &[Exchange], told: &[Sighting]) -> Vec<String> {
-    let room = super::answers::room(transcript).unwrap_or_default();
+    let room = room(transcript).unwrap_or_default();
     let room = room_name(&room).unwrap_or_default();
     let usual = USUAL.iter().find(|(name, _)| *name == room).map_or(USUAL_ANYWHERE, |(_, things)| things);
     let unnamed = usual.iter().filter(|name| !told.iter().any(|sighting| agree(&sighting.name, name)));
-    unnamed.map(|name| format!("Is there {}?", super::answers::with_article(name))).collect()
+    unnamed.map(|name| format!("Is there {}?", with_article(name))).collect()
 }
 
 fn colours(told: &[Sighting]) -> Vec<String> {
@@ -79,17 +127,52 @@ mod tests {
             exchange(super::super::OPENING, "There is a bed in the middle and a lamp on the left."),
             exchange("Which room is this?", "It is a bedroom."),
         ];
-        assert_eq!(RulesAsker.next_question(&transcript).unwrap().unwrap(), "Is there a wardrobe?");
+        assert_eq!(RulesAsker::default().next_question(&transcript).unwrap().unwrap(), "Is there a wardrobe?");
         transcript.push(exchange("Is there a wardrobe?", "No, there is no wardrobe."));
-        assert_eq!(RulesAsker.next_question(&transcript).unwrap().unwrap(), "Is there a nightstand?");
+        assert_eq!(RulesAsker::default().next_question(&transcript).unwrap().unwrap(), "Is there a nightstand?");
     }
 
     #[test]
     fn it_comes_to_an_end() {
         let mut transcript = vec![exchange(super::super::OPENING, "There is a bed in the middle.")];
-        while let Some(question) = RulesAsker.next_question(&transcript).unwrap() {
+        while let Some(question) = RulesAsker::default().next_question(&transcript).unwrap() {
             transcript.push(exchange(&question, "I am not sure."));
             assert!(transcript.len() < 12, "{transcript:#?}");
         }
+    }
+
+    #[test]
+    fn what_a_model_named_is_doubted_the_most_salient_first() {
+        let mut transcript = vec![
+            exchange(super::super::OPENING, "A bedroom with two lamps, a bed, a white wall and a mirror."),
+            exchange("Which room is this?", "It is a bedroom."),
+        ];
+        let mut asked = Vec::new();
+        while let Some(question) = RulesAsker::for_models().next_question(&transcript).unwrap() {
+            transcript.push(exchange(&question, "No."));
+            asked.push(question);
+        }
+        assert_eq!(
+            asked,
+            [
+                "Is there really a bed?",
+                "Are there really any lamps?",
+                "Is there really a mirror?",
+                "Is there a wardrobe?",
+                "Is there a nightstand?"
+            ]
+        );
+    }
+
+    #[test]
+    fn no_more_things_are_doubted_than_questions_are_set_apart_for_it() {
+        let opening = "There is a bed, a mirror, a lamp, a rug, a desk, a sofa, a piano, a stove and a tree.";
+        let mut transcript = vec![exchange(super::super::OPENING, opening)];
+        while let Some(question) = RulesAsker::for_models().next_question(&transcript).unwrap() {
+            transcript.push(exchange(&question, "Yes."));
+            assert!(transcript.len() < 20);
+        }
+        let doubted = transcript.iter().filter(|exchange| exchange.question.contains("really")).count();
+        assert_eq!(doubted, DOUBTS);
     }
 }

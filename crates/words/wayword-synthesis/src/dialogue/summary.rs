@@ -2,12 +2,14 @@
 
 use super::{
     Summariser,
-    answers::{counted, is_denied, room, sightings, with_article},
+    answers::{counted, denies, room, sightings, with_article},
+    faults::caption_faults,
 };
 use crate::lexicon::thing;
 use wayword_core::{Caption, Exchange, ModelError, Sighting, Where, Witness};
 
-/// Writes a caption from what was said to be there, and leaves out what was denied or not known.
+/// Writes a caption from what was said to be there, and leaves out what was denied or not known: [`caption_faults`] finds nothing
+/// in it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesSummariser;
 
@@ -19,11 +21,7 @@ impl Summariser for RulesSummariser {
     fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError> {
         let told = sightings(transcript, answerer);
         let room = room(transcript);
-        let seen: Vec<&Sighting> = told
-            .iter()
-            .filter(|sighting| sighting.witness == Witness::Seen && !is_denied(&sighting.name, &told))
-            .collect();
-        let text = caption(room.as_deref(), &seen);
+        let text = held(room.as_deref(), &told);
         Ok(Caption { text, room, sightings: told, transcript: transcript.to_vec(), by: None })
     }
 
@@ -31,6 +29,22 @@ impl Summariser for RulesSummariser {
         let captions: Vec<&Caption> = captions.iter().map(|(_, caption)| *caption).collect();
         Ok(condense(&captions, fewer_words_than))
     }
+}
+
+/// The caption of what was seen. Names are any words, and two that stand side by side may read as a third: what would make a
+/// fault is left out, and at last the room.
+fn held(room: Option<&str>, told: &[Sighting]) -> String {
+    let is_denied = |seen: &Sighting| told.iter().any(|other| denies(other, &seen.name, seen.colour.as_deref()));
+    let mut seen: Vec<&Sighting> =
+        told.iter().filter(|sighting| sighting.witness == Witness::Seen && !is_denied(sighting)).collect();
+    let text = caption(room, &seen);
+    if caption_faults(&text, told).is_empty() {
+        return text;
+    }
+    seen.retain(|sighting| caption_faults(&caption(None, &[sighting]), told).is_empty());
+    let texts = [caption(room, &seen), caption(None, &seen)];
+    let good = texts.into_iter().find(|text| caption_faults(text, told).is_empty());
+    good.unwrap_or_else(|| caption(None, &[]))
 }
 
 fn caption(room: Option<&str>, seen: &[&Sighting]) -> String {
@@ -85,6 +99,7 @@ fn condense(captions: &[&Caption], fewer_words_than: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn exchange(question: &str, answer: &str) -> Exchange {
         Exchange::new(question, answer)
@@ -111,5 +126,108 @@ mod tests {
         let short = condense(&[&caption, &caption], 20);
         assert!(crate::text::word_count(&short) < 20, "{short}");
         assert!(short.starts_with("a bedroom with a bed"), "{short}");
+    }
+
+    #[test]
+    fn a_denial_of_the_kind_takes_its_members_out_and_one_of_a_member_leaves_the_kind() {
+        let opening = exchange(super::super::OPENING, "There are two dining chairs, a table and a red sofa.");
+        let text = |question: &str, answer: &str| {
+            RulesSummariser.sum_up(&[opening.clone(), exchange(question, answer)], "test").unwrap().text
+        };
+        assert_eq!(text("Are there any chairs?", "No."), "A place with a table and a red sofa.");
+        assert_eq!(
+            text("Is there a coffee table?", "No."),
+            "A place with several dining chairs, a table and a red sofa."
+        );
+        assert_eq!(text("Is there a red sofa?", "No."), "A place with several dining chairs and a table.");
+        assert_eq!(
+            text("Is there a green sofa?", "No."),
+            "A place with several dining chairs, a table and a red sofa."
+        );
+    }
+
+    fn phrase() -> impl Strategy<Value = String> {
+        let things = prop::sample::select(vec![
+            "bed",
+            "red chair",
+            "chair",
+            "dining chairs",
+            "couch",
+            "stairs",
+            "bar",
+            "white board",
+            "oven and stove",
+            "gizmo",
+            "toilet",
+            "kitchen table",
+            "picture",
+            "light",
+            "landing",
+            "bath towel",
+            "wall",
+            "teal",
+        ]);
+        let forms = prop::sample::select(vec![
+            "There is a {} on the left.",
+            "No, there is no {}.",
+            "a {} or a {}",
+            "maybe a {}",
+            "It is a {}.",
+            "Yes",
+            "No.",
+            "The {} is red.",
+            "The picture shows a {} with a {}",
+            "I don't see any {}, {} or {}",
+            "{} {} {}",
+            "not a {} but a {}",
+            "There is a {} in the middle, two {} on the left and some {} on the right.",
+            "I am not sure.",
+        ]);
+        (forms, prop::collection::vec(things, 3))
+            .prop_map(|(form, things)| things.iter().fold(form.to_owned(), |text, thing| text.replacen("{}", thing, 1)))
+    }
+
+    fn question() -> impl Strategy<Value = String> {
+        let forms = prop::sample::select(vec![
+            "Is there a {}?",
+            "What colour is the {}?",
+            "Are there any {}?",
+            "Which room is this?",
+            "Is this a {}?",
+            "What is here?",
+            "Is there a red {}?",
+            "How many {} are there?",
+            "Where is the {}?",
+        ]);
+        let things = prop::sample::select(vec![
+            "bed",
+            "chair",
+            "couch",
+            "staircase",
+            "bar",
+            "dining chair",
+            "kitchen",
+            "toilet",
+        ]);
+        (forms, things).prop_map(|(form, thing)| form.replace("{}", thing))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+        #[test]
+        fn no_transcript_gives_a_caption_with_faults(exchanges in prop::collection::vec((question(), phrase()), 1..7)) {
+            let transcript: Vec<Exchange> = exchanges.iter().map(|(question, answer)| exchange(question, answer)).collect();
+            let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
+            prop_assert_eq!(caption_faults(&caption.text, &caption.sightings), vec![], "{}", caption.text);
+        }
+
+        #[test]
+        fn any_words_can_be_summed_up(
+            exchanges in prop::collection::vec(("(\\PC|[\n?.,]){0,40}", "(\\PC|[\n?.,]){0,120}"), 0..4),
+        ) {
+            let transcript: Vec<Exchange> = exchanges.iter().map(|(question, answer)| exchange(question, answer)).collect();
+            let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
+            prop_assert_eq!(caption_faults(&caption.text, &caption.sightings), vec![], "{}", caption.text);
+        }
     }
 }

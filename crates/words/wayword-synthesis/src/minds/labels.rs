@@ -1,8 +1,8 @@
 //! Answers from ground truth. Named `labels` wherever it takes part: it perceives nothing.
 
 use crate::{
-    dialogue::{counted, with_article},
-    lexicon::{agree, normal},
+    dialogue::{Asked, Wanted, asked, counted, plural, with_article},
+    lexicon::{agree, normal, same_room},
 };
 use wayword_core::{Answer, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
 
@@ -29,19 +29,25 @@ fn answer(view: &View, question: &str) -> Result<Answer, ModelError> {
         needs: "labels",
         hint: "name a model that sees pictures, or use a platform or data folder with labels",
     })?;
-    let asked = question.to_lowercase();
-    let subject = |lead: &str| asked.strip_prefix(lead).map(|rest| rest.trim_end_matches('?').trim());
-    Ok(if asked.contains("room") {
-        truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room)))
-    } else if let Some(name) = subject("is there ") {
-        presence(view, truth, name)
-    } else if let Some(name) = subject("what colour is the ") {
-        colour(truth, name)
-    } else if asked.contains("describe") || asked.contains("objects") {
-        describe(view, truth)
-    } else {
-        not_sure()
+    Ok(match asked(question) {
+        Asked::Room => truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room))),
+        Asked::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
+        Asked::Presence { wanted, or } => presence(view, truth, &wanted, or),
+        Asked::Colour { name, .. } => colour(truth, &name),
+        Asked::Number(wanted) => number(truth, &wanted),
+        Asked::Place(wanted) => presence(view, truth, &[wanted], false),
+        Asked::Other(Some(side)) => describe(view, truth, Some(side)),
+        Asked::Other(None) if wants_all(question) => describe(view, truth, None),
+        Asked::Other(None) => not_sure(),
     })
+}
+
+/// Whether a question is for all that is there.
+fn wants_all(question: &str) -> bool {
+    let asked = question.to_lowercase();
+    ["describe", "objects", "what do you see", "what can you see", "what is there"]
+        .iter()
+        .any(|all| asked.contains(all))
 }
 
 fn not_sure() -> Answer {
@@ -61,10 +67,13 @@ fn phrase(third: Where) -> &'static str {
 }
 
 /// "There is a bed in the middle, two lamps on the left and a chair on the right."
-fn describe(view: &View, truth: &GroundTruth) -> Answer {
+fn describe(view: &View, truth: &GroundTruth, only: Option<Where>) -> Answer {
     let mut groups: Vec<(&str, Where, f64, usize)> = Vec::new();
     for label in &truth.labels {
         let (third, distance_m) = (third(view, label), label.distance_m.unwrap_or(f64::INFINITY));
+        if only.is_some_and(|only| only != third) {
+            continue;
+        }
         match groups.iter_mut().find(|(name, at, ..)| *name == label.name && *at == third) {
             Some(group) => (group.2, group.3) = (group.2.min(distance_m), group.3 + 1),
             None => groups.push((&label.name, third, distance_m, 1)),
@@ -84,12 +93,54 @@ fn describe(view: &View, truth: &GroundTruth) -> Answer {
     }
 }
 
-fn presence(view: &View, truth: &GroundTruth, name: &str) -> Answer {
-    let name = ["a ", "an ", "any ", "some "].iter().find_map(|article| name.strip_prefix(article)).unwrap_or(name);
-    match truth.labels.iter().find(|label| agree(&label.name, name)) {
-        Some(label) => format!("Yes, {}.", phrase(third(view, label))),
-        None => format!("No, there is no {name}."),
+/// "Yes, on the left.", "No, there is no lamp."; of several that are asked for, which are there.
+fn presence(view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> Answer {
+    let found: Vec<(&Wanted, Option<&Label>)> =
+        wanted.iter().map(|wanted| (wanted, find(view, truth, wanted))).collect();
+    if let [(wanted, label)] = found.as_slice() {
+        return match label {
+            Some(label) => format!("Yes, {}.", phrase(third(view, label))),
+            None => no(&wanted.said, wanted.several),
+        };
     }
+    let there: Vec<String> = found
+        .iter()
+        .filter_map(|(wanted, label)| {
+            Some(format!("{} {}", with_article(&wanted.name), phrase(third(view, (*label)?))))
+        })
+        .collect();
+    let missing: Vec<&str> =
+        found.iter().filter(|(_, label)| label.is_none()).map(|(wanted, _)| wanted.said.as_str()).collect();
+    match (there.as_slice(), missing.as_slice()) {
+        ([], missing) => no(&missing.join(" or "), false),
+        (there, []) => format!("Yes, there is {}.", there.join(" and ")),
+        (there, missing) => {
+            let begin = if or { "Yes" } else { "No" };
+            format!("{begin}, there is {}. There is no {}.", there.join(" and "), missing.join(" or "))
+        }
+    }
+}
+
+fn no(said: &str, several: bool) -> Answer {
+    format!("No, there {} no {said}.", if several { "are" } else { "is" })
+}
+
+/// The label that a question asks for, of the colour and in the part of the view that it names.
+fn find<'a>(view: &View, truth: &'a GroundTruth, wanted: &Wanted) -> Option<&'a Label> {
+    let has_colour = |label: &Label| wanted.colour.is_none() || label.colour == wanted.colour;
+    let is_there = |label: &Label| wanted.place.is_none_or(|place| place == third(view, label));
+    truth.labels.iter().find(|label| agree(&label.name, &wanted.name) && has_colour(label) && is_there(label))
+}
+
+fn number(truth: &GroundTruth, wanted: &Wanted) -> Answer {
+    match truth.labels.iter().filter(|label| agree(&label.name, &wanted.name)).count() {
+        0 => format!("There are no {}.", plural(&wanted.name)),
+        count => format!("There {} {}.", if count > 1 { "are" } else { "is" }, counted(count, &wanted.name)),
+    }
+}
+
+fn is_room(room: &str, name: &str) -> Answer {
+    if same_room(room, name) { "Yes.".to_owned() } else { format!("No, it is {}.", with_article(room)) }
 }
 
 fn colour(truth: &GroundTruth, name: &str) -> Answer {
@@ -139,6 +190,28 @@ mod tests {
         assert_eq!(ask("Is there a mirror?"), "No, there is no mirror.");
         assert_eq!(ask("What colour is the sofa?"), "The sofa is green.");
         assert_eq!(ask("What colour is the oven?"), "I am not sure.");
+    }
+
+    #[test]
+    fn free_questions_are_answered_too() {
+        for (question, answer) in [
+            ("Do you see a lamp?", "Yes, on the left."),
+            ("Are there any chairs in the room?", "No, there are no chairs."),
+            ("Is there really an oven?", "Yes, on the right."),
+            ("Is there a red sofa?", "No, there is no red sofa."),
+            ("Is there a lamp on the right?", "No, there is no lamp."),
+            ("Is there a lamp or a mirror?", "Yes, there is a lamp on the left. There is no mirror."),
+            ("Do you see a mirror or a bed?", "No, there is no mirror or bed."),
+            ("What kind of room is this?", "It is an office."),
+            ("Is this a kitchen?", "No, it is an office."),
+            ("How many lamps are there?", "There are two lamps."),
+            ("Where is the oven?", "Yes, on the right."),
+            ("What is on the left side of the room?", "There are two lamps on the left."),
+            ("Is there a door leading to the living room?", "No, there is no door."),
+            ("What is the weather like?", "I am not sure."),
+        ] {
+            assert_eq!(ask(question), answer, "{question}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@
 mod places;
 mod task;
 mod turns;
-mod vocabulary;
+pub(crate) mod vocabulary;
 
 use crate::text::{Token, tokens};
 use std::collections::BTreeSet;

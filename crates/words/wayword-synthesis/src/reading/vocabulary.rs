@@ -43,7 +43,7 @@ pub(super) static AFTER_ADVERB_RIGHT: Words =
 pub(super) static DETERMINERS: Words = LazyLock::new(|| split("the a an this that these those your its another some"));
 
 /// Words that end a noun phrase.
-pub(super) static BREAKERS: Words = LazyLock::new(|| {
+pub(crate) static BREAKERS: Words = LazyLock::new(|| {
     split(
         "of on in at to and or with that which is are until till then into through past by near behind next before \
      after from for along towards toward between across under above over it you there straight ahead outside \
@@ -54,7 +54,7 @@ pub(super) static BREAKERS: Words = LazyLock::new(|| {
 });
 
 /// Heads of noun phrases that name no landmark.
-pub(super) static ABSTRACT: Words = LazyLock::new(|| {
+pub(crate) static ABSTRACT: Words = LazyLock::new(|| {
     split(
         "way left right side end front back top bottom middle center centre room area space place direction other \
      first second third fourth last one next hand house building home level story storey path rest edge same \
@@ -84,7 +84,7 @@ pub(super) static ADJECTIVES: Words = LazyLock::new(|| {
 });
 
 /// Those adjectives that are colours.
-pub(super) static COLOURS: Words = LazyLock::new(|| {
+pub(crate) static COLOURS: Words = LazyLock::new(|| {
     split(
         "black white grey gray brown red blue green yellow orange purple pink beige tan gold silver cream teal navy \
      turquoise",

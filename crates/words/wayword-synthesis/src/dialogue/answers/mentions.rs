@@ -1,0 +1,378 @@
+//! Free words: whatever they name, and what they say of it.
+
+use super::{
+    colour::said_of,
+    names::{says_several, singular},
+    place::{Phrase, phrases},
+    scope::{PERCEIVING, Sentence},
+};
+use crate::{
+    lexicon::{agree, normal, thing},
+    reading::{
+        What, read,
+        vocabulary::{ABSTRACT, BREAKERS},
+    },
+    text::{Token, tokens},
+};
+use std::{collections::BTreeSet, ops::Range};
+use wayword_core::{Where, Witness};
+
+/// Something that a text names.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::dialogue) struct Mention {
+    /// Its name in the singular, where it is no plural by nature. What is denied keeps what sets it apart: "red chair".
+    pub(in crate::dialogue) name: String,
+    pub(in crate::dialogue) is_thing: bool,
+    pub(in crate::dialogue) is_room: bool,
+    pub(in crate::dialogue) witness: Witness,
+    pub(in crate::dialogue) colour: Option<String>,
+    pub(in crate::dialogue) place: Option<Where>,
+    pub(in crate::dialogue) several: bool,
+    /// The word before it but for articles and adjectives: "to", "of" ...
+    pub(in crate::dialogue) before: String,
+}
+
+/// Longest text that is read, bytes; answers are shorter, and what is behind it is left out.
+const MOST_BYTES: usize = 16_384;
+/// Words after which a noun that the lexicon lacks is one that is said to be there.
+const BRINGS_IN: [&str; 14] = [
+    "there",
+    "there's",
+    "there’s",
+    "see",
+    "has",
+    "have",
+    "contains",
+    "with",
+    "features",
+    "includes",
+    "without",
+    "no",
+    "not",
+    "any",
+];
+/// Heads of noun phrases in descriptions that are no objects.
+const NO_OBJECTS: [&str; 62] = [
+    "image",
+    "picture",
+    "photo",
+    "photograph",
+    "scene",
+    "atmosphere",
+    "ambiance",
+    "ambience",
+    "sense",
+    "feeling",
+    "variety",
+    "design",
+    "style",
+    "decor",
+    "layout",
+    "arrangement",
+    "combination",
+    "mix",
+    "touch",
+    "feel",
+    "look",
+    "appearance",
+    "setting",
+    "environment",
+    "color",
+    "colour",
+    "hue",
+    "tone",
+    "pattern",
+    "texture",
+    "material",
+    "surface",
+    "furniture",
+    "piece",
+    "item",
+    "object",
+    "thing",
+    "kind",
+    "type",
+    "sort",
+    "number",
+    "collection",
+    "array",
+    "range",
+    "background",
+    "foreground",
+    "shot",
+    "angle",
+    "perspective",
+    "focus",
+    "theme",
+    "vibe",
+    "finish",
+    "size",
+    "shape",
+    "sign",
+    "evidence",
+    "question",
+    "answer",
+    "bit",
+    "interior",
+    "series",
+];
+const NUMBERS: [&str; 22] = [
+    "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "several", "many", "multiple", "numerous",
+    "various", "few", "couple", "rows", "both", "dozen", "pairs", "pair", "lots",
+];
+/// Words before a noun that do not tell which of its kind is meant.
+const TELLS_NOTHING: [&str; 40] = [
+    "a",
+    "an",
+    "the",
+    "any",
+    "no",
+    "not",
+    "some",
+    "visible",
+    "clear",
+    "obvious",
+    "apparent",
+    "actual",
+    "real",
+    "really",
+    "single",
+    "large",
+    "big",
+    "small",
+    "little",
+    "tall",
+    "of",
+    "sign",
+    "signs",
+    "evidence",
+    "or",
+    "nor",
+    "and",
+    ",",
+    "see",
+    "have",
+    "one",
+    "such",
+    "kind",
+    "type",
+    "sort",
+    "pair",
+    "notable",
+    "prominent",
+    "traditional",
+    "modern",
+];
+/// Nouns before "of" that leave no object behind.
+const OTHERS: [&str; 6] = ["other", "additional", "further", "more", "second", "another"];
+
+/// Reads a text. `known` holds names, in normal spelling, that the lexicon may lack.
+pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec<Mention> {
+    let text = bounded(text);
+    let tokens = tokens(text);
+    let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
+    let nouns = nouns(text, &tokens, &words, known);
+    let mut found = Vec::new();
+    for sentence in sentences(text, &tokens) {
+        let within: Vec<&Noun> =
+            nouns.iter().filter(|noun| sentence.contains(&noun.at.start) && noun.at.end <= sentence.end).collect();
+        if !within.is_empty() {
+            of_sentence(&words[sentence.clone()], sentence.start, &within, &mut found);
+        }
+    }
+    found
+}
+
+fn bounded(text: &str) -> &str {
+    let mut end = text.len().min(MOST_BYTES);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    &text[..end]
+}
+
+/// The sentences of a text as ranges of its tokens. A new line begins a new one.
+pub(super) fn sentences(text: &str, tokens: &[Token]) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    for at in 0..tokens.len() {
+        let breaks = tokens.get(at + 1).is_none_or(|next| text[tokens[at].span[1]..next.span[0]].contains('\n'));
+        if tokens[at].ends_sentence() || breaks {
+            found.push(start..at + 1);
+            start = at + 1;
+        }
+    }
+    found
+}
+
+struct Noun {
+    at: Range<usize>,
+    is_thing: bool,
+    is_room: bool,
+    colour: Option<String>,
+}
+
+fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>) -> Vec<Noun> {
+    let places = read(text, known).events.into_iter().filter_map(|event| match event.what {
+        What::Place(place) => Some((event.span, place)),
+        _ => None,
+    });
+    places
+        .filter_map(|(span, place)| {
+            let from = tokens.partition_point(|token| token.span[0] < span[0]);
+            let to = tokens.partition_point(|token| token.span[0] < span[1]);
+            let name = words[from..to].join(" ");
+            let in_lexicon = thing(&name).is_some() || place.is_room || known.contains(&normal(&name));
+            let is_object = if in_lexicon { !is_the_picture(words, from, to) } else { is_brought_in(words, from, to) };
+            is_object.then_some(Noun {
+                at: from..to,
+                is_thing: place.is_thing,
+                is_room: place.is_room,
+                colour: place.colour,
+            })
+        })
+        .collect()
+}
+
+/// "The picture shows", "in this photo", "a picture of a kitchen": the view itself and nothing on a wall of it.
+fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
+    let single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph" | "painting" | "print");
+    let word = |at: usize| words.get(at).copied().unwrap_or("");
+    let before = if from > 0 { word(from - 1) } else { "" };
+    let hangs = matches!(word(to), "on" | "above" | "over" | "hanging" | "hangs" | "frame" | "frames");
+    let of_all = word(to) == "of" && from <= 4;
+    let shows = matches!(word(to), "shows" | "depicts" | "features" | "contains" | "captures" | "showing" | "itself");
+    single && !hangs && (matches!(before, "the" | "this") && word(from) != "painting" || of_all || shows)
+}
+
+/// A noun that the lexicon lacks counts where it is said to be there or not, and is no word of describing.
+fn is_brought_in(words: &[&str], from: usize, to: usize) -> bool {
+    let head = normal(words[to - 1]);
+    let start = (0..from).rev().find(|at| matches!(words[*at], "." | "!" | "?" | ";")).map_or(0, |at| at + 1);
+    let indefinite = from > 0 && matches!(words[from - 1], "a" | "an");
+    let stays = |word: &str| !NO_OBJECTS.contains(&normal(word).as_str()) && !word.ends_with("ing") && word != "shows";
+    indefinite
+        && to - from <= 3
+        && words[from..to].iter().all(|word| stays(word))
+        && !ABSTRACT.contains(&head.as_str())
+        && words[start..from].iter().any(|word| BRINGS_IN.contains(word))
+}
+
+fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Mention>) {
+    let ranges: Vec<Range<usize>> = nouns.iter().map(|noun| noun.at.start - start..noun.at.end - start).collect();
+    let mut witnesses = Sentence { words, nouns: &ranges }.witnesses();
+    let doubles = alternatives(words, &ranges, &mut witnesses);
+    let places = places_of(words, &ranges);
+    for (at, noun) in nouns.iter().enumerate().filter(|(at, _)| !doubles.contains(at)) {
+        let (range, witness) = (&ranges[at], witnesses[at]);
+        let said = words[range.clone()].join(" ");
+        let which = which(words, range);
+        if witness == Witness::Denied && which.iter().any(|word| OTHERS.contains(word)) {
+            continue;
+        }
+        let plural = says_several(&said);
+        let name = if plural { singular(&said) } else { said };
+        let denied = witness == Witness::Denied;
+        let colour = noun.colour.clone().or_else(|| said_of(&words[range.end..])).filter(|_| !denied);
+        found.push(Mention {
+            name: if denied && !which.is_empty() { format!("{} {name}", which.join(" ")) } else { name },
+            is_thing: noun.is_thing,
+            is_room: noun.is_room,
+            witness,
+            colour,
+            place: places[at],
+            several: !denied && (plural || is_counted(words, range.start)),
+            before: before(words, range.start).to_owned(),
+        });
+    }
+}
+
+/// "A sofa or a bench": nobody knows which, so neither is sure. "A sofa or couch" is one thing; its second name is given back.
+fn alternatives(words: &[&str], nouns: &[Range<usize>], witnesses: &mut [Witness]) -> Vec<usize> {
+    let mut doubles = Vec::new();
+    for at in 1..nouns.len() {
+        let between = &words[nouns[at - 1].end..nouns[at].start];
+        let is_or = between.len() <= 4
+            && between.contains(&"or")
+            && !between.iter().any(|word| matches!(*word, "is" | "are" | "on" | "in" | "," | "and"));
+        if !is_or || witnesses[at - 1..=at].contains(&Witness::Denied) {
+            continue;
+        }
+        let name = |noun: &Range<usize>| words[noun.clone()].join(" ");
+        if agree(&name(&nouns[at - 1]), &name(&nouns[at])) {
+            doubles.push(at);
+        } else {
+            witnesses[at - 1..=at].fill(Witness::Unsure);
+        }
+    }
+    doubles
+}
+
+/// Whether a word may stand before a noun phrase.
+fn begins(word: &str) -> bool {
+    TELLS_NOTHING.contains(&word) || BREAKERS.contains(&word) || PERCEIVING.contains(&word)
+}
+
+/// The words that tell which of its kind is meant: colours, materials, uses.
+fn which<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
+    let from = (0..noun.start)
+        .rev()
+        .take_while(|at| {
+            let skipped = matches!(words[*at], "large" | "small" | "big" | "single");
+            (skipped || !begins(words[*at])) && words[*at].chars().all(char::is_alphabetic) && noun.start - at <= 3
+        })
+        .last();
+    let Some(from) = from.filter(|from| *from > 0 && begins(words[from - 1])) else { return Vec::new() };
+    words[from..noun.start].iter().filter(|word| !TELLS_NOTHING.contains(word)).copied().collect()
+}
+
+/// The last word before a noun that is neither an article nor an adjective of a few.
+fn before<'a>(words: &[&'a str], noun: usize) -> &'a str {
+    let skips =
+        |word: &&&str| matches!(**word, "a" | "an" | "the" | "another" | "small" | "large" | "nearby" | "adjacent");
+    words[..noun].iter().rev().find(|word| !skips(word)).copied().unwrap_or("")
+}
+
+fn is_counted(words: &[&str], noun: usize) -> bool {
+    for word in words[..noun].iter().rev().take(5) {
+        let is_number = NUMBERS.contains(word) || word.parse::<u32>().is_ok_and(|number| number > 1);
+        if is_number {
+            return true;
+        }
+        if matches!(*word, "a" | "an" | "the" | "one" | "," | "and" | "on" | "in" | "with" | "to" | "is" | "are") {
+            return false;
+        }
+    }
+    false
+}
+
+/// The place of each noun of a sentence: told behind it, or at the head of the part of the sentence that it stands in.
+fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
+    let mut places = vec![None; nouns.len()];
+    let told = phrases(words);
+    for (at, phrase) in told.iter().enumerate() {
+        let end = told[at + 1..].iter().find(|next| is_head(words, next, nouns)).map_or(words.len(), |next| next.from);
+        if is_head(words, phrase, nouns) {
+            for (noun, place) in nouns.iter().zip(&mut places) {
+                if noun.start >= phrase.to && noun.end <= end {
+                    *place = Some(phrase.place);
+                }
+            }
+        } else if let Some(last) = nouns.iter().rposition(|noun| noun.end <= phrase.from) {
+            let between = &words[nouns[last].end..phrase.from];
+            if between.len() <= 8 && !between.contains(&",") {
+                places[last] = Some(phrase.place);
+            }
+        }
+    }
+    places
+}
+
+/// Whether a phrase of place stands before what it places: at the start, or behind a comma or an "and", with a noun to come.
+fn is_head(words: &[&str], phrase: &Phrase, nouns: &[Range<usize>]) -> bool {
+    let before = phrase.from.checked_sub(1).map_or("", |at| words[at]);
+    let begins = !nouns.iter().any(|noun| noun.end <= phrase.from) && !matches!(before, "it" | "one" | "them" | "they");
+    let joined = matches!(before, "," | "and" | ";" | "while" | "-");
+    let more = nouns.iter().any(|noun| noun.start >= phrase.to);
+    more && (joined || (begins && phrase.from <= 4))
+}

@@ -1,0 +1,91 @@
+//! Names with their articles and numbers.
+
+use crate::{lexicon::normal_word, text::words};
+
+/// Numbers in words, from two on; the last stand for any greater one.
+pub(super) const COUNTS: [&str; 7] = ["two", "three", "four", "five", "six", "several", "many"];
+
+/// Names that are plurals and still one thing.
+const ONE_THING: [&str; 8] = ["stairs", "steps", "drawers", "clothes", "blinds", "drums", "weights", "toiletries"];
+
+/// A name without the article before it.
+pub(super) fn without_article(name: &str) -> &str {
+    ["a ", "an ", "the ", "some "].iter().find_map(|article| name.strip_prefix(article)).unwrap_or(name)
+}
+
+/// A name with the last word in the singular.
+pub(super) fn singular(name: &str) -> String {
+    match name.rsplit_once(' ') {
+        Some((before, last)) => format!("{before} {}", normal_word(last)),
+        None => normal_word(name),
+    }
+}
+
+/// Whether a name is said of several things: "chairs", but not "stairs".
+pub(super) fn says_several(name: &str) -> bool {
+    words(name).last().is_some_and(|last| normal_word(last) != *last && !ONE_THING.contains(&last.as_str()))
+}
+
+/// A name with its article: "a lamp", "an oven", "some shelves".
+pub(crate) fn with_article(name: &str) -> String {
+    let vowel = name.starts_with(['a', 'e', 'i', 'o', 'u']);
+    let article = if is_plural(name) {
+        "some"
+    } else if vowel {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {name}")
+}
+
+/// Whether a name is a plural already.
+pub(crate) fn is_plural(name: &str) -> bool {
+    let last = name.rsplit(' ').next().unwrap_or(name);
+    last.len() > 3 && last.ends_with('s') && !["ss", "us", "is"].iter().any(|end| last.ends_with(end))
+}
+
+/// The plural of a name.
+pub(crate) fn plural(name: &str) -> String {
+    if is_plural(name) {
+        return name.to_owned();
+    }
+    if let Some(stem) = name.strip_suffix("shelf") {
+        return format!("{stem}shelves");
+    }
+    let hisses = ["s", "x", "z", "ch", "sh"].iter().any(|end| name.ends_with(end));
+    let consonant_y = name.ends_with('y') && !["ay", "ey", "oy", "uy"].iter().any(|end| name.ends_with(end));
+    match (hisses, consonant_y) {
+        (true, _) => format!("{name}es"),
+        (_, true) => format!("{}ies", &name[..name.len() - 1]),
+        _ => format!("{name}s"),
+    }
+}
+
+/// A count of things in words: "a lamp", "two lamps", "several lamps".
+pub(crate) fn counted(count: usize, name: &str) -> String {
+    match count {
+        0 | 1 => with_article(name),
+        2..=6 => format!("{} {}", COUNTS[count - 2], plural(name)),
+        _ => format!("several {}", plural(name)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn articles_and_plurals_are_english() {
+        assert_eq!(with_article("oven"), "an oven");
+        assert_eq!(counted(2, "bookshelf"), "two bookshelves");
+        assert_eq!(counted(3, "couch"), "three couches");
+        assert_eq!(counted(1, "shelves"), "some shelves");
+    }
+
+    #[test]
+    fn stairs_are_one_thing_and_chairs_are_several() {
+        assert!(says_several("dining chairs") && says_several("shelves"));
+        assert!(!says_several("stairs") && !says_several("glass") && !says_several("chair"));
+    }
+}

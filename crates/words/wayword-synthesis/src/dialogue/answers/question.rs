@@ -1,0 +1,389 @@
+//! What a question asks for.
+
+use super::{
+    colour::{colour_at, first_colour},
+    names::{says_several, singular},
+    place::phrases,
+};
+use crate::{
+    lexicon::{is_room, is_thing, normal},
+    reading::vocabulary::{ABSTRACT, BREAKERS},
+    text::tokens,
+};
+use wayword_core::Where;
+
+/// What a question asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Asked {
+    /// Whether things are there.
+    Presence {
+        /// One, or several with "or" or "and" between them.
+        wanted: Vec<Wanted>,
+        /// They are alternatives: a yes to them is not a yes to each.
+        or: bool,
+    },
+    /// The colour of a thing, which the question takes to be there.
+    Colour {
+        /// The thing, as the question names it.
+        name: String,
+        /// Colours that the question names.
+        guesses: Vec<String>,
+    },
+    /// How many there are.
+    Number(Wanted),
+    /// Where a thing is, which the question takes to be there.
+    Place(Wanted),
+    /// Which room it is.
+    Room,
+    /// Whether it is this room.
+    IsRoom(String),
+    /// Anything else; where it asks about a part of the view, which.
+    Other(Option<Where>),
+}
+
+/// A thing that a question asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Wanted {
+    /// Its name as it is asked for, without article and adjectives of size.
+    pub(crate) said: String,
+    /// The name without its colour, in the singular where it is no plural by nature.
+    pub(crate) name: String,
+    /// The colour that is asked for.
+    pub(crate) colour: Option<String>,
+    /// Whether the question speaks of several.
+    pub(crate) several: bool,
+    /// The part of the view that is asked about.
+    pub(crate) place: Option<Where>,
+}
+
+/// Words that may begin a question and say nothing.
+const LEADS: [&str; 12] = ["so", "and", "also", "please", "okay", "ok", "now", "then", "well", "but", "great", ","];
+/// Words between the verb and what is asked for.
+const FILLERS: [&str; 28] = [
+    "really", "actually", "also", "still", "indeed", "any", "a", "an", "the", "some", "there", "visible", "single",
+    "large", "small", "big", "little", "clearly", "perhaps", "possibly", "notable", "kind", "type", "sort", "of",
+    "one", "sign", "signs",
+];
+/// Nouns that ask for nothing in particular.
+const ANYTHING: [&str; 22] = [
+    "anything",
+    "something",
+    "nothing",
+    "anyone",
+    "someone",
+    "person",
+    "people",
+    "furniture",
+    "object",
+    "item",
+    "thing",
+    "more",
+    "another",
+    "other",
+    "else",
+    "additional",
+    "second",
+    "enough",
+    "way",
+    "feature",
+    "detail",
+    "much",
+];
+
+/// What a question asks for.
+pub(crate) fn asked(question: &str) -> Asked {
+    let tokens = tokens(question);
+    let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
+    let skipped = words.iter().take_while(|word| LEADS.contains(word)).count();
+    let words = &words[skipped..];
+    room(words)
+        .or_else(|| colour(question, words))
+        .or_else(|| number(words))
+        .or_else(|| place(words))
+        .or_else(|| identity(words))
+        .or_else(|| presence(words))
+        .unwrap_or_else(|| Asked::Other(phrases(words).first().map(|phrase| phrase.place)))
+}
+
+fn has(words: &[&str], run: &[&str]) -> bool {
+    words.windows(run.len()).any(|window| window == run)
+}
+
+fn room(words: &[&str]) -> Option<Asked> {
+    let asks = ["which", "what"].contains(words.first()?);
+    let kind = |of: &str| ["kind", "type", "sort"].iter().any(|kind| has(words, &[kind, "of", of]));
+    let place = ["room", "place", "space", "area"].into_iter().any(kind);
+    let which = has(words, &["which", "room"])
+        || has(words, &["what", "room"])
+        || has(words, &["room", "is", "this"])
+        || has(words, &["what", "is", "this", "room"])
+        || has(words, &["what", "is", "the", "room"]);
+    let taken = words.first() == Some(&"where") && words.iter().any(|word| matches!(*word, "taken" | "are"));
+    ((asks && (place || which)) || (taken && (has(words, &["picture"]) || has(words, &["image"]))))
+        .then_some(Asked::Room)
+}
+
+/// "What colour is the lamp?", "Is the sofa brown or black?".
+fn colour(question: &str, words: &[&str]) -> Option<Asked> {
+    // A name of any words, marks and spelling, as our own asker puts it.
+    if let Some(name) = question.strip_prefix("What colour is the ").and_then(|rest| rest.strip_suffix('?')) {
+        return Some(Asked::Colour { name: name.to_owned(), guesses: Vec::new() });
+    }
+    let at = words.iter().position(|word| matches!(*word, "colour" | "color" | "colours" | "colors"));
+    let rest = match at {
+        Some(at) if at <= 4 => match words.get(at + 1)? {
+            &"is" | &"are" | &"of" | &"was" => &words[at + 2..],
+            _ => return None,
+        },
+        _ => {
+            let (verb, rest) = words.split_first()?;
+            let colours = (0..rest.len()).any(|at| colour_at(&rest[at..]).is_some() && ends_phrase(rest, at));
+            (matches!(*verb, "is" | "are") && rest.first() == Some(&"the") && colours).then_some(rest)?
+        }
+    };
+    let guesses =
+        if at.is_some() { Vec::new() } else { (0..rest.len()).filter_map(|at| first_colour(&rest[at..=at])).collect() };
+    let end = (0..rest.len()).find(|at| !guesses.is_empty() && colour_at(&rest[*at..]).is_some()).unwrap_or(rest.len());
+    let wanted = phrase(&rest[..end])?;
+    Some(Asked::Colour { name: wanted.name, guesses })
+}
+
+/// Whether the colour at a word is said of what stands before it, and not of a noun behind it.
+fn ends_phrase(words: &[&str], at: usize) -> bool {
+    at > 1 && words.get(at + 1).is_none_or(|next| matches!(*next, "or" | "?" | "and" | "in" | ","))
+}
+
+fn number(words: &[&str]) -> Option<Asked> {
+    let rest = words.strip_prefix(&["how", "many"])?;
+    phrase(rest).map(Asked::Number)
+}
+
+fn place(words: &[&str]) -> Option<Asked> {
+    let rest = match words {
+        ["where", "is" | "are", rest @ ..] => rest,
+        ["where", "in", _, _, "is" | "are", rest @ ..] => rest,
+        ["on", "which" | "what", "side", "is" | "are", rest @ ..] => rest,
+        _ => return None,
+    };
+    phrase(rest).map(Asked::Place)
+}
+
+/// "Is this a kitchen?", "Is that a mirror on the wall?".
+fn identity(words: &[&str]) -> Option<Asked> {
+    let rest = match words {
+        ["is" | "are", "this" | "that" | "it" | "these" | "those", rest @ ..] => rest,
+        ["is", "the", "room", rest @ ..] => rest,
+        _ => return None,
+    };
+    let rest = rest.strip_prefix(&["room"]).unwrap_or(rest);
+    let name = noun(rest, &mut 0)?;
+    let or = rest.contains(&"or");
+    match wanted(&name, None) {
+        _ if is_room(&normal(&name.join(" "))) && !or => Some(Asked::IsRoom(name.join(" "))),
+        _ if is_room(&normal(&name.join(" "))) => Some(Asked::Room),
+        _ => list(rest).filter(|_| !matches!(words[1], "it" | "the")),
+    }
+}
+
+fn presence(words: &[&str]) -> Option<Asked> {
+    let rest = match words {
+        ["is" | "are" | "was" | "were", "there", rest @ ..] => rest,
+        ["do" | "did" | "can" | "could" | "would", "you", rest @ ..] => {
+            after_verb(rest, &["see", "spot", "find", "notice", "out", "identify", "detect", "confirm", "observe"])?
+        }
+        ["does" | "do", rest @ ..] => after_verb(rest, &["have", "contain", "show", "include", "feature"])?,
+        ["are", "you", "sure", rest @ ..] => rest,
+        ["is", "it", "true", rest @ ..] => rest,
+        ["any", ..] => words,
+        ["is" | "are", rest @ ..] => return really_there(rest),
+        _ => return None,
+    };
+    let skipped = rest
+        .iter()
+        .take_while(|word| matches!(**word, "that" | "if" | "whether" | "there" | "is" | "are" | "you" | "see"))
+        .count();
+    list(&rest[skipped..])
+}
+
+/// What stands behind one of some verbs that comes early.
+fn after_verb<'a, 'b>(words: &'a [&'b str], verbs: &[&str]) -> Option<&'a [&'b str]> {
+    let at = words.iter().take(5).position(|word| verbs.contains(word))?;
+    Some(&words[at + 1..])
+}
+
+/// "Is the lamp you mentioned really there?", "Is a mirror visible in the picture?".
+fn really_there(words: &[&str]) -> Option<Asked> {
+    let tail = |run: &[&str]| words.strip_suffix(&["?"]).unwrap_or(words).ends_with(run);
+    let visible = ["there", "present", "visible", "real"].iter().any(|end| tail(&[end]));
+    let whole = ["picture", "image", "room", "photo", "scene", "view"];
+    let shown = whole.iter().any(|whole| tail(&["in", "the", whole]) || tail(&["in", "this", whole]));
+    (visible || shown).then(|| list(words)).flatten()
+}
+
+/// The things that are asked for, with "or", "and" or commas between them.
+fn list(words: &[&str]) -> Option<Asked> {
+    let place = phrases(words).first().map(|phrase| phrase.place);
+    let mut found: Vec<Wanted> = Vec::new();
+    let mut at = 0;
+    let mut or = false;
+    loop {
+        let name = noun(words, &mut at)?;
+        found.push(wanted(&name, place)?);
+        match words.get(at) {
+            Some(&"or") => or = true,
+            Some(&"and") => {}
+            Some(&",") if words[at..].iter().any(|word| matches!(*word, "or" | "and")) => {
+                at += usize::from(matches!(words.get(at + 1), Some(&"or" | &"and")));
+                or |= words[at] == "or";
+            }
+            _ => return Some(Asked::Presence { wanted: found, or }),
+        }
+        at += 1;
+        if found.len() == 8 || noun(words, &mut at.clone()).and_then(|name| wanted(&name, None)).is_none() {
+            return Some(Asked::Presence { wanted: found, or });
+        }
+    }
+}
+
+/// The words of a noun phrase from `at` on, and `at` moved behind it.
+fn noun<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&'a str>> {
+    while words.get(*at).is_some_and(|word| FILLERS.contains(word)) {
+        *at += 1;
+    }
+    let start = *at;
+    let in_name = |at: usize| {
+        let word = words[at];
+        let of = word == "of"
+            && at > start
+            && (1..=3)
+                .any(|more| words.get(start..at + 1 + more).is_some_and(|name| is_thing(&normal(&name.join(" ")))));
+        let is_word = word.starts_with(char::is_alphanumeric);
+        is_word
+            && at < start + 6
+            && (of || !BREAKERS.contains(&word) || (at == start && matches!(word, "hanging" | "standing")))
+            && !matches!(word, "visible" | "present" | "mentioned" | "really" | "actually" | "here" | "anywhere")
+    };
+    while *at < words.len() && in_name(*at) {
+        *at += 1;
+    }
+    let found = words[start..*at].to_vec();
+    // "The lamp you mentioned": behind the name, up to the next joint.
+    while words.get(*at).is_some_and(|word| !matches!(*word, "or" | "and" | ",")) {
+        *at += 1;
+    }
+    (!found.is_empty()).then_some(found)
+}
+
+fn phrase(words: &[&str]) -> Option<Wanted> {
+    wanted(&noun(words, &mut 0)?, None)
+}
+
+fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
+    let head = normal(name.last()?);
+    let nothing = |word: &str| ANYTHING.contains(&word);
+    let vague = ABSTRACT.contains(&head.as_str()) && !is_thing(&normal(&name.join(" ")));
+    if vague || nothing(&head) || name.iter().any(|word| nothing(word)) {
+        return None;
+    }
+    let said = name.join(" ");
+    let in_lexicon = is_thing(&normal(&said));
+    let (colour, length) =
+        colour_at(name).filter(|_| !in_lexicon).map_or((None, 0), |(colour, length)| (Some(colour), length));
+    let bare = name[length..].join(" ");
+    if bare.is_empty() {
+        return None;
+    }
+    let several = says_several(&bare);
+    Some(Wanted { said, name: if several { singular(&bare) } else { bare }, colour, several, place })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn presence(question: &str) -> Option<(Vec<String>, bool)> {
+        match asked(question) {
+            Asked::Presence { wanted, or } => Some((wanted.into_iter().map(|wanted| wanted.name).collect(), or)),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn questions_for_one_thing_are_understood_in_all_their_forms() {
+        for (question, name) in [
+            ("Is there a mirror?", "mirror"),
+            ("Is there really a mirror?", "mirror"),
+            ("Are there any chairs in the room?", "chair"),
+            ("Do you see a lamp?", "lamp"),
+            ("Can you see any stairs?", "stairs"),
+            ("Is the lamp you mentioned really there?", "lamp"),
+            ("Does the room have a fireplace?", "fireplace"),
+            ("Does this picture show any plants?", "plant"),
+            ("Is a mirror visible in the picture?", "mirror"),
+            ("Are you sure that there is a piano?", "piano"),
+            ("And is there also a coffee table?", "coffee table"),
+            ("Is there a flight of stairs leading up?", "flight of stairs"),
+            ("Is there a chest of drawers?", "chest of drawers"),
+            ("Is there a large red sofa on the left side?", "sofa"),
+            ("Is there a shiny gizmo?", "shiny gizmo"),
+            ("Is that a mirror on the wall?", "mirror"),
+            ("Can you confirm that there is a television?", "television"),
+            ("Is there any sign of a dog?", "dog"),
+            ("Is the mirror in the picture?", "mirror"),
+        ] {
+            assert_eq!(presence(question), Some((vec![name.to_owned()], false)), "{question}");
+        }
+    }
+
+    #[test]
+    fn alternatives_are_kept_apart_from_pairs() {
+        let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        assert_eq!(presence("Is there a bed or a sofa?"), Some((names(&["bed", "sofa"]), true)));
+        assert_eq!(presence("Do you see a table and chairs?"), Some((names(&["table", "chair"]), false)));
+        assert_eq!(presence("Are there any lamps, mirrors, or rugs?"), Some((names(&["lamp", "mirror", "rug"]), true)));
+    }
+
+    #[test]
+    fn questions_for_nothing_in_particular_ask_for_no_thing() {
+        for question in [
+            "Is there anything on the table?",
+            "Are there any other objects?",
+            "Is there more than one chair?",
+            "Is the lamp on the table?",
+            "What is the sofa made of?",
+            "Is there a person?",
+            "?",
+            "",
+        ] {
+            assert_eq!(presence(question), None, "{question}");
+        }
+    }
+
+    #[test]
+    fn colours_numbers_places_and_rooms_are_told_apart() {
+        let colour = |name: &str, guesses: &[&str]| Asked::Colour {
+            name: name.into(),
+            guesses: guesses.iter().map(|guess| (*guess).to_owned()).collect(),
+        };
+        assert_eq!(asked("What colour is the sofa?"), colour("sofa", &[]));
+        assert_eq!(asked("What color are the chairs?"), colour("chair", &[]));
+        assert_eq!(asked("What is the color of the rug on the floor?"), colour("rug", &[]));
+        assert_eq!(asked("Is the sofa brown or black?"), colour("sofa", &["brown", "black"]));
+        assert!(matches!(asked("How many chairs are there?"), Asked::Number(wanted) if wanted.name == "chair"));
+        assert!(matches!(asked("Where is the lamp?"), Asked::Place(wanted) if wanted.name == "lamp"));
+        for question in
+            ["Which room is this?", "What kind of room is this?", "What type of room is shown in the image?"]
+        {
+            assert_eq!(asked(question), Asked::Room, "{question}");
+        }
+        assert_eq!(asked("Is this a kitchen?"), Asked::IsRoom("kitchen".into()));
+        assert_eq!(asked("What is on the left side of the room?"), Asked::Other(Some(Where::Left)));
+    }
+
+    #[test]
+    fn a_colour_and_a_place_that_are_asked_for_are_kept() {
+        let Asked::Presence { wanted, .. } = asked("Is there a red chair on the right?") else { panic!() };
+        assert_eq!((wanted[0].said.as_str(), wanted[0].colour.as_deref()), ("red chair", Some("red")));
+        assert_eq!(wanted[0].place, Some(Where::Right));
+    }
+}

@@ -1,0 +1,379 @@
+//! How far a "no" or a "maybe" reaches in a sentence.
+//!
+//! Triggers and the words that end their reach, after NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029), for the ways in
+//! which people and models speak of pictures.
+
+use std::ops::Range;
+use wayword_core::Witness;
+
+/// A sentence: its words and marks in lower case, and where in it things and rooms are named, in order.
+pub(super) struct Sentence<'a> {
+    pub(super) words: &'a [&'a str],
+    pub(super) nouns: &'a [Range<usize>],
+}
+
+/// What a trigger does to the nouns within its reach.
+#[derive(Clone, Copy)]
+struct Reach {
+    /// The word at which it begins.
+    from: usize,
+    says: Witness,
+    /// It reaches over "a lamp, a bed or a sofa": a verb was negated, and not the first noun alone.
+    over_articles: bool,
+    /// It ends with the sentence or a "but" only.
+    to_the_end: bool,
+}
+
+const NOT: [&str; 2] = ["not", "never"];
+/// Verbs that take a "not", and their short forms.
+const AUXILIARIES: [&str; 12] =
+    ["do", "does", "did", "can", "could", "would", "should", "will", "cannot", "is", "are", "was"];
+const SHORT: [&str; 14] = [
+    "don't",
+    "doesn't",
+    "didn't",
+    "can't",
+    "cannot",
+    "couldn't",
+    "won't",
+    "wouldn't",
+    "don’t",
+    "doesn’t",
+    "didn’t",
+    "can’t",
+    "couldn’t",
+    "unable",
+];
+const IS_NOT: [&str; 8] = ["isn't", "aren't", "wasn't", "weren't", "isn’t", "aren’t", "wasn’t", "weren’t"];
+/// Verbs whose negation denies what follows.
+pub(super) const PERCEIVING: [&str; 26] = [
+    "see",
+    "find",
+    "spot",
+    "notice",
+    "detect",
+    "identify",
+    "observe",
+    "recognize",
+    "recognise",
+    "have",
+    "contain",
+    "show",
+    "include",
+    "feature",
+    "depict",
+    "display",
+    "think",
+    "believe",
+    "be",
+    "out",
+    "any",
+    "look",
+    "appear",
+    "seem",
+    "discern",
+    "perceive",
+];
+/// Words that may stand between a "not" and such a verb.
+const MEANWHILE: [&str; 16] = [
+    "actually",
+    "really",
+    "currently",
+    "even",
+    "to",
+    "make",
+    "also",
+    "personally",
+    "directly",
+    "that",
+    "there",
+    "is",
+    "are",
+    "clearly",
+    "appear",
+    "seem",
+];
+/// What a "no" before denies nothing with.
+const NO_DENIAL: [&str; 16] = [
+    "doubt", "longer", "one", "matter", "idea", "problem", "wonder", "more", "less", "fewer", "way", "need", "means",
+    "reason", "question", "place",
+];
+/// What is not seen, where it is no object: "I cannot see what is on the table", "I see nothing on it".
+const NO_OBJECT: [&str; 22] = [
+    "what",
+    "how",
+    "whether",
+    "if",
+    "where",
+    "which",
+    "who",
+    "why",
+    "anything",
+    "nothing",
+    "everything",
+    "much",
+    "all",
+    "one",
+    "it",
+    "them",
+    "this",
+    "that",
+    "enough",
+    "well",
+    "clearly",
+    "only",
+];
+const STOPPERS: [&str; 24] = [
+    "but", "however", "although", "though", "except", "instead", "only", "just", "while", "whereas", "because",
+    "since", "so", "which", "who", "where", "yet", "than", "rather", "i", "it", "they", "we", "then",
+];
+const ENDS: [&str; 10] = [".", "!", "?", ";", ":", "(", ")", "\n", "–", "—"];
+/// Words after a noun with which something else is spoken of.
+const AFTER_NOUN: [&str; 33] = [
+    "on", "in", "at", "by", "near", "next", "behind", "under", "above", "over", "beside", "between", "to", "from",
+    "with", "of", "against", "along", "around", "across", "inside", "outside", "opposite", "is", "are", "was", "there",
+    "has", "have", "can", "that", "i", "below",
+];
+const SIGNS: [&str; 14] = [
+    "sign",
+    "signs",
+    "evidence",
+    "trace",
+    "kind",
+    "kinds",
+    "type",
+    "sort",
+    "presence",
+    "hint",
+    "indication",
+    "pieces",
+    "piece",
+    "pair",
+];
+const NEW_NOUN: [&str; 14] =
+    ["a", "an", "the", "two", "three", "four", "five", "six", "several", "some", "many", "multiple", "one", "both"];
+/// Words that make a whole sentence behind them doubtful.
+const DOUBTS: [&[&str]; 22] = [
+    &["not", "sure"],
+    &["unsure"],
+    &["uncertain"],
+    &["not", "certain"],
+    &["unclear"],
+    &["not", "clear"],
+    &["can't", "tell"],
+    &["can’t", "tell"],
+    &["cannot", "tell"],
+    &["hard", "to", "say"],
+    &["hard", "to", "tell"],
+    &["hard", "to", "see"],
+    &["difficult", "to", "say"],
+    &["difficult", "to", "tell"],
+    &["difficult", "to", "see"],
+    &["unknown"],
+    &["don't", "know"],
+    &["don’t", "know"],
+    &["not", "know"],
+    &["cannot", "determine"],
+    &["can't", "determine"],
+    &["not", "possible", "to"],
+];
+
+/// Whether words hold one of the phrases of not knowing.
+pub(super) fn doubt_at(words: &[&str]) -> Option<usize> {
+    DOUBTS.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
+}
+
+impl Sentence<'_> {
+    /// What the sentence says of each noun.
+    pub(super) fn witnesses(&self) -> Vec<Witness> {
+        let mut said = vec![Witness::Seen; self.nouns.len()];
+        for reach in (0..self.words.len()).filter_map(|at| self.trigger(at)) {
+            for noun in self.within(reach) {
+                said[noun] = if said[noun] == Witness::Denied { Witness::Denied } else { reach.says };
+            }
+        }
+        for noun in 0..self.nouns.len() {
+            if self.is_said_absent(noun) {
+                let mut first = noun;
+                while first > 0 && self.is_joined(first - 1) {
+                    first -= 1;
+                }
+                said[first..=noun].fill(Witness::Denied);
+            }
+        }
+        said
+    }
+
+    fn word(&self, at: usize) -> &str {
+        self.words.get(at).copied().unwrap_or("")
+    }
+
+    fn noun_at(&self, at: usize) -> Option<usize> {
+        self.nouns.iter().position(|noun| noun.start == at)
+    }
+
+    fn trigger(&self, at: usize) -> Option<Reach> {
+        let word = self.word(at);
+        let denial =
+            |from, over_articles| Some(Reach { from, says: Witness::Denied, over_articles, to_the_end: false });
+        if let Some(length) = doubt_at(&self.words[at..]) {
+            return Some(Reach { from: at + length, says: Witness::Unsure, over_articles: true, to_the_end: true });
+        }
+        match word {
+            "no" if NO_DENIAL.contains(&self.word(at + 1)) => None,
+            "no" | "without" | "lacks" | "lacking" => denial(at + 1, false),
+            "neither" | "nor" => denial(at + 1, true),
+            "absence" | "lack" | "devoid" if self.word(at + 1) == "of" => denial(at + 2, false),
+            "instead" if self.word(at + 1) == "of" => denial(at + 2, false),
+            "rather" if self.word(at + 1) == "than" => denial(at + 2, false),
+            "there's" | "there’s" if NOT.contains(&self.word(at + 1)) => denial(at + 2, true),
+            word if IS_NOT.contains(&word) && self.is_indefinite(at + 1) => denial(at + 1, true),
+            word if NOT.contains(&word) && self.is_indefinite(at + 1) => denial(at + 1, true),
+            word if SHORT.contains(&word) => self.negated_verb(at + 1).and_then(|from| denial(from, true)),
+            word if NOT.contains(&word) && at > 0 && AUXILIARIES.contains(&self.word(at - 1)) => {
+                self.negated_verb(at + 1).and_then(|from| denial(from, true))
+            }
+            _ => self.hedge(at),
+        }
+    }
+
+    /// "maybe a lamp", "might be a lamp": the noun is not known to be there.
+    fn hedge(&self, at: usize) -> Option<Reach> {
+        let is_hedge = match self.word(at) {
+            "maybe" | "possibly" | "perhaps" | "potentially" | "presumably" | "probably" => true,
+            "might" | "may" | "could" => {
+                (1..=3).any(|ahead| matches!(self.word(at + ahead), "be" | "have" | "contain" | "show"))
+            }
+            _ => false,
+        };
+        is_hedge.then_some(Reach { from: at + 1, says: Witness::Unsure, over_articles: false, to_the_end: false })
+    }
+
+    fn is_indefinite(&self, at: usize) -> bool {
+        matches!(self.word(at), "a" | "an" | "any" | "one")
+    }
+
+    /// Where the object of a verb begins that stands behind a "not".
+    fn negated_verb(&self, after: usize) -> Option<usize> {
+        let mut at = after;
+        while at < after + 5 && MEANWHILE.contains(&self.word(at)) {
+            at += 1;
+        }
+        let verb = self.word(at);
+        // "does not appear to be a lamp": the last word before the noun was taken for one in between.
+        let in_between = at > after && matches!(self.word(at - 1), "is" | "are" | "be" | "to");
+        let mut from = match verb {
+            verb if PERCEIVING.contains(&verb) => at + 1,
+            _ if in_between && self.is_indefinite(at) => at,
+            _ => return None,
+        };
+        while matches!(
+            self.word(from),
+            "that" | "there" | "there's" | "there’s" | "is" | "are" | "to" | "be" | "like" | "see"
+        ) {
+            from += 1;
+        }
+        Some(from)
+    }
+
+    /// The nouns that a trigger reaches.
+    fn within(&self, reach: Reach) -> Vec<usize> {
+        let mut found: Vec<usize> = Vec::new();
+        let mut at = reach.from;
+        while at < self.words.len() {
+            let word = self.word(at);
+            if ENDS.contains(&word) || (reach.to_the_end && word == "but") {
+                break;
+            }
+            if let Some(noun) = self.noun_at(at) {
+                found.push(noun);
+                at = self.nouns[noun].end;
+                continue;
+            }
+            if !reach.to_the_end && self.ends_reach(at, reach, !found.is_empty()) {
+                break;
+            }
+            at += 1;
+        }
+        found
+    }
+
+    fn ends_reach(&self, at: usize, reach: Reach, had_noun: bool) -> bool {
+        let word = self.word(at);
+        if STOPPERS.contains(&word) {
+            return true;
+        }
+        if !had_noun {
+            let of_signs = word == "of" && at > 0 && SIGNS.contains(&self.word(at - 1));
+            let elsewhere = AFTER_NOUN.contains(&word) && !of_signs && !matches!(word, "have" | "there" | "is" | "are");
+            let too_far = at > reach.from + 6;
+            let hedged_verb = reach.says == Witness::Unsure && matches!(word, "be" | "have" | "contain" | "show");
+            return !hedged_verb
+                && (elsewhere
+                    || too_far
+                    || word == ","
+                    || (NO_OBJECT.contains(&word) && reach.says == Witness::Denied));
+        }
+        match word {
+            "," => !self.goes_on(at + 1, reach),
+            "and" => !self.goes_on(at + 1, reach),
+            word => AFTER_NOUN.contains(&word),
+        }
+    }
+
+    /// Whether a list goes on behind a comma or an "and".
+    fn goes_on(&self, at: usize, reach: Reach) -> bool {
+        match self.word(at) {
+            "or" | "nor" | "any" => true,
+            "and" => self.goes_on(at + 1, reach),
+            word if NEW_NOUN.contains(&word) => {
+                reach.over_articles
+                    && word != "the"
+                    && self.words[at..].iter().any(|word| matches!(*word, "or" | "nor"))
+            }
+            _ => (at..at + 3).any(|at| self.noun_at(at).is_some()),
+        }
+    }
+
+    /// "The mirror is not visible", "a mirror cannot be seen", "the mirror is absent".
+    fn is_said_absent(&self, noun: usize) -> bool {
+        let mut at = self.nouns[noun].end;
+        while at < self.nouns[noun].end + 4
+            && matches!(self.word(at), "that" | "you" | "mentioned" | "itself" | "really" | "actually" | "also")
+        {
+            at += 1;
+        }
+        let rest = |from: usize| (from..from + 4).map(|at| self.word(at)).collect::<Vec<_>>();
+        match (self.word(at), self.word(at + 1)) {
+            ("is" | "are" | "was" | "were", "absent" | "missing" | "invisible" | "nonexistent") => true,
+            ("is" | "are" | "was" | "were", "not") => says_present(&rest(at + 2)),
+            ("can" | "could", "not") | ("does" | "do" | "did", "not") => says_present(&rest(at + 2)),
+            (word, _) if IS_NOT.contains(&word) || SHORT.contains(&word) => says_present(&rest(at + 1)),
+            _ => false,
+        }
+    }
+
+    /// Whether nothing but commas, articles and "and" or "or" stands between a noun and the next.
+    fn is_joined(&self, noun: usize) -> bool {
+        let between = &self.words[self.nouns[noun].end..self.nouns[noun + 1].start];
+        between.iter().any(|word| matches!(*word, "and" | "or" | "nor"))
+            && between.iter().all(|word| matches!(*word, "," | "and" | "or" | "nor" | "a" | "an" | "the" | "any"))
+    }
+}
+
+/// Whether words say that something is in the picture: "visible", "in the picture", "be seen".
+fn says_present(words: &[&str]) -> bool {
+    let skipped = words.iter().take_while(|word| matches!(**word, "be" | "really" | "actually" | "to")).count();
+    match &words[skipped..] {
+        [
+            "visible" | "present" | "there" | "shown" | "seen" | "pictured" | "included" | "depicted" | "found"
+            | "exist" | "appear" | "detected",
+            ..,
+        ] => true,
+        ["in", "view" | "sight", ..] => true,
+        ["in", "the" | "this", whole, ..] => {
+            matches!(*whole, "picture" | "image" | "photo" | "room" | "view" | "scene")
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,155 @@
+//! Yes, no, or neither.
+
+use super::scope::doubt_at;
+use crate::text::words;
+
+/// What an answer says to a question that wants a yes or a no.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    Yes,
+    No,
+    Unsure,
+    /// It says neither; what it names decides.
+    Open,
+}
+
+const YES: [&[&str]; 21] = [
+    &["yes"],
+    &["yeah"],
+    &["yep"],
+    &["correct"],
+    &["indeed"],
+    &["certainly"],
+    &["definitely"],
+    &["absolutely"],
+    &["sure"],
+    &["of", "course"],
+    &["right"],
+    &["true"],
+    &["i", "do"],
+    &["i", "can"],
+    &["there", "is"],
+    &["there", "are"],
+    &["it", "does"],
+    &["they", "are"],
+    &["i", "think", "so"],
+    &["no", "doubt"],
+    &["i", "believe", "so"],
+];
+const NO: [&[&str]; 27] = [
+    &["no"],
+    &["nope"],
+    &["none"],
+    &["not"],
+    &["neither"],
+    &["nothing"],
+    &["never"],
+    &["negative"],
+    &["zero"],
+    &["there", "is", "no"],
+    &["there", "are", "no"],
+    &["there", "is", "not"],
+    &["there", "are", "not"],
+    &["there", "is", "none"],
+    &["there", "are", "none"],
+    &["there's", "no"],
+    &["there", "isn't"],
+    &["there", "aren't"],
+    &["i", "don't", "think", "so"],
+    &["i", "do", "not", "think", "so"],
+    &["i", "do", "not", "see"],
+    &["i", "don't", "see"],
+    &["i", "can", "not", "see"],
+    &["i", "cannot", "see"],
+    &["i", "can't", "see"],
+    &["it", "does", "not"],
+    &["it", "doesn't"],
+];
+const MAYBE: [&[&str]; 10] = [
+    &["maybe"],
+    &["perhaps"],
+    &["possibly"],
+    &["probably"],
+    &["it", "might"],
+    &["there", "might"],
+    &["there", "may"],
+    &["there", "could"],
+    &["it", "may"],
+    &["it", "could"],
+];
+
+/// What an answer says, by how it begins. Not to be sure outweighs whatever else it says.
+pub(super) fn verdict(answer: &str) -> Verdict {
+    let words = words(&answer.replace('’', "'"));
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let longest = |phrases: &[&[&str]]| {
+        phrases.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
+    };
+    if is_unsure(&words) || longest(&MAYBE).is_some() {
+        return Verdict::Unsure;
+    }
+    match (longest(&YES).unwrap_or(0), longest(&NO).unwrap_or(0)) {
+        (0, 0) => Verdict::Open,
+        (yes, no) if yes >= no => Verdict::Yes,
+        _ => Verdict::No,
+    }
+}
+
+/// Whether words hold a phrase of not knowing.
+pub(super) fn is_unsure(words: &[&str]) -> bool {
+    (0..words.len()).any(|at| doubt_at(&words[at..]).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_say_yes_no_or_neither() {
+        for (wanted, answers) in [
+            (
+                Verdict::Yes,
+                vec!["Yes", "yes.", "Yes, there are two.", "There is one.", "No doubt.", "I think so.", "Of course"],
+            ),
+            (
+                Verdict::No,
+                vec![
+                    "No",
+                    "no.",
+                    "NO!",
+                    "No, there isn't.",
+                    "None",
+                    "Not that I can see.",
+                    "There is no TV.",
+                    "I don't think so.",
+                    "There are none.",
+                    "No, I don't see one.",
+                    "I cannot see a lamp.",
+                    "There isn’t one.",
+                    "Neither.",
+                    "It does not appear so.",
+                ],
+            ),
+            (
+                Verdict::Unsure,
+                vec![
+                    "I am not sure.",
+                    "Unclear",
+                    "I can't tell",
+                    "It is hard to say.",
+                    "Unknown.",
+                    "Maybe",
+                    "There might be.",
+                    "No, I'm not sure",
+                    "It is not clear from the picture.",
+                    "I don't know",
+                ],
+            ),
+            (Verdict::Open, vec!["", "A bed.", "A bed is.", "On the left", "🤖"]),
+        ] {
+            for answer in answers {
+                assert_eq!(verdict(answer), wanted, "{answer}");
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Takes from what models say what was asked of them: one question, or one answer.
+
+use crate::text::words;
+
+/// Longest question, characters. A longer one is no question.
+const QUESTION_CHARS: usize = 300;
+/// Longest answer, characters; what is longer ends with its last whole sentence.
+const ANSWER_CHARS: usize = 1200;
+/// Most of a reply that is looked at, bytes.
+const MOST_BYTES: usize = 16_384;
+/// What models put before a question of theirs.
+const QUESTION_LABELS: [&str; 4] = ["question:", "q:", "next question:", "new question:"];
+/// What begins another turn within an answer.
+const TURNS: [&str; 10] = ["question:", "q:", "user:", "human:", "assistant:", "answer:", "a:", "### ", "<|", "</s>"];
+/// Words that a question begins with that lacks its mark.
+const ASKING: [&str; 20] = [
+    "what", "which", "where", "how", "who", "is", "are", "do", "does", "can", "could", "describe", "why", "when",
+    "has", "have", "was", "did", "tell", "list",
+];
+
+/// The one question in a reply, without labels, quotes, chatter, further questions and an answer invented to it. `None` where
+/// there is none, or one of more than 300 characters.
+pub(super) fn question(reply: &str) -> Option<String> {
+    let reply = head(reply, MOST_BYTES);
+    let after = QUESTION_LABELS.iter().filter_map(|label| labels(reply, label).last().map(|at| at + label.len())).max();
+    let rest = &reply[after.unwrap_or(0)..];
+    let answered = ["answer:", "a:"].iter().filter_map(|label| labels(rest, label).find(|at| *at > 0)).min();
+    let rest = rest[..answered.unwrap_or(rest.len())].trim();
+    let asked = match rest.find(['?', '？']) {
+        Some(mark) => last_sentence(&rest[..=mark + rest[mark..].chars().next().map_or(0, char::len_utf8) - 1]),
+        None => rest.lines().find(|line| begins_as_question(line))?,
+    };
+    let bare = asked.trim().trim_matches(|c: char| matches!(c, '"' | '“' | '”' | '*' | '_' | '`') || c.is_whitespace());
+    let bare = bare.trim_start_matches(['\'', '-', '‘', '(']).trim_start();
+    let fits = bare.chars().count() <= QUESTION_CHARS && bare.contains(char::is_alphanumeric);
+    fits.then(|| bare.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+/// An answer without the question repeated before it and the turns invented behind it, of bounded length.
+pub(super) fn answer(reply: &str, question: &str) -> String {
+    let reply = without_lead(head(reply, MOST_BYTES).trim(), question);
+    let cut = TURNS.iter().filter_map(|label| labels(reply, label).find(|at| *at > 0)).min();
+    bounded(reply[..cut.unwrap_or(reply.len())].trim()).to_owned()
+}
+
+fn head(text: &str, bytes: usize) -> &str {
+    let mut end = text.len().min(bytes);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    &text[..end]
+}
+
+/// Where a label stands, in any case, at the start of a line or behind a space.
+fn labels<'a>(text: &'a str, label: &'a str) -> impl Iterator<Item = usize> + 'a {
+    text.char_indices().map(|(at, _)| at).filter(move |at| {
+        let is_label = text.get(*at..at + label.len()).is_some_and(|here| here.eq_ignore_ascii_case(label));
+        is_label
+            && text[..*at]
+                .chars()
+                .next_back()
+                .is_none_or(|before| before.is_whitespace() || matches!(before, '*' | '.' | '?' | '"'))
+    })
+}
+
+/// The last sentence of a text that ends in a question mark.
+fn last_sentence(text: &str) -> &str {
+    let mut ends = text.char_indices().filter(|(at, c)| {
+        let next_is_space = text[at + c.len_utf8()..].starts_with(|next: char| next.is_whitespace() || next == '"');
+        *c == '\n' || (matches!(c, '.' | '!' | ':') && next_is_space)
+    });
+    ends.next_back().map_or(text, |(at, c)| &text[at + c.len_utf8()..])
+}
+
+fn begins_as_question(line: &str) -> bool {
+    words(head(line, 200)).first().is_some_and(|first| ASKING.contains(&first.as_str()))
+}
+
+/// The reply without "Answer:" and the question itself before the answer.
+fn without_lead<'a>(reply: &'a str, question: &str) -> &'a str {
+    let strip = |text: &'a str, lead: &str| -> &'a str {
+        let starts = text.get(..lead.len()).is_some_and(|start| start.eq_ignore_ascii_case(lead));
+        let rest = if starts && !lead.is_empty() { text[lead.len()..].trim_start() } else { text };
+        if rest.is_empty() { text } else { rest }
+    };
+    let mut rest = reply;
+    for lead in ["Question:", question, "Answer:", "A:"] {
+        rest = strip(rest, lead);
+    }
+    rest
+}
+
+fn bounded(text: &str) -> &str {
+    let Some((end, _)) = text.char_indices().nth(ANSWER_CHARS) else { return text };
+    let whole = &text[..end];
+    whole.rfind(['.', '!', '?']).map_or(whole, |at| &whole[..=at]).trim()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn one_question_is_taken_from_a_reply() {
+        for (reply, wanted) in [
+            ("What colour is the sofa?", "What colour is the sofa?"),
+            ("Question: What colour is the sofa? Answer: It is red.", "What colour is the sofa?"),
+            ("Sure! Here is a question: What is on the left?", "What is on the left?"),
+            ("\"Is there a lamp?\"", "Is there a lamp?"),
+            ("Q: Is there a bed? Q: Is there a lamp? ", "Is there a lamp?"),
+            ("Is there a bed? Is there a lamp?", "Is there a bed?"),
+            ("Great. Let me ask more. Are there\nany windows?", "any windows?"),
+            ("**Question:** Is there a window?", "Is there a window?"),
+            ("Which room is this\n", "Which room is this"),
+            ("Describe the left side.", "Describe the left side."),
+            ("QUESTION: what is that?\nANSWER: a bed", "what is that?"),
+            ("- Is there a door?", "Is there a door?"),
+        ] {
+            assert_eq!(question(reply).as_deref(), Some(wanted), "{reply}");
+        }
+    }
+
+    #[test]
+    fn chatter_silence_and_endless_questions_are_no_question() {
+        let long = format!("Is there a {}?", "very ".repeat(80));
+        for reply in ["", "   ", "?", "I have no more questions.", "Thank you!", "🤖", long.as_str()] {
+            assert_eq!(question(reply), None, "{reply}");
+        }
+    }
+
+    #[test]
+    fn answers_are_cut_where_they_invent_another_turn() {
+        let asked = "What colour is the sofa?";
+        for (reply, wanted) in [
+            ("It is red.", "It is red."),
+            ("It is red. Question: What is on it? Answer: A cat.", "It is red."),
+            ("It is red.\nQ: Is there a lamp?", "It is red."),
+            ("Red\nUser: and the lamp?", "Red"),
+            ("Answer: It is red.", "It is red."),
+            ("What colour is the sofa? It is red.", "It is red."),
+            ("What colour is the sofa?", "What colour is the sofa?"),
+            ("Question: What colour is the sofa? Answer: red", "red"),
+            ("It is a TV: a large one", "It is a TV: a large one"),
+            ("", ""),
+        ] {
+            assert_eq!(answer(reply, asked), wanted, "{reply}");
+        }
+    }
+
+    #[test]
+    fn a_long_answer_ends_with_a_sentence() {
+        let long = "There is a chair and a long table. ".repeat(100);
+        let kept = answer(&long, "?");
+        assert!(kept.len() <= ANSWER_CHARS && kept.ends_with("table."), "{kept}");
+    }
+
+    proptest! {
+        #[test]
+        fn any_reply_is_bounded(reply in "(\\PC|[\n:?Qq. ]){0,400}", asked in "\\PC{0,40}") {
+            prop_assert!(answer(&reply.repeat(8), &asked).chars().count() <= ANSWER_CHARS);
+            prop_assert!(question(&reply).is_none_or(|question| question.chars().count() <= QUESTION_CHARS));
+        }
+    }
+}

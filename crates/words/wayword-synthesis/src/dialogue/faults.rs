@@ -1,0 +1,157 @@
+//! Holds a summary against what was said.
+
+use super::answers::{Mention, denies, mentions};
+use crate::{
+    lexicon::{Class, agree, normal, thing},
+    text::words,
+};
+use std::{collections::BTreeSet, fmt};
+use wayword_core::{Sighting, Witness};
+
+/// Something that a caption says and its dialogue does not hold. As text, it is a reason that a model understands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CaptionFault {
+    /// It names an object that was said not to be there, or says of one that it is not there: a caption tells what is there.
+    Denied {
+        /// As the caption names it.
+        name: String,
+    },
+    /// It names an object of which nobody was sure.
+    Unsure {
+        /// As the caption names it.
+        name: String,
+    },
+    /// It names an object that nobody spoke of.
+    Invented {
+        /// As the caption names it.
+        name: String,
+    },
+}
+
+impl fmt::Display for CaptionFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Denied { name } => write!(f, "it speaks of \"{name}\", which is said not to be there"),
+            Self::Unsure { name } => write!(f, "it speaks of \"{name}\", of which nobody was sure"),
+            Self::Invented { name } => write!(f, "it speaks of \"{name}\", which nobody named"),
+        }
+    }
+}
+
+/// What a text says that the sightings of its dialogue do not hold, each name once.
+///
+/// Objects are words that the lexicon or a sighting names. Walls, floors and ceilings are not looked at, nor are rooms; a name
+/// that may mean a room as well is taken for one where the text begins with it ("A staircase with a window").
+#[must_use]
+pub fn caption_faults(text: &str, sightings: &[Sighting]) -> Vec<CaptionFault> {
+    let known: BTreeSet<String> = sightings.iter().map(|sighting| normal(&sighting.name)).collect();
+    let mentions = mentions(text, &known);
+    let mut found: Vec<CaptionFault> = Vec::new();
+    for (at, mention) in mentions.iter().enumerate().filter(|(_, mention)| mention.is_thing) {
+        let is_the_room = at == 0 && mention.is_room && begins_with_room(text, &mention.name);
+        let fault = fault(mention, sightings).filter(|fault| !is_the_room && !found.contains(fault));
+        found.extend(fault);
+    }
+    found
+}
+
+/// Whether a text is a name alone, or begins with it and a "with".
+fn begins_with_room(text: &str, name: &str) -> bool {
+    let text = words(text);
+    let name = words(name);
+    let after_article = text.iter().position(|word| !matches!(word.as_str(), "a" | "an" | "the" | "some")).unwrap_or(0);
+    let rest = &text[after_article..];
+    rest.starts_with(&name) && rest.get(name.len()).is_none_or(|next| next == "with")
+}
+
+fn fault(mention: &Mention, sightings: &[Sighting]) -> Option<CaptionFault> {
+    let name = mention.name.clone();
+    let is_known = sightings.iter().any(|sighting| holds(&sighting.name, &name));
+    let class = thing(&name).map(|thing| thing.class);
+    if class == Some(Class::Fabric) || (class.is_none() && !is_known) {
+        return None;
+    }
+    let denied = sightings.iter().any(|sighting| denies(sighting, &name, mention.colour.as_deref()));
+    let with = |witness| sightings.iter().any(|sighting| sighting.witness == witness && speaks_of(sighting, &name));
+    if mention.witness == Witness::Denied || (denied && !seen_by_name(sightings, &name)) {
+        Some(CaptionFault::Denied { name })
+    } else if with(Witness::Seen) {
+        None
+    } else if with(Witness::Unsure) {
+        Some(CaptionFault::Unsure { name })
+    } else {
+        Some(CaptionFault::Invented { name })
+    }
+}
+
+/// Whether something of that very name is there: one lamp may be denied on the left and seen on the right.
+fn seen_by_name(sightings: &[Sighting], name: &str) -> bool {
+    sightings.iter().any(|sighting| sighting.witness == Witness::Seen && normal(&sighting.name) == normal(name))
+}
+
+fn speaks_of(sighting: &Sighting, name: &str) -> bool {
+    agree(&sighting.name, name) || holds(&sighting.name, name)
+}
+
+/// Whether a name holds another as words of its own: "cup and plate" holds "cup".
+fn holds(name: &str, part: &str) -> bool {
+    format!(" {} ", normal(name)).contains(&format!(" {} ", normal(part)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dialogue::{OPENING, sightings};
+    use wayword_core::Exchange;
+
+    fn faults(text: &str) -> Vec<String> {
+        let transcript = [
+            Exchange::new(
+                OPENING,
+                "The picture shows a bedroom with a bed, a couch, a red chair and a mirror. There might be a piano.",
+            ),
+            Exchange::new("Is there really a mirror?", "No, there is no mirror."),
+            Exchange::new("Is there a lamp?", "No."),
+            Exchange::new("Is there a dining chair?", "No."),
+        ];
+        let told = sightings(&transcript, "test");
+        let short = |fault: CaptionFault| match fault {
+            CaptionFault::Denied { name } => format!("denied {name}"),
+            CaptionFault::Unsure { name } => format!("unsure {name}"),
+            CaptionFault::Invented { name } => format!("invented {name}"),
+        };
+        caption_faults(text, &told).into_iter().map(short).collect()
+    }
+
+    #[test]
+    fn what_was_said_may_be_summed_up() {
+        for text in [
+            "A bedroom with a bed, a sofa and a red chair.",
+            "The picture shows a bedroom. The bed stands against a white wall on a wooden floor.",
+            "A cosy bedroom with a double bed and an armchair.",
+            "",
+        ] {
+            assert_eq!(faults(text), Vec::<String>::new(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_was_denied_doubtful_or_never_said_is_a_fault() {
+        assert_eq!(faults("A bedroom with a bed and a mirror."), ["denied mirror"]);
+        assert_eq!(faults("A bedroom with no lamp."), ["denied lamp"]);
+        assert_eq!(faults("A bedroom with a bed and a floor lamp."), ["denied floor lamp"]);
+        assert_eq!(faults("A bedroom with dining chairs."), ["denied dining chair"]);
+        assert_eq!(faults("A bedroom with a piano."), ["unsure piano"]);
+        assert_eq!(faults("A bedroom with a treadmill and a treadmill."), ["invented treadmill"]);
+        assert_eq!(faults("A bedroom without stairs."), ["denied stairs"]);
+        assert_eq!(faults("A bedroom with stairs."), ["invented stairs"]);
+        assert_eq!(faults("There are stairs."), ["invented stairs"]);
+        assert_eq!(faults("A staircase with a bed."), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_fault_is_a_reason_in_words() {
+        let fault = CaptionFault::Denied { name: "mirror".into() };
+        assert_eq!(fault.to_string(), "it speaks of \"mirror\", which is said not to be there");
+    }
+}

@@ -1,0 +1,70 @@
+//! Whether an exchange brings anything new.
+
+use super::answers::{room, sightings};
+use crate::{lexicon::normal_word, text::words};
+use std::collections::BTreeSet;
+use wayword_core::Exchange;
+
+/// Words that tell nothing of a picture.
+const EMPTY_WORDS: &str = "a an the this that these those it its am is are was were be been being there here i you we they he she him \
+    her them and or but not no yes of in on at to for from by with without as if so do does did can could may might will would \
+    should have has had what which where who how any some all both each other another one also very more most just only such \
+    than then too into about up out image picture photo photograph scene view see seen sure visible shown show shows appear \
+    appears seem seems look looks like clear clearly unclear tell say know possible possibly maybe think believe answer question \
+    sorry however provided based cannot can't don't doesn't isn't aren't it's i'm there's";
+
+/// Whether the last exchange of a transcript changes what the whole says of things or the room, or has a word that neither its
+/// question nor anything before it had.
+pub(super) fn is_new(transcript: &[Exchange]) -> bool {
+    let Some((last, before)) = transcript.split_last() else { return false };
+    if last.answer.is_empty() {
+        return false;
+    }
+    let empty: BTreeSet<&str> = EMPTY_WORDS.split_whitespace().collect();
+    let texts = before.iter().flat_map(|exchange| [&exchange.question, &exchange.answer]).chain([&last.question]);
+    let known: BTreeSet<String> = texts.flat_map(|text| words(text)).map(|word| normal_word(&word)).collect();
+    let says_more =
+        || words(&last.answer).iter().any(|word| !empty.contains(word.as_str()) && !known.contains(&normal_word(word)));
+    says_more() || sightings(transcript, "") != sightings(before, "") || room(transcript) != room(before)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn last_is_new(answers: &[(&str, &str)]) -> bool {
+        is_new(&answers.iter().map(|(question, answer)| Exchange::new(*question, *answer)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn new_words_denials_and_colours_are_news() {
+        let opening = ("Describe.", "There is a bed and a red chair.");
+        for last in [
+            ("Is there a lamp?", "Yes."),
+            ("Is there a lamp?", "No."),
+            ("Is there a bed?", "No."),
+            ("What colour is the bed?", "Red."),
+            ("What is the bed made of?", "It is made of wood."),
+            ("Is this a bedroom?", "Yes."),
+            ("Is there a rug?", "I am not sure."),
+        ] {
+            assert!(last_is_new(&[opening, last]), "{last:?}");
+        }
+    }
+
+    #[test]
+    fn what_was_said_before_is_no_news() {
+        let opening = ("Describe.", "There is a bed and a red chair.");
+        for last in [
+            ("Is there a bed?", "Yes."),
+            ("Is there a bed?", "Yes, there is a bed in the picture."),
+            ("What else is there?", "I am not sure."),
+            ("What else is there?", "There is a red chair."),
+            ("What is the bed made of?", ""),
+            ("What is the bed made of?", "It is not clear."),
+        ] {
+            assert!(!last_is_new(&[opening, last]), "{last:?}");
+        }
+        assert!(!is_new(&[]));
+    }
+}

@@ -1,0 +1,121 @@
+//! Answers that cannot be used, and how such a question is asked again.
+
+use crate::text::words;
+use wayword_core::{Exchange, Trouble};
+
+/// Longest phrase, in words, of an answer that says the same over and over.
+const LOOP_WORDS: usize = 8;
+/// How often it has to say it.
+const LOOP_TIMES: usize = 3;
+/// Fewer words than this may well be the answer to two questions ("They are made of wood").
+const REPEAT_WORDS: usize = 6;
+
+/// Why an answer cannot be used, where it cannot.
+pub(super) fn trouble(question: &str, answer: &str, before: &[Exchange]) -> Option<Trouble> {
+    let said = words(answer);
+    if said.is_empty() {
+        Some(Trouble::Empty)
+    } else if is_echo(&words(question), &said) {
+        Some(Trouble::Echo)
+    } else if is_loop(&said) {
+        Some(Trouble::Loop)
+    } else {
+        is_repeat(question, &said, before).then_some(Trouble::Repeat)
+    }
+}
+
+/// The question once more, in other words.
+pub(super) fn rephrased(question: &str) -> String {
+    if question == super::OPENING {
+        return "Look at the picture again and say in one sentence which room and which objects it shows.".to_owned();
+    }
+    format!("Look again and answer in one short sentence: {question}")
+}
+
+/// The question itself, once or more, or most of its words in a row, and nothing else.
+fn is_echo(asked: &[String], said: &[String]) -> bool {
+    if asked.is_empty() {
+        return false;
+    }
+    let again = said.len() >= asked.len() && said.iter().zip(asked.iter().cycle()).all(|(said, asked)| said == asked);
+    let part = said.len() >= 3 && 3 * said.len() >= 2 * asked.len() && asked.windows(said.len()).any(|run| run == said);
+    again || part
+}
+
+/// A run of up to eight words, said at least three times in a row, that makes up most of the answer.
+fn is_loop(said: &[String]) -> bool {
+    (1..=LOOP_WORDS.min(said.len() / LOOP_TIMES)).any(|length| {
+        let mut longest = 0;
+        let mut run = 0;
+        for at in length..said.len() {
+            run = if said[at] == said[at - length] { run + 1 } else { 0 };
+            longest = longest.max(run);
+        }
+        let words = longest + length;
+        words >= length * LOOP_TIMES && longest > 0 && 2 * words > said.len()
+    })
+}
+
+/// Word for word the answer to an earlier and different question, and no short one.
+fn is_repeat(question: &str, said: &[String], before: &[Exchange]) -> bool {
+    let is_unsure = said.len() <= 8 && said.windows(2).any(|pair| pair[0] == "not" && pair[1] == "sure");
+    said.len() >= REPEAT_WORDS
+        && !is_unsure
+        && before.iter().any(|exchange| words(&exchange.question) != words(question) && words(&exchange.answer) == said)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const ASKED: &str = "What colour is the sofa in the room?";
+
+    #[test]
+    fn answers_that_cannot_be_used_are_recognised() {
+        let before = [Exchange::new("What is on the left?", "There is a tall lamp on the left.")];
+        let of = |answer: &str| trouble(ASKED, answer, &before);
+        for (answer, wanted) in [
+            ("", Some(Trouble::Empty)),
+            (" ... ", Some(Trouble::Empty)),
+            ("what colour is the sofa in the room", Some(Trouble::Echo)),
+            ("What colour is the sofa in the room? What colour is the sofa in the room?", Some(Trouble::Echo)),
+            ("the sofa in the room colour is the sofa", None),
+            ("is the sofa in the room", Some(Trouble::Echo)),
+            ("the sofa", None),
+            ("a chair a chair a chair a chair", Some(Trouble::Loop)),
+            ("There is a bed, and a lamp, and a lamp, and a lamp, and a lamp, and a lamp", Some(Trouble::Loop)),
+            ("red red red", Some(Trouble::Loop)),
+            ("The sofa is very very red.", None),
+            ("a chair, a table, a lamp and a rug", None),
+            ("there is a tall lamp on the left", Some(Trouble::Repeat)),
+            ("It is red.", None),
+        ] {
+            assert_eq!(of(answer), wanted, "{answer}");
+        }
+    }
+
+    #[test]
+    fn short_answers_may_come_again() {
+        let before = [
+            Exchange::new("Is there a bed?", "Yes, in the middle."),
+            Exchange::new("Is there a rug?", "I am not sure about that, sorry."),
+        ];
+        assert_eq!(trouble(ASKED, "Yes, in the middle.", &before), None);
+        assert_eq!(trouble(ASKED, "I am not sure about that, sorry.", &before), None);
+    }
+
+    proptest! {
+        #[test]
+        fn any_answer_is_judged(question in "\\PC{0,60}", answer in "(\\PC| ){0,200}") {
+            let empty = !answer.chars().any(char::is_alphanumeric);
+            prop_assert_eq!(trouble(&question, &answer, &[]) == Some(Trouble::Empty), empty);
+        }
+
+        #[test]
+        fn what_is_said_three_times_and_nothing_else_is_a_loop(phrase in "[a-z]{1,5}( [a-z]{1,5}){0,7}", times in 3_usize..9) {
+            let said = vec![phrase; times].join(", ");
+            prop_assert_eq!(trouble("Which one?", &said, &[]), Some(Trouble::Loop));
+        }
+    }
+}
