@@ -10,8 +10,10 @@ const ANSWER_CHARS: usize = 1200;
 const MOST_BYTES: usize = 16_384;
 /// What models put before a question of theirs.
 const QUESTION_LABELS: [&str; 4] = ["question:", "q:", "next question:", "new question:"];
-/// What begins another turn within an answer.
-const TURNS: [&str; 10] = ["question:", "q:", "user:", "human:", "assistant:", "answer:", "a:", "### ", "<|", "</s>"];
+/// What begins another turn within an answer, wherever it stands.
+const TURNS: [&str; 5] = ["question:", "user:", "### ", "<|", "</s>"];
+/// What does so behind a whole sentence only: "the short answer: no" goes on.
+const TURNS_BEHIND_SENTENCES: [&str; 5] = ["q:", "a:", "answer:", "human:", "assistant:"];
 /// Words that a question begins with that lacks its mark.
 const ASKING: [&str; 20] = [
     "what", "which", "where", "how", "who", "is", "are", "do", "does", "can", "could", "describe", "why", "when",
@@ -39,7 +41,15 @@ pub(super) fn question(reply: &str) -> Option<String> {
 /// An answer without the question repeated before it and the turns invented behind it, of bounded length.
 pub(super) fn answer(reply: &str, question: &str) -> String {
     let reply = without_lead(head(reply, MOST_BYTES).trim(), question);
-    let cut = TURNS.iter().filter_map(|label| labels(reply, label).find(|at| *at > 0)).min();
+    let behind_sentence = |at: &usize| {
+        let before = reply[..*at].trim_end_matches([' ', '*', '"']);
+        before.is_empty() || before.ends_with(['.', '!', '?', '\n'])
+    };
+    let turns = TURNS.iter().filter_map(|label| labels(reply, label).find(|at| *at > 0));
+    let behind = TURNS_BEHIND_SENTENCES
+        .iter()
+        .filter_map(|label| labels(reply, label).filter(behind_sentence).find(|at| *at > 0));
+    let cut = turns.chain(behind).min();
     bounded(reply[..cut.unwrap_or(reply.len())].trim()).to_owned()
 }
 
@@ -142,6 +152,9 @@ mod tests {
             ("What colour is the sofa?", "What colour is the sofa?"),
             ("Question: What colour is the sofa? Answer: red", "red"),
             ("It is a TV: a large one", "It is a TV: a large one"),
+            ("The short answer: red", "The short answer: red"),
+            ("red question: what is on it answer: a cat", "red"),
+            ("It is red. A: it is red", "It is red."),
             ("", ""),
         ] {
             assert_eq!(answer(reply, asked), wanted, "{reply}");

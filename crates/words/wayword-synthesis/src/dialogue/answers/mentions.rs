@@ -360,7 +360,10 @@ fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
             }
         } else if let Some(last) = nouns.iter().rposition(|noun| noun.end <= phrase.from) {
             let between = &words[nouns[last].end..phrase.from];
-            if between.len() <= 8 && !between.contains(&",") {
+            // "Two windows, both on the left".
+            let apart =
+                between.contains(&",") && !matches!(between, [",", "both" | "located" | "placed" | "situated", ..]);
+            if between.len() <= 8 && !apart {
                 places[last] = Some(phrase.place);
             }
         }

@@ -13,7 +13,7 @@ mod scope;
 mod tests;
 mod verdict;
 
-use crate::lexicon::{agree, normal};
+use crate::lexicon::{agree, normal, thing};
 use colour::{bare_colour, first_colour};
 use join::Told;
 use listed::listed;
@@ -54,8 +54,13 @@ fn of_exchange(exchange: &Exchange, by: &str) -> Vec<Told> {
     }
 }
 
+/// The things that an answer names. Walls, floors, ceilings and corners are everywhere, and are none.
 fn things(answer: &str, known: &BTreeSet<String>) -> Vec<Mention> {
-    mentions(answer, known).into_iter().filter(|mention| mention.is_thing).collect()
+    let everywhere =
+        |name: &str| thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"));
+    let of_note =
+        |mention: &Mention| mention.is_thing && (known.contains(&normal(&mention.name)) || !everywhere(&mention.name));
+    mentions(answer, known).into_iter().filter(of_note).collect()
 }
 
 fn told(mentions: Vec<Mention>, place: Option<Where>, by: &str) -> Vec<Told> {
@@ -111,6 +116,8 @@ fn witness(own: &[Mention], verdict: Verdict, or: bool, of_several: bool) -> Opt
         _ if says(Witness::Denied) => Some(Witness::Denied),
         Verdict::No if of_several && !or => says(Witness::Seen).then_some(Witness::Seen),
         Verdict::No => Some(Witness::Denied),
+        // "Yes, there might be one": how the thing itself is spoken of tells more.
+        Verdict::Yes if says(Witness::Unsure) && !says(Witness::Seen) => Some(Witness::Unsure),
         Verdict::Yes if !or => Some(Witness::Seen),
         Verdict::Unsure => Some(Witness::Unsure),
         _ if says(Witness::Seen) => Some(Witness::Seen),
@@ -125,7 +132,7 @@ fn of_one(wanted: &Wanted, witness: Witness, own: &[Mention], place: impl Fn() -
         Witness::Seen => Sighting {
             place: mention.map_or_else(place, |mention| mention.place).or(wanted.place),
             colour: mention.and_then(|mention| mention.colour.clone()).or_else(|| wanted.colour.clone()),
-            several: wanted.several || mention.is_some_and(|mention| mention.several),
+            several: mention.map_or(wanted.several, |mention| mention.several),
             ..sighting(&wanted.name, witness, by)
         },
         Witness::Denied => {

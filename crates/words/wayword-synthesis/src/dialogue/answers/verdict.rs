@@ -36,7 +36,7 @@ const YES: [&[&str]; 21] = [
     &["no", "doubt"],
     &["i", "believe", "so"],
 ];
-const NO: [&[&str]; 27] = [
+const NO: [&[&str]; 34] = [
     &["no"],
     &["nope"],
     &["none"],
@@ -64,6 +64,13 @@ const NO: [&[&str]; 27] = [
     &["i", "can't", "see"],
     &["it", "does", "not"],
     &["it", "doesn't"],
+    &["there", "does", "not"],
+    &["there", "doesn't"],
+    &["there", "do", "not"],
+    &["there", "don't"],
+    &["unfortunately", "not"],
+    &["unfortunately", "no"],
+    &["actually", "no"],
 ];
 const MAYBE: [&[&str]; 10] = [
     &["maybe"],
@@ -78,14 +85,33 @@ const MAYBE: [&[&str]; 10] = [
     &["it", "could"],
 ];
 
-/// What an answer says, by how it begins. Not to be sure outweighs whatever else it says.
+/// What an answer says, by how it begins, or by the yes or no behind its first comma ("Looking again, no."). Not to be sure, in its
+/// first sentence, outweighs that.
 pub(super) fn verdict(answer: &str) -> Verdict {
-    let words = words(&answer.replace('’', "'"));
+    let answer = answer.replace('’', "'");
+    let first = answer.split_inclusive(['.', '!', '?', '\n']).find(|part| part.contains(char::is_alphanumeric));
+    let first = first.unwrap_or_default();
+    match of_words(&words(first)) {
+        Verdict::Open => {}
+        verdict => return verdict,
+    }
+    if let Some((_, rest)) = first.split_once(',').filter(|(before, _)| words(before).len() <= 8) {
+        let rest = words(rest);
+        if rest.first().is_some_and(|first| matches!(first.as_str(), "yes" | "no")) {
+            return of_words(&rest);
+        }
+    }
+    let all = words(&answer);
+    if is_unsure(&all.iter().map(String::as_str).collect::<Vec<_>>()) { Verdict::Unsure } else { Verdict::Open }
+}
+
+fn of_words(words: &[String]) -> Verdict {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let words = words.strip_prefix(&["well"]).unwrap_or(&words);
     let longest = |phrases: &[&[&str]]| {
         phrases.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
     };
-    if is_unsure(&words) || longest(&MAYBE).is_some() {
+    if is_unsure(words) || longest(&MAYBE).is_some() {
         return Verdict::Unsure;
     }
     match (longest(&YES).unwrap_or(0), longest(&NO).unwrap_or(0)) {
