@@ -1,1 +1,22 @@
 //! Every call of a model, made once and kept.
+//!
+//! One file for all runs. A call is known by everything that could change its answer; an answer is on disk before anybody hears
+//! it; a request is on disk before it leaves. So a run that was killed pays twice at most for what was on the wire, and knows how
+//! much that was.
+//!
+//! Architecture invariant: nothing here knows what a call means, and nothing of the database shows outside.
+
+mod budget;
+mod call;
+mod error;
+mod flight;
+mod queries;
+mod recording;
+mod run;
+mod store;
+
+pub use budget::{Limits, Refused};
+pub use call::{Answer, Call, Key, Row};
+pub use error::LedgerError;
+pub use queries::{By, CostLine, Filter};
+pub use run::{Attempts, Ledger, OnceError, Run, Totals};

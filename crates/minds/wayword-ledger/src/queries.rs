@@ -1,0 +1,209 @@
+//! What is in a ledger: for people, and for files.
+
+use crate::{
+    LedgerError,
+    call::Row,
+    run::Ledger,
+    store::{COLUMNS, row},
+};
+use rusqlite::{ToSql, params_from_iter};
+use serde::Serialize;
+use std::{
+    io::Write,
+    path::Path,
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+/// Which calls.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// Only this model's.
+    pub model: Option<String>,
+    /// Only those that this run has used.
+    pub run: Option<String>,
+    /// Only those whose answer is older, seconds.
+    pub older_than_s: Option<u64>,
+    /// Only the latest so many.
+    pub limit: Option<usize>,
+}
+
+/// What costs are summed up by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    /// Model by model.
+    Model,
+    /// Run by run: the one that paid.
+    Run,
+    /// Day by day, UTC.
+    Day,
+}
+
+/// What a model, a run or a day has cost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CostLine {
+    /// The model, the run or the day.
+    pub of: String,
+    /// Calls that were answered.
+    pub calls: u64,
+    /// Tokens of requests.
+    pub tokens_in: u64,
+    /// Tokens of answers.
+    pub tokens_out: u64,
+    /// US dollars of those whose price was known.
+    pub usd: f64,
+    /// Calls whose price was not known.
+    pub without_price: u64,
+}
+
+/// A filter as the database takes it.
+struct Where {
+    sql: String,
+    values: Vec<Box<dyn ToSql>>,
+}
+
+impl Filter {
+    fn to_sql(&self) -> Where {
+        let (mut sql, mut values) = (String::from(" WHERE TRUE"), Vec::<Box<dyn ToSql>>::new());
+        let mut and = |condition: &str, value: Box<dyn ToSql>| {
+            values.push(value);
+            sql.push_str(&format!(" AND {}", condition.replace('?', &format!("?{}", values.len()))));
+        };
+        if let Some(model) = &self.model {
+            and("model = ?", Box::new(model.clone()));
+        }
+        if let Some(run) = &self.run {
+            and("calls.key IN (SELECT key FROM uses WHERE run = ?)", Box::new(run.clone()));
+        }
+        if let Some(age_s) = self.older_than_s {
+            and("at < ?", Box::new(now_unix_s().saturating_sub_unsigned(age_s)));
+        }
+        Where { sql, values }
+    }
+}
+
+/// Seconds since 1970.
+pub(crate) fn now_unix_s() -> i64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| i64::try_from(since.as_secs()).unwrap_or(i64::MAX))
+}
+
+impl Ledger {
+    /// Calls, the latest first.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read.
+    pub fn list(&self, filter: &Filter) -> Result<Vec<Row>, LedgerError> {
+        let limit = filter.limit.map_or(String::new(), |limit| format!(" LIMIT {limit}"));
+        let mut rows = Vec::new();
+        self.each(filter, &format!(" ORDER BY at DESC, calls.key{limit}"), |row| {
+            rows.push(row);
+            Ok(())
+        })?;
+        Ok(rows)
+    }
+
+    /// Writes calls as JSON lines, in the order of their keys; returns how many.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read or the lines cannot be written.
+    pub fn export(&self, filter: &Filter, mut out: impl Write) -> Result<usize, LedgerError> {
+        let failed = LedgerError::io(self.path(), "export");
+        let mut count = 0;
+        self.each(filter, " ORDER BY calls.key", |row| {
+            let mut line = serde_json::to_vec(&row).map_err(|error| failed(error.into()))?;
+            line.push(b'\n');
+            count += 1;
+            out.write_all(&line).map_err(&failed)
+        })?;
+        Ok(count)
+    }
+
+    /// The same into a file, which is there whole or not at all.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read or the file cannot be written.
+    pub fn export_to(&self, filter: &Filter, path: &Path) -> Result<usize, LedgerError> {
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(".new");
+        let unfinished = path.with_file_name(name);
+        let failed = LedgerError::io(&unfinished, "write");
+        let mut file = std::io::BufWriter::new(std::fs::File::create(&unfinished).map_err(&failed)?);
+        let count = self.export(filter, &mut file)?;
+        let file = file.into_inner().map_err(|error| failed(error.into_error()))?;
+        file.sync_all().map_err(&failed)?;
+        std::fs::rename(&unfinished, path).map_err(LedgerError::io(path, "write"))?;
+        Ok(count)
+    }
+
+    /// Drops calls; returns how many. What runs have spent stays known.
+    ///
+    /// # Errors
+    /// When the ledger cannot be written.
+    pub fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
+        let failed = LedgerError::store(self.path(), "prune");
+        let Where { sql, values } = filter.to_sql();
+        let connection = self.store().reader();
+        let dropped =
+            connection.execute(&format!("DELETE FROM calls{sql}"), params_from_iter(values)).map_err(&failed)?;
+        connection
+            .execute_batch("DELETE FROM uses WHERE key NOT IN (SELECT key FROM calls); VACUUM")
+            .map_err(&failed)?;
+        Ok(dropped)
+    }
+
+    /// What calls have cost.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read.
+    pub fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
+        let failed = LedgerError::store(self.path(), "read");
+        let of = match by {
+            By::Model => "model",
+            By::Run => "run",
+            By::Day => "date(at, 'unixepoch')",
+        };
+        let sql = format!(
+            "SELECT {of}, COUNT(*), SUM(tokens_in), SUM(tokens_out), TOTAL(usd), SUM(usd IS NULL) FROM calls GROUP BY 1 ORDER BY 1"
+        );
+        let reader = self.store().reader();
+        let mut statement = reader.prepare(&sql).map_err(&failed)?;
+        let lines = statement.query_map([], |row| {
+            let count = |at: usize| row.get::<_, i64>(at).map(|count| u64::try_from(count).unwrap_or(0));
+            Ok(CostLine {
+                of: row.get(0)?,
+                calls: count(1)?,
+                tokens_in: count(2)?,
+                tokens_out: count(3)?,
+                usd: row.get(4)?,
+                without_price: count(5)?,
+            })
+        });
+        lines.and_then(Iterator::collect).map_err(&failed)
+    }
+
+    /// Requests that were sent and whose answer is not known: they may have been paid for.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read.
+    pub fn lost(&self) -> Result<u64, LedgerError> {
+        let sql = "SELECT COUNT(*) FROM sent WHERE outcome IS NULL OR outcome = 'lost'";
+        let lost = self.store().reader().query_row(sql, [], |row| row.get::<_, i64>(0));
+        lost.map(|lost| u64::try_from(lost).unwrap_or(0)).map_err(LedgerError::store(self.path(), "read"))
+    }
+
+    fn each(
+        &self,
+        filter: &Filter,
+        order: &str,
+        mut take: impl FnMut(Row) -> Result<(), LedgerError>,
+    ) -> Result<(), LedgerError> {
+        let failed = LedgerError::store(self.path(), "read");
+        let Where { sql, values } = filter.to_sql();
+        let reader = self.store().reader();
+        let mut statement = reader.prepare(&format!("SELECT {COLUMNS} FROM calls{sql}{order}")).map_err(&failed)?;
+        let mut rows = statement.query(params_from_iter(values)).map_err(&failed)?;
+        while let Some(next) = rows.next().map_err(&failed)? {
+            take(row(next).map_err(&failed)?)?;
+        }
+        Ok(())
+    }
+}

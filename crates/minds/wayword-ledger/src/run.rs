@@ -1,0 +1,324 @@
+//! A ledger at work: each call of a run is made once.
+
+use crate::{
+    Answer, Call, Key, LedgerError, Limits, Refused, Row,
+    budget::Budget,
+    flight::Flights,
+    queries::{Filter, now_unix_s},
+    recording,
+    store::{Store, Write},
+};
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+/// Every call of all runs. Clones are the same ledger; when the last is dropped, what was to be written is.
+#[derive(Debug, Clone)]
+pub struct Ledger {
+    inner: Arc<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    store: Store,
+    flights: Flights,
+    /// The recording that all answers have to come from.
+    recording: Option<PathBuf>,
+}
+
+/// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones are the same run.
+#[derive(Debug, Clone)]
+pub struct Run {
+    ledger: Ledger,
+    state: Arc<State>,
+}
+
+#[derive(Debug)]
+struct State {
+    id: String,
+    budget: Budget,
+    stopped: AtomicBool,
+    totals: Mutex<Totals>,
+}
+
+/// What a run came to in this process.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Totals {
+    /// Requests that were sent.
+    pub calls: u64,
+    /// Calls that the ledger answered.
+    pub hits: u64,
+    /// Calls that were answered by a request.
+    pub answered: u64,
+    /// Requests that came to nothing.
+    pub failed: u64,
+    /// Those among them that may have been paid for.
+    pub lost: u64,
+    /// Tokens of the requests that were answered.
+    pub tokens_in: u64,
+    /// Tokens of the answers.
+    pub tokens_out: u64,
+    /// What the answers cost, US dollars, where the price is known.
+    pub usd: f64,
+    /// What the lost requests may have cost at most, US dollars.
+    pub maybe_usd: f64,
+}
+
+/// The requests of one call.
+pub struct Attempts<'a> {
+    run: &'a Run,
+    key: &'a Key,
+    /// The request that is on the wire: its number in the ledger and its upper bound.
+    open: Option<(i64, Option<f64>)>,
+}
+
+/// A call was not answered.
+#[derive(Debug, thiserror::Error)]
+pub enum OnceError<E> {
+    /// The call itself came to nothing.
+    #[error(transparent)]
+    Call(E),
+    /// It may not be made.
+    #[error(transparent)]
+    Refused(Refused),
+    /// It is not in the recording that all answers have to come from.
+    #[error("{}: this recording does not hold a call to {model} ({words:?})\nhint: record the run again with --record, with the same settings", recording.display())]
+    NotRecorded {
+        /// The recording.
+        recording: PathBuf,
+        /// The model that would have been asked.
+        model: String,
+        /// The end of what it would have been asked.
+        words: String,
+    },
+    /// The ledger could not be read or written.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+}
+
+impl Ledger {
+    /// Opens a ledger, or makes one.
+    ///
+    /// # Errors
+    /// When the file is something else, or cannot be read and written.
+    pub fn open(path: &Path) -> Result<Self, LedgerError> {
+        Ok(Self::of(Store::open(path)?, None))
+    }
+
+    /// A ledger that is gone with the process.
+    ///
+    /// # Errors
+    /// When there is no memory for it.
+    pub fn in_memory() -> Result<Self, LedgerError> {
+        Ok(Self::of(Store::in_memory()?, None))
+    }
+
+    /// A ledger that answers from a recording alone.
+    ///
+    /// # Errors
+    /// When the recording cannot be read.
+    pub fn replay(recording: &Path) -> Result<Self, LedgerError> {
+        let store = Store::in_memory()?;
+        recording::each(recording, |row| {
+            store.writer.note(Write::Answered { sent: None, row: Box::new(row) });
+            Ok(())
+        })?;
+        store.writer.flush()?;
+        Ok(Self::of(store, Some(recording.to_owned())))
+    }
+
+    fn of(store: Store, recording: Option<PathBuf>) -> Self {
+        Self { inner: Arc::new(Inner { store, flights: Flights::default(), recording }) }
+    }
+
+    /// A run by its name; what earlier processes of that name have spent counts.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read.
+    pub fn run(&self, id: &str, limits: Limits) -> Result<Run, LedgerError> {
+        let state = State {
+            id: id.to_owned(),
+            budget: Budget::new(limits, self.inner.store.spent(id)?),
+            stopped: AtomicBool::new(false),
+            totals: Mutex::default(),
+        };
+        Ok(Run { ledger: self.clone(), state: Arc::new(state) })
+    }
+
+    pub(crate) fn store(&self) -> &Store {
+        &self.inner.store
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.inner.store.path()
+    }
+}
+
+impl Run {
+    /// The answer of a call. If it is in the ledger, that is the answer; if another thread is making the call, it waits for that;
+    /// else `send` makes it. What `send` answers is on disk before it is returned.
+    ///
+    /// # Errors
+    /// When `send` fails, a limit would be broken, or the ledger cannot be used.
+    pub fn once<E>(
+        &self,
+        call: &Call,
+        send: impl FnOnce(&mut Attempts<'_>) -> Result<Answer, E>,
+    ) -> Result<Answer, OnceError<E>> {
+        let key = call.key();
+        loop {
+            if let Some(answer) = self.stored(&key)? {
+                return Ok(answer);
+            }
+            let Some(_flight) = self.ledger.inner.flights.take_off(&key) else { continue };
+            // It may have landed between the look and the start.
+            if let Some(answer) = self.stored(&key)? {
+                return Ok(answer);
+            }
+            if let Some(recording) = &self.ledger.inner.recording {
+                return Err(not_recorded(recording, call));
+            }
+            let mut attempts = Attempts { run: self, key: &key, open: None };
+            return match send(&mut attempts) {
+                Ok(answer) => {
+                    attempts.answered(call, &answer)?;
+                    Ok(answer)
+                }
+                Err(error) => {
+                    attempts.failed("given up", true);
+                    Err(OnceError::Call(error))
+                }
+            };
+        }
+    }
+
+    fn stored(&self, key: &Key) -> Result<Option<Answer>, LedgerError> {
+        let store = self.ledger.store();
+        let answer = store.answer(key)?;
+        if answer.is_some() {
+            store.writer.note(Write::Used { run: self.state.id.clone(), key: key.to_string() });
+            self.count(|totals| totals.hits += 1);
+        }
+        Ok(answer)
+    }
+
+    /// From now on no request leaves; those on the wire are finished and kept.
+    pub fn stop(&self) {
+        self.state.stopped.store(true, Ordering::SeqCst);
+    }
+
+    /// Whether [`Run::stop`] was called.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.state.stopped.load(Ordering::SeqCst)
+    }
+
+    /// What was done in this process.
+    #[must_use]
+    pub fn totals(&self) -> Totals {
+        *self.state.totals.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes every call that this run has used, in the order of their keys; returns how many.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read or the file cannot be written.
+    pub fn record(&self, path: &Path) -> Result<usize, LedgerError> {
+        self.ledger.store().writer.flush()?;
+        self.ledger.export_to(&Filter { run: Some(self.state.id.clone()), ..Filter::default() }, path)
+    }
+
+    fn count(&self, change: impl FnOnce(&mut Totals)) {
+        change(&mut self.state.totals.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Attempts<'_> {
+    /// To be called before each request. Once it returns, the ledger knows on disk that the request leaves.
+    ///
+    /// # Errors
+    /// When the request may not leave: the run was stopped, or a limit would be broken.
+    pub fn begin(&mut self, most_usd: Option<f64>) -> Result<(), Refused> {
+        self.failed("followed by another", true);
+        if self.run.is_stopped() {
+            return Err(Refused::Stopped);
+        }
+        self.run.state.budget.reserve(most_usd)?;
+        let write =
+            Write::Sent { run: self.run.state.id.clone(), key: self.key.to_string(), most_usd, at: now_unix_s() };
+        match self.run.ledger.store().writer.keep(write) {
+            Ok(sent) => {
+                self.open = Some((sent, most_usd));
+                self.run.count(|totals| totals.calls += 1);
+                Ok(())
+            }
+            Err(error) => {
+                self.run.state.budget.cancel(most_usd);
+                Err(error.into())
+            }
+        }
+    }
+
+    /// The request never left after all.
+    pub fn cancelled(&mut self) {
+        let Some((sent, most_usd)) = self.open.take() else { return };
+        self.run.state.budget.cancel(most_usd);
+        self.run.count(|totals| totals.calls -= 1);
+        self.end(sent, "cancelled", "");
+    }
+
+    /// The request came to nothing. Where it may have been paid for, its upper bound stays counted.
+    pub fn failed(&mut self, reason: &str, maybe_paid: bool) {
+        let Some((sent, most_usd)) = self.open.take() else { return };
+        let lost_usd = if maybe_paid { most_usd.unwrap_or(0.0) } else { 0.0 };
+        self.run.state.budget.settle(most_usd, lost_usd);
+        self.run.count(|totals| {
+            totals.failed += 1;
+            totals.lost += u64::from(maybe_paid);
+            totals.maybe_usd += lost_usd;
+        });
+        self.end(sent, if maybe_paid { "lost" } else { "failed" }, reason);
+    }
+
+    fn end(&self, sent: i64, outcome: &'static str, reason: &str) {
+        self.run.ledger.store().writer.note(Write::Ended { sent, outcome, reason: reason.to_owned() });
+    }
+
+    fn answered(&mut self, call: &Call, answer: &Answer) -> Result<(), LedgerError> {
+        let open = self.open.take();
+        let row = Row {
+            key: self.key.clone(),
+            call: call.clone(),
+            answer: answer.clone(),
+            at_unix_s: now_unix_s(),
+            run: self.run.state.id.clone(),
+        };
+        let sent = open.map(|(sent, _)| sent);
+        let usd = answer.usd.unwrap_or(0.0);
+        self.run.state.budget.settle(open.and_then(|(_, most_usd)| most_usd), usd);
+        self.run.ledger.store().writer.keep(Write::Answered { sent, row: Box::new(row) })?;
+        self.run.count(|totals| {
+            totals.answered += 1;
+            totals.tokens_in += answer.tokens_in;
+            totals.tokens_out += answer.tokens_out;
+            totals.usd += usd;
+        });
+        Ok(())
+    }
+}
+
+/// Characters of a request that an error quotes.
+const QUOTED_CHARS: usize = 200;
+
+fn not_recorded<E>(recording: &Path, call: &Call) -> OnceError<E> {
+    let words = call.request.get("messages").and_then(|messages| messages.as_array()?.last()?.get("text")?.as_str());
+    OnceError::NotRecorded {
+        recording: recording.to_owned(),
+        model: call.model.clone(),
+        words: words.unwrap_or_default().chars().take(QUOTED_CHARS).collect(),
+    }
+}

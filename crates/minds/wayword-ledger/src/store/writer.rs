@@ -1,0 +1,179 @@
+//! The one thread that writes: it commits in one go whatever has come in while it was busy with the last commit.
+
+use crate::{LedgerError, call::Row};
+use rusqlite::{Connection, Transaction, TransactionBehavior, params};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError, mpsc},
+    thread::{self, JoinHandle},
+};
+
+/// Most writes of one commit.
+const MOST_AT_ONCE: usize = 1024;
+
+/// Something to be kept.
+#[derive(Debug)]
+pub(crate) enum Write {
+    /// A request is about to leave.
+    Sent { run: String, key: String, most_usd: Option<f64>, at: i64 },
+    /// A request came to nothing; `lost` where it may have been paid.
+    Ended { sent: i64, outcome: &'static str, reason: String },
+    /// A call was answered.
+    Answered { sent: Option<i64>, row: Box<Row> },
+    /// A run has used an answer.
+    Used { run: String, key: String },
+    /// Nothing, but whatever came before it.
+    Flush,
+}
+
+/// What was written: the number of the request, where one is about to leave.
+type Written = Result<i64, LedgerError>;
+
+struct Job {
+    write: Write,
+    /// Told once it is on disk, where anybody waits for that.
+    done: Option<mpsc::SyncSender<Written>>,
+}
+
+/// The way to the writing thread. When it is dropped, what has come in is written first.
+#[derive(Debug)]
+pub(crate) struct Writer {
+    jobs: Option<Mutex<mpsc::Sender<Job>>>,
+    thread: Option<JoinHandle<()>>,
+    path: PathBuf,
+}
+
+impl Writer {
+    pub(super) fn start(connection: Connection, path: &Path) -> Result<Self, LedgerError> {
+        let (sender, jobs) = mpsc::channel();
+        let of = path.to_owned();
+        let thread = thread::Builder::new()
+            .name("ledger".to_owned())
+            .spawn(move || work(connection, &jobs, &of))
+            .map_err(LedgerError::io(path, "start the ledger's thread"))?;
+        Ok(Self { jobs: Some(Mutex::new(sender)), thread: Some(thread), path: path.to_owned() })
+    }
+
+    /// Keeps something; returns once it is on disk.
+    pub(crate) fn keep(&self, write: Write) -> Written {
+        let (done, written) = mpsc::sync_channel(1);
+        self.send(Job { write, done: Some(done) });
+        written.recv().unwrap_or_else(|_| Err(self.gone()))
+    }
+
+    /// Keeps something soon. Where that fails, so will the next thing that somebody waits for.
+    pub(crate) fn note(&self, write: Write) {
+        self.send(Job { write, done: None });
+    }
+
+    /// Returns once everything that came before is on disk.
+    pub(crate) fn flush(&self) -> Result<(), LedgerError> {
+        self.keep(Write::Flush).map(drop)
+    }
+
+    fn send(&self, job: Job) {
+        if let Some(jobs) = &self.jobs {
+            let _ = jobs.lock().unwrap_or_else(PoisonError::into_inner).send(job);
+        }
+    }
+
+    fn gone(&self) -> LedgerError {
+        LedgerError::Store {
+            path: self.path.clone(),
+            doing: "write",
+            reason: "its thread has ended".to_owned(),
+            hint: "run the same command again",
+        }
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn work(mut connection: Connection, jobs: &mpsc::Receiver<Job>, path: &Path) {
+    while let Ok(first) = jobs.recv() {
+        let mut group = vec![first];
+        while group.len() < MOST_AT_ONCE {
+            let Ok(next) = jobs.try_recv() else { break };
+            group.push(next);
+        }
+        let written = commit(&mut connection, &group, path);
+        for (at, job) in group.into_iter().enumerate() {
+            if let Some(done) = job.done {
+                let result = match &written {
+                    Ok(numbers) => Ok(numbers.get(at).copied().unwrap_or(0)),
+                    Err(error) => Err(error.clone()),
+                };
+                // Whoever asked may have given up.
+                let _ = done.send(result);
+            }
+        }
+    }
+    // A short file beside a whole one is easier to copy; the next program would do it otherwise.
+    let _ = connection.execute_batch("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+fn commit(connection: &mut Connection, group: &[Job], path: &Path) -> Result<Vec<i64>, LedgerError> {
+    let failed = LedgerError::store(path, "write");
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(&failed)?;
+    let numbers = group.iter().map(|job| apply(&transaction, &job.write)).collect::<Result<_, _>>().map_err(&failed)?;
+    transaction.commit().map_err(&failed)?;
+    Ok(numbers)
+}
+
+fn apply(transaction: &Transaction<'_>, write: &Write) -> rusqlite::Result<i64> {
+    let run = |sql: &str, with: &[&dyn rusqlite::ToSql]| transaction.prepare_cached(sql)?.execute(with);
+    match write {
+        Write::Sent { run: by, key, most_usd, at } => {
+            run("INSERT INTO sent (run, key, most_usd, at) VALUES (?1, ?2, ?3, ?4)", params![by, key, most_usd, at])?;
+            return Ok(transaction.last_insert_rowid());
+        }
+        Write::Ended { sent, outcome, reason } => {
+            run("UPDATE sent SET outcome = ?2, reason = ?3 WHERE id = ?1", params![sent, outcome, reason])?;
+        }
+        Write::Used { run: by, key } => {
+            run("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![by, key])?;
+        }
+        Write::Flush => {}
+        Write::Answered { sent, row } => {
+            answered(transaction, row)?;
+            run("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![row.run, row.key.as_str()])?;
+            if let Some(sent) = sent {
+                run("UPDATE sent SET outcome = 'answered', usd = ?2 WHERE id = ?1", params![sent, row.answer.usd])?;
+            }
+        }
+    }
+    Ok(0)
+}
+
+/// The first answer stands: another program may have asked the same at the same time.
+fn answered(transaction: &Transaction<'_>, row: &Row) -> rusqlite::Result<usize> {
+    let count = |count: u64| i64::try_from(count).unwrap_or(i64::MAX);
+    let (call, answer) = (&row.call, &row.answer);
+    transaction
+        .prepare_cached(
+            "INSERT OR IGNORE INTO calls VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",
+        )?
+        .execute(params![
+            row.key.as_str(),
+            call.model,
+            call.base_url,
+            call.request.to_string(),
+            call.replicate,
+            answer.text,
+            answer.finish,
+            count(answer.tokens_in),
+            count(answer.tokens_out),
+            answer.usd,
+            count(answer.latency_ms),
+            answer.attempts,
+            row.at_unix_s,
+            row.run
+        ])
+}
