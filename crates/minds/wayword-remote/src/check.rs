@@ -1,0 +1,221 @@
+//! Whether a model can be used, in plain words, and what to do where it cannot.
+
+use crate::{Dialect, RemoteModel, Services, endpoint::Endpoint, faults};
+use std::{sync::Arc, time::SystemTime};
+use wayword_core::{Image, LanguageModel, Message, Request, Role, Sampling};
+
+/// Side of the picture that a model is shown, pixels: large enough for every service.
+const SQUARE_PX: u32 = 64;
+
+/// Tokens that a model may use up on one word: some think before they speak.
+const MAX_TOKENS: u32 = 256;
+
+/// How good or bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// As it should be.
+    Ok,
+    /// It can be used, but.
+    Warning,
+    /// It cannot be used.
+    Problem,
+}
+
+/// One thing that was looked at.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// How good or bad it is.
+    pub level: Level,
+    /// What was found.
+    pub what: String,
+    /// What to do about it.
+    pub to_do: Option<String>,
+}
+
+impl Finding {
+    fn ok(what: impl Into<String>) -> Self {
+        Self { level: Level::Ok, what: what.into(), to_do: None }
+    }
+
+    fn warning(what: impl Into<String>, to_do: impl Into<String>) -> Self {
+        Self { level: Level::Warning, what: what.into(), to_do: Some(to_do.into()) }
+    }
+
+    fn problem(what: impl Into<String>, to_do: impl Into<String>) -> Self {
+        Self { level: Level::Problem, what: what.into(), to_do: Some(to_do.into()) }
+    }
+
+    /// An error that ends in a hint.
+    fn error(text: &str) -> Self {
+        let (what, to_do) = text.split_once("\nhint: ").unwrap_or((text, "see above"));
+        Self::problem(what, to_do)
+    }
+}
+
+impl Services {
+    /// Looks at everything that a model needs: its key, its service, its price; and asks it for a word, and for the colour of a
+    /// red square. Both are calls like any other: kept, counted and bounded.
+    #[must_use]
+    pub fn check(&self, name: &str) -> Vec<Finding> {
+        let model = match self.model(name) {
+            Ok(model) => model,
+            Err(error) => return vec![Finding::error(&error.to_string())],
+        };
+        let mut findings = Vec::new();
+        if !key(&model.endpoint, &mut findings) || !reachable(&model, &mut findings) {
+            return findings;
+        }
+        price(&model, &mut findings);
+        if speaks(&model, &mut findings) {
+            sees(&model, &mut findings);
+        }
+        findings
+    }
+}
+
+/// Whether there is a key, where one is needed.
+fn key(endpoint: &Endpoint, findings: &mut Vec<Finding>) -> bool {
+    let provider = &endpoint.provider;
+    match (endpoint.secret(), &provider.key_env) {
+        (Err(closed), _) => {
+            findings.push(Finding::problem(closed.reason, closed.hint));
+            return false;
+        }
+        (Ok(Some(_)), Some(variable)) => findings.push(Finding::ok(format!("{variable} holds a key"))),
+        _ => findings.push(Finding::ok(format!("{} needs no key", provider.name))),
+    }
+    if provider.base_url.plain && !provider.base_url.loopback {
+        let what = format!(
+            "{} is reached over plain http: others on the way can read what is sent",
+            provider.base_url.as_str()
+        );
+        let secret = if provider.key_env.is_some() { ", the key too" } else { "" };
+        findings.push(Finding::warning(what + secret, "use https, unless the network is your own"));
+    }
+    true
+}
+
+/// Whether the service answers, and has the model.
+fn reachable(model: &RemoteModel, findings: &mut Vec<Finding>) -> bool {
+    let endpoint = &model.endpoint;
+    let provider = &endpoint.provider;
+    let url = provider.base_url.as_str();
+    let received = match endpoint.models() {
+        Ok(received) => received,
+        Err(error) => {
+            let fault = faults::of_transport(&error, None, url, endpoint.who());
+            let to_do = if provider.local {
+                format!("start {} or give --base-url", provider.name)
+            } else {
+                "check the network and the base URL".to_owned()
+            };
+            findings.push(Finding::problem(fault.reason(), to_do));
+            return false;
+        }
+    };
+    let body = received.body.unwrap_or_default();
+    if !(200..300).contains(&received.status) {
+        let fault = faults::of_response(received.status, &received.headers, &body, SystemTime::now(), endpoint.who());
+        return match fault {
+            faults::Fault::Stop { reason, hint } => {
+                findings.push(Finding::problem(reason, hint));
+                false
+            }
+            // Not every server can list its models.
+            fault => {
+                let to_do = "see whether the base URL ends in the version, like /v1";
+                findings.push(Finding::warning(format!("{url} lists no models: {}", fault.reason()), to_do));
+                true
+            }
+        };
+    }
+    findings.push(Finding::ok(format!("{url} answers")));
+    let listed = serde_json::from_slice(&body).unwrap_or_default();
+    match provider.dialect.models(&listed) {
+        Some(models) if models.iter().any(|known| is_same(known, model.model())) => {
+            findings.push(Finding::ok(format!("{} has {}", provider.name, model.model())));
+        }
+        Some(models) => {
+            let to_do = match provider.dialect {
+                Dialect::Ollama => format!("ollama pull {}", model.model()),
+                _ => format!("name one of {}", some(&models)),
+            };
+            findings.push(Finding::warning(format!("{} does not list {}", provider.name, model.model()), to_do));
+        }
+        None => {
+            findings.push(Finding::warning(format!("{url} lists no models"), "see whether this is the right server"));
+        }
+    }
+    true
+}
+
+/// Whether a listed model is the one that is named; Ollama's `latest` need not be said.
+fn is_same(listed: &str, named: &str) -> bool {
+    listed == named.trim_start_matches("models/") || listed.strip_suffix(":latest") == Some(named)
+}
+
+/// The first few of many names, each short: the list is the server's.
+fn some(models: &[&str]) -> String {
+    let names: Vec<String> =
+        models.iter().take(12).map(|name| faults::short(name).chars().take(80).collect()).collect();
+    if models.len() > names.len() {
+        format!("{}, ... ({} in all)", names.join(", "), models.len())
+    } else {
+        names.join(", ")
+    }
+}
+
+fn price(model: &RemoteModel, findings: &mut Vec<Finding>) {
+    findings.push(match model.price() {
+        Some(price) if price.as_of.is_empty() => Finding::ok(format!("{} costs nothing", model.name())),
+        Some(price) => Finding::ok(format!(
+            "{} costs ${} per million tokens in and ${} out (as of {})",
+            model.name(),
+            price.usd_per_million_in,
+            price.usd_per_million_out,
+            price.as_of
+        )),
+        None => Finding::warning(
+            format!("nobody knows what {} costs, so --max-usd cannot be used with it", model.name()),
+            "add a row for it to a file, and give it as --prices FILE",
+        ),
+    });
+}
+
+fn ask(model: &RemoteModel, message: Message) -> Result<String, String> {
+    let sampling = Sampling { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
+    let request = Request { messages: vec![message], sampling, replicate: 0 };
+    let mut replies = model.complete(&[request]);
+    replies
+        .pop()
+        .map_or_else(|| Err(String::new()), |reply| reply.map(|reply| reply.text).map_err(|error| error.to_string()))
+}
+
+fn speaks(model: &RemoteModel, findings: &mut Vec<Finding>) -> bool {
+    match ask(model, Message::user("Answer with the one word: ready")) {
+        Ok(_) => {
+            findings.push(Finding::ok(format!("{} answers", model.name())));
+            true
+        }
+        Err(error) => {
+            let (what, to_do) = error.split_once("\nhint: ").unwrap_or((&error, "see what the service says"));
+            findings.push(Finding::problem(format!("a question failed: {what}"), to_do));
+            false
+        }
+    }
+}
+
+fn sees(model: &RemoteModel, findings: &mut Vec<Finding>) {
+    let pixels = [220, 20, 20].repeat((SQUARE_PX * SQUARE_PX) as usize);
+    let Ok(square) = Image::new(SQUARE_PX, SQUARE_PX, pixels) else { return };
+    let text = "Which colour is this picture? Answer with one word.".to_owned();
+    let to_do = "name another model to see (--see)";
+    findings.push(match ask(model, Message { role: Role::User, text, image: Some(Arc::new(square)) }) {
+        Ok(colour) if colour.to_lowercase().contains("red") => Finding::ok(format!("{} sees", model.name())),
+        Ok(said) => {
+            let what = format!("{} was shown a red square and said: {}", model.name(), faults::short(&said));
+            Finding::warning(what, to_do)
+        }
+        Err(error) => Finding::warning(format!("{} was shown a picture and failed: {error}", model.name()), to_do),
+    });
+}

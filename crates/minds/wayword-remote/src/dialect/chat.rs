@@ -1,0 +1,70 @@
+//! OpenAI's chat completions (<https://platform.openai.com/docs/api-reference/chat>).
+
+use super::{Asked, End, Heard, Line, Missing, Wire, content, seed};
+use serde_json::{Map, Value, json};
+use wayword_core::Role;
+
+/// Request to wire.
+pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+    let mut body = Map::new();
+    body.insert("model".to_owned(), asked.model.into());
+    body.insert("messages".to_owned(), asked.lines.iter().map(message).collect());
+    sampling(asked, &mut body);
+    Wire { path: "/chat/completions".to_owned(), body: body.into() }
+}
+
+/// The sampling fields that this dialect and the completions share.
+pub(super) fn sampling(asked: Asked<'_>, body: &mut Map<String, Value>) {
+    let (provider, sampling) = (asked.provider, asked.sampling);
+    if provider.sends("temperature") {
+        body.insert("temperature".to_owned(), sampling.temperature.into());
+    }
+    if provider.sends("max_tokens") {
+        body.insert(provider.max_tokens_field.clone(), sampling.max_tokens.into());
+    }
+    if provider.sends("seed") {
+        body.insert(provider.seed_field.clone(), seed(sampling).into());
+    }
+}
+
+fn message(line: &Line) -> Value {
+    let role = match line.role {
+        Role::System => "system",
+        Role::User => "user",
+        Role::Assistant => "assistant",
+    };
+    match &line.picture {
+        None => json!({ "role": role, "content": line.text }),
+        Some(picture) => {
+            let url = format!("data:image/jpeg;base64,{}", picture.base64);
+            let parts =
+                json!([{ "type": "text", "text": line.text }, { "type": "image_url", "image_url": { "url": url } }]);
+            json!({ "role": role, "content": parts })
+        }
+    }
+}
+
+/// Wire to reply.
+pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
+    let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(Missing("choices"))?;
+    let message = choice.get("message").ok_or(Missing("message"))?;
+    let refusal = message.get("refusal").and_then(Value::as_str).filter(|why| !why.is_empty());
+    let end = refusal.map_or_else(|| end(choice), |why| End::Refused(why.to_owned()));
+    let text = message.get("content").map(content).unwrap_or_default();
+    Ok(with_usage(body, text, end))
+}
+
+/// Why a choice ended.
+pub(super) fn end(choice: &Value) -> End {
+    match choice.get("finish_reason").and_then(Value::as_str) {
+        Some("length") => End::Length,
+        Some("content_filter") => End::Filtered("content_filter".to_owned()),
+        _ => End::Stop,
+    }
+}
+
+/// A reply with the tokens that it says it took.
+pub(super) fn with_usage(body: &Value, text: String, end: End) -> Heard {
+    let tokens = |field: &str| body.get("usage")?.get(field)?.as_u64();
+    Heard { text, end, tokens_in: tokens("prompt_tokens"), tokens_out: tokens("completion_tokens") }
+}

@@ -1,0 +1,213 @@
+//! What decides when a request leaves. It has no clock: every function is told the time.
+
+use super::{advertised::Advertised, bucket::Bucket, pace::Pace};
+use crate::{Concurrency, faults::Load};
+use std::time::{Duration, Instant};
+
+/// An adaptive limit starts here.
+const START: f64 = 8.0;
+
+/// What an adaptive limit is multiplied with when a service has too much to do.
+const SHRINK: f64 = 0.7;
+
+/// A limit shrinks at most once in this time, or in the usual latency where that is longer.
+const SHORTEST_WINDOW: Duration = Duration::from_millis(100);
+
+/// What is to be kept.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rules {
+    pub(crate) concurrency: Concurrency,
+    pub(crate) requests_per_minute: Option<f64>,
+    pub(crate) tokens_per_minute: Option<f64>,
+}
+
+/// Whether a request may leave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Turn {
+    /// It may.
+    Now,
+    /// Not before so long.
+    In(Duration),
+    /// Not before another one is back.
+    WhenOneIsBack,
+}
+
+/// How a request went, as far as it tells about the service.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// It was answered, with so many tokens in and out.
+    Answered {
+        /// In and out.
+        tokens: u64,
+    },
+    /// A fault that tells nothing about the service's load.
+    Failed,
+    /// It took too long, or was too much.
+    Burdened {
+        /// Which of both.
+        load: Load,
+        /// How long the service asks to be left alone.
+        after: Option<Duration>,
+    },
+}
+
+/// A request that is out.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ticket {
+    pub(super) left_at: Instant,
+    /// The same by the pace's clock.
+    left_s: f64,
+    /// About how many tokens it has.
+    tokens: u64,
+}
+
+/// One endpoint's limits, and what is on its way.
+#[derive(Debug)]
+pub(super) struct State {
+    rules: Rules,
+    /// How many on the wire the service bears; a fraction, because it grows by less than one at a time. Where the number is
+    /// fixed, it spaces requests out after a refusal, and bounds nothing.
+    limit: f64,
+    out: usize,
+    paused_until: Option<Instant>,
+    latency: Duration,
+    shrunk_at: Option<Instant>,
+    /// Whether the service ever said that it was too much.
+    refused: bool,
+    /// When a request last had to wait for another one to come back.
+    crowded_at: Option<Instant>,
+    requests: Option<Bucket>,
+    tokens: Option<Bucket>,
+    pace: Pace,
+}
+
+impl State {
+    pub(super) fn new(rules: Rules, now: Instant) -> Self {
+        let bucket = |rate: Option<f64>| rate.map(|rate| Bucket::per_minute(rate, now));
+        let limit = match rules.concurrency {
+            Concurrency::Fixed(most) => most as f64,
+            Concurrency::Adaptive { most } => START.min(most as f64),
+        };
+        Self {
+            limit: limit.max(1.0),
+            out: 0,
+            paused_until: None,
+            latency: Duration::ZERO,
+            shrunk_at: None,
+            refused: false,
+            crowded_at: None,
+            requests: bucket(rules.requests_per_minute),
+            tokens: bucket(rules.tokens_per_minute),
+            pace: Pace::new(now),
+            rules,
+        }
+    }
+
+    /// Whether a request may leave now, and if not, when to ask again.
+    pub(super) fn turn(&mut self, now: Instant) -> Turn {
+        let pause = self.paused_until.map_or(Duration::ZERO, |until| until.saturating_duration_since(now));
+        self.pace.advance(now, !pause.is_zero());
+        if !pause.is_zero() {
+            return Turn::In(pause);
+        }
+        let most = match self.rules.concurrency {
+            Concurrency::Fixed(most) => most as f64,
+            Concurrency::Adaptive { .. } => self.limit,
+        };
+        if self.out as f64 + 1.0 > most + 1e-9 {
+            self.crowded_at = Some(now);
+            return Turn::WhenOneIsBack;
+        }
+        let requests = self.requests.as_mut().map_or(Duration::ZERO, |bucket| bucket.wait(1.0, now));
+        let tokens = self.tokens.as_mut().map_or(Duration::ZERO, |bucket| bucket.wait(1.0, now));
+        match requests.max(tokens).max(self.pace.wait(now)) {
+            Duration::ZERO => Turn::Now,
+            wait => Turn::In(wait),
+        }
+    }
+
+    /// A request of about so many tokens leaves.
+    pub(super) fn leave(&mut self, now: Instant, tokens: u64) -> Ticket {
+        self.out += 1;
+        // Requests that leave together are refused together, though one by one they would be let in.
+        let spacing = self.refused.then(|| self.latency.div_f64(self.limit));
+        let left_s = self.pace.leave(now, spacing);
+        if let Some(bucket) = &mut self.requests {
+            bucket.take(1.0);
+        }
+        if let Some(bucket) = &mut self.tokens {
+            bucket.take(tokens as f64);
+        }
+        Ticket { left_at: now, left_s, tokens }
+    }
+
+    /// A request is back.
+    pub(super) fn back(&mut self, ticket: Ticket, now: Instant, outcome: Outcome) {
+        self.out = self.out.saturating_sub(1);
+        let paused = self.paused_until.is_some_and(|until| until > now);
+        self.pace.advance(now, paused);
+        match outcome {
+            Outcome::Answered { tokens: used } => {
+                self.pace.let_in(ticket.left_s);
+                self.answered(ticket.left_at, now);
+                if let Some(bucket) = &mut self.tokens {
+                    bucket.take(used as f64 - ticket.tokens as f64);
+                }
+            }
+            Outcome::Failed => self.pace.let_in(ticket.left_s),
+            Outcome::Burdened { load, after } => self.burdened(ticket.left_at, now, load, after),
+        }
+    }
+
+    fn answered(&mut self, left_at: Instant, now: Instant) {
+        let latency = now.saturating_duration_since(left_at);
+        self.latency = if self.latency.is_zero() { latency } else { (7 * self.latency + latency) / 8 };
+        // A limit that is not reached is not known to be borne.
+        if self.crowded_at.is_some_and(|crowded_at| crowded_at >= left_at) {
+            let step = if self.shrunk_at.is_none() { 0.25 } else { 1.0 / self.limit };
+            self.limit = (self.limit + step).min(self.rules.concurrency.most() as f64);
+        }
+    }
+
+    fn burdened(&mut self, left_at: Instant, now: Instant, load: Load, after: Option<Duration>) {
+        // Those that were out together tell one thing, not many.
+        let window = self.latency.max(SHORTEST_WINDOW);
+        let first = self.shrunk_at.is_none_or(|shrunk_at| left_at >= shrunk_at && now >= shrunk_at + window);
+        if load == Load::Over {
+            self.refused = true;
+            self.pace.refused(first);
+            if let Some(until) = after.and_then(|after| now.checked_add(after)) {
+                self.paused_until = Some(self.paused_until.map_or(until, |paused| paused.max(until)));
+            }
+        }
+        if first {
+            self.limit = (self.limit * SHRINK).max(1.0);
+            self.shrunk_at = Some(now);
+        }
+    }
+
+    /// Keeps the smaller of what the service and the user say.
+    pub(super) fn learn(&mut self, advertised: Advertised, now: Instant) {
+        let smaller = |own: Option<f64>, told: f64| own.map_or(told, |own| own.min(told));
+        if let Some(told) = advertised.requests_per_minute {
+            set(&mut self.requests, smaller(self.rules.requests_per_minute, told), now);
+        }
+        if let Some(told) = advertised.tokens_per_minute {
+            set(&mut self.tokens, smaller(self.rules.tokens_per_minute, told), now);
+        }
+    }
+}
+
+#[cfg(test)]
+impl State {
+    pub(super) fn limit(&self) -> f64 {
+        self.limit
+    }
+}
+
+fn set(bucket: &mut Option<Bucket>, per_minute: f64, now: Instant) {
+    match bucket {
+        Some(bucket) => bucket.set_per_minute(per_minute, now),
+        None => *bucket = Some(Bucket::per_minute(per_minute, now)),
+    }
+}

@@ -1,0 +1,227 @@
+use super::{state::State, *};
+use crate::{Concurrency, faults::Load};
+use std::collections::BinaryHeap;
+
+fn rules(concurrency: Concurrency) -> Rules {
+    Rules { concurrency, requests_per_minute: None, tokens_per_minute: None }
+}
+
+fn ms(ms: u64) -> Duration {
+    Duration::from_millis(ms)
+}
+
+#[test]
+fn a_fixed_limit_stays() {
+    let start = Instant::now();
+    let mut state = State::new(rules(Concurrency::Fixed(2)), start);
+    assert_eq!(state.turn(start), Turn::Now);
+    state.leave(start, 0);
+    assert_eq!(state.turn(start), Turn::Now);
+    let ticket = state.leave(start, 0);
+    assert_eq!(state.turn(start), Turn::WhenOneIsBack);
+    state.back(ticket, start + ms(200), Outcome::Burdened { load: Load::Over, after: None });
+    assert_eq!(state.turn(start + ms(200)), Turn::Now);
+    state.leave(start + ms(200), 0);
+    assert_eq!(state.turn(start + ms(900)), Turn::WhenOneIsBack);
+}
+
+#[test]
+fn a_pause_holds_everybody() {
+    let start = Instant::now();
+    let mut state = State::new(rules(Concurrency::Fixed(4)), start);
+    let ticket = state.leave(start, 0);
+    state.back(ticket, start + ms(50), Outcome::Burdened { load: Load::Over, after: Some(ms(1000)) });
+    assert_eq!(state.turn(start + ms(60)), Turn::In(ms(990)));
+    assert_eq!(state.turn(start + ms(1050)), Turn::Now);
+}
+
+#[test]
+fn an_adaptive_limit_grows_shrinks_once_and_ignores_chance() {
+    let start = Instant::now();
+    let mut state = State::new(rules(Concurrency::Adaptive { most: 16 }), start);
+    let mut now = start;
+    // Everything that may leave leaves, and is back with the same outcome.
+    let mut round = |state: &mut State, outcome: Outcome| {
+        let mut out = Vec::new();
+        while state.turn(now) == Turn::Now {
+            out.push(state.leave(now, 0));
+        }
+        now += ms(200);
+        out.into_iter().for_each(|ticket| state.back(ticket, now, outcome));
+        now += ms(200);
+    };
+    for _ in 0..40 {
+        round(&mut state, Outcome::Answered { tokens: 1 });
+    }
+    assert_eq!(state.limit(), 16.0);
+    round(&mut state, Outcome::Failed);
+    assert_eq!(state.limit(), 16.0);
+    round(&mut state, Outcome::Burdened { load: Load::Slow, after: None });
+    assert!((state.limit() - 11.2).abs() < 1e-9, "{}", state.limit());
+    // The smallest limit is one, however bad it gets.
+    for _ in 0..100 {
+        round(&mut state, Outcome::Burdened { load: Load::Slow, after: None });
+    }
+    assert_eq!(state.limit(), 1.0);
+}
+
+#[test]
+fn rates_of_requests_and_tokens_are_kept() {
+    let start = Instant::now();
+    let minute = |rules: Rules, tokens: u64| {
+        let mut state = State::new(rules, start);
+        let (mut now, mut left) = (start, 0);
+        while now < start + Duration::from_secs(60) {
+            match state.turn(now) {
+                Turn::Now => {
+                    let ticket = state.leave(now, tokens);
+                    state.back(ticket, now, Outcome::Answered { tokens });
+                    left += 1;
+                }
+                Turn::In(wait) => now += wait.max(ms(1)),
+                Turn::WhenOneIsBack => unreachable!(),
+            }
+        }
+        left
+    };
+    let fixed = rules(Concurrency::Fixed(9));
+    let requests = minute(Rules { requests_per_minute: Some(120.0), ..fixed }, 1);
+    assert!((120..=124).contains(&requests), "{requests}");
+    let tokens = minute(Rules { tokens_per_minute: Some(60_000.0), ..fixed }, 500);
+    assert!((120..=125).contains(&tokens), "{tokens}");
+    // A request larger than the bucket leaves all the same, and is paid back.
+    let large = minute(Rules { tokens_per_minute: Some(60_000.0), ..fixed }, 30_000);
+    assert!((2..=3).contains(&large), "{large}");
+}
+
+#[test]
+fn the_smaller_of_the_users_and_the_services_limit_counts() {
+    let start = Instant::now();
+    let own = Rules { requests_per_minute: Some(60.0), ..rules(Concurrency::Fixed(9)) };
+    for (told, expected) in [(30.0, 2000), (600.0, 1000)] {
+        let mut state = State::new(own, start);
+        state.learn(Advertised { requests_per_minute: Some(told), tokens_per_minute: None }, start);
+        while state.turn(start) == Turn::Now {
+            state.leave(start, 0);
+        }
+        assert_eq!(state.turn(start), Turn::In(ms(expected)), "{told}");
+    }
+}
+
+/// A service that lets so many requests per second in, and refuses the others; a share of those that it lets in fail.
+struct Storm {
+    per_s: f64,
+    burst: f64,
+    retry_after: Duration,
+    faults: f64,
+    latency: Duration,
+}
+
+/// Requests answered per second in a run of so many seconds, and how many were refused.
+fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) {
+    let start = Instant::now();
+    let end = start + Duration::from_secs(seconds);
+    let mut state = State::new(rules(concurrency), start);
+    let (mut level, mut filled, mut answered, mut refused, mut drawn) = (storm.burst, start, 0, 0, 0_u64);
+    // Requests on the wire by when they are back: the earliest first.
+    let mut out: BinaryHeap<std::cmp::Reverse<(Instant, usize, u8)>> = BinaryHeap::new();
+    let mut tickets = Vec::new();
+    let mut now = start;
+    while now < end {
+        let wait = match state.turn(now) {
+            Turn::Now => {
+                level = (level + (now - filled).as_secs_f64() * storm.per_s).min(storm.burst);
+                filled = now;
+                drawn += 1;
+                let chance = wayword_core::seed::derive(drawn, &["storm"]).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11;
+                let fate =
+                    if level < 1.0 { 2 } else { u8::from((chance as f64 / (1_u64 << 53) as f64) < storm.faults) };
+                level -= if fate == 2 { 0.0 } else { 1.0 };
+                // Refusals come back at once.
+                let latency = if fate == 2 { ms(5) } else { storm.latency };
+                out.push(std::cmp::Reverse((now + latency, tickets.len(), fate)));
+                tickets.push(state.leave(now, 0));
+                continue;
+            }
+            Turn::In(wait) => Some(now + wait.max(Duration::from_micros(50))),
+            Turn::WhenOneIsBack => None,
+        };
+        let back = out.peek().map(|next| next.0.0);
+        now = wait.into_iter().chain(back).min().unwrap();
+        while let Some(&std::cmp::Reverse((at, ticket, fate))) = out.peek().filter(|next| next.0.0 <= now) {
+            out.pop();
+            let outcome = match fate {
+                0 => Outcome::Answered { tokens: 1 },
+                1 => Outcome::Failed,
+                _ => Outcome::Burdened { load: Load::Over, after: Some(storm.retry_after) },
+            };
+            answered += u32::from(fate == 0);
+            refused += u32::from(fate == 2);
+            state.back(tickets[ticket], at, outcome);
+        }
+    }
+    (f64::from(answered) / seconds as f64, refused)
+}
+
+#[test]
+fn a_storm_at_an_unknown_rate_brings_most_of_what_is_possible() {
+    for (per_s, burst, retry_after) in [
+        (50.0, 3.0, 1000),
+        (50.0, 10.0, 1000),
+        (50.0, 50.0, 1000),
+        (100.0, 20.0, 500),
+        (20.0, 5.0, 1000),
+        (10.0, 10.0, 1000),
+    ] {
+        let storm = Storm { per_s, burst, retry_after: ms(retry_after), faults: 0.3, latency: ms(200) };
+        for concurrency in [Concurrency::Adaptive { most: 64 }, Concurrency::Fixed(64)] {
+            let (goodput, refused) = goodput(&storm, concurrency, 120);
+            let share = goodput / (per_s * 0.7);
+            assert!(share > 0.8, "{per_s}/s, burst {burst}, {concurrency:?}: {share:.2}, {refused} refused");
+        }
+    }
+}
+
+#[test]
+fn faults_alone_hold_nothing_back() {
+    let storm = Storm { per_s: 1e6, burst: 1e6, retry_after: ms(0), faults: 0.3, latency: ms(200) };
+    let (goodput, _) = goodput(&storm, Concurrency::Adaptive { most: 64 }, 60);
+    let share = goodput / (64.0 / 0.2 * 0.7);
+    assert!(share > 0.9, "{share:.2}");
+}
+
+#[test]
+fn a_thread_that_waits_gives_up_when_the_run_is_stopped() {
+    let limiter = Limiter::new(rules(Concurrency::Fixed(1)));
+    let stopped = std::sync::atomic::AtomicBool::new(false);
+    let held = limiter.enter(1, || false).unwrap();
+    std::thread::scope(|scope| {
+        let enter = || limiter.enter(1, || stopped.load(std::sync::atomic::Ordering::Relaxed)).is_none();
+        let waiting: Vec<_> = (0..8).map(|_| scope.spawn(enter)).collect();
+        stopped.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(waiting.into_iter().all(|thread| thread.join().unwrap()));
+    });
+    held.done(Outcome::Failed);
+    assert!(limiter.enter(1, || false).is_some());
+}
+
+#[test]
+fn no_more_are_out_than_the_limit() {
+    use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+    let limiter = Limiter::new(rules(Concurrency::Fixed(3)));
+    let (out, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        for _ in 0..12 {
+            scope.spawn(|| {
+                for _ in 0..20 {
+                    let permit = limiter.enter(1, || false).unwrap();
+                    most.fetch_max(out.fetch_add(1, SeqCst) + 1, SeqCst);
+                    std::thread::sleep(Duration::from_micros(200));
+                    out.fetch_sub(1, SeqCst);
+                    permit.done(Outcome::Answered { tokens: 1 });
+                }
+            });
+        }
+    });
+    assert_eq!(most.load(SeqCst), 3);
+}

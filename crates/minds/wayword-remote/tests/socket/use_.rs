@@ -1,0 +1,137 @@
+//! Models and services as the rest of the program uses them.
+
+use crate::{
+    ask, asked, model, run,
+    server::{Server, answer, reply},
+    services,
+};
+use std::sync::Arc;
+use wayword_core::{Finish, Image, LanguageModel, Message, Role};
+use wayword_remote::{Config, Level, Services};
+
+/// Says the question back.
+fn echo() -> Server {
+    Server::start(|_, request, stream| {
+        let body: serde_json::Value = serde_json::from_str(request.split_once("\r\n\r\n").unwrap().1).unwrap();
+        let text = body["messages"][0]["content"].as_str().unwrap();
+        if text == "bad" { reply(stream, 400, "", "{}") } else { reply(stream, 200, "", &answer(text)) }
+    })
+}
+
+#[test]
+fn a_batch_is_answered_in_its_order_and_one_failure_is_one() {
+    let server = echo();
+    let texts: Vec<String> = (0..40).map(|i| if i == 17 { "bad".to_owned() } else { format!("text {i}") }).collect();
+    let requests: Vec<_> = texts.iter().map(|text| ask(text)).collect();
+    let replies = model(&server, "concurrency = 4", &run()).complete(&requests);
+    for (text, reply) in texts.iter().zip(replies) {
+        match reply {
+            Ok(reply) => assert_eq!((&reply.text, reply.finish), (text, Finish::Stop)),
+            Err(error) => assert_eq!((text.as_str(), error.ends_run()), ("bad", false)),
+        }
+    }
+    assert!(model(&server, "", &run()).complete(&[]).is_empty());
+}
+
+#[test]
+fn a_call_is_made_once() {
+    let server = echo();
+    let run = run();
+    let model = model(&server, "", &run);
+    for _ in 0..3 {
+        assert_eq!(asked(&model, "Hello?").unwrap().text, "Hello?");
+    }
+    assert_eq!(server.requests().len(), 1);
+    let mut anew = ask("Hello?");
+    anew.replicate = 1;
+    assert!(model.complete(&[anew])[0].is_ok());
+    assert_eq!(server.requests().len(), 2);
+}
+
+#[test]
+fn a_picture_goes_out_as_jpeg_and_stands_in_the_ledger_as_its_hash() {
+    let server = Server::start(|_, _, stream| reply(stream, 200, "", &answer("Red.")));
+    let folder = tempfile::tempdir().unwrap();
+    let run = run();
+    let image = Arc::new(Image::new(600, 400, [200, 0, 0].repeat(600 * 400)).unwrap());
+    let mut request = ask("Colour?");
+    request.messages = vec![Message { role: Role::User, text: "Colour?".to_owned(), image: Some(image) }];
+    assert_eq!(model(&server, "", &run).complete(&[request])[0].as_ref().unwrap().text, "Red.");
+    assert!(server.requests()[0].contains("data:image/jpeg;base64,/9j/"));
+    let file = folder.path().join("calls.jsonl");
+    assert_eq!(run.record(&file).unwrap(), 1);
+    let row = std::fs::read_to_string(&file).unwrap();
+    assert!(
+        row.contains("\"image_sha256\":\"") && row.contains("\"picture_px\":512") && !row.contains("/9j/"),
+        "{row}"
+    );
+}
+
+#[test]
+fn one_base_url_is_for_one_provider() {
+    let server = echo();
+    let services = services(&server, "", &run());
+    services.model("server/a").unwrap();
+    services.model("server/b").unwrap();
+    let error = services.model("ollama/c").unwrap_err().to_string();
+    assert!(error.contains("[providers.server]") && error.contains("[providers.ollama]"), "{error}");
+}
+
+#[test]
+fn a_bound_on_money_needs_prices() {
+    let config = Config { needs_prices: true, ..Config::default() };
+    let services = Services::new(config, run()).unwrap();
+    assert!(services.model("openai/gpt-4o-mini").unwrap().price().is_some());
+    assert!(services.model("ollama/qwen3").is_ok());
+    let error = services.model("openrouter/who/knows").unwrap_err().to_string();
+    assert!(error.contains("--prices FILE"), "{error}");
+}
+
+#[test]
+fn settings_that_make_no_sense_are_refused() {
+    for settings in [
+        "attempts = 0",
+        "picture_px = 0",
+        "timeout_s = 0",
+        "timeout_s = nan",
+        "concurrency = 0",
+        "concurrency = { most = 99999 }",
+    ] {
+        assert!(Services::new(toml::from_str(settings).unwrap(), run()).is_err(), "{settings}");
+    }
+}
+
+/// What `check` finds, one line each.
+fn findings(server: &Server) -> Vec<(Level, String)> {
+    services(server, "attempts = 1", &run())
+        .check("server/m")
+        .into_iter()
+        .map(|finding| (finding.level, finding.what))
+        .collect()
+}
+
+#[test]
+fn a_model_that_works_is_found_to() {
+    let server = Server::start(|_, request, stream| {
+        let body = if request.starts_with("GET") { r#"{"data":[{"id":"m"}]}"#.to_owned() } else { answer("Red") };
+        reply(stream, 200, "", &body)
+    });
+    let found = findings(&server);
+    let levels: Vec<Level> = found.iter().map(|(level, _)| *level).collect();
+    use Level::{Ok, Warning};
+    assert_eq!(levels, [Ok, Ok, Ok, Warning, Ok, Ok], "{found:?}");
+    assert!(found[3].1.contains("costs") && found[5].1.ends_with("sees"), "{found:?}");
+}
+
+#[test]
+fn a_model_that_is_blind_or_not_there_is_found_to_be() {
+    let server = Server::start(|_, request, stream| {
+        let body = if request.starts_with("GET") { r#"{"data":[{"id":"other"}]}"#.to_owned() } else { answer("Blue") };
+        reply(stream, 200, "", &body)
+    });
+    let found = findings(&server);
+    assert!(found[2].0 == Level::Warning && found[2].1.contains("does not list m"), "{found:?}");
+    assert!(found[5].0 == Level::Warning && found[5].1.contains("red square and said: Blue"), "{found:?}");
+    let closed = Server::start(|_, _, stream| reply(stream, 401, "", "{}"));
+    assert_eq!(findings(&closed).last().unwrap().0, Level::Problem);
+}
