@@ -3,15 +3,14 @@
 use super::{
     colour::said_of,
     names::{says_several, singular},
+    nouns::{Noun, nouns},
     place::{Phrase, phrases},
-    scope::{PERCEIVING, Sentence},
+    scope::Sentence,
+    vocabulary::{NUMBERS, OTHERS, PERCEIVING, TELLS_NOTHING},
 };
 use crate::{
-    lexicon::{agree, normal, thing},
-    reading::{
-        What, read,
-        vocabulary::{ABSTRACT, BREAKERS},
-    },
+    lexicon::agree,
+    reading::vocabulary::BREAKERS,
     text::{Token, tokens},
 };
 use std::{collections::BTreeSet, ops::Range};
@@ -34,141 +33,10 @@ pub(in crate::dialogue) struct Mention {
 
 /// Longest text that is read, bytes; answers are shorter, and what is behind it is left out.
 const MOST_BYTES: usize = 16_384;
-/// Words after which a noun that the lexicon lacks is one that is said to be there.
-const BRINGS_IN: [&str; 14] = [
-    "there",
-    "there's",
-    "there’s",
-    "see",
-    "has",
-    "have",
-    "contains",
-    "with",
-    "features",
-    "includes",
-    "without",
-    "no",
-    "not",
-    "any",
-];
-/// Heads of noun phrases in descriptions that are no objects.
-const NO_OBJECTS: [&str; 62] = [
-    "image",
-    "picture",
-    "photo",
-    "photograph",
-    "scene",
-    "atmosphere",
-    "ambiance",
-    "ambience",
-    "sense",
-    "feeling",
-    "variety",
-    "design",
-    "style",
-    "decor",
-    "layout",
-    "arrangement",
-    "combination",
-    "mix",
-    "touch",
-    "feel",
-    "look",
-    "appearance",
-    "setting",
-    "environment",
-    "color",
-    "colour",
-    "hue",
-    "tone",
-    "pattern",
-    "texture",
-    "material",
-    "surface",
-    "furniture",
-    "piece",
-    "item",
-    "object",
-    "thing",
-    "kind",
-    "type",
-    "sort",
-    "number",
-    "collection",
-    "array",
-    "range",
-    "background",
-    "foreground",
-    "shot",
-    "angle",
-    "perspective",
-    "focus",
-    "theme",
-    "vibe",
-    "finish",
-    "size",
-    "shape",
-    "sign",
-    "evidence",
-    "question",
-    "answer",
-    "bit",
-    "interior",
-    "series",
-];
-const NUMBERS: [&str; 22] = [
-    "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "several", "many", "multiple", "numerous",
-    "various", "few", "couple", "rows", "both", "dozen", "pairs", "pair", "lots",
-];
-/// Words before a noun that do not tell which of its kind is meant.
-const TELLS_NOTHING: [&str; 40] = [
-    "a",
-    "an",
-    "the",
-    "any",
-    "no",
-    "not",
-    "some",
-    "visible",
-    "clear",
-    "obvious",
-    "apparent",
-    "actual",
-    "real",
-    "really",
-    "single",
-    "large",
-    "big",
-    "small",
-    "little",
-    "tall",
-    "of",
-    "sign",
-    "signs",
-    "evidence",
-    "or",
-    "nor",
-    "and",
-    ",",
-    "see",
-    "have",
-    "one",
-    "such",
-    "kind",
-    "type",
-    "sort",
-    "pair",
-    "notable",
-    "prominent",
-    "traditional",
-    "modern",
-];
-/// Nouns before "of" that leave no object behind.
-const OTHERS: [&str; 6] = ["other", "additional", "further", "more", "second", "another"];
 
 /// Reads a text. `known` holds names, in normal spelling, that the lexicon may lack.
 pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec<Mention> {
-    let text = bounded(text);
+    let text = &bounded(text).replace('’', "'");
     let tokens = tokens(text);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
     let nouns = nouns(text, &tokens, &words, known);
@@ -203,59 +71,6 @@ pub(super) fn sentences(text: &str, tokens: &[Token]) -> Vec<Range<usize>> {
         }
     }
     found
-}
-
-struct Noun {
-    at: Range<usize>,
-    is_thing: bool,
-    is_room: bool,
-    colour: Option<String>,
-}
-
-fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>) -> Vec<Noun> {
-    let places = read(text, known).events.into_iter().filter_map(|event| match event.what {
-        What::Place(place) => Some((event.span, place)),
-        _ => None,
-    });
-    places
-        .filter_map(|(span, place)| {
-            let from = tokens.partition_point(|token| token.span[0] < span[0]);
-            let to = tokens.partition_point(|token| token.span[0] < span[1]);
-            let name = words[from..to].join(" ");
-            let in_lexicon = thing(&name).is_some() || place.is_room || known.contains(&normal(&name));
-            let is_object = if in_lexicon { !is_the_picture(words, from, to) } else { is_brought_in(words, from, to) };
-            is_object.then_some(Noun {
-                at: from..to,
-                is_thing: place.is_thing,
-                is_room: place.is_room,
-                colour: place.colour,
-            })
-        })
-        .collect()
-}
-
-/// "The picture shows", "in this photo", "a picture of a kitchen": the view itself and nothing on a wall of it.
-fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
-    let single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph" | "painting" | "print");
-    let word = |at: usize| words.get(at).copied().unwrap_or("");
-    let before = if from > 0 { word(from - 1) } else { "" };
-    let hangs = matches!(word(to), "on" | "above" | "over" | "hanging" | "hangs" | "frame" | "frames");
-    let of_all = word(to) == "of" && from <= 4;
-    let shows = matches!(word(to), "shows" | "depicts" | "features" | "contains" | "captures" | "showing" | "itself");
-    single && !hangs && (matches!(before, "the" | "this") && word(from) != "painting" || of_all || shows)
-}
-
-/// A noun that the lexicon lacks counts where it is said to be there or not, and is no word of describing.
-fn is_brought_in(words: &[&str], from: usize, to: usize) -> bool {
-    let head = normal(words[to - 1]);
-    let start = (0..from).rev().find(|at| matches!(words[*at], "." | "!" | "?" | ";")).map_or(0, |at| at + 1);
-    let indefinite = from > 0 && matches!(words[from - 1], "a" | "an");
-    let stays = |word: &str| !NO_OBJECTS.contains(&normal(word).as_str()) && !word.ends_with("ing") && word != "shows";
-    indefinite
-        && to - from <= 3
-        && words[from..to].iter().all(|word| stays(word))
-        && !ABSTRACT.contains(&head.as_str())
-        && words[start..from].iter().any(|word| BRINGS_IN.contains(word))
 }
 
 fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Mention>) {

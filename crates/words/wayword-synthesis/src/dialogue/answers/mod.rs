@@ -5,6 +5,7 @@ mod join;
 mod listed;
 mod mentions;
 mod names;
+mod nouns;
 mod place;
 mod question;
 mod room;
@@ -12,6 +13,7 @@ mod scope;
 #[cfg(test)]
 mod tests;
 mod verdict;
+mod vocabulary;
 
 use crate::lexicon::{agree, normal, thing};
 use colour::{bare_colour, first_colour};
@@ -39,7 +41,7 @@ pub(crate) fn sightings(transcript: &[Exchange], by: &str) -> Vec<Sighting> {
 }
 
 fn of_exchange(exchange: &Exchange, by: &str) -> Vec<Told> {
-    let answer = &exchange.answer;
+    let answer = &exchange.answer.replace('’', "'");
     match asked(&exchange.question) {
         _ if answer.trim().is_empty() => Vec::new(),
         Asked::Presence { wanted, or } => presence(&wanted, or, answer, by),
@@ -146,7 +148,7 @@ fn of_one(wanted: &Wanted, witness: Witness, own: &[Mention], place: impl Fn() -
 }
 
 fn words(answer: &str) -> Vec<&str> {
-    answer.split(|c: char| !(c.is_alphanumeric() || matches!(c, '\'' | '’'))).filter(|word| !word.is_empty()).collect()
+    answer.split(|c: char| !(c.is_alphanumeric() || c == '\'')).filter(|word| !word.is_empty()).collect()
 }
 
 /// The answer to "What colour is the lamp?": the question takes the lamp to be there, and the answer may deny it.

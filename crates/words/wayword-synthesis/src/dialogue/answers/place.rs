@@ -1,5 +1,6 @@
 //! Places in a view: "on the left", "in the centre of the room", but not "to the left of the sofa".
 
+use super::vocabulary::{BEFORE_SIDE, PREPOSITIONS, SIDE_PARTS, WHOLES};
 use wayword_core::Where;
 
 /// A phrase that says where in the view something is: its words, from and to, and the third.
@@ -9,62 +10,6 @@ pub(super) struct Phrase {
     pub(super) to: usize,
     pub(super) place: Where,
 }
-
-const PREPOSITIONS: [&str; 10] = ["on", "to", "at", "in", "along", "against", "toward", "towards", "near", "from"];
-/// Words between the preposition and the side. "Its left" is a side of something else.
-const BEFORE: [&str; 16] = [
-    "the",
-    "your",
-    "our",
-    "my",
-    "far",
-    "upper",
-    "lower",
-    "bottom",
-    "top",
-    "back",
-    "front",
-    "immediate",
-    "very",
-    "image's",
-    "room's",
-    "viewer's",
-];
-const PARTS: [&str; 14] = [
-    "hand",
-    "side",
-    "wall",
-    "part",
-    "half",
-    "corner",
-    "edge",
-    "portion",
-    "third",
-    "foreground",
-    "background",
-    "area",
-    "section",
-    "end",
-];
-/// Wholes of which a side is a side of the view.
-const WHOLES: [&str; 16] = [
-    "image",
-    "picture",
-    "photo",
-    "photograph",
-    "room",
-    "scene",
-    "view",
-    "frame",
-    "space",
-    "viewer",
-    "camera",
-    "it",
-    "us",
-    "you",
-    "me",
-    "shot",
-];
 
 /// The place that a phrase beginning at a word tells, and where it ends. `Some((None, _))` for a place in relation to
 /// something else.
@@ -82,7 +27,7 @@ fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
         return None;
     }
     let mut at = from + 1;
-    while at < from + 4 && BEFORE.contains(&word(at)) {
+    while at < from + 4 && BEFORE_SIDE.contains(&word(at)) {
         at += 1;
     }
     let place = match word(at) {
@@ -95,7 +40,7 @@ fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
         return None;
     }
     at += 1;
-    while PARTS.contains(&word(at)) {
+    while SIDE_PARTS.contains(&word(at)) {
         at += 1;
     }
     if word(at) != "of" {

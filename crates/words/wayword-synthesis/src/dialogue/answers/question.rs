@@ -4,6 +4,7 @@ use super::{
     colour::{colour_at, first_colour},
     names::{says_several, singular},
     place::phrases,
+    vocabulary::{ANYTHING, FILLERS, LEADS},
 };
 use crate::{
     lexicon::{is_room, is_thing, normal},
@@ -11,6 +12,9 @@ use crate::{
     text::tokens,
 };
 use wayword_core::Where;
+
+/// Longest name that is asked for, bytes.
+const MOST_NAME_BYTES: usize = 60;
 
 /// What a question asks for.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,42 +60,10 @@ pub(crate) struct Wanted {
     pub(crate) place: Option<Where>,
 }
 
-/// Words that may begin a question and say nothing.
-const LEADS: [&str; 12] = ["so", "and", "also", "please", "okay", "ok", "now", "then", "well", "but", "great", ","];
-/// Words between the verb and what is asked for.
-const FILLERS: [&str; 28] = [
-    "really", "actually", "also", "still", "indeed", "any", "a", "an", "the", "some", "there", "visible", "single",
-    "large", "small", "big", "little", "clearly", "perhaps", "possibly", "notable", "kind", "type", "sort", "of",
-    "one", "sign", "signs",
-];
-/// Nouns that ask for nothing in particular.
-const ANYTHING: [&str; 22] = [
-    "anything",
-    "something",
-    "nothing",
-    "anyone",
-    "someone",
-    "person",
-    "people",
-    "furniture",
-    "object",
-    "item",
-    "thing",
-    "more",
-    "another",
-    "other",
-    "else",
-    "additional",
-    "second",
-    "enough",
-    "way",
-    "feature",
-    "detail",
-    "much",
-];
-
 /// What a question asks for.
 pub(crate) fn asked(question: &str) -> Asked {
+    // "Look again and answer in one short sentence: ..." asks for what stands behind it.
+    let question = question.rsplit_once(": ").map_or(question, |(_, rest)| rest);
     let tokens = tokens(question);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
     let skipped = words.iter().take_while(|word| LEADS.contains(word)).count();
@@ -286,6 +258,9 @@ fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
         return None;
     }
     let said = name.join(" ");
+    if said.len() > MOST_NAME_BYTES {
+        return None;
+    }
     let in_lexicon = is_thing(&normal(&said));
     let (colour, length) =
         colour_at(name).filter(|_| !in_lexicon).map_or((None, 0), |(colour, length)| (Some(colour), length));

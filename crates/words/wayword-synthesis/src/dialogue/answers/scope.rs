@@ -3,6 +3,10 @@
 //! Triggers and the words that end their reach, after NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029), for the ways in
 //! which people and models speak of pictures.
 
+use super::vocabulary::{
+    AFTER_NOUN, AUXILIARIES, DOUBTS, ENDS, IS_NOT, MEANWHILE, NEW_NOUN, NO_DENIAL, NO_OBJECT, PERCEIVING, SHORT, SIGNS,
+    STOPPERS,
+};
 use std::ops::Range;
 use wayword_core::Witness;
 
@@ -25,158 +29,6 @@ struct Reach {
 }
 
 const NOT: [&str; 2] = ["not", "never"];
-/// Verbs that take a "not", and their short forms.
-const AUXILIARIES: [&str; 12] =
-    ["do", "does", "did", "can", "could", "would", "should", "will", "cannot", "is", "are", "was"];
-const SHORT: [&str; 14] = [
-    "don't",
-    "doesn't",
-    "didn't",
-    "can't",
-    "cannot",
-    "couldn't",
-    "won't",
-    "wouldn't",
-    "don’t",
-    "doesn’t",
-    "didn’t",
-    "can’t",
-    "couldn’t",
-    "unable",
-];
-const IS_NOT: [&str; 8] = ["isn't", "aren't", "wasn't", "weren't", "isn’t", "aren’t", "wasn’t", "weren’t"];
-/// Verbs whose negation denies what follows.
-pub(super) const PERCEIVING: [&str; 26] = [
-    "see",
-    "find",
-    "spot",
-    "notice",
-    "detect",
-    "identify",
-    "observe",
-    "recognize",
-    "recognise",
-    "have",
-    "contain",
-    "show",
-    "include",
-    "feature",
-    "depict",
-    "display",
-    "think",
-    "believe",
-    "be",
-    "out",
-    "any",
-    "look",
-    "appear",
-    "seem",
-    "discern",
-    "perceive",
-];
-/// Words that may stand between a "not" and such a verb.
-const MEANWHILE: [&str; 16] = [
-    "actually",
-    "really",
-    "currently",
-    "even",
-    "to",
-    "make",
-    "also",
-    "personally",
-    "directly",
-    "that",
-    "there",
-    "is",
-    "are",
-    "clearly",
-    "appear",
-    "seem",
-];
-/// What a "no" before denies nothing with.
-const NO_DENIAL: [&str; 16] = [
-    "doubt", "longer", "one", "matter", "idea", "problem", "wonder", "more", "less", "fewer", "way", "need", "means",
-    "reason", "question", "place",
-];
-/// What is not seen, where it is no object: "I cannot see what is on the table", "I see nothing on it".
-const NO_OBJECT: [&str; 22] = [
-    "what",
-    "how",
-    "whether",
-    "if",
-    "where",
-    "which",
-    "who",
-    "why",
-    "anything",
-    "nothing",
-    "everything",
-    "much",
-    "all",
-    "one",
-    "it",
-    "them",
-    "this",
-    "that",
-    "enough",
-    "well",
-    "clearly",
-    "only",
-];
-const STOPPERS: [&str; 24] = [
-    "but", "however", "although", "though", "except", "instead", "only", "just", "while", "whereas", "because",
-    "since", "so", "which", "who", "where", "yet", "than", "rather", "i", "it", "they", "we", "then",
-];
-const ENDS: [&str; 10] = [".", "!", "?", ";", ":", "(", ")", "\n", "–", "—"];
-/// Words after a noun with which something else is spoken of.
-const AFTER_NOUN: [&str; 33] = [
-    "on", "in", "at", "by", "near", "next", "behind", "under", "above", "over", "beside", "between", "to", "from",
-    "with", "of", "against", "along", "around", "across", "inside", "outside", "opposite", "is", "are", "was", "there",
-    "has", "have", "can", "that", "i", "below",
-];
-const SIGNS: [&str; 14] = [
-    "sign",
-    "signs",
-    "evidence",
-    "trace",
-    "kind",
-    "kinds",
-    "type",
-    "sort",
-    "presence",
-    "hint",
-    "indication",
-    "pieces",
-    "piece",
-    "pair",
-];
-const NEW_NOUN: [&str; 14] =
-    ["a", "an", "the", "two", "three", "four", "five", "six", "several", "some", "many", "multiple", "one", "both"];
-/// Words that make a whole sentence behind them doubtful.
-const DOUBTS: [&[&str]; 22] = [
-    &["not", "sure"],
-    &["unsure"],
-    &["uncertain"],
-    &["not", "certain"],
-    &["unclear"],
-    &["not", "clear"],
-    &["can't", "tell"],
-    &["can’t", "tell"],
-    &["cannot", "tell"],
-    &["hard", "to", "say"],
-    &["hard", "to", "tell"],
-    &["hard", "to", "see"],
-    &["difficult", "to", "say"],
-    &["difficult", "to", "tell"],
-    &["difficult", "to", "see"],
-    &["unknown"],
-    &["don't", "know"],
-    &["don’t", "know"],
-    &["not", "know"],
-    &["cannot", "determine"],
-    &["can't", "determine"],
-    &["not", "possible", "to"],
-];
 
 /// Whether words hold one of the phrases of not knowing.
 pub(super) fn doubt_at(words: &[&str]) -> Option<usize> {
@@ -226,7 +78,7 @@ impl Sentence<'_> {
             "absence" | "lack" | "devoid" if self.word(at + 1) == "of" => denial(at + 2, false),
             "instead" if self.word(at + 1) == "of" => denial(at + 2, false),
             "rather" if self.word(at + 1) == "than" => denial(at + 2, false),
-            "there's" | "there’s" if NOT.contains(&self.word(at + 1)) => denial(at + 2, true),
+            "there's" if NOT.contains(&self.word(at + 1)) => denial(at + 2, true),
             word if IS_NOT.contains(&word) && self.is_indefinite(at + 1) => denial(at + 1, true),
             word if NOT.contains(&word) && self.is_indefinite(at + 1) => denial(at + 1, true),
             word if SHORT.contains(&word) => self.negated_verb(at + 1).and_then(|from| denial(from, true)),
@@ -267,10 +119,7 @@ impl Sentence<'_> {
             _ if in_between && self.is_indefinite(at) => at,
             _ => return None,
         };
-        while matches!(
-            self.word(from),
-            "that" | "there" | "there's" | "there’s" | "is" | "are" | "to" | "be" | "like" | "see"
-        ) {
+        while matches!(self.word(from), "that" | "there" | "there's" | "is" | "are" | "to" | "be" | "like" | "see") {
             from += 1;
         }
         Some(from)

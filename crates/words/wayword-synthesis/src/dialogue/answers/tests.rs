@@ -76,6 +76,8 @@ fn descriptions_are_read_with_colours_places_and_numbers() {
             ("The image depicts a spacious room with plenty of natural light.", ""),
             ("- Bed: in the center\n- Lamp: on the right", "+ bed middle, + lamp right"),
             ("Straight ahead there is a door.", "+ door middle"),
+            ("There is a range of colours in shades of blue, and light streaming in.", ""),
+            ("The decor is tasteful. There is a painting of a horse above the sofa.", "+ painting, + sofa"),
             ("A picture on the wall hangs above the bed.", "+ picture, + bed"),
             ("", ""),
             ("🛏️🛋️", ""),

@@ -1,6 +1,9 @@
 //! Yes, no, or neither.
 
-use super::scope::doubt_at;
+use super::{
+    scope::doubt_at,
+    vocabulary::{MAYBE, NO, YES},
+};
 use crate::text::words;
 
 /// What an answer says to a question that wants a yes or a no.
@@ -12,78 +15,6 @@ pub(super) enum Verdict {
     /// It says neither; what it names decides.
     Open,
 }
-
-const YES: [&[&str]; 21] = [
-    &["yes"],
-    &["yeah"],
-    &["yep"],
-    &["correct"],
-    &["indeed"],
-    &["certainly"],
-    &["definitely"],
-    &["absolutely"],
-    &["sure"],
-    &["of", "course"],
-    &["right"],
-    &["true"],
-    &["i", "do"],
-    &["i", "can"],
-    &["there", "is"],
-    &["there", "are"],
-    &["it", "does"],
-    &["they", "are"],
-    &["i", "think", "so"],
-    &["no", "doubt"],
-    &["i", "believe", "so"],
-];
-const NO: [&[&str]; 34] = [
-    &["no"],
-    &["nope"],
-    &["none"],
-    &["not"],
-    &["neither"],
-    &["nothing"],
-    &["never"],
-    &["negative"],
-    &["zero"],
-    &["there", "is", "no"],
-    &["there", "are", "no"],
-    &["there", "is", "not"],
-    &["there", "are", "not"],
-    &["there", "is", "none"],
-    &["there", "are", "none"],
-    &["there's", "no"],
-    &["there", "isn't"],
-    &["there", "aren't"],
-    &["i", "don't", "think", "so"],
-    &["i", "do", "not", "think", "so"],
-    &["i", "do", "not", "see"],
-    &["i", "don't", "see"],
-    &["i", "can", "not", "see"],
-    &["i", "cannot", "see"],
-    &["i", "can't", "see"],
-    &["it", "does", "not"],
-    &["it", "doesn't"],
-    &["there", "does", "not"],
-    &["there", "doesn't"],
-    &["there", "do", "not"],
-    &["there", "don't"],
-    &["unfortunately", "not"],
-    &["unfortunately", "no"],
-    &["actually", "no"],
-];
-const MAYBE: [&[&str]; 10] = [
-    &["maybe"],
-    &["perhaps"],
-    &["possibly"],
-    &["probably"],
-    &["it", "might"],
-    &["there", "might"],
-    &["there", "may"],
-    &["there", "could"],
-    &["it", "may"],
-    &["it", "could"],
-];
 
 /// What an answer says, by how it begins, or by the yes or no behind its first comma ("Looking again, no."). Not to be sure, in its
 /// first sentence, outweighs that.
@@ -108,7 +39,7 @@ pub(super) fn verdict(answer: &str) -> Verdict {
 fn of_words(words: &[String]) -> Verdict {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let words = words.strip_prefix(&["well"]).unwrap_or(&words);
-    let longest = |phrases: &[&[&str]]| {
+    let longest = |phrases: &[Vec<&'static str>]| {
         phrases.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
     };
     if is_unsure(words) || longest(&MAYBE).is_some() {
