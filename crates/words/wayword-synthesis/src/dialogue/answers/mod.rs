@@ -14,6 +14,7 @@ mod scope;
 mod tests;
 mod verdict;
 mod vocabulary;
+mod wanted;
 
 use crate::lexicon::{agree, normal, thing};
 use colour::{bare_colour, first_colour};
@@ -30,7 +31,8 @@ pub(super) use {
 };
 pub(crate) use {
     names::{counted, is_plural, plural, with_article},
-    question::{Asked, Wanted, asked},
+    question::{Asked, asked},
+    wanted::Wanted,
 };
 
 /// Everything that a dialogue says of objects, each once, in the order in which it was told.
@@ -90,22 +92,20 @@ fn of_wanted(name: &str, mentions: Vec<Mention>) -> (Vec<Mention>, Vec<Mention>)
 fn presence(wanted: &[Wanted], or: bool, answer: &str, by: &str) -> Vec<Told> {
     let known = wanted.iter().map(|wanted| normal(&wanted.name)).collect();
     let mut rest = things(answer, &known);
-    let verdict = verdict(answer);
     let lower = answer.to_lowercase();
+    let place = place::phrases(&words(&lower)).first().map(|phrase| phrase.place);
+    let verdict = match verdict(answer) {
+        // A place alone: "On the left."
+        Verdict::Open if rest.is_empty() && place.is_some() => Verdict::Yes,
+        verdict => verdict,
+    };
     let both = words(&lower).contains(&"both");
     let mut found = Vec::new();
     for one in wanted {
         let (own, others) = of_wanted(&one.name, rest);
         rest = others;
         let witness = witness(&own, verdict, or && !both && wanted.len() > 1, wanted.len() > 1);
-        let is_placed = || place::phrases(&words(&lower)).first().map(|phrase| phrase.place);
-        let witness = match witness {
-            Some(Witness::Unsure) if verdict == Verdict::Open && wanted.len() == 1 && is_placed().is_some() => {
-                Some(Witness::Seen)
-            }
-            witness => witness,
-        };
-        found.extend(witness.map(|witness| Told { sighting: of_one(one, witness, &own, is_placed, by), direct: true }));
+        found.extend(witness.map(|witness| Told { sighting: of_one(one, witness, &own, place, by), direct: true }));
     }
     found.extend(told(rest, None, by));
     found
@@ -128,11 +128,11 @@ fn witness(own: &[Mention], verdict: Verdict, or: bool, of_several: bool) -> Opt
     }
 }
 
-fn of_one(wanted: &Wanted, witness: Witness, own: &[Mention], place: impl Fn() -> Option<Where>, by: &str) -> Sighting {
+fn of_one(wanted: &Wanted, witness: Witness, own: &[Mention], place: Option<Where>, by: &str) -> Sighting {
     let mention = own.iter().find(|mention| mention.witness == witness);
     match witness {
         Witness::Seen => Sighting {
-            place: mention.map_or_else(place, |mention| mention.place).or(wanted.place),
+            place: mention.map_or(place, |mention| mention.place).or(wanted.place),
             colour: mention.and_then(|mention| mention.colour.clone()).or_else(|| wanted.colour.clone()),
             several: mention.map_or(wanted.several, |mention| mention.several),
             ..sighting(&wanted.name, witness, by)
@@ -202,7 +202,12 @@ fn number(wanted: Wanted, answer: &str, by: &str) -> Vec<Told> {
 /// The answer to "Where is the lamp?".
 fn place(wanted: &Wanted, answer: &str, by: &str) -> Vec<Told> {
     let lower = answer.to_lowercase();
-    let told = presence(std::slice::from_ref(wanted), false, &lower, by);
+    let said = words(&lower);
+    let bare = match said.first() {
+        Some(&("left" | "right" | "middle" | "center" | "centre")) if said.len() <= 3 => format!("on the {lower}"),
+        _ => lower.clone(),
+    };
+    let told = presence(std::slice::from_ref(wanted), false, &bare, by);
     // Without a place or a no the answer tells nothing of the thing itself.
     told.into_iter().filter(|told| !told.direct || told.sighting.witness != Witness::Unsure).collect()
 }

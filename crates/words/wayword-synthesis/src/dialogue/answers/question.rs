@@ -2,19 +2,15 @@
 
 use super::{
     colour::{colour_at, first_colour},
-    names::{says_several, singular},
     place::phrases,
-    vocabulary::{ANYTHING, FILLERS, LEADS},
+    vocabulary::LEADS,
+    wanted::{Wanted, list, noun, phrase, wanted},
 };
 use crate::{
-    lexicon::{is_room, is_thing, normal},
-    reading::vocabulary::{ABSTRACT, BREAKERS},
+    lexicon::{is_room, normal},
     text::tokens,
 };
 use wayword_core::Where;
-
-/// Longest name that is asked for, bytes.
-const MOST_NAME_BYTES: usize = 60;
 
 /// What a question asks for.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,21 +39,6 @@ pub(crate) enum Asked {
     IsRoom(String),
     /// Anything else; where it asks about a part of the view, which.
     Other(Option<Where>),
-}
-
-/// A thing that a question asks for.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Wanted {
-    /// Its name as it is asked for, without article and adjectives of size.
-    pub(crate) said: String,
-    /// The name without its colour, in the singular where it is no plural by nature.
-    pub(crate) name: String,
-    /// The colour that is asked for.
-    pub(crate) colour: Option<String>,
-    /// Whether the question speaks of several.
-    pub(crate) several: bool,
-    /// The part of the view that is asked about.
-    pub(crate) place: Option<Where>,
 }
 
 /// What a question asks for.
@@ -153,7 +134,7 @@ fn identity(words: &[&str]) -> Option<Asked> {
     match wanted(&name, None) {
         _ if is_room(&normal(&name.join(" "))) && !or => Some(Asked::IsRoom(name.join(" "))),
         _ if is_room(&normal(&name.join(" "))) => Some(Asked::Room),
-        _ => list(rest).filter(|_| !matches!(words[1], "it" | "the")),
+        _ => list(rest).filter(|_| !matches!(words[1], "it" | "the")).map(presence_of),
     }
 }
 
@@ -174,7 +155,11 @@ fn presence(words: &[&str]) -> Option<Asked> {
         .iter()
         .take_while(|word| matches!(**word, "that" | "if" | "whether" | "there" | "is" | "are" | "you" | "see"))
         .count();
-    list(&rest[skipped..])
+    list(&rest[skipped..]).map(presence_of)
+}
+
+fn presence_of((wanted, or): (Vec<Wanted>, bool)) -> Asked {
+    Asked::Presence { wanted, or }
 }
 
 /// What stands behind one of some verbs that comes early.
@@ -189,87 +174,7 @@ fn really_there(words: &[&str]) -> Option<Asked> {
     let visible = ["there", "present", "visible", "real"].iter().any(|end| tail(&[end]));
     let whole = ["picture", "image", "room", "photo", "scene", "view"];
     let shown = whole.iter().any(|whole| tail(&["in", "the", whole]) || tail(&["in", "this", whole]));
-    (visible || shown).then(|| list(words)).flatten()
-}
-
-/// The things that are asked for, with "or", "and" or commas between them.
-fn list(words: &[&str]) -> Option<Asked> {
-    let place = phrases(words).first().map(|phrase| phrase.place);
-    let mut found: Vec<Wanted> = Vec::new();
-    let mut at = 0;
-    let mut or = false;
-    loop {
-        let name = noun(words, &mut at)?;
-        found.push(wanted(&name, place)?);
-        match words.get(at) {
-            Some(&"or") => or = true,
-            Some(&"and") => {}
-            Some(&",") if words[at..].iter().any(|word| matches!(*word, "or" | "and")) => {
-                at += usize::from(matches!(words.get(at + 1), Some(&"or" | &"and")));
-                or |= words[at] == "or";
-            }
-            _ => return Some(Asked::Presence { wanted: found, or }),
-        }
-        at += 1;
-        if found.len() == 8 || noun(words, &mut at.clone()).and_then(|name| wanted(&name, None)).is_none() {
-            return Some(Asked::Presence { wanted: found, or });
-        }
-    }
-}
-
-/// The words of a noun phrase from `at` on, and `at` moved behind it.
-fn noun<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&'a str>> {
-    while words.get(*at).is_some_and(|word| FILLERS.contains(word)) {
-        *at += 1;
-    }
-    let start = *at;
-    let in_name = |at: usize| {
-        let word = words[at];
-        let of = word == "of"
-            && at > start
-            && (1..=3)
-                .any(|more| words.get(start..at + 1 + more).is_some_and(|name| is_thing(&normal(&name.join(" ")))));
-        let is_word = word.starts_with(char::is_alphanumeric);
-        is_word
-            && at < start + 6
-            && (of || !BREAKERS.contains(&word) || (at == start && matches!(word, "hanging" | "standing")))
-            && !matches!(word, "visible" | "present" | "mentioned" | "really" | "actually" | "here" | "anywhere")
-    };
-    while *at < words.len() && in_name(*at) {
-        *at += 1;
-    }
-    let found = words[start..*at].to_vec();
-    // "The lamp you mentioned": behind the name, up to the next joint.
-    while words.get(*at).is_some_and(|word| !matches!(*word, "or" | "and" | ",")) {
-        *at += 1;
-    }
-    (!found.is_empty()).then_some(found)
-}
-
-fn phrase(words: &[&str]) -> Option<Wanted> {
-    wanted(&noun(words, &mut 0)?, None)
-}
-
-fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
-    let head = normal(name.last()?);
-    let nothing = |word: &str| ANYTHING.contains(&word);
-    let vague = ABSTRACT.contains(&head.as_str()) && !is_thing(&normal(&name.join(" ")));
-    if vague || nothing(&head) || name.iter().any(|word| nothing(word)) {
-        return None;
-    }
-    let said = name.join(" ");
-    if said.len() > MOST_NAME_BYTES {
-        return None;
-    }
-    let in_lexicon = is_thing(&normal(&said));
-    let (colour, length) =
-        colour_at(name).filter(|_| !in_lexicon).map_or((None, 0), |(colour, length)| (Some(colour), length));
-    let bare = name[length..].join(" ");
-    if bare.is_empty() {
-        return None;
-    }
-    let several = says_several(&bare);
-    Some(Wanted { said, name: if several { singular(&bare) } else { bare }, colour, several, place })
+    (visible || shown).then(|| list(words)).flatten().map(presence_of)
 }
 
 #[cfg(test)]

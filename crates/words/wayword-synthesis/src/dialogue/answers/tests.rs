@@ -240,6 +240,9 @@ fn yes_and_no_are_heard_in_all_their_forms() {
             ("Possibly.", "? mirror"),
             ("There might be a mirror.", "? mirror"),
             ("A lamp.", "? mirror, + lamp"),
+            ("There is a lamp on the right.", "? mirror, + lamp right"),
+            ("I can see a lamp.", "? mirror, + lamp"),
+            ("There are two on the left.", "+ mirror left"),
             ("", ""),
         ],
     );
@@ -282,6 +285,8 @@ fn many_are_asked_for_in_many_ways() {
         ("How many chairs are there?", "There is one chair.", "+ chair"),
         ("How many chairs are there?", "None.", "- chair"),
         ("Where is the lamp?", "On the right.", "+ lamp right"),
+        ("Where is the lamp?", "Left.", "+ lamp left"),
+        ("Where is the lamp?", "Right side", "+ lamp right"),
         ("Where is the lamp?", "There is no lamp.", "- lamp"),
         ("Where is the lamp?", "I am not sure.", ""),
         ("What colour is the lamp?", "There is no lamp.", "- lamp"),

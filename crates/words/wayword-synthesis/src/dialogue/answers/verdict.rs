@@ -2,7 +2,7 @@
 
 use super::{
     scope::doubt_at,
-    vocabulary::{MAYBE, NO, YES},
+    vocabulary::{AFTER_NOUN, MAYBE, NO, YES, YES_ALONE},
 };
 use crate::text::words;
 
@@ -45,7 +45,12 @@ fn of_words(words: &[String]) -> Verdict {
     if is_unsure(words) || longest(&MAYBE).is_some() {
         return Verdict::Unsure;
     }
-    match (longest(&YES).unwrap_or(0), longest(&NO).unwrap_or(0)) {
+    let alone = |words: &&Vec<&str>, said: &[&str]| {
+        said.strip_prefix(words.as_slice())
+            .is_some_and(|rest| rest.first().is_none_or(|next| AFTER_NOUN.contains(next)))
+    };
+    let alone = YES_ALONE.iter().filter(|phrase| alone(phrase, words)).map(Vec::len).max();
+    match (longest(&YES).or(alone).unwrap_or(0), longest(&NO).unwrap_or(0)) {
         (0, 0) => Verdict::Open,
         (yes, no) if yes >= no => Verdict::Yes,
         _ => Verdict::No,
@@ -102,7 +107,19 @@ mod tests {
                     "I don't know",
                 ],
             ),
-            (Verdict::Open, vec!["", "A bed.", "A bed is.", "On the left", "🤖"]),
+            (
+                Verdict::Open,
+                vec![
+                    "There is a lamp.",
+                    "I can see a lamp.",
+                    "There are two lamps.",
+                    "",
+                    "A bed.",
+                    "A bed is.",
+                    "On the left",
+                    "🤖",
+                ],
+            ),
         ] {
             for answer in answers {
                 assert_eq!(verdict(answer), wanted, "{answer}");

@@ -156,8 +156,16 @@ pub(super) static DOUBTS: Phrases = LazyLock::new(|| {
 /// Beginnings of answers that say yes.
 pub(super) static YES: Phrases = LazyLock::new(|| {
     phrases(
-        "yes, yeah, yep, correct, indeed, certainly, definitely, absolutely, sure, of course, right, true, i do, i \
-         can, there is, there are, it does, they are, i think so, no doubt, i believe so",
+        "yes, yeah, yep, correct, indeed, certainly, definitely, absolutely, sure, of course, right, true, i think so, \
+         no doubt, i believe so",
+    )
+});
+
+/// Beginnings that say yes where no noun follows: "There are two on the left.", but not "There are two lamps."
+pub(super) static YES_ALONE: Phrases = LazyLock::new(|| {
+    phrases(
+        "there is, there are, there is one, there are some, there are two, there are three, there are several, there \
+         are many, it is, they are, it does, i do, i can, i see one, i can see one, i do see one, one is visible",
     )
 });
 
