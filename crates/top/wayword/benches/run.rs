@@ -14,8 +14,8 @@ use wayword::{
 /// A run into a new folder; the default is both styles.
 fn run(asked: Asked) -> Summary {
     let folder = tempfile::tempdir().expect("a folder for the run");
-    let settings = asked.resolve().expect("settings that make sense");
-    generate_into(folder.path(), &settings, &Output::new(true, true)).expect("the run succeeds")
+    let job = asked.job().expect("settings that make sense");
+    generate_into(folder.path(), &job, &Output::new(true, true)).expect("the run succeeds")
 }
 
 fn labels(criterion: &mut Criterion) {

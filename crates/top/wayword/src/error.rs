@@ -1,9 +1,9 @@
 //! What can go wrong, told once, and the exit codes of the program.
 
 use std::{path::PathBuf, process::ExitCode};
-use wayword_core::PlatformError;
+use wayword_core::{ModelError, PlatformError};
 use wayword_formats::FormatError;
-use wayword_synthesis::{observe::ObserveError, style::StyleError};
+use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::StyleError};
 
 /// How the program ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub enum Exit {
     WithLoss = 3,
     /// Another process works in the same run folder.
     Busy = 4,
+    /// Stopped before the end: a budget was spent, a key refused, the user interrupted. The same command goes on.
+    Stopped = 5,
 }
 // 2 is clap's own: the command line could not be read.
 
@@ -37,6 +39,20 @@ pub enum Error {
     /// A style's.
     #[error(transparent)]
     Style(#[from] StyleError),
+    /// A prompt's.
+    #[error(transparent)]
+    Prompt(#[from] PromptError),
+    /// A model gave nothing.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The ledger's.
+    #[cfg(feature = "remote")]
+    #[error(transparent)]
+    Ledger(#[from] wayword_ledger::LedgerError),
+    /// A model cannot be reached by its name.
+    #[cfg(feature = "remote")]
+    #[error(transparent)]
+    Service(#[from] wayword_remote::ConfigError),
     /// A walk could not be seen.
     #[error(transparent)]
     Observe(#[from] ObserveError),
@@ -70,6 +86,14 @@ impl Error {
     /// A mistake of the user's, with the way out.
     pub fn usage(problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Usage { problem: problem.into(), hint: hint.into() }
+    }
+
+    /// A model's error, where it is one: what a model did not do now it may do later, or when more money is there.
+    pub(crate) fn into_model_error(self) -> Result<ModelError, Self> {
+        match self {
+            Self::Model(error) | Self::Observe(ObserveError::Model(error)) => Ok(error),
+            other => Err(other),
+        }
     }
 
     /// A failed file operation.

@@ -2,9 +2,11 @@
 //!
 //! A library beside the binary, so that the repository's own measurements run exactly what users run.
 
+pub mod calls;
 pub mod cli;
 pub mod commands;
 pub mod error;
+mod in_order;
 pub mod item;
 pub mod output;
 pub mod pictures;
@@ -13,5 +15,6 @@ pub mod report;
 pub mod run;
 pub mod settings;
 pub mod styles;
+pub mod team;
 mod text_file;
 pub mod world;

@@ -4,19 +4,18 @@ use crate::{
     error::Error,
     item::Item,
     pictures::{self, Picture},
-    settings::{Settings, TargetMode},
+    settings::{Against, Settings, TargetMode},
     styles::Measured,
+    team::Team,
     world::Remembering,
 };
-use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, View};
+use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
-    dialogue::{RulesAsker, RulesSummariser},
     evidence::Evidence,
-    minds::{Labels, distinguish},
-    observe::{Minds, observe},
+    minds::distinguish,
+    observe::observe,
     repair::{Order, Outcome, write_and_repair},
     walk::Walk,
-    writer::RulesWriter,
 };
 
 /// What became of an item.
@@ -30,44 +29,47 @@ pub struct Made {
     pub pictures: Vec<Picture>,
 }
 
-/// The embedded default: rules ask, labels answer, rules sum up.
-#[must_use]
-pub fn offline_minds(settings: &Settings) -> Minds<'static> {
-    Minds {
-        asker: &RulesAsker,
-        answerer: &Labels,
-        summariser: &RulesSummariser,
-        mode: settings.mode(),
-        prompts_hash: None,
-    }
-}
-
 /// Makes an item's instructions.
 ///
 /// # Errors
-/// When its path does not fit the world, or nothing can be seen along it.
-pub fn make(item: &Item, settings: &Settings, platform: &dyn Platform, styles: &[Measured]) -> Result<Made, Error> {
+/// When its path does not fit the world, nothing can be seen along it, or a model gives nothing.
+pub fn make(
+    item: &Item,
+    settings: &Settings,
+    platform: &dyn Platform,
+    team: &Team,
+    styles: &[Measured],
+) -> Result<Made, Error> {
     let world = Remembering::new(platform);
-    let mut path = item.path(settings, &world)?;
-    if settings.target == TargetMode::Free {
-        path.target = None;
-    }
+    let path = path(item, settings, &world)?;
     let panoramas = panoramas(&world, &path)?;
-    if let (Some(target), Some(last), Some(views)) = (&mut path.target, path.frames.last(), panoramas.last()) {
-        distinguish(target, last, views);
-    }
-    let minds = offline_minds(settings);
-    let observations = observe(&world, &path, settings.frames, minds)?;
+    let observations = observe(&world, &path, settings.frames, team.minds())?;
     let walk = Walk::new(path, observations);
-    let evidence = evidence(&walk, &panoramas);
+    let evidence = evidence(&walk, &panoramas, settings.evidence);
     let outcomes = styles.iter().map(|Measured { style, profile }| {
         let order =
             Order { walk: &walk, evidence: &evidence, style, profile, seed: settings.seed, repairs: settings.repairs };
-        write_and_repair(&RulesWriter, minds, order)
+        write_and_repair(team.writers(), team.minds(), order)
     });
-    let outcomes = outcomes.collect();
+    let outcomes = outcomes.collect::<Result<_, _>>()?;
     let pictures = pictures::encode(&panoramas)?;
     Ok(Made { walk, outcomes, pictures })
+}
+
+/// The path of an item, with its target as the settings want it.
+///
+/// # Errors
+/// When it does not fit the world.
+pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result<Path, Error> {
+    let mut path = item.path(settings, world)?;
+    if settings.target == TargetMode::Free {
+        path.target = None;
+    }
+    if let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) {
+        let around = look_around(world, &path.scene, last)?;
+        distinguish(target, last, &around);
+    }
+    Ok(path)
 }
 
 /// What is all around each frame: ahead, right, behind, left.
@@ -75,15 +77,16 @@ pub fn make(item: &Item, settings: &Settings, platform: &dyn Platform, styles: &
 /// # Errors
 /// When a view cannot be had.
 pub fn panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
-    let around = |frame: &Frame| {
-        Gaze::around(frame.pose.heading).map(|gaze| platform.look(&path.scene, frame, gaze)).into_iter().collect()
-    };
-    path.frames.iter().map(around).collect()
+    path.frames.iter().map(|frame| look_around(platform, &path.scene, frame)).collect()
 }
 
-/// The best evidence there is: labels, else captions, else the path alone.
+fn look_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<View>, PlatformError> {
+    Gaze::around(frame.pose.heading).map(|gaze| platform.look(scene, frame, gaze)).into_iter().collect()
+}
+
+/// What texts are held against: labels where they are wanted and there are any, else captions, else the path alone.
 #[must_use]
-pub fn evidence(walk: &Walk, panoramas: &[Vec<View>]) -> Evidence {
-    let labels = Evidence::from_labels(&walk.path, panoramas);
+pub fn evidence(walk: &Walk, panoramas: &[Vec<View>], against: Against) -> Evidence {
+    let labels = Evidence::from_labels(&walk.path, panoramas).filter(|_| against == Against::Labels);
     labels.or_else(|| walk.evidence()).unwrap_or_else(|| Evidence::of_path_alone(&walk.path))
 }

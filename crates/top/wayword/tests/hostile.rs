@@ -18,7 +18,7 @@ use wayword::{
     error::Error,
     output::Output,
     run::{Journal, RunFolder, WalkRecord, read_lines, settings_of},
-    settings::{Asked, Settings},
+    settings::{Asked, Job, Providers, Service, Settings},
     styles,
 };
 use wayword_core::rng;
@@ -152,7 +152,8 @@ fn settings(building: &Building, style: &Path) -> Settings {
 fn damaged_styles_are_used_or_refused() {
     let building = Building::new();
     let file = building.path("mine.toml");
-    let settings = settings(&building, &file);
+    let job = Job { settings: settings(&building, &file), service: Service::default(), providers: Providers::new() };
+    let settings = &job.settings;
     let quiet = Output::new(true, true);
     for style in [STYLE, COARSE_STYLE] {
         let counts = for_each_damaged(&file, style, |number, bytes| {
@@ -164,7 +165,7 @@ fn damaged_styles_are_used_or_refused() {
                 Ok(_) => {
                     // What is accepted has to be usable, too: a whole item is written in it.
                     let run = building.path(&format!("run-{number}"));
-                    let summary = generate_into(&run, &settings, &quiet);
+                    let summary = generate_into(&run, &job, &quiet);
                     let summary = summary.unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(bytes)));
                     assert_eq!(
                         summary.passed + summary.rejected + summary.unverified,

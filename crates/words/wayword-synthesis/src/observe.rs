@@ -1,7 +1,7 @@
 //! Looks around along a path and has each view talked about.
 
 use crate::{
-    dialogue::{Asker, Dialogue, Mode, Need, Summariser},
+    dialogue::{Asker, Dialogue, Mode, Need, RulesSummariser, Summariser},
     walk::{FrameSelection, Look, Observation},
 };
 use wayword_core::{
@@ -70,7 +70,8 @@ pub fn observe(
 }
 
 /// Where to look from a frame.
-fn gazes(frame: &Frame, selection: FrameSelection) -> Vec<Gaze> {
+#[must_use]
+pub fn gazes(frame: &Frame, selection: FrameSelection) -> Vec<Gaze> {
     match selection {
         FrameSelection::Central => vec![Gaze::quarter(frame.pose.heading)],
         FrameSelection::Panoramic => Gaze::compass().to_vec(),
@@ -91,8 +92,11 @@ fn look_at(
     looks.collect()
 }
 
-/// Runs one dialogue to its end.
-fn talk_about(view: &View, minds: Minds<'_>) -> Result<Caption, ModelError> {
+/// Runs one dialogue about a view to its end.
+///
+/// # Errors
+/// When a mind does not answer.
+pub fn talk_about(view: &View, minds: Minds<'_>) -> Result<Caption, ModelError> {
     let mut dialogue = Dialogue::new(minds.mode);
     loop {
         match dialogue.need() {
@@ -104,8 +108,20 @@ fn talk_about(view: &View, minds: Minds<'_>) -> Result<Caption, ModelError> {
                     dialogue.answer(&answer?);
                 }
             }
-            Need::Summary => return minds.summariser.sum_up(dialogue.transcript(), minds.answerer.name()),
+            Need::Summary => return caption(dialogue.transcript(), minds),
         }
+    }
+}
+
+/// What a dialogue comes to. Without a dialogue no language model takes part: the only answer is the caption, or rules join
+/// the answers to the fixed queries.
+fn caption(transcript: &[Exchange], minds: Minds<'_>) -> Result<Caption, ModelError> {
+    let answerer = minds.answerer.name();
+    let rules = || RulesSummariser.sum_up(transcript, answerer);
+    match (minds.mode, transcript) {
+        (Mode::Dialogue { .. }, _) => minds.summariser.sum_up(transcript, answerer),
+        (Mode::Single, [only]) => Ok(Caption { text: only.answer.clone(), by: Some(answerer.to_owned()), ..rules()? }),
+        (Mode::Fixed | Mode::Single, _) => rules(),
     }
 }
 

@@ -25,7 +25,7 @@ pub(super) fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
         ..Asked::default()
     };
     output.say(format_args!("drawing house-{} and walking through it ...", args.seed));
-    generate_into(&args.out, &asked.resolve()?, output)?;
+    generate_into(&args.out, &asked.job()?, output)?;
     let report = args.out.join(file::REPORT);
     report::write(&args.out, &report, ITEMS)?;
     let shown = Shown {

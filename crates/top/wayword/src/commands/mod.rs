@@ -3,9 +3,14 @@
 mod check;
 mod completions;
 mod demo;
+#[cfg(feature = "remote")]
+mod doctor;
 mod export;
 mod generate;
 mod house;
+#[cfg(feature = "remote")]
+mod ledger;
+mod perceive;
 mod report;
 
 use crate::{
@@ -28,6 +33,11 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Check(args) => check::run(&args, output),
         Command::Export(args) => export::run(&args, output),
         Command::Report(args) => report::run(&args, output),
+        Command::Perceive(args) => perceive::run(&args, output),
+        #[cfg(feature = "remote")]
+        Command::Doctor(args) => doctor::run(&args, output),
+        #[cfg(feature = "remote")]
+        Command::Ledger(args) => ledger::run(&args, output),
         Command::House(args) => house::run(&args, output),
         Command::Completions { shell } => completions::run(shell),
     }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::run::WalkRecord;
 use serde::Serialize;
-use wayword_core::{Climb, Compass, Exchange, Heading, Move, Sighting, Turn, Where, Witness};
+use wayword_core::{Climb, Compass, Exchange, Heading, Move, Sighting, Trouble, Turn, Where, Witness};
 use wayword_synthesis::walk::{Look, Observation};
 
 /// Most sightings that a frame's card names.
@@ -41,9 +41,20 @@ struct LookView {
     /// Where it looked.
     direction: &'static str,
     caption: String,
-    transcript: Vec<Exchange>,
+    /// Who wrote the caption, where that is not the run's summariser.
+    by: Option<String>,
+    transcript: Vec<ExchangeView>,
     /// What was said to be there, not to be there, or not known: a word for each and the names.
     said: Vec<(&'static str, String)>,
+}
+
+/// A question with its answer.
+#[derive(Debug, Serialize)]
+struct ExchangeView {
+    question: String,
+    answer: String,
+    /// Why it was asked a second time, where it was.
+    asked_twice: Option<&'static str>,
 }
 
 /// The first `shown` frames of a walk.
@@ -98,12 +109,26 @@ fn look_view(look: &Look, heading: Heading) -> LookView {
     LookView {
         direction: direction(look.gaze.heading, heading),
         caption: look.caption.text.clone(),
-        transcript: look.caption.transcript.clone(),
+        by: look.caption.by.clone(),
+        transcript: look.caption.transcript.iter().map(exchange_view).collect(),
         said: said
             .map(|(word, witness)| (word, names(witness)))
             .into_iter()
             .filter(|(_, names)| !names.is_empty())
             .collect(),
+    }
+}
+
+fn exchange_view(exchange: &Exchange) -> ExchangeView {
+    ExchangeView {
+        question: exchange.question.clone(),
+        answer: exchange.answer.clone(),
+        asked_twice: exchange.trouble.map(|trouble| match trouble {
+            Trouble::Empty => "the first answer was empty",
+            Trouble::Echo => "the first answer was the question",
+            Trouble::Loop => "the first answer went round in circles",
+            Trouble::Repeat => "the first answer was that to an earlier question",
+        }),
     }
 }
 

@@ -5,7 +5,7 @@ use super::{
     records::{Counts, ItemRecord, Minds, Records},
     texts::{State, state},
 };
-use crate::settings::{Perception, Settings, TargetMode};
+use crate::settings::{Against, Perception, Settings, TargetMode};
 use serde::Serialize;
 use std::path::Path;
 use wayword_synthesis::walk::FrameSelection;
@@ -102,13 +102,18 @@ fn minds(minds: &Minds) -> MindsView {
         "captions" => "are what the checks went by: they share the answerer's mistakes",
         _ => "is what the checks went by",
     };
+    let wrote = match (minds.writer.as_str(), &minds.finished_for) {
+        ("rules", None) => "wrote: no language model".to_owned(),
+        (_, Some(first)) => format!("wrote where every text of {first} had failed its checks"),
+        (_, None) => "wrote".to_owned(),
+    };
     let line = |who: &str, did: &str| (who.to_owned(), did.to_owned());
     MindsView {
         lines: vec![
             line(&minds.asker, "asked"),
             line(&minds.answerer, answered),
             line(&minds.summariser, "summed up"),
-            line(&minds.writer, if minds.writer == "rules" { "wrote: no language model" } else { "wrote" }),
+            line(&minds.writer, &wrote),
             line(&minds.checked_against, checked),
             line(&format!("Wayword {}", minds.wayword), "put it together"),
         ],
@@ -143,10 +148,15 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
     let questions = match settings.perception {
         Perception::Dialogue => format!("dialogue, at most {} per view", settings.questions),
         Perception::Fixed => "fixed object and room queries, no dialogue".to_owned(),
+        Perception::Single => "one request for a description, no dialogue".to_owned(),
     };
     let target = match settings.target {
         TargetMode::Given => "given to the writer",
         TargetMode::Free => "the writer's choice",
+    };
+    let against = match settings.evidence {
+        Against::Labels => "labels where there are any, else captions",
+        Against::Captions => "captions alone",
     };
     let mut told = vec![
         ("Paths", paths),
@@ -154,6 +164,7 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         ("Views", views.to_owned()),
         ("Questions", questions),
         ("Object of the task", target.to_owned()),
+        ("Texts are held against", against.to_owned()),
         ("Repairs", format!("at most {}", settings.repairs)),
         ("Seed", settings.seed.to_string()),
     ];

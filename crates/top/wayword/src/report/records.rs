@@ -62,6 +62,7 @@ pub(super) struct Minds {
     pub(super) answerer: String,
     pub(super) summariser: String,
     pub(super) writer: String,
+    pub(super) finished_for: Option<String>,
     pub(super) checked_against: String,
     pub(super) wayword: String,
 }
@@ -100,6 +101,7 @@ impl Records {
         lines::each(&run.join(file::WALKS), |line| records.walk(&line, most_items, &mut left_bytes, &mut places))?;
         lines::each(&run.join(file::INSTRUCTIONS), |line| records.instruction(&line, &mut left_bytes, &places))?;
         lines::each(&run.join(file::REJECTED), |line| records.rejected(&line, most_items, &mut left_bytes, &places))?;
+        lines::each(&run.join(file::ERRORS), |line| records.rejected(&line, most_items, &mut left_bytes, &places))?;
         Ok(records)
     }
 
@@ -188,7 +190,7 @@ fn take(left_bytes: &mut usize, line: &Line<'_>) -> bool {
 
 impl From<Provenance> for Minds {
     fn from(provenance: Provenance) -> Self {
-        let Provenance { asker, answerer, summariser, writer, checked_against, wayword, .. } = provenance;
-        Self { asker, answerer, summariser, writer, checked_against, wayword }
+        let Provenance { asker, answerer, summariser, writer, finished_for, checked_against, wayword, .. } = provenance;
+        Self { asker, answerer, summariser, writer, finished_for, checked_against, wayword }
     }
 }

@@ -179,15 +179,16 @@ fn findings(instruction: &Instruction) -> Vec<FindingView> {
 }
 
 fn provenance(provenance: &Provenance) -> String {
-    let Provenance { wayword, asker, answerer, summariser, writer, checked_against, seed, style_hash, repairs, .. } =
-        provenance;
-    let repairs = match repairs {
+    let Provenance { wayword, asker, answerer, summariser, writer, checked_against, seed, style_hash, .. } = provenance;
+    let repairs = match provenance.repairs {
         0 => "at the first attempt".to_owned(),
         1 => "after 1 repair".to_owned(),
         more => format!("after {more} repairs"),
     };
+    let after = provenance.finished_for.as_ref().map_or_else(String::new, |first| format!(" after {first} had failed"));
+    let prompts = provenance.prompts_hash.as_ref().map_or_else(String::new, |hash| format!(", prompts {hash}"));
     format!(
-        "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summed up, {writer} wrote, {repairs}; \
-         checked against {checked_against}; seed {seed}, style {style_hash}"
+        "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summed up, {writer} wrote{after}, {repairs}; \
+         checked against {checked_against}; seed {seed}, style {style_hash}{prompts}"
     )
 }

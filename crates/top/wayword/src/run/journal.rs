@@ -38,6 +38,15 @@ impl Journal {
         Ok(Self { path: path.to_owned(), file, keys, key_of })
     }
 
+    /// Makes it anew, empty.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn begin(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, Error> {
+        File::create(path).map_err(Error::io(path, "empty"))?;
+        Self::open(path, key_of)
+    }
+
     /// Whether it holds a line of that key.
     #[must_use]
     pub fn has(&self, key: &str) -> bool {

@@ -1,7 +1,7 @@
 //! The run folder: what a run was asked to do, and what it has done so far.
 //!
 //! `config.toml` as resolved, `walks.jsonl` (paths, captions and dialogues), `instructions.jsonl` (Wayword records),
-//! `rejected.jsonl` (with reasons), `frames/`. A process that is killed leaves at most one torn last line in each file; the
+//! `rejected.jsonl` (with reasons), `errors.jsonl` (what the next command tries again), `frames/`. A process that is killed leaves at most one torn last line in each file; the
 //! next one cuts it off and goes on where it stopped, and the files end up the same byte for byte.
 
 mod journal;
@@ -13,6 +13,7 @@ use std::{
     collections::BTreeSet,
     fs::{self, File, TryLockError},
     path::{Path, PathBuf},
+    time::SystemTime,
 };
 
 pub use journal::{Journal, read_lines};
@@ -26,8 +27,11 @@ pub struct RunFolder {
     pub walks: Journal,
     /// Accepted instructions, one line each.
     pub instructions: Journal,
-    /// Rejected ones, and items that failed.
+    /// Rejected ones, and items that nothing can be written for.
     pub rejected: Journal,
+    /// Items that failed because a model gave nothing. It begins empty with each command, which tries them again.
+    pub errors: Journal,
+    id: String,
     /// Held for as long as the folder is worked in.
     _lock: File,
 }
@@ -42,6 +46,10 @@ pub mod file {
     pub const INSTRUCTIONS: &str = "instructions.jsonl";
     /// Rejected ones.
     pub const REJECTED: &str = "rejected.jsonl";
+    /// Items that failed, to be tried again.
+    pub const ERRORS: &str = "errors.jsonl";
+    /// The name under which the ledger keeps what the run has spent.
+    pub const ID: &str = "run.id";
     /// Pictures of frames.
     pub const FRAMES: &str = "frames";
     /// The report.
@@ -63,9 +71,17 @@ impl RunFolder {
             walks: Journal::open(&folder.join(file::WALKS), WalkRecord::key_of)?,
             instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
             rejected: Journal::open(&folder.join(file::REJECTED), Rejected::key_of)?,
+            errors: Journal::begin(&folder.join(file::ERRORS), Rejected::key_of)?,
+            id: keep_id(folder)?,
             folder: folder.to_owned(),
             _lock: lock,
         })
+    }
+
+    /// The name under which the ledger keeps what the run has spent; no two runs share one.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        &self.id
     }
 
     /// Where pictures of frames go.
@@ -91,7 +107,8 @@ impl RunFolder {
     pub fn sync(&mut self) -> Result<(), Error> {
         self.walks.sync()?;
         self.instructions.sync()?;
-        self.rejected.sync()
+        self.rejected.sync()?;
+        self.errors.sync()
     }
 }
 
@@ -104,6 +121,24 @@ fn lock(folder: &Path) -> Result<File, Error> {
         Err(TryLockError::WouldBlock) => Err(Error::Busy(folder.to_owned())),
         Err(TryLockError::Error(source)) => Err(Error::Io { path, doing: "lock", source }),
     }
+}
+
+/// The run's own name: made with the folder, kept in it. A new run in the place of a deleted one has spent nothing.
+fn keep_id(folder: &Path) -> Result<String, Error> {
+    let path = folder.join(file::ID);
+    if path.exists() {
+        return Ok(text_file::read(&path, "read the run's name")?.trim().to_owned());
+    }
+    let id = fresh_id("run");
+    fs::write(&path, &id).map_err(Error::io(&path, "write"))?;
+    Ok(id)
+}
+
+/// A name that no other process gives: kind, time and process.
+#[must_use]
+pub fn fresh_id(kind: &str) -> String {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    format!("{kind}-{:x}-{:x}", since.as_micros(), std::process::id())
 }
 
 /// Writes the settings, or holds them against those that are there.

@@ -2,7 +2,7 @@
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
 use crate::walk::Observation;
-use wayword_core::{Path, Witness};
+use wayword_core::{Path, Where, Witness};
 
 impl Evidence {
     /// Evidence from captions, one observation per frame of the path. `None` where no caption tells of anything.
@@ -18,17 +18,14 @@ impl Evidence {
                     evidence.rooms.extend(look.caption.room.clone().filter(|room| !evidence.rooms.contains(room)));
                     let off_rad = frame.pose.heading.turn_to(look.gaze.heading);
                     for sighting in &look.caption.sightings {
-                        match sighting.witness {
-                            Witness::Seen => evidence.things.push(SeenThing {
+                        if sighting.witness == Witness::Seen {
+                            let turn_rad = |place: Where| off_rad + place.turn_rad(look.gaze.horizontal_fov_rad);
+                            evidence.things.push(SeenThing {
                                 name: sighting.name.clone(),
                                 object: None,
                                 colour: sighting.colour.clone(),
-                                turn_rad: sighting
-                                    .place
-                                    .map(|place| off_rad + place.turn_rad(look.gaze.horizontal_fov_rad)),
-                            }),
-                            Witness::Denied => evidence.denied.push(sighting.name.clone()),
-                            Witness::Unsure => {}
+                                turn_rad: sighting.place.map(turn_rad),
+                            });
                         }
                     }
                 }

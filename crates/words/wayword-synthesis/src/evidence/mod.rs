@@ -24,8 +24,6 @@ pub struct FrameEvidence {
     pub rooms: Vec<String>,
     /// Objects.
     pub things: Vec<SeenThing>,
-    /// Names of objects that were said not to be there.
-    pub denied: Vec<String>,
     /// The storey, the lowest being 1.
     pub level: Option<u32>,
 }

@@ -3,11 +3,12 @@
 //! The parts of the writing prompt and their order follow arXiv 2403.11487; the words are ours. Beyond it: measured moves,
 //! so that no turn is guessed, and the reasons for which an earlier text was refused.
 
+mod trial;
 mod writing;
 
 use minijinja::{Environment, UndefinedBehavior, context};
 use sha2::{Digest, Sha256};
-use wayword_core::{Exchange, Sighting, Witness};
+use wayword_core::{Exchange, ModelError, Sighting, Witness};
 
 use crate::writer::Brief;
 
@@ -31,8 +32,11 @@ pub struct Prompts {
 #[derive(Debug, thiserror::Error)]
 pub enum PromptError {
     /// A name that no prompt has.
-    #[error("there is no prompt {0:?}: name question, answer, summary, condense or write")]
-    Unknown(String),
+    #[error("there is no prompt {name:?}: name one of {}", Prompts::names().collect::<Vec<_>>().join(", "))]
+    Unknown {
+        /// The name.
+        name: String,
+    },
     /// It is no template, or asks for what it is not given.
     #[error("prompt {name}: {source}")]
     Template {
@@ -43,14 +47,22 @@ pub enum PromptError {
     },
 }
 
+impl From<PromptError> for ModelError {
+    /// A prompt that cannot be filled would fail for every frame.
+    fn from(error: PromptError) -> Self {
+        let hint = "correct the template in the folder of --prompts".to_owned();
+        Self::Stopped { reason: error.to_string(), hint }
+    }
+}
+
 impl Prompts {
     /// The built-in prompts, with those of a user's own (name and source) in their stead.
     ///
     /// # Errors
-    /// When a name is unknown or a source is no template.
+    /// When a name is unknown, a source is no template, or one asks for what it is not given.
     pub fn new(own: &[(String, String)]) -> Result<Self, PromptError> {
         if let Some((name, _)) = own.iter().find(|(name, _)| !BUILT_IN.iter().any(|(built_in, _)| built_in == name)) {
-            return Err(PromptError::Unknown(name.clone()));
+            return Err(PromptError::Unknown { name: name.clone() });
         }
         let mut templates = Environment::new();
         // A template that asks for what it is not given is a mistake to be told, not a gap in a prompt.
@@ -66,7 +78,14 @@ impl Prompts {
             templates.add_template_owned(name, source.to_owned()).map_err(failed)?;
         }
         let hash = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-        Ok(Self { templates, hash })
+        let prompts = Self { templates, hash };
+        trial::fill_all(&prompts)?;
+        Ok(prompts)
+    }
+
+    /// The names of the prompts.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        BUILT_IN.iter().map(|(name, _)| *name)
     }
 
     /// Tells which templates these are, for provenance.
@@ -97,26 +116,37 @@ impl Prompts {
         self.fill("answer", context! { question, history })
     }
 
-    /// Asks a language model to sum a dialogue up; what was denied is named, so that it stays out.
+    /// Asks a language model to sum a dialogue up; what was denied is named, so that it stays out, and so is what was wrong
+    /// with an earlier summary.
     ///
     /// # Errors
     /// When an overridden template does not fit.
-    pub fn summary(&self, transcript: &[Exchange], told: &[Sighting]) -> Result<String, PromptError> {
+    pub fn summary(
+        &self,
+        transcript: &[Exchange],
+        told: &[Sighting],
+        complaints: &[String],
+    ) -> Result<String, PromptError> {
         let denied: Vec<&str> = told
             .iter()
             .filter(|sighting| sighting.witness == Witness::Denied)
             .map(|sighting| sighting.name.as_str())
             .collect();
-        self.fill("summary", context! { transcript, denied })
+        self.fill("summary", context! { transcript, denied, complaints })
     }
 
     /// Asks a language model to condense captions of several directions.
     ///
     /// # Errors
     /// When an overridden template does not fit.
-    pub fn condense(&self, captions: &[(&str, &str)], fewer_words_than: usize) -> Result<String, PromptError> {
+    pub fn condense(
+        &self,
+        captions: &[(&str, &str)],
+        fewer_words_than: usize,
+        complaints: &[String],
+    ) -> Result<String, PromptError> {
         let captions: Vec<_> = captions.iter().map(|(direction, text)| context! { direction, text }).collect();
-        self.fill("condense", context! { captions, fewer_words_than })
+        self.fill("condense", context! { captions, fewer_words_than, complaints })
     }
 
     /// Asks a language model to write an instruction, or to write it again.

@@ -39,8 +39,13 @@ fn the_dialogue_prompts() {
     insta::assert_snapshot!("question", prompts.question(&transcript()).unwrap());
     insta::assert_snapshot!("answer", prompts.answer("What colour is the bed?", &transcript()).unwrap());
     let told = crate::dialogue::sightings(&transcript(), "test");
-    insta::assert_snapshot!("summary", prompts.summary(&transcript(), &told).unwrap());
-    insta::assert_snapshot!("condense", prompts.condense(&[("north", "a bed"), ("east", "a window")], 20).unwrap());
+    insta::assert_snapshot!("summary", prompts.summary(&transcript(), &told, &[]).unwrap());
+    let complaints = ["it names a mirror, which was denied".to_owned()];
+    insta::assert_snapshot!("summary_again", prompts.summary(&transcript(), &told, &complaints).unwrap());
+    insta::assert_snapshot!(
+        "condense",
+        prompts.condense(&[("north", "a bed"), ("east", "a window")], 20, &[]).unwrap()
+    );
 }
 
 #[test]
@@ -72,8 +77,10 @@ fn a_prompt_of_ones_own_takes_the_place_of_the_built_in_one_and_changes_the_hash
 
 #[test]
 fn prompts_that_cannot_be_used_are_refused() {
-    assert!(matches!(Prompts::new(&[("poem".into(), String::new())]), Err(PromptError::Unknown(_))));
+    assert!(matches!(Prompts::new(&[("poem".into(), String::new())]), Err(PromptError::Unknown { .. })));
     assert!(matches!(Prompts::new(&[("answer".into(), "{{ question".into())]), Err(PromptError::Template { .. })));
-    let asks_too_much = Prompts::new(&[("answer".into(), "{{ nothing }}".into())]).unwrap();
-    assert!(asks_too_much.answer("What", &[]).is_err());
+    for name in ["question", "answer", "summary", "condense", "write"] {
+        let asks_too_much = Prompts::new(&[(name.into(), "{{ nothing }}".into())]);
+        assert!(matches!(asks_too_much, Err(PromptError::Template { name: told, .. }) if told == name));
+    }
 }

@@ -8,7 +8,7 @@ mod rules;
 mod task;
 
 use crate::{style::Profile, walk::Walk};
-use wayword_core::{Finding, Style};
+use wayword_core::{Finding, ModelError, Style};
 
 pub use rules::RulesWriter;
 
@@ -20,7 +20,7 @@ pub trait Writer: Send + Sync {
     /// A text for the brief.
     ///
     /// # Errors
-    /// When the walk gives nothing to write about.
+    /// When the walk gives nothing to write about, or a model gave nothing that can be used.
     fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError>;
 }
 
@@ -48,10 +48,21 @@ pub struct Complaint {
     pub findings: Vec<Finding>,
 }
 
-/// There is nothing to write about.
+/// No text came of a brief.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WriteError {
     /// The style ends in a task, and no object is known at the end.
     #[error("the style ends in a task, and no object was seen from the final frame to give one about")]
     NoObject,
+    /// A text came that is none; another may be better.
+    #[error("the text cannot be used: {reason}")]
+    Unusable {
+        /// What came.
+        text: String,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// The model that was to write it gave nothing.
+    #[error(transparent)]
+    Model(#[from] ModelError),
 }

@@ -1,5 +1,8 @@
 //! Settings of a run: flags and a TOML file, resolved once into what the run folder keeps.
 
+mod roles;
+mod service;
+
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, ops::RangeInclusive, path::PathBuf, str::FromStr};
@@ -8,6 +11,9 @@ use wayword_synthesis::{
     dialogue::{Mode, QUESTIONS},
     walk::FrameSelection,
 };
+
+pub use roles::{AskedRoles, Finish, LABELS, RULES, Roles, is_model};
+pub use service::{Providers, Service};
 
 /// What a run is asked to do. Everything is optional here: what a flag leaves out comes from the file, then from a default.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -43,6 +49,14 @@ pub struct Asked {
     pub seed: Option<u64>,
     /// Only so many items.
     pub limit: Option<usize>,
+    /// What texts are held against.
+    pub evidence: Option<Against>,
+    /// Who asks, sees, sums up and writes.
+    pub roles: AskedRoles,
+    /// How models are reached, and what may be spent.
+    pub service: Service,
+    /// Providers of the user's own.
+    pub providers: Providers,
 }
 
 /// What a run does.
@@ -80,6 +94,12 @@ pub struct Settings {
     /// Only so many items.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<usize>,
+    /// What texts are held against.
+    #[serde(default)]
+    pub evidence: Against,
+    /// Who asks, sees, sums up and writes.
+    #[serde(default)]
+    pub roles: Roles,
     /// Hashes of the files and styles that the run was begun with, by name; a run is not continued with others.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
@@ -94,6 +114,19 @@ pub enum Perception {
     Dialogue,
     /// Fixed object and room queries without a dialogue: the paper's ablation.
     Fixed,
+    /// One request for a description, whose answer is the caption.
+    Single,
+}
+
+/// What texts are held against.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Against {
+    /// The platform's labels where it has them, else the captions.
+    #[default]
+    Labels,
+    /// The captions alone, as in a world that nobody has labelled.
+    Captions,
 }
 
 /// Whose choice the object of the closing task is.
@@ -111,10 +144,23 @@ pub enum TargetMode {
 const PATHS: usize = 10;
 /// How often a text that failed is written again, unless told otherwise.
 const REPAIRS: u32 = 8;
+/// The same where a model writes: each costs a call.
+const REPAIRS_OF_MODELS: u32 = 3;
 /// Most repairs that can be asked for.
 const MOST_REPAIRS: u32 = 100;
 /// Most random paths of a run.
 const MOST_PATHS: usize = 1_000_000;
+
+/// A run, and how it may reach models.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Job {
+    /// What it does.
+    pub settings: Settings,
+    /// How models are reached, and what may be spent.
+    pub service: Service,
+    /// Providers of the user's own.
+    pub providers: Providers,
+}
 
 impl Asked {
     /// What flags ask for, with the rest from a file.
@@ -138,7 +184,21 @@ impl Asked {
             repairs: self.repairs.or(file.repairs),
             seed: self.seed.or(file.seed),
             limit: self.limit.or(file.limit),
+            evidence: self.evidence.or(file.evidence),
+            roles: self.roles.or(file.roles),
+            service: self.service.or(file.service),
+            providers: file.providers,
         }
+    }
+
+    /// Resolves it, together with how models are reached.
+    ///
+    /// # Errors
+    /// When a range cannot be read, a number makes no sense, or things exclude each other.
+    pub fn job(mut self) -> Result<Job, Error> {
+        let service = std::mem::take(&mut self.service).checked()?;
+        let providers = std::mem::take(&mut self.providers);
+        Ok(Job { settings: self.resolve()?, service, providers })
     }
 
     /// Resolves it, with defaults for what nobody asked for.
@@ -168,6 +228,8 @@ impl Asked {
         if !length_m.end().is_finite() {
             return Err(Error::usage("--metres must be finite", "write it as in --metres 5..20"));
         }
+        let roles = self.roles.resolve()?;
+        let repairs = if is_model(&roles.write) { REPAIRS_OF_MODELS } else { REPAIRS };
         Ok(Settings {
             platform: self.platform.unwrap_or_else(|| "house".into()),
             data: self.data,
@@ -183,21 +245,30 @@ impl Asked {
             perception: self.perception.unwrap_or_default(),
             questions: self.questions.unwrap_or(QUESTIONS),
             target: self.target.unwrap_or_default(),
-            repairs: self.repairs.unwrap_or(REPAIRS),
+            repairs: self.repairs.unwrap_or(repairs),
             seed: self.seed.unwrap_or(0),
             limit: self.limit,
+            evidence: self.evidence.unwrap_or_default(),
+            roles,
             inputs: BTreeMap::new(),
         })
     }
 }
 
 impl Settings {
+    /// Whether anybody asks and sums up.
+    #[must_use]
+    pub fn has_dialogue(&self) -> bool {
+        self.perception == Perception::Dialogue
+    }
+
     /// How views are asked about.
     #[must_use]
     pub fn mode(&self) -> Mode {
         match self.perception {
             Perception::Dialogue => Mode::Dialogue { questions: self.questions },
             Perception::Fixed => Mode::Fixed,
+            Perception::Single => Mode::Single,
         }
     }
 }

@@ -1,9 +1,21 @@
 //! The command line as it is typed.
 
-use crate::settings::{Asked, Perception, TargetMode};
+#[cfg(feature = "remote")]
+mod doctor;
+#[cfg(feature = "remote")]
+mod ledger;
+mod perceive;
+
+use crate::settings::{Against, Asked, AskedRoles, Perception, Providers, Service, TargetMode};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use wayword_synthesis::walk::FrameSelection;
+
+#[cfg(feature = "remote")]
+pub use doctor::Doctor;
+#[cfg(feature = "remote")]
+pub use ledger::{Ledger, LedgerCommand};
+pub use perceive::Perceive;
 
 /// Writes the wayfinding instructions that a person would give a robot, for any simulator, and checks them.
 #[derive(Debug, Parser)]
@@ -28,6 +40,8 @@ Examples:
       Instructions for 20 random paths through generated houses.
   wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --out runs/val_seen
       Instructions for every path of a dataset. The same command again continues a run that was stopped.
+  wayword generate --paths 20 --style r2r --llm ollama/qwen3 --see ollama/llava --out runs/models
+      The same with models: one asks, sums up and writes, the other looks at the pictures.
   wayword export --run runs/val_seen --style reverie --format reverie --out val_seen_generated.json
       The run in the file format that agents read.
   wayword check REVERIE_val_seen.json --platform matterport --data DATA --style reverie
@@ -38,7 +52,8 @@ Exit codes:
   1  the input was wrong, or a file could not be read or written
   2  the command line could not be read
   3  done, but some instructions were rejected or failed a check; each with its reason
-  4  another process works in the same run folder";
+  4  another process works in the same run folder
+  5  stopped before the end: a budget was spent, a key was refused, or you interrupted; the same command goes on";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -46,13 +61,21 @@ pub enum Command {
     /// Walk through a generated house and write instructions for the walk, offline.
     Demo(Demo),
     /// Write instructions for paths, check them, and repair or reject what fails.
-    Generate(Generate),
+    Generate(Box<Generate>),
     /// Check instructions of anyone's against the evidence of their paths.
     Check(Check),
     /// Write a run in the file format that agents read.
     Export(Export),
     /// Write a run as one HTML page: map, frames, dialogue, captions, instructions and checks.
     Report(Report),
+    /// Measure how well captions fit the labels of their views: objects, ghosts, calls.
+    Perceive(Box<Perceive>),
+    /// Check keys, endpoints, models and data, and say what to do.
+    #[cfg(feature = "remote")]
+    Doctor(Box<Doctor>),
+    /// What was asked of models, what it cost, and what is kept.
+    #[cfg(feature = "remote")]
+    Ledger(Ledger),
     /// Save a generated house as glTF with its navigation data.
     House(House),
     /// Print shell completions.
@@ -93,14 +116,19 @@ Examples:
   wayword generate --platform matterport --data DATA --paths 200 --hops 4..7 --metres 5..20 --seed 1 --out runs/random
   wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --style r2r --out runs/val_seen
   wayword generate --style mine.toml --style r2r=R2R_train.json --out runs/styles
+  wayword generate --paths 20 --llm ollama/qwen3 --see ollama/llava --out runs/models      (needs the feature full)
+  wayword generate --paths 20 --llm openai/gpt-4.1-mini --see openai/gpt-4.1-mini --max-usd 2 --dry-run
   wayword generate --config run.toml --seed 7 --out runs/seven      (flags win over the file)")]
 pub struct Generate {
     /// Settings as TOML, with the names of these flags; flags win.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// Where to put the run; the same command again continues it.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "dry_run")]
+    pub out: Option<PathBuf>,
+    /// Only say what the run would ask of models: calls, tokens and money at most.
+    #[arg(long)]
+    pub dry_run: bool,
     /// The world.
     #[command(flatten)]
     pub world: World,
@@ -125,7 +153,7 @@ pub struct Generate {
     /// Caption the view along the heading, or four views around. [default: central]
     #[arg(long)]
     pub frames: Option<Frames>,
-    /// Question by question, or fixed queries without a dialogue. [default: dialogue]
+    /// Question by question, fixed queries without a dialogue, or a single request for a description. [default: dialogue]
     #[arg(long)]
     pub perception: Option<Perception>,
     /// Most questions per view. [default: 9]
@@ -134,15 +162,24 @@ pub struct Generate {
     /// Name the episode's object to the writer, or leave the choice to it. [default: given]
     #[arg(long)]
     pub target: Option<TargetMode>,
-    /// How often a text that failed a check is written again. [default: 8]
+    /// How often a text that failed a check is written again. [default: 8, where a model writes 3]
     #[arg(long, value_name = "N")]
     pub repairs: Option<u32>,
+    /// Hold texts against the platform's labels where it has them, or against the captions alone. [default: labels]
+    #[arg(long)]
+    pub evidence: Option<Against>,
     /// Seed of everything random; random paths are named by it, so runs that are to be merged need different ones. [default: 0]
     #[arg(long)]
     pub seed: Option<u64>,
     /// Only the first so many items.
     #[arg(long, value_name = "N")]
     pub limit: Option<usize>,
+    /// Who asks, sees, sums up and writes.
+    #[command(flatten)]
+    pub roles: AskedRoles,
+    /// How models are reached.
+    #[command(flatten)]
+    pub service: Service,
 }
 
 /// Which views are captioned, as typed.
@@ -178,6 +215,10 @@ impl Generate {
             repairs: self.repairs,
             seed: self.seed,
             limit: self.limit,
+            evidence: self.evidence,
+            roles: self.roles.clone(),
+            service: self.service.clone(),
+            providers: Providers::new(),
         }
     }
 }

@@ -1,0 +1,161 @@
+//! A build that reaches models over HTTP.
+
+use super::{Price, Spent, ledger_path};
+use crate::{
+    error::Error,
+    settings::{Providers, Service, Settings},
+    text_file,
+};
+use std::{path::PathBuf, sync::Arc};
+use wayword_core::LanguageModel;
+use wayword_ledger::{Ledger, Limits, Run};
+use wayword_remote::{Concurrency, Config, Finding, Prices, ProviderConfig, Services};
+
+/// The way to models for one command.
+pub struct Calls {
+    services: Services,
+    run: Run,
+    record: Option<PathBuf>,
+    workers: usize,
+}
+
+/// Requests at a time for each provider, unless told otherwise: where the search for the right number ends.
+const MOST_AT_A_TIME: usize = 64;
+
+impl Calls {
+    /// Opens ledger and services for the models that the settings name; `None` where they name none. `run` names what the
+    /// calls are made for: its spending, earlier commands' included, is what the limits bound.
+    ///
+    /// # Errors
+    /// When the ledger cannot be opened, a provider is not known, or a price is needed and not known.
+    pub fn open(
+        settings: &Settings,
+        service: &Service,
+        providers: &Providers,
+        run: &str,
+    ) -> Result<Option<Self>, Error> {
+        if settings.roles.models().is_empty() {
+            return Ok(None);
+        }
+        let ledger = match &service.replay {
+            Some(recording) => Ledger::replay(recording)?,
+            None => Ledger::open(&ledger_path(service)?)?,
+        };
+        let run = ledger.run(run, Limits { max_usd: service.max_usd, max_calls: service.max_calls })?;
+        let services = Services::new(config(settings, service, providers)?, run.clone())?;
+        let workers = concurrency(service).threads();
+        Ok(Some(Self { services, run, record: service.record.clone(), workers }))
+    }
+
+    /// A model by its name.
+    ///
+    /// # Errors
+    /// When its provider is not known, or it has no price and one is needed.
+    pub fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+        Ok(self.services.model(name)?)
+    }
+
+    /// What `doctor` finds out about a model; one that is to see is shown a picture.
+    #[must_use]
+    pub fn check(&self, name: &str, sees: bool) -> Vec<Finding> {
+        self.services.check(name, sees)
+    }
+
+    /// What was spent so far.
+    #[must_use]
+    pub fn spent(&self) -> Spent {
+        let totals = self.run.totals();
+        Spent {
+            requests: totals.calls,
+            answered: totals.answered,
+            from_ledger: totals.hits,
+            failed: totals.failed,
+            lost: totals.lost,
+            tokens_in: totals.tokens_in,
+            tokens_out: totals.tokens_out,
+            usd: totals.usd,
+            maybe_usd: totals.maybe_usd,
+        }
+    }
+
+    /// Items that are worth making at a time.
+    #[must_use]
+    pub fn workers(&self) -> usize {
+        self.workers
+    }
+
+    /// From now on an interrupt ends the sending, not the process: what is in flight is finished and kept. `told` says so to
+    /// the user. A second interrupt ends the process.
+    pub fn stop_on_interrupt(&self, told: impl Fn() + Send + 'static) {
+        let run = self.run.clone();
+        // It can be set once in a process, and a command is one.
+        let _ = ctrlc::set_handler(move || {
+            if run.is_stopped() {
+                std::process::exit(INTERRUPTED);
+            }
+            run.stop();
+            told();
+        });
+    }
+
+    /// Writes the recording, where one was asked for.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn record(&self) -> Result<(), Error> {
+        if let Some(file) = &self.record {
+            self.run.record(file)?;
+        }
+        Ok(())
+    }
+}
+
+/// Exit code of a process that a second interrupt ended.
+const INTERRUPTED: i32 = 130;
+
+fn config(settings: &Settings, service: &Service, providers: &Providers) -> Result<Config, Error> {
+    let provider = |(name, table): (&String, &toml::Table)| -> Result<(String, ProviderConfig), Error> {
+        let config = table.clone().try_into().map_err(|error: toml::de::Error| {
+            Error::usage(format!("[providers.{name}]: {}", error.message()), "see docs/MODELS.md for the names")
+        })?;
+        Ok((name.clone(), config))
+    };
+    let default = Config::default();
+    Ok(Config {
+        providers: providers.iter().map(provider).collect::<Result<_, _>>()?,
+        base_url: settings.roles.base_url.clone(),
+        key_env: service.key_env.clone(),
+        picture_px: settings.roles.picture_px,
+        concurrency: concurrency(service),
+        timeout_s: service.timeout_s.unwrap_or(default.timeout_s),
+        requests_per_minute: service.requests_per_minute,
+        tokens_per_minute: service.tokens_per_minute,
+        prices: prices(service)?,
+        needs_prices: service.max_usd.is_some(),
+        ..default
+    })
+}
+
+fn concurrency(service: &Service) -> Concurrency {
+    service.concurrency.map_or(Concurrency::Adaptive { most: MOST_AT_A_TIME }, Concurrency::Fixed)
+}
+
+fn prices(service: &Service) -> Result<Prices, Error> {
+    match &service.prices {
+        None => Ok(Prices::built_in()),
+        Some(file) => Prices::read(&text_file::read(file, "read the prices")?)
+            .map_err(|error| Error::usage(format!("{}: {error}", file.display()), "see docs/MODELS.md")),
+    }
+}
+
+/// A model's price, by the user's list or the built-in one.
+///
+/// # Errors
+/// When the user's list cannot be read.
+pub fn price_of(service: &Service, model: &str) -> Result<Option<Price>, Error> {
+    Ok(prices(service)?.of(model).map(|price| Price {
+        usd_per_million_in: price.usd_per_million_in,
+        usd_per_million_out: price.usd_per_million_out,
+        as_of: price.as_of,
+    }))
+}

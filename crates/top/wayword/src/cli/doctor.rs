@@ -1,0 +1,39 @@
+//! `wayword doctor` as it is typed.
+
+use super::World;
+use crate::settings::{Asked, AskedRoles, Service};
+use clap::Args;
+
+/// `wayword doctor`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword doctor --llm ollama/qwen3 --see ollama/llava
+  wayword doctor --see server/llava --base-url http://127.0.0.1:8000/v1
+  wayword doctor --platform matterport --data DATA")]
+pub struct Doctor {
+    /// The world.
+    #[command(flatten)]
+    pub world: World,
+    /// The models to look at.
+    #[command(flatten)]
+    pub roles: AskedRoles,
+    /// How they are reached.
+    #[command(flatten)]
+    pub service: Service,
+}
+
+impl Doctor {
+    /// What the flags ask for.
+    #[must_use]
+    pub fn asked(&self) -> Asked {
+        Asked {
+            platform: self.world.platform.clone(),
+            data: self.world.data.clone(),
+            paths: Some(1),
+            roles: self.roles.clone(),
+            service: self.service.clone(),
+            ..Asked::default()
+        }
+    }
+}

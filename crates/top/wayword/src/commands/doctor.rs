@@ -1,0 +1,158 @@
+//! `wayword doctor`: what works here, what does not, and what to do.
+
+use crate::{
+    calls::Calls,
+    cli::Doctor,
+    error::{Error, Exit},
+    item::items,
+    output::Output,
+    run::fresh_id,
+    settings::{LABELS, Settings, is_model},
+    team::prompts,
+    world,
+};
+use serde::Serialize;
+use std::fmt;
+use wayword_core::{Gaze, Path};
+use wayword_remote::Level;
+use wayword_synthesis::evidence::Evidence;
+
+/// How good or bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum State {
+    Ok,
+    Warning,
+    Problem,
+}
+
+/// One thing that was looked at.
+#[derive(Debug, Serialize)]
+struct Finding {
+    state: State,
+    about: String,
+    told: String,
+    /// What to do about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hint: Option<String>,
+}
+
+/// Everything that was looked at.
+#[derive(Debug, Serialize)]
+struct Report {
+    /// What was found, in the order of looking.
+    findings: Vec<Finding>,
+}
+
+pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
+    let job = args.asked().job()?;
+    let mut findings = vec![world_finding(&job.settings)];
+    if job.settings.roles.prompts.is_some() {
+        findings.push(match prompts(&job.settings) {
+            Ok(prompts) => ok("prompts", format!("every template can be filled; their hash is {}", prompts.hash())),
+            Err(error) => problem("prompts", &error),
+        });
+    }
+    match Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("doctor")) {
+        Err(error) => findings.push(problem("models", &error)),
+        Ok(None) => {
+            let none = "no model is named: labels answer, rules ask and write. Name some with --llm and --see";
+            findings.push(ok("models", none.to_owned()));
+        }
+        Ok(Some(calls)) => {
+            for model in job.settings.roles.models() {
+                output.say(format_args!("asking {model} ..."));
+                let sees = job.settings.roles.see == model;
+                findings.extend(calls.check(model, sees).into_iter().map(|found| Finding {
+                    state: match found.level {
+                        Level::Ok => State::Ok,
+                        Level::Warning => State::Warning,
+                        Level::Problem => State::Problem,
+                    },
+                    about: model.to_owned(),
+                    told: found.what,
+                    hint: found.to_do,
+                }));
+            }
+        }
+    }
+    let report = Report { findings };
+    output.data(&report, &report);
+    let problems = report.findings.iter().any(|finding| finding.state == State::Problem);
+    Ok(if problems { Exit::BadInput } else { Exit::Done })
+}
+
+fn ok(about: &str, told: String) -> Finding {
+    Finding { state: State::Ok, about: about.to_owned(), told, hint: None }
+}
+
+fn problem(about: &str, error: &Error) -> Finding {
+    let text = error.to_string();
+    let (told, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
+    let hint = (!hint.is_empty()).then(|| hint.to_owned());
+    Finding { state: State::Problem, about: about.to_owned(), told: told.to_owned(), hint }
+}
+
+/// Opens the world and looks once.
+fn world_finding(settings: &Settings) -> Finding {
+    let about = format!("platform {}", settings.platform);
+    let look = || -> Result<Seen, Error> {
+        let platform = world::open(settings)?;
+        let one = Settings { limit: Some(1), ..settings.clone() };
+        let items = items(&one, platform.as_ref())?;
+        let path = items[0].path(settings, platform.as_ref())?;
+        let view = platform.look(&path.scene, &path.frames[0], Gaze::quarter(path.frames[0].pose.heading))?;
+        let picture = view.image.is_some();
+        let one = Path { frames: vec![path.frames[0].clone()], ..path };
+        let labels = Evidence::from_labels(&one, &[vec![view]]).is_some();
+        Ok(Seen { scenes: platform.scenes()?.len(), picture, labels })
+    };
+    match look() {
+        Err(error) => problem(&about, &error),
+        Ok(seen) => seen.finding(about, settings),
+    }
+}
+
+/// What a look into the world showed.
+struct Seen {
+    scenes: usize,
+    picture: bool,
+    labels: bool,
+}
+
+impl Seen {
+    fn finding(&self, about: String, settings: &Settings) -> Finding {
+        let Self { scenes, picture, labels } = *self;
+        let has = |what: bool| if what { "" } else { "no " };
+        let told =
+            format!("{scenes} scenes; a view of the first has {}picture and {}labels", has(picture), has(labels));
+        let see = &settings.roles.see;
+        let hint = if is_model(see) && !picture {
+            Some(format!("{see} needs pictures: add them to the data folder, or use --see labels"))
+        } else if see == LABELS && !labels {
+            Some("name a model that sees: --see provider/model".to_owned())
+        } else {
+            None
+        };
+        let state = if hint.is_some() { State::Problem } else { State::Ok };
+        Finding { state, about, told, hint }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, finding) in self.findings.iter().enumerate() {
+            let mark = match finding.state {
+                State::Ok => "ok      ",
+                State::Warning => "warning ",
+                State::Problem => "PROBLEM ",
+            };
+            let end = if at > 0 { "\n" } else { "" };
+            write!(f, "{end}{mark} {}: {}", finding.about, finding.told)?;
+            if let Some(hint) = &finding.hint {
+                write!(f, "\n         hint: {hint}")?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,45 @@
+//! Hashes of what the settings only name, so that a run is not continued with other episodes, styles, prompts or endpoints.
+
+use crate::{
+    error::Error,
+    settings::{Job, Providers},
+    styles::Measured,
+    team::prompts,
+};
+use sha2::{Digest, Sha256};
+use std::{collections::BTreeMap, fs::File};
+use wayword_synthesis::style;
+
+pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, String>, Error> {
+    let mut inputs: BTreeMap<String, String> =
+        styles.iter().map(|Measured { style, .. }| (format!("style {}", style.name), style::hash(style))).collect();
+    if let Some(file) = &job.settings.episodes {
+        let mut hash = Sha256::new();
+        let copied = File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash));
+        copied.map_err(Error::io(file, "read the episodes"))?;
+        inputs.insert("episodes".into(), hex(hash));
+    }
+    if !job.settings.roles.models().is_empty() {
+        inputs.insert("prompts".into(), prompts(&job.settings)?.hash().to_owned());
+    }
+    if !job.providers.is_empty() {
+        inputs.insert("providers".into(), providers(&job.providers));
+    }
+    Ok(inputs)
+}
+
+/// Fields of a provider that change no answer.
+const WITHOUT_EFFECT: [&str; 3] = ["requests_per_minute", "tokens_per_minute", "key_env"];
+
+fn providers(providers: &Providers) -> String {
+    let mut hash = Sha256::new();
+    for (name, table) in providers {
+        let telling = table.iter().filter(|(field, _)| !WITHOUT_EFFECT.contains(&field.as_str()));
+        hash.update(format!("{name}: {:?}\n", telling.collect::<Vec<_>>()));
+    }
+    hex(hash)
+}
+
+fn hex(hash: Sha256) -> String {
+    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,114 @@
+//! `wayword generate`.
+
+mod inputs;
+mod keep;
+mod plan;
+mod summary;
+
+use crate::{
+    calls::Calls,
+    cli::Generate,
+    error::{Error, Exit},
+    in_order::in_order,
+    item::{Item, check_names, items},
+    output::Output,
+    pipeline::make,
+    run::RunFolder,
+    settings::{Asked, Job, Settings},
+    styles,
+    team::{Team, cores},
+    text_file, world,
+};
+use keep::{Fate, keep};
+use std::path::Path;
+
+pub use summary::Summary;
+
+/// Items between two flushes to the disk: few enough to lose little when the machine fails.
+const FLUSH: usize = 16;
+
+pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
+    let file = args.config.as_deref().map(read_config).transpose()?.unwrap_or_default();
+    let job = args.asked().or(file).job()?;
+    if args.dry_run {
+        let plan = plan::plan(&job)?;
+        output.data(&plan, &plan);
+        return Ok(Exit::Done);
+    }
+    let out = args.out.as_deref().ok_or_else(|| {
+        Error::usage("a run needs a folder", "give --out DIR, or --dry-run to see what the run would cost")
+    })?;
+    let summary = generate_into(out, &job, output)?;
+    output.data(&summary, &summary);
+    Ok(summary.exit())
+}
+
+fn read_config(path: &Path) -> Result<Asked, Error> {
+    let text = text_file::read(path, "read the settings")?;
+    toml::from_str(&text).map_err(|error| {
+        Error::usage(
+            format!("{}: {}", path.display(), error.to_string().trim()),
+            "see wayword generate --help for the names",
+        )
+    })
+}
+
+/// Makes or continues a run.
+///
+/// # Errors
+/// When the settings, the world, the styles, the folder or the ledger are wrong. An item that fails is a line of
+/// `rejected.jsonl`, or of `errors.jsonl` where a later run may do better.
+pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summary, Error> {
+    let platform = world::open(&job.settings)?;
+    let styles = styles::find(&job.settings.style, job.settings.seed)?;
+    let items = items(&job.settings, platform.as_ref())?;
+    check_names(&items)?;
+    let inputs = inputs::inputs(job, &styles)?;
+    let settings = &Settings { inputs, ..job.settings.clone() };
+    let mut run = RunFolder::open(folder, settings)?;
+    let calls = Calls::open(settings, &job.service, &job.providers, run.id())?;
+    let team = Team::new(settings, calls.as_ref())?;
+
+    let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
+    let left: Vec<&Item> = items.iter().filter(|item| !run.is_done(&item.id(), &names)).collect();
+    if left.len() < items.len() {
+        output.say(format_args!("continuing: {} of {} items are done", items.len() - left.len(), items.len()));
+    }
+    let bar = output.progress(items.len(), "items");
+    bar.set_position((items.len() - left.len()) as u64);
+    if let Some(calls) = &calls {
+        let talk = *output;
+        calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));
+    }
+    let mut stopped = None;
+    let mut unflushed = 0;
+    let workers = calls.as_ref().map_or_else(cores, Calls::workers);
+    let making = |item: &&Item| make(item, settings, platform.as_ref(), &team, &styles);
+    in_order(&left, workers, making, |item, made| {
+        match keep(&mut run, platform.as_ref(), item, made, &styles)? {
+            Fate::Kept => bar.inc(1),
+            Fate::Stopped(reason) => {
+                stopped = Some(reason);
+                return Ok(false);
+            }
+        }
+        unflushed += 1;
+        if unflushed == FLUSH {
+            run.sync()?;
+            unflushed = 0;
+        }
+        bar.set_message(message(&run, calls.as_ref()));
+        Ok::<_, Error>(true)
+    })?;
+    run.sync()?;
+    bar.finish_and_clear();
+    if let Some(calls) = &calls {
+        calls.record()?;
+    }
+    summary::summary(folder, &run, items.len(), calls.as_ref().map(Calls::spent), stopped)
+}
+
+fn message(run: &RunFolder, calls: Option<&Calls>) -> String {
+    let done = format!("{} written, {} rejected", run.instructions.len(), run.rejected.len());
+    calls.map_or(done.clone(), |calls| format!("{done}; {}", calls.spent()))
+}

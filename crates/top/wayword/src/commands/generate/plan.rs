@@ -1,0 +1,245 @@
+//! What a run would ask of models, without asking: `generate --dry-run`.
+
+use crate::{
+    calls::{Price, price_of},
+    error::Error,
+    item::{check_names, items},
+    pipeline,
+    settings::{Job, Perception, Settings, is_model},
+    styles::{self, Measured},
+    team::prompts,
+    world::{self, Remembering},
+};
+use serde::Serialize;
+use std::{collections::BTreeSet, fmt};
+use wayword_core::{Exchange, Gaze, Path};
+use wayword_synthesis::{
+    observe::gazes,
+    prompts::{PromptError, Prompts},
+    walk::{FrameSelection, Observation, Walk},
+    writer::Brief,
+};
+
+/// What a run would ask of models at most: no dialogue ends early, and the ledger holds nothing yet.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Plan {
+    /// Items of the run that have a path.
+    items: usize,
+    /// Frames of their paths.
+    frames: usize,
+    /// Different views among those that are captioned: each is talked about once.
+    views: usize,
+    /// Most questions per view, the opening among them.
+    questions: usize,
+    /// One per model.
+    models: Vec<Asked>,
+}
+
+/// What one model would be asked.
+#[derive(Debug, Default, Serialize)]
+struct Asked {
+    model: String,
+    roles: Vec<&'static str>,
+    calls: u64,
+    tokens_in: u64,
+    tokens_out: u64,
+    /// US dollars; absent where the model's price is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    usd: Option<f64>,
+    /// The day of the price list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    price_as_of: Option<String>,
+}
+
+/// Calls and tokens of one role.
+#[derive(Debug, Clone, Copy, Default)]
+struct Load {
+    calls: u64,
+    tokens_in: u64,
+    tokens_out: u64,
+}
+
+/// What stands for exchanges and captions that nobody has made yet.
+const TYPICAL_QUESTION: &str = "What stands on the left side of the room, and what does it look like?";
+const TYPICAL_ANSWER: &str = "There is a small wooden table with a lamp on it, and a grey chair stands next to it.";
+const TYPICAL_CAPTION: &str = "A living room with a grey sofa on the left, a wooden table in the middle, two chairs on the right and a lamp beside the window. A doorway leads to a hallway.";
+/// Tokens that replies of each kind have.
+const QUESTION_TOKENS: u64 = 20;
+const ANSWER_TOKENS: u64 = 30;
+const CAPTION_TOKENS: u64 = 60;
+const CONDENSED_TOKENS: u64 = 25;
+const INSTRUCTION_TOKENS: u64 = 60;
+/// Pixels of a picture for each of its tokens, as two large providers count.
+const PIXELS_PER_TOKEN: u64 = 750;
+
+pub(super) fn plan(job: &Job) -> Result<Plan, Error> {
+    let settings = &job.settings;
+    let platform = world::open(settings)?;
+    let styles = styles::find(&settings.style, settings.seed)?;
+    let items = items(settings, platform.as_ref())?;
+    check_names(&items)?;
+    let prompts = prompts(settings)?;
+    let mut plan = Plan { questions: questions(settings), ..Plan::default() };
+    let (mut views, mut panoramas, mut writing) = (BTreeSet::new(), BTreeSet::new(), Load::default());
+    for item in &items {
+        let world = Remembering::new(platform.as_ref());
+        // What has no path is rejected by the run, and asks nothing of models.
+        let Ok(path) = pipeline::path(item, settings, &world) else { continue };
+        plan.items += 1;
+        plan.frames += path.frames.len();
+        for frame in &path.frames {
+            let place = frame.pose.position.to_array().map(f64::to_bits);
+            views
+                .extend(gazes(frame, settings.frames).iter().map(|gaze| (path.scene.clone(), place, micro_rad(*gaze))));
+            panoramas.insert((path.scene.clone(), place));
+        }
+        writing.add(write_load(&prompts, settings, &styles, &path)?);
+    }
+    plan.views = views.len();
+    let panoramas = if settings.frames == FrameSelection::Panoramic { panoramas.len() as u64 } else { 0 };
+    let talk = Talk::of(&prompts, settings)?;
+    let roles = &settings.roles;
+    let dialogue = settings.has_dialogue();
+    let summing = talk.summing.times(plan.views as u64).plus(talk.condensing.times(panoramas));
+    for (role, model, load, takes_part) in [
+        ("asks", &roles.ask, talk.asking.times(plan.views as u64), dialogue),
+        ("sees", &roles.see, talk.seeing.times(plan.views as u64), true),
+        ("sums up", &roles.summarise, summing, dialogue),
+        ("writes", &roles.write, writing, true),
+    ] {
+        if is_model(model) && takes_part {
+            plan.add(model, role, load);
+        }
+    }
+    for asked in &mut plan.models {
+        let price: Option<Price> = price_of(&job.service, &asked.model)?;
+        asked.usd = price.as_ref().map(|price| price.usd(asked.tokens_in, asked.tokens_out));
+        asked.price_as_of = price.map(|price| price.as_of);
+    }
+    Ok(plan)
+}
+
+/// Headings that differ by rounding alone look at the same thing.
+fn micro_rad(gaze: Gaze) -> u64 {
+    (gaze.heading.rad() * 1e6).round() as u64
+}
+
+/// Questions per view at most, fixed ones among them.
+fn questions(settings: &Settings) -> usize {
+    match settings.perception {
+        Perception::Dialogue => settings.questions + 1,
+        Perception::Fixed => 2,
+        Perception::Single => 1,
+    }
+}
+
+/// What the dialogue about one view takes.
+struct Talk {
+    asking: Load,
+    seeing: Load,
+    summing: Load,
+    condensing: Load,
+}
+
+impl Talk {
+    fn of(prompts: &Prompts, settings: &Settings) -> Result<Self, PromptError> {
+        let rounds = questions(settings);
+        let mut transcript = Vec::new();
+        let (mut asking, mut seeing) = (Load::default(), Load::default());
+        let picture = u64::from(settings.roles.picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN;
+        for round in 0..rounds {
+            if round > 0 {
+                asking.call(&prompts.question(&transcript)?, QUESTION_TOKENS);
+            }
+            seeing.call(&prompts.answer(TYPICAL_QUESTION, &transcript)?, ANSWER_TOKENS);
+            seeing.tokens_in += picture;
+            transcript.push(Exchange::new(TYPICAL_QUESTION, TYPICAL_ANSWER));
+        }
+        let (mut summing, mut condensing) = (Load::default(), Load::default());
+        summing.call(&prompts.summary(&transcript, &[], &[])?, CAPTION_TOKENS);
+        let around = [("ahead", TYPICAL_CAPTION); 4];
+        condensing.call(&prompts.condense(&around, 20, &[])?, CONDENSED_TOKENS);
+        Ok(Self { asking, seeing, summing, condensing })
+    }
+}
+
+/// Writing once for each style; repairs come on top, and nobody knows how many.
+fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path: &Path) -> Result<Load, PromptError> {
+    let seen = Observation { looks: Vec::new(), summary: TYPICAL_CAPTION.to_owned() };
+    let walk = Walk::new(path.clone(), vec![seen; path.frames.len()]);
+    let mut load = Load::default();
+    for Measured { style, profile } in styles {
+        let brief = Brief { walk: &walk, style, profile, seed: settings.seed, complaints: &[] };
+        load.call(&prompts.write(&brief)?, INSTRUCTION_TOKENS);
+    }
+    Ok(load)
+}
+
+impl Load {
+    fn call(&mut self, prompt: &str, tokens_out: u64) {
+        // Four characters a token is what English text comes to.
+        self.add(Self { calls: 1, tokens_in: prompt.len().div_ceil(4) as u64, tokens_out });
+    }
+
+    fn add(&mut self, other: Self) {
+        *self = self.plus(other);
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            calls: self.calls + other.calls,
+            tokens_in: self.tokens_in + other.tokens_in,
+            tokens_out: self.tokens_out + other.tokens_out,
+        }
+    }
+
+    fn times(self, times: u64) -> Self {
+        Self { calls: self.calls * times, tokens_in: self.tokens_in * times, tokens_out: self.tokens_out * times }
+    }
+}
+
+impl Plan {
+    fn add(&mut self, model: &str, role: &'static str, load: Load) {
+        let at = self.models.iter().position(|asked| asked.model == model).unwrap_or_else(|| {
+            self.models.push(Asked { model: model.to_owned(), ..Asked::default() });
+            self.models.len() - 1
+        });
+        if let Some(asked) = self.models.get_mut(at) {
+            asked.roles.push(role);
+            asked.calls += load.calls;
+            asked.tokens_in += load.tokens_in;
+            asked.tokens_out += load.tokens_out;
+        }
+    }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} items, {} frames, {} different views to caption", self.items, self.frames, self.views)?;
+        if self.models.is_empty() {
+            return write!(f, "no model takes part: nothing is asked, nothing is paid");
+        }
+        writeln!(f, "at most, before repairs, and with nothing in the ledger yet:")?;
+        for asked in &self.models {
+            write!(
+                f,
+                "  {} ({}): {} calls, about {} tokens in, {} out",
+                asked.model,
+                asked.roles.join(", "),
+                asked.calls,
+                asked.tokens_in,
+                asked.tokens_out
+            )?;
+            match (asked.usd, &asked.price_as_of) {
+                (Some(0.0), _) => writeln!(f, ", free: it runs here")?,
+                (Some(usd), Some(day)) => writeln!(f, ", about ${usd:.2} (prices of {day})")?,
+                _ => writeln!(f, ", price not known (see --prices)")?,
+            }
+        }
+        let known: Option<f64> = self.models.iter().map(|asked| asked.usd).sum();
+        match known {
+            Some(usd) => write!(f, "in all: about ${usd:.2}"),
+            None => write!(f, "in all: not known"),
+        }
+    }
+}

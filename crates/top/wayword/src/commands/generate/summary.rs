@@ -1,0 +1,103 @@
+//! What a run came to.
+
+use crate::{
+    calls::Spent,
+    error::{Error, Exit},
+    run::{RunFolder, file},
+};
+use serde::Serialize;
+use std::{fmt, path::Path};
+use wayword_core::{ModelError, Verdict};
+
+/// What a run came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// The run folder.
+    pub run: String,
+    /// Items of the run.
+    pub items: usize,
+    /// Instructions that passed every check.
+    pub passed: usize,
+    /// Instructions for which something could not be checked.
+    pub unverified: usize,
+    /// Instructions, or whole items, that were rejected.
+    pub rejected: usize,
+    /// Items that failed because a model gave nothing; the same command tries them again.
+    pub errors: usize,
+    /// Who perceived and wrote.
+    pub minds: String,
+    /// What the calls of this command came to, where models took part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spent: Option<Spent>,
+    /// Why the run stopped before its end, where it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped: Option<String>,
+}
+
+impl Summary {
+    /// The exit code that says so.
+    #[must_use]
+    pub fn exit(&self) -> Exit {
+        match (&self.stopped, self.rejected + self.errors) {
+            (Some(_), _) => Exit::Stopped,
+            (None, 0) => Exit::Done,
+            (None, _) => Exit::WithLoss,
+        }
+    }
+}
+
+pub(super) fn summary(
+    folder: &Path,
+    run: &RunFolder,
+    items: usize,
+    spent: Option<Spent>,
+    stopped: Option<ModelError>,
+) -> Result<Summary, Error> {
+    let records = wayword_formats::jsonl::read(&folder.join(file::INSTRUCTIONS))?;
+    let count = |verdict| records.iter().filter(|record| record.instruction.verdict == verdict).count();
+    let minds = records.first().map_or_else(String::new, |record| {
+        let provenance = &record.instruction.provenance;
+        format!(
+            "{} asked, {} answered, {} summed up, {} wrote, checked against {}",
+            provenance.asker,
+            provenance.answerer,
+            provenance.summariser,
+            provenance.finished_for.as_ref().unwrap_or(&provenance.writer),
+            provenance.checked_against
+        )
+    });
+    Ok(Summary {
+        run: folder.display().to_string(),
+        items,
+        passed: count(Verdict::Pass),
+        unverified: count(Verdict::Unverified),
+        rejected: run.rejected.len(),
+        errors: run.errors.len(),
+        minds,
+        spent,
+        stopped: stopped.map(|reason| reason.to_string()),
+    })
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} items: {} instructions passed every check, {} unverified, {} rejected",
+            self.items, self.passed, self.unverified, self.rejected
+        )?;
+        if self.errors > 0 {
+            writeln!(f, "{} items failed (errors.jsonl); the same command tries them again", self.errors)?;
+        }
+        if !self.minds.is_empty() {
+            writeln!(f, "minds: {}", self.minds)?;
+        }
+        if let Some(spent) = &self.spent {
+            writeln!(f, "models: {spent}")?;
+        }
+        if let Some(reason) = &self.stopped {
+            writeln!(f, "stopped before the end: {reason}\nThe same command goes on from here.")?;
+        }
+        write!(f, "run folder: {}", self.run)
+    }
+}

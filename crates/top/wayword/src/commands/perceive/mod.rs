@@ -1,0 +1,150 @@
+//! `wayword perceive`: how well captions fit the labels of their views, for each way of asking.
+
+mod table;
+mod views;
+
+use crate::{
+    calls::Calls,
+    cli::Perceive,
+    error::{Error, Exit},
+    in_order::in_order,
+    output::Output,
+    run::fresh_id,
+    settings::{Perception, Settings},
+    team::{Team, cores},
+    world,
+};
+use serde::Serialize;
+use table::{Row, Table};
+use views::{Labelled, labelled_views};
+use wayword_core::{Caption, ModelError};
+use wayword_synthesis::{
+    observe::talk_about,
+    perception::{Score, score},
+};
+
+/// What was measured.
+#[derive(Debug, Serialize)]
+pub(super) struct Measured {
+    /// Name of the platform.
+    platform: String,
+    /// Views with labels that were captioned.
+    views: usize,
+    /// Who asked, answered and summed up.
+    minds: String,
+    /// One per way of asking.
+    rows: Vec<Row>,
+    /// Captions, where they were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shown: Vec<Shown>,
+}
+
+/// A caption with what was found.
+#[derive(Debug, Serialize)]
+struct Shown {
+    scene: String,
+    heading_deg: f64,
+    perception: Perception,
+    caption: String,
+    ghosts: Vec<String>,
+}
+
+/// What became of a view.
+struct Captioned {
+    caption: Caption,
+    score: Score,
+}
+
+pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
+    let job = args.asked().job()?;
+    let platform = world::open(&job.settings)?;
+    let views = labelled_views(&job.settings, platform.as_ref(), args.views)?;
+    let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("perceive"))?;
+    if let Some(calls) = &calls {
+        let talk = *output;
+        calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));
+    }
+    let mut measured = Measured {
+        platform: job.settings.platform.clone(),
+        views: views.len(),
+        minds: minds(&job.settings),
+        rows: Vec::new(),
+        shown: Vec::new(),
+    };
+    for perception in args.perceptions() {
+        let settings = Settings { perception, ..job.settings.clone() };
+        let (captions, row) = measure(&settings, calls.as_ref(), &views, output)?;
+        measured.rows.push(row);
+        let shown = captions.iter().zip(&views).filter_map(|(captioned, view)| {
+            let Captioned { caption, score } = captioned.as_ref()?;
+            Some(Shown {
+                scene: view.scene.to_string(),
+                heading_deg: view.view.pose.heading.rad().to_degrees().round(),
+                perception,
+                caption: caption.text.clone(),
+                ghosts: score.ghosts.clone(),
+            })
+        });
+        measured.shown.extend(shown.take(args.show));
+    }
+    if let Some(calls) = &calls {
+        calls.record()?;
+        output.say(format_args!("models: {}", calls.spent()));
+    }
+    output.data(&measured, Table(&measured));
+    Ok(if measured.rows.iter().all(|row| row.failed == 0) { Exit::Done } else { Exit::WithLoss })
+}
+
+fn minds(settings: &Settings) -> String {
+    let roles = &settings.roles;
+    format!("{} asks, {} answers, {} sums up", roles.ask, roles.see, roles.summarise)
+}
+
+/// Captions every view in one way.
+fn measure(
+    settings: &Settings,
+    calls: Option<&Calls>,
+    views: &[Labelled],
+    output: &Output,
+) -> Result<(Vec<Option<Captioned>>, Row), Error> {
+    let team = Team::new(settings, calls)?;
+    let asked = || calls.map_or(0, |calls| calls.spent().answered + calls.spent().from_ledger);
+    let before = asked();
+    let bar = output.progress(views.len(), "views");
+    let mut captions = Vec::new();
+    let make = |view: &Labelled| talk_about(&view.view, team.minds());
+    in_order(views, calls.map_or_else(cores, Calls::workers), make, |view, caption| {
+        bar.inc(1);
+        captions.push(captioned(view, caption, output)?);
+        Ok::<_, Error>(true)
+    })?;
+    bar.finish_and_clear();
+    let row = Row::of(settings.perception, &captions, asked() - before);
+    Ok((captions, row))
+}
+
+/// A view that a model would not caption is left out, and counted; when nothing more can be asked for, the measurement ends.
+fn captioned(
+    view: &Labelled,
+    caption: Result<Caption, ModelError>,
+    output: &Output,
+) -> Result<Option<Captioned>, Error> {
+    match caption {
+        Ok(caption) => Ok(Some(Captioned { score: score(&caption.text, &view.labels), caption })),
+        Err(error) if error.ends_run() => Err(error.into()),
+        Err(error) => {
+            output.say(format_args!("{}: {error}", view.scene));
+            Ok(None)
+        }
+    }
+}
+
+/// The job's ways of asking, or all of them.
+impl Perceive {
+    fn perceptions(&self) -> Vec<Perception> {
+        match &self.perception {
+            Some(asked) if !asked.is_empty() => asked.clone(),
+            _ => vec![Perception::Fixed, Perception::Single, Perception::Dialogue],
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! The measurement as numbers and as a table.
+
+use super::{Captioned, Measured};
+use crate::settings::{LABELS, Perception};
+use serde::Serialize;
+use std::fmt;
+
+/// One way of asking.
+#[derive(Debug, Serialize)]
+pub(super) struct Row {
+    pub(super) perception: Perception,
+    /// Views that were captioned.
+    captions: usize,
+    /// Views that a model would not caption.
+    pub(super) failed: usize,
+    /// Different objects that captions named, summed over captions.
+    named: usize,
+    /// Share of them that a label agrees with.
+    precision: f64,
+    /// Share of them that are not there.
+    ghost_rate: f64,
+    /// Share of the different labels of a view that its caption names.
+    recall: f64,
+    /// Share of captions that hold a ghost.
+    captions_with_ghosts: f64,
+    /// Questions per view that were answered, the opening among them.
+    questions_per_view: f64,
+    /// Calls to models per view, those among them that the ledger answered.
+    calls_per_view: f64,
+}
+
+impl Row {
+    pub(super) fn of(perception: Perception, captions: &[Option<Captioned>], calls: u64) -> Self {
+        let captioned: Vec<&Captioned> = captions.iter().flatten().collect();
+        let sum = |count: fn(&Captioned) -> usize| captioned.iter().map(|one| count(one)).sum::<usize>();
+        let named = sum(|one| one.score.named);
+        let ghosts = sum(|one| one.score.ghosts.len());
+        let haunted = sum(|one| usize::from(!one.score.ghosts.is_empty()));
+        Self {
+            perception,
+            captions: captioned.len(),
+            failed: captions.len() - captioned.len(),
+            named,
+            precision: share(named - ghosts, named),
+            ghost_rate: share(ghosts, named),
+            recall: share(sum(|one| one.score.found), sum(|one| one.score.labelled)),
+            captions_with_ghosts: share(haunted, captioned.len()),
+            questions_per_view: share(sum(|one| one.caption.transcript.len()), captioned.len()),
+            calls_per_view: calls as f64 / captions.len().max(1) as f64,
+        }
+    }
+}
+
+/// A share; 0 of nothing is 0.
+fn share(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
+/// The measurement for people.
+pub(super) struct Table<'a>(pub(super) &'a Measured);
+
+impl fmt::Display for Table<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Measured { platform, views, minds, rows, shown } = self.0;
+        writeln!(f, "{views} views of {platform}; {minds}")?;
+        if minds.contains(&format!("{LABELS} answers")) {
+            writeln!(f, "labels answer: this measures how words come through, not perception")?;
+        }
+        writeln!(f)?;
+        writeln!(f, "asked      objects  precision  recall  ghosts  with ghost  questions  calls")?;
+        for row in rows {
+            writeln!(
+                f,
+                "{:<10} {:>7}  {:>8.1}%  {:>5.1}%  {:>5.1}%  {:>9.1}%  {:>9.1}  {:>5.1}",
+                name(row.perception),
+                row.named,
+                100.0 * row.precision,
+                100.0 * row.recall,
+                100.0 * row.ghost_rate,
+                100.0 * row.captions_with_ghosts,
+                row.questions_per_view,
+                row.calls_per_view
+            )?;
+            if row.failed > 0 {
+                writeln!(f, "           {} views were not captioned; each with its reason above", row.failed)?;
+            }
+        }
+        writeln!(f)?;
+        writeln!(
+            f,
+            "ghosts: named objects that no label of the view agrees with; where labels leave things out, a ghost"
+        )?;
+        write!(f, "may be there. with ghost: captions that hold one. questions and calls: per view.")?;
+        for one in shown {
+            write!(
+                f,
+                "\n\n{} at {} degrees, {}:\n  {}",
+                one.scene,
+                one.heading_deg,
+                name(one.perception),
+                one.caption
+            )?;
+            if !one.ghosts.is_empty() {
+                write!(f, "\n  ghosts: {}", one.ghosts.join(", "))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn name(perception: Perception) -> &'static str {
+    match perception {
+        Perception::Dialogue => "dialogue",
+        Perception::Fixed => "fixed",
+        Perception::Single => "single",
+    }
+}

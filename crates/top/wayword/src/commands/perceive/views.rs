@@ -1,0 +1,73 @@
+//! The views that are captioned: those ahead along random paths or episodes, each once, where the platform has labels.
+
+use crate::{
+    error::Error,
+    item::{Item, items},
+    settings::Settings,
+};
+use std::collections::BTreeSet;
+use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
+use wayword_synthesis::evidence::{Evidence, SeenThing};
+
+/// A view with what its labels say.
+pub(super) struct Labelled {
+    pub(super) scene: SceneId,
+    pub(super) view: View,
+    pub(super) labels: Vec<SeenThing>,
+}
+
+/// The first so many, in the order of the paths.
+pub(super) fn labelled_views(
+    settings: &Settings,
+    platform: &dyn Platform,
+    most: usize,
+) -> Result<Vec<Labelled>, Error> {
+    let mut views = Vec::new();
+    let mut looked_at = BTreeSet::new();
+    let mut blind = 0;
+    'paths: for item in &items(settings, platform)? {
+        let Some(path) = path(item, settings, platform)? else { continue };
+        for frame in &path.frames {
+            if views.len() == most {
+                break 'paths;
+            }
+            let place = (path.scene.clone(), frame.pose.position.to_array().map(f64::to_bits), micro_rad(frame));
+            if !looked_at.insert(place) {
+                continue;
+            }
+            match labelled(platform, &path, frame)? {
+                Some(view) => views.push(view),
+                None => blind += 1,
+            }
+        }
+    }
+    if views.is_empty() {
+        return Err(Error::usage(
+            format!("none of {blind} views has labels to hold a caption against"),
+            "give a platform or data folder with labels, or more --paths",
+        ));
+    }
+    Ok(views)
+}
+
+/// An item's path; a scene without one of the kind asked for has nothing to look at.
+fn path(item: &Item, settings: &Settings, platform: &dyn Platform) -> Result<Option<Path>, Error> {
+    match item.path(settings, platform) {
+        Ok(path) => Ok(Some(path)),
+        Err(PlatformError::NoSuchPath { .. }) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn micro_rad(frame: &Frame) -> u64 {
+    (frame.pose.heading.rad() * 1e6).round() as u64
+}
+
+fn labelled(platform: &dyn Platform, path: &Path, frame: &Frame) -> Result<Option<Labelled>, Error> {
+    let view = platform.look(&path.scene, frame, Gaze::quarter(frame.pose.heading))?;
+    let one = Path { frames: vec![frame.clone()], ..path.clone() };
+    let evidence = Evidence::from_labels(&one, &[vec![view.clone()]]);
+    let labels = evidence.and_then(|evidence| evidence.frames.into_iter().next()).map(|frame| frame.things);
+    let labels = labels.filter(|labels| !labels.is_empty());
+    Ok(labels.map(|labels| Labelled { scene: path.scene.clone(), view, labels }))
+}

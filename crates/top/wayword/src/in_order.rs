@@ -1,0 +1,118 @@
+//! Makes many things at a time and hands them on in their order.
+
+use std::{
+    collections::BTreeMap,
+    sync::{Condvar, Mutex, PoisonError, mpsc},
+    thread,
+};
+
+/// How far ahead of the oldest unfinished item the others may be, in items per worker: enough that one slow item does not
+/// hold up the rest, few enough that finished ones do not pile up.
+const AHEAD: usize = 4;
+
+/// Where the work stands.
+struct Progress {
+    next: usize,
+    kept: usize,
+    stopped: bool,
+}
+
+/// Has `make` called for each item on so many threads, and `keep` with each result, in the order of the items. When `keep`
+/// answers `false` or fails, no further item is begun; those that are being made are finished and dropped.
+///
+/// # Errors
+/// The first that `keep` gives.
+pub(crate) fn in_order<I: Sync, R: Send, E>(
+    items: &[I],
+    workers: usize,
+    make: impl Fn(&I) -> R + Sync,
+    mut keep: impl FnMut(&I, R) -> Result<bool, E>,
+) -> Result<(), E> {
+    let workers = workers.clamp(1, items.len().max(1));
+    let progress = Mutex::new(Progress { next: 0, kept: 0, stopped: false });
+    let moved = Condvar::new();
+    let take = || {
+        let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            if progress.stopped || progress.next >= items.len() {
+                return None;
+            }
+            if progress.next < progress.kept + workers * AHEAD {
+                progress.next += 1;
+                return Some(progress.next - 1);
+            }
+            progress = moved.wait(progress).unwrap_or_else(PoisonError::into_inner);
+        }
+    };
+    let tell = |change: &dyn Fn(&mut Progress)| {
+        change(&mut progress.lock().unwrap_or_else(PoisonError::into_inner));
+        moved.notify_all();
+    };
+    thread::scope(|scope| {
+        let (sender, results) = mpsc::channel();
+        for _ in 0..workers {
+            let (sender, take, make) = (sender.clone(), &take, &make);
+            scope.spawn(move || {
+                while let Some(at) = take() {
+                    // Nobody listens once `keep` has had enough.
+                    let _ = sender.send((at, make(&items[at])));
+                }
+            });
+        }
+        drop(sender);
+        let mut waiting = BTreeMap::new();
+        let mut kept = 0;
+        for (at, result) in results {
+            waiting.insert(at, result);
+            while let Some(result) = waiting.remove(&kept) {
+                let goes_on = keep(&items[kept], result);
+                if !matches!(goes_on, Ok(true)) {
+                    tell(&|progress| progress.stopped = true);
+                    return goes_on.map(drop);
+                }
+                kept += 1;
+                tell(&|progress| progress.kept = kept);
+            }
+        }
+        Ok(())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{
+        sync::atomic::{AtomicUsize, Ordering},
+        time::Duration,
+    };
+
+    #[test]
+    fn results_come_in_the_order_of_the_items_however_long_each_takes() {
+        let items: Vec<u64> = (0..200).collect();
+        let mut kept = Vec::new();
+        let make = |item: &u64| {
+            thread::sleep(Duration::from_micros(item * 7919 % 997));
+            item * 2
+        };
+        let keep = |item: &u64, twice| {
+            kept.push((*item, twice));
+            Ok::<bool, ()>(true)
+        };
+        in_order(&items, 16, make, keep).unwrap();
+        assert_eq!(kept, items.iter().map(|item| (*item, item * 2)).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn nothing_new_is_begun_after_the_end_and_errors_come_out() {
+        let begun = AtomicUsize::new(0);
+        let items: Vec<usize> = (0..1000).collect();
+        let make = |item: &usize| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            *item
+        };
+        in_order(&items, 2, make, |_, item| Ok::<bool, ()>(item < 10)).unwrap();
+        assert!(begun.load(Ordering::Relaxed) <= 11 + 2 * AHEAD);
+        assert_eq!(in_order(&items, 2, |item| *item, |_, _| Err("full")), Err("full"));
+        assert_eq!(in_order(&[], 2, |item: &usize| *item, |_, _| Err("never")), Ok(()));
+    }
+}

@@ -1,0 +1,211 @@
+//! Who asks, sees, sums up and writes in a run, by name.
+
+use crate::error::Error;
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The mind that answers from ground truth.
+pub const LABELS: &str = "labels";
+/// The minds that work by rules.
+pub const RULES: &str = "rules";
+
+/// Longer side of the pictures that models are sent, pixels, unless told otherwise.
+const PICTURE_PX: u32 = 512;
+/// Largest that can be asked for.
+const MOST_PICTURE_PX: u32 = 4096;
+
+/// Which minds a run is asked to use: flags, and the table `[roles]` of a settings file.
+#[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[command(next_help_heading = "Minds")]
+pub struct AskedRoles {
+    /// The language model that asks, sums up and writes, as provider/model.
+    #[arg(long, value_name = "MODEL")]
+    pub llm: Option<String>,
+    /// Who asks about the views: rules, or a model. [default: rules]
+    #[arg(long, value_name = "MODEL")]
+    pub ask: Option<String>,
+    /// Who sees: labels (ground truth), or a model that sees pictures. [default: labels]
+    #[arg(long, value_name = "MODEL")]
+    pub see: Option<String>,
+    /// Who sums the answers up: rules, or a model. [default: rules]
+    #[arg(long, value_name = "MODEL")]
+    pub summarise: Option<String>,
+    /// Who writes: rules, or a model. [default: rules]
+    #[arg(long, value_name = "MODEL")]
+    pub write: Option<String>,
+    /// Who writes where all texts of the model failed their checks; the provenance says so. [default: rules]
+    #[arg(long)]
+    pub finish: Option<Finish>,
+    /// Base URL of the provider, where exactly one is named (several: [providers.NAME] in the settings file).
+    #[arg(long, value_name = "URL")]
+    pub base_url: Option<String>,
+    /// Longer side of the pictures that models are sent; smaller ones stay as they are. [default: 512]
+    #[arg(long, value_name = "PX")]
+    pub picture_px: Option<u32>,
+    /// Folder of prompt templates of your own: question.j2, answer.j2, summary.j2, condense.j2, write.j2.
+    #[arg(long, value_name = "DIR")]
+    pub prompts: Option<PathBuf>,
+}
+
+/// Who writes where a model's texts all failed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Finish {
+    /// The writer that works by rules.
+    #[default]
+    Rules,
+    /// Nobody: the instruction is rejected.
+    Nobody,
+}
+
+/// Who does what in a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Roles {
+    /// Who asks.
+    pub ask: String,
+    /// Who sees.
+    pub see: String,
+    /// Who sums up.
+    pub summarise: String,
+    /// Who writes.
+    pub write: String,
+    /// Who writes where all texts of a model failed.
+    pub finish: Finish,
+    /// Base URL of the one provider.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base_url: Option<String>,
+    /// Longer side of the pictures that models are sent.
+    pub picture_px: u32,
+    /// Folder of prompt templates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prompts: Option<PathBuf>,
+}
+
+impl Default for Roles {
+    fn default() -> Self {
+        Self {
+            ask: RULES.to_owned(),
+            see: LABELS.to_owned(),
+            summarise: RULES.to_owned(),
+            write: RULES.to_owned(),
+            finish: Finish::default(),
+            base_url: None,
+            picture_px: PICTURE_PX,
+            prompts: None,
+        }
+    }
+}
+
+impl AskedRoles {
+    /// What flags ask for, with the rest from a file. A flag `--llm` wins over the file's text roles.
+    #[must_use]
+    pub fn or(self, file: Self) -> Self {
+        let unless_llm = |role: Option<String>| role.filter(|_| self.llm.is_none());
+        Self {
+            ask: self.ask.clone().or(unless_llm(file.ask)),
+            see: self.see.clone().or(file.see),
+            summarise: self.summarise.clone().or(unless_llm(file.summarise)),
+            write: self.write.clone().or(unless_llm(file.write)),
+            llm: self.llm.or(file.llm),
+            finish: self.finish.or(file.finish),
+            base_url: self.base_url.or(file.base_url),
+            picture_px: self.picture_px.or(file.picture_px),
+            prompts: self.prompts.or(file.prompts),
+        }
+    }
+
+    /// Resolves it, with defaults for what nobody asked for.
+    ///
+    /// # Errors
+    /// When a name is none that the role can have.
+    pub fn resolve(self) -> Result<Roles, Error> {
+        let default = Roles::default();
+        let text = |role: Option<String>, flag, none: &str| {
+            role.or_else(|| self.llm.clone()).map_or_else(|| Ok(none.to_owned()), |name| named(flag, name, RULES))
+        };
+        let picture_px = self.picture_px.unwrap_or(default.picture_px);
+        if !(32..=MOST_PICTURE_PX).contains(&picture_px) {
+            return Err(Error::usage(
+                format!("--picture-px {picture_px} is not from 32 to {MOST_PICTURE_PX}"),
+                "most models look at 300 to 1600 pixels",
+            ));
+        }
+        Ok(Roles {
+            ask: text(self.ask, "--ask", &default.ask)?,
+            see: self.see.map_or(Ok(default.see), |name| named("--see", name, LABELS))?,
+            summarise: text(self.summarise, "--summarise", &default.summarise)?,
+            write: text(self.write, "--write", &default.write)?,
+            finish: self.finish.unwrap_or_default(),
+            base_url: self.base_url,
+            picture_px,
+            prompts: self.prompts,
+        })
+    }
+}
+
+/// A role's name: the embedded mind's, or provider/model.
+fn named(flag: &str, name: String, embedded: &str) -> Result<String, Error> {
+    let is_model = name.split_once('/').is_some_and(|(provider, model)| !provider.is_empty() && !model.is_empty());
+    if name == embedded || is_model {
+        return Ok(name);
+    }
+    Err(Error::usage(
+        format!("{flag} {name}: there is no such mind"),
+        format!("name {embedded}, or a model as provider/model, as in {flag} ollama/llava"),
+    ))
+}
+
+impl Roles {
+    /// The models among them, each once, in the order of the work.
+    #[must_use]
+    pub fn models(&self) -> Vec<&str> {
+        let mut models: Vec<&str> = Vec::new();
+        for name in [&self.ask, &self.see, &self.summarise, &self.write] {
+            if is_model(name) && !models.contains(&name.as_str()) {
+                models.push(name);
+            }
+        }
+        models
+    }
+}
+
+/// Whether a role is played by a model.
+#[must_use]
+pub fn is_model(name: &str) -> bool {
+    name.contains('/')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(llm: Option<&str>, write: Option<&str>) -> AskedRoles {
+        AskedRoles { llm: llm.map(str::to_owned), write: write.map(str::to_owned), ..AskedRoles::default() }
+    }
+
+    #[test]
+    fn one_model_takes_the_three_text_roles_unless_one_is_named() {
+        let roles = asked(Some("a/b"), Some("c/d:e")).resolve().unwrap();
+        assert_eq!((&*roles.ask, &*roles.see, &*roles.summarise, &*roles.write), ("a/b", "labels", "a/b", "c/d:e"));
+        assert_eq!(roles.models(), ["a/b", "c/d:e"]);
+        assert_eq!(AskedRoles::default().resolve().unwrap(), Roles::default());
+    }
+
+    #[test]
+    fn a_flag_for_all_roles_wins_over_the_roles_of_the_file() {
+        let roles = asked(Some("a/b"), None).or(asked(None, Some("c/d"))).resolve().unwrap();
+        assert_eq!(roles.write, "a/b");
+        let roles = asked(None, None).or(asked(Some("e/f"), Some("c/d"))).resolve().unwrap();
+        assert_eq!((&*roles.ask, &*roles.write), ("e/f", "c/d"));
+    }
+
+    #[test]
+    fn names_that_are_no_minds_are_refused() {
+        for bad in ["labels", "gpt", "/x", "x/", ""] {
+            assert!(asked(None, Some(bad)).resolve().is_err(), "{bad}");
+        }
+    }
+}

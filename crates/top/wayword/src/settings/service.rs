@@ -1,0 +1,110 @@
+//! How models are reached and what may be spent. Nothing here changes an answer, so a run may be continued with other values.
+
+use crate::error::Error;
+use clap::Args;
+use serde::Deserialize;
+use std::{collections::BTreeMap, path::PathBuf};
+
+/// Limits and files of the calls to models: flags, and the table `[service]` of a settings file.
+#[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[command(next_help_heading = "Calls to models")]
+pub struct Service {
+    /// Stop before the run as a whole has cost more, in US dollars; refuses models without a known price.
+    #[arg(long, value_name = "USD")]
+    pub max_usd: Option<f64>,
+    /// Stop before the run as a whole has sent more requests.
+    #[arg(long, value_name = "N")]
+    pub max_calls: Option<u64>,
+    /// Requests at a time for each provider. [default: found out, at most 64]
+    #[arg(long, value_name = "N")]
+    pub concurrency: Option<usize>,
+    /// Most requests per minute for each provider.
+    #[arg(long, value_name = "N")]
+    pub requests_per_minute: Option<f64>,
+    /// Most tokens per minute for each provider.
+    #[arg(long, value_name = "N")]
+    pub tokens_per_minute: Option<f64>,
+    /// How long a request may take, seconds. [default: 120]
+    #[arg(long, value_name = "S")]
+    pub timeout_s: Option<f64>,
+    /// Environment variable that holds the key, where exactly one provider is named.
+    #[arg(long, value_name = "NAME")]
+    pub key_env: Option<String>,
+    /// Prices of your own, TOML (see docs/MODELS.md).
+    #[arg(long, value_name = "FILE")]
+    pub prices: Option<PathBuf>,
+    /// The ledger that keeps every answer. [default: wayword/ledger.db in your data folder]
+    #[arg(long, value_name = "FILE")]
+    pub ledger: Option<PathBuf>,
+    /// Write every answer that the run used to this file, for --replay.
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+    /// Take every answer from such a file: no service is asked.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "ledger"])]
+    pub replay: Option<PathBuf>,
+}
+
+/// Providers of the user's own, and changes to those that are known: tables `[providers.NAME]` of a settings file.
+pub type Providers = BTreeMap<String, toml::Table>;
+
+impl Service {
+    /// What flags ask for, with the rest from a file.
+    #[must_use]
+    pub fn or(self, file: Self) -> Self {
+        Self {
+            max_usd: self.max_usd.or(file.max_usd),
+            max_calls: self.max_calls.or(file.max_calls),
+            concurrency: self.concurrency.or(file.concurrency),
+            requests_per_minute: self.requests_per_minute.or(file.requests_per_minute),
+            tokens_per_minute: self.tokens_per_minute.or(file.tokens_per_minute),
+            timeout_s: self.timeout_s.or(file.timeout_s),
+            key_env: self.key_env.or(file.key_env),
+            prices: self.prices.or(file.prices),
+            ledger: self.ledger.or(file.ledger),
+            record: self.record.or(file.record),
+            replay: self.replay.or(file.replay),
+        }
+    }
+
+    /// Refuses values that make no sense.
+    ///
+    /// # Errors
+    /// When a number is out of its range.
+    pub fn checked(self) -> Result<Self, Error> {
+        let refuse = |flag: &str, hint: &str| Err(Error::usage(format!("{flag} is out of its range"), hint));
+        if self.max_usd.is_some_and(|usd| !usd.is_finite() || usd < 0.0) {
+            return refuse("--max-usd", "give US dollars, as in --max-usd 2.50");
+        }
+        if self.concurrency.is_some_and(|at_a_time| !(1..=MOST_CONCURRENCY).contains(&at_a_time)) {
+            return refuse("--concurrency", "give a number from 1 to 512");
+        }
+        if self.timeout_s.is_some_and(|timeout_s| !(0.1..=3600.0).contains(&timeout_s)) {
+            return refuse("--timeout-s", "give seconds, from 0.1 to 3600");
+        }
+        let no_rate = |rate: Option<f64>| rate.is_some_and(|rate| !(rate.is_finite() && rate > 0.0));
+        if no_rate(self.requests_per_minute) || no_rate(self.tokens_per_minute) {
+            return refuse("a rate per minute", "give a number above 0, or leave the flag out for no limit");
+        }
+        Ok(self)
+    }
+}
+
+/// Most requests at a time that can be asked for.
+const MOST_CONCURRENCY: usize = 512;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_out_of_their_range_are_refused() {
+        let refused = |text: &str| toml::from_str::<Service>(text).unwrap().checked().is_err();
+        for bad in
+            ["max_usd = -1.0", "max_usd = nan", "concurrency = 0", "timeout_s = 0.0", "requests_per_minute = 0.0"]
+        {
+            assert!(refused(bad), "{bad}");
+        }
+        assert!(!refused("max_usd = 0.0\nmax_calls = 0\nconcurrency = 32"));
+    }
+}

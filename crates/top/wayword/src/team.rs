@@ -1,0 +1,128 @@
+//! The minds of a run: who asks, sees, sums up, writes, and finishes.
+
+use crate::{
+    calls::Calls,
+    error::Error,
+    settings::{Finish, Settings, is_model},
+    text_file,
+};
+use std::{path::Path, sync::Arc, thread};
+use wayword_core::{Answerer, LanguageModel};
+use wayword_synthesis::{
+    dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
+    minds::Labels,
+    models::{ModelAnswerer, ModelAsker, ModelSummariser, ModelWriter},
+    observe::Minds,
+    prompts::Prompts,
+    repair::Writers,
+    writer::{RulesWriter, Writer},
+};
+
+/// Who takes part in a run.
+pub struct Team {
+    asker: Box<dyn Asker>,
+    answerer: Box<dyn Answerer>,
+    summariser: Box<dyn Summariser>,
+    writer: Box<dyn Writer>,
+    finisher: Option<RulesWriter>,
+    mode: Mode,
+    prompts_hash: Option<String>,
+}
+
+impl Team {
+    /// The minds that the settings name. `calls` reaches models, and is needed where there are any.
+    ///
+    /// # Errors
+    /// When a model cannot be reached by its name, or a prompt cannot be used.
+    pub fn new(settings: &Settings, calls: Option<&Calls>) -> Result<Self, Error> {
+        let prompts = Arc::new(prompts(settings)?);
+        let roles = &settings.roles;
+        let model = |name: &str| -> Result<Option<Arc<dyn LanguageModel>>, Error> {
+            match calls.filter(|_| is_model(name)) {
+                Some(calls) => Ok(Some(calls.model(name)?)),
+                None => Ok(None),
+            }
+        };
+        let prompts_hash = (!roles.models().is_empty()).then(|| prompts.hash().to_owned());
+        let prompts = || Arc::clone(&prompts);
+        let sees = model(&roles.see)?;
+        let doubts = sees.is_some();
+        // Without a dialogue nobody asks and nobody sums up.
+        let in_dialogue = |name: &str| if settings.has_dialogue() { model(name) } else { Ok(None) };
+        let writes = model(&roles.write)?;
+        let finisher = writes.is_some() && roles.finish == Finish::Rules;
+        Ok(Self {
+            asker: match in_dialogue(&roles.ask)? {
+                Some(model) => Box::new(ModelAsker::new(model, prompts())),
+                None if doubts => Box::new(RulesAsker::for_models()),
+                None => Box::new(RulesAsker::default()),
+            },
+            summariser: match in_dialogue(&roles.summarise)? {
+                Some(model) => Box::new(ModelSummariser::new(model, prompts())),
+                None => Box::new(RulesSummariser),
+            },
+            answerer: match sees {
+                Some(model) => Box::new(ModelAnswerer::new(model, prompts())),
+                None => Box::new(Labels),
+            },
+            writer: match writes {
+                Some(model) => Box::new(ModelWriter::new(model, prompts())),
+                None => Box::new(RulesWriter),
+            },
+            finisher: finisher.then_some(RulesWriter),
+            mode: settings.mode(),
+            prompts_hash,
+        })
+    }
+
+    /// Those who perceive.
+    #[must_use]
+    pub fn minds(&self) -> Minds<'_> {
+        Minds {
+            asker: self.asker.as_ref(),
+            answerer: self.answerer.as_ref(),
+            summariser: self.summariser.as_ref(),
+            mode: self.mode,
+            prompts_hash: self.prompts_hash.as_deref(),
+        }
+    }
+
+    /// Those who write.
+    #[must_use]
+    pub fn writers(&self) -> Writers<'_> {
+        let finisher = self.finisher.as_ref().map(|finisher| finisher as &dyn Writer);
+        Writers { writer: self.writer.as_ref(), finisher }
+    }
+}
+
+/// Items that are made at a time where no model is waited for.
+#[must_use]
+pub fn cores() -> usize {
+    thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// The prompts, with those of the user's folder in their stead.
+///
+/// # Errors
+/// When the folder holds none, or one cannot be used.
+pub fn prompts(settings: &Settings) -> Result<Prompts, Error> {
+    let own = settings.roles.prompts.as_deref().map_or_else(|| Ok(Vec::new()), own_prompts)?;
+    Ok(Prompts::new(&own)?)
+}
+
+fn own_prompts(folder: &Path) -> Result<Vec<(String, String)>, Error> {
+    let mut own = Vec::new();
+    for name in Prompts::names() {
+        let file = folder.join(format!("{name}.j2"));
+        if file.exists() {
+            own.push((name.to_owned(), text_file::read(&file, "read the prompt")?));
+        }
+    }
+    if own.is_empty() {
+        return Err(Error::usage(
+            format!("--prompts {}: it holds no prompt", folder.display()),
+            format!("put one of these files there: {}.j2", Prompts::names().collect::<Vec<_>>().join(".j2, ")),
+        ));
+    }
+    Ok(own)
+}

@@ -1,0 +1,60 @@
+//! A language model that sees.
+
+use super::{PERCEPTION_SEED, clean::whole_sentences};
+use crate::prompts::Prompts;
+use std::sync::Arc;
+use wayword_core::{Answer, Answerer, Ask, Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling};
+
+/// Puts questions about a view's picture to a language model that sees.
+#[derive(Clone)]
+pub struct ModelAnswerer {
+    model: Arc<dyn LanguageModel>,
+    prompts: Arc<Prompts>,
+}
+
+/// The likeliest answer: what is there does not change with a draw.
+const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
+
+impl ModelAnswerer {
+    /// An answerer behind a model.
+    #[must_use]
+    pub fn new(model: Arc<dyn LanguageModel>, prompts: Arc<Prompts>) -> Self {
+        Self { model, prompts }
+    }
+
+    fn request(&self, ask: &Ask<'_>) -> Result<Request, ModelError> {
+        let image = ask.view.image.clone().ok_or_else(|| ModelError::NothingToSee {
+            mind: self.model.name().to_owned(),
+            needs: "a picture",
+            hint: "use a platform or data folder with pictures, or `--see labels` where there are labels",
+        })?;
+        let text = self.prompts.answer(ask.question, ask.history)?;
+        let message = Message { role: Role::User, text, image: Some(image) };
+        Ok(Request { messages: vec![message], sampling: SAMPLING, replicate: 0 })
+    }
+}
+
+impl Answerer for ModelAnswerer {
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
+        let requests: Vec<Result<Request, ModelError>> = asks.iter().map(|ask| self.request(ask)).collect();
+        let good: Vec<Request> = requests.iter().filter_map(|request| request.as_ref().ok().cloned()).collect();
+        let mut replies = self.model.complete(&good).into_iter();
+        let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it left a question out".to_owned() };
+        let answer = |request: Result<Request, ModelError>| {
+            request?;
+            replies.next().unwrap_or_else(|| Err(lost())).map(text)
+        };
+        requests.into_iter().map(answer).collect()
+    }
+}
+
+fn text(reply: Reply) -> Answer {
+    match reply.finish {
+        Finish::Stop => reply.text,
+        Finish::Length => whole_sentences(&reply.text).to_owned(),
+    }
+}

@@ -1,0 +1,104 @@
+//! A language model that sums dialogues up, held to what was said.
+
+use super::{
+    PERCEPTION_SEED,
+    clean::{plain, whole_sentences},
+    say,
+};
+use crate::{
+    dialogue::{RulesSummariser, Summariser, caption_faults},
+    lexicon::agree,
+    prompts::Prompts,
+    text::word_count,
+};
+use std::sync::Arc;
+use wayword_core::{Caption, Exchange, LanguageModel, Message, ModelError, Sampling, Sighting, Witness};
+
+/// Has a language model sum up. A caption that names what was denied, or what nobody named, is asked for once more with the
+/// reason; if it still does, rules sum up, and the caption says so.
+#[derive(Clone)]
+pub struct ModelSummariser {
+    model: Arc<dyn LanguageModel>,
+    prompts: Arc<Prompts>,
+}
+
+/// As ChatCaptioner's, with room for the whole of two or three sentences.
+const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
+/// How often a caption is asked for.
+const ATTEMPTS: usize = 2;
+
+impl ModelSummariser {
+    /// A summariser behind a model.
+    #[must_use]
+    pub fn new(model: Arc<dyn LanguageModel>, prompts: Arc<Prompts>) -> Self {
+        Self { model, prompts }
+    }
+
+    /// Asks until `faults` finds none. `Err(reasons)` where every attempt had some.
+    fn attempt(
+        &self,
+        prompt: impl Fn(&[String]) -> Result<String, ModelError>,
+        faults: impl Fn(&str) -> Vec<String>,
+    ) -> Result<Result<String, Vec<String>>, ModelError> {
+        let mut complaints = Vec::new();
+        for _ in 0..ATTEMPTS {
+            let reply = say(self.model.as_ref(), Message::user(prompt(&complaints)?), SAMPLING)?;
+            let text = plain(whole_sentences(&reply.text), &["caption", "summary"]);
+            let found = if text.is_empty() { vec!["it was empty".to_owned()] } else { faults(&text) };
+            if found.is_empty() {
+                return Ok(Ok(text));
+            }
+            complaints = found;
+        }
+        Ok(Err(complaints))
+    }
+}
+
+impl Summariser for ModelSummariser {
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError> {
+        let by_rules = RulesSummariser.sum_up(transcript, answerer)?;
+        let prompt = |complaints: &[String]| Ok(self.prompts.summary(transcript, &by_rules.sightings, complaints)?);
+        let faults = |text: &str| faults(text, &by_rules.sightings);
+        Ok(match self.attempt(prompt, faults)? {
+            Ok(text) => Caption { text, ..by_rules },
+            Err(reasons) => Caption { by: Some(format!("rules, because {}", reasons.join("; "))), ..by_rules },
+        })
+    }
+
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<String, ModelError> {
+        let texts: Vec<(&str, &str)> =
+            captions.iter().map(|(direction, caption)| (*direction, caption.text.as_str())).collect();
+        let prompt = |complaints: &[String]| Ok(self.prompts.condense(&texts, fewer_words_than, complaints)?);
+        let told = together(captions);
+        let faults = |text: &str| {
+            let mut faults = faults(text, &told);
+            let words = word_count(text);
+            if words >= fewer_words_than {
+                faults.push(format!("it has {words} words where fewer than {fewer_words_than} were asked for"));
+            }
+            faults
+        };
+        match self.attempt(prompt, faults)? {
+            Ok(text) => Ok(text),
+            Err(_) => RulesSummariser.condense(captions, fewer_words_than),
+        }
+    }
+}
+
+fn faults(text: &str, told: &[Sighting]) -> Vec<String> {
+    caption_faults(text, told).iter().map(ToString::to_string).collect()
+}
+
+/// What was told in any direction: a thing that one view lacks may be in the next.
+fn together(captions: &[(&str, &Caption)]) -> Vec<Sighting> {
+    let all: Vec<&Sighting> = captions.iter().flat_map(|(_, caption)| &caption.sightings).collect();
+    let seen = |name: &str| all.iter().any(|other| other.witness == Witness::Seen && agree(&other.name, name));
+    all.iter()
+        .filter(|sighting| sighting.witness == Witness::Seen || !seen(&sighting.name))
+        .map(|sighting| (*sighting).clone())
+        .collect()
+}

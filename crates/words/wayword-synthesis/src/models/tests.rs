@@ -1,0 +1,110 @@
+use super::*;
+use crate::{
+    dialogue::{Asker, OPENING, Summariser},
+    prompts::Prompts,
+};
+use std::sync::{Arc, Mutex};
+use wayword_core::{Answerer, Ask, Exchange, Finish, Heading, Image, Pose, View};
+
+/// A model that says what it was told to say, in order, and keeps what it heard.
+pub(crate) struct Scripted {
+    replies: Mutex<Vec<Result<Reply, ModelError>>>,
+    pub(crate) heard: Mutex<Vec<Request>>,
+}
+
+impl Scripted {
+    pub(crate) fn new(replies: &[&str]) -> Arc<Self> {
+        let said = |text: &&str| Ok(Reply { text: (*text).to_owned(), finish: Finish::Stop });
+        Self::with(replies.iter().map(said).collect())
+    }
+
+    fn with(mut replies: Vec<Result<Reply, ModelError>>) -> Arc<Self> {
+        replies.reverse();
+        Arc::new(Self { replies: Mutex::new(replies), heard: Mutex::default() })
+    }
+
+    fn prompts(&self) -> Vec<String> {
+        self.heard.lock().unwrap().iter().map(|request| request.messages[0].text.clone()).collect()
+    }
+}
+
+impl LanguageModel for Scripted {
+    fn name(&self) -> &str {
+        "test/scripted"
+    }
+
+    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
+        self.heard.lock().unwrap().extend_from_slice(requests);
+        requests.iter().map(|_| self.replies.lock().unwrap().pop().expect("it was asked too often")).collect()
+    }
+}
+
+fn prompts() -> Arc<Prompts> {
+    Arc::new(Prompts::new(&[]).unwrap())
+}
+
+fn transcript() -> Vec<Exchange> {
+    vec![
+        Exchange::new(OPENING, "There is a bed in the middle and a mirror on the left."),
+        Exchange::new("Which room is this?", "It is a bedroom."),
+        Exchange::new("Is there a mirror?", "No, there is no mirror."),
+    ]
+}
+
+#[test]
+fn a_summary_that_names_what_was_denied_is_written_again_with_the_reason() {
+    let model = Scripted::new(&["A bedroom with a bed and a mirror.", "Summary: A bedroom with a bed."]);
+    let caption = ModelSummariser::new(model.clone(), prompts()).sum_up(&transcript(), "test").unwrap();
+    assert_eq!((caption.text.as_str(), caption.by), ("A bedroom with a bed.", None));
+    let prompts = model.prompts();
+    assert!(!prompts[0].contains("refused") && prompts[1].contains("refused: ") && prompts[1].contains("mirror"));
+}
+
+#[test]
+fn a_summary_that_stays_wrong_is_left_to_rules_and_says_so() {
+    let model = Scripted::new(&["A bed and a mirror.", "A bed, a mirror and a piano."]);
+    let caption = ModelSummariser::new(model, prompts()).sum_up(&transcript(), "test").unwrap();
+    assert_eq!(caption.text, "A bedroom with a bed in the middle.");
+    let by = caption.by.unwrap();
+    assert!(by.starts_with("rules, because") && by.contains("piano"), "{by}");
+}
+
+#[test]
+fn a_condensed_description_is_short_and_holds_what_any_direction_shows() {
+    let long = "There is a bed and there is a bed and there is a bed and there is a bed and there is a bed.";
+    let model = Scripted::new(&[long, "A bedroom with a bed."]);
+    let summariser = ModelSummariser::new(model.clone(), prompts());
+    let caption = crate::dialogue::RulesSummariser.sum_up(&transcript(), "test").unwrap();
+    assert_eq!(summariser.condense(&[("ahead", &caption)], 20).unwrap(), "A bedroom with a bed.");
+    assert!(model.prompts()[1].contains("fewer than 20"));
+}
+
+#[test]
+fn a_model_asks_with_the_dialogue_so_far() {
+    let model = Scripted::new(&["What colour is the bed?"]);
+    let question = ModelAsker::new(model.clone(), prompts()).next_question(&transcript()).unwrap().unwrap();
+    assert_eq!(question, "What colour is the bed?");
+    assert!(model.prompts()[0].contains("Is there a mirror?"));
+}
+
+#[test]
+fn a_model_is_shown_the_picture_and_one_that_was_cut_off_keeps_whole_sentences() {
+    let cut = Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length };
+    let model = Scripted::with(vec![Ok(cut)]);
+    let eye = ModelAnswerer::new(model.clone(), prompts());
+    let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
+    let view = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, Some(image.clone()), None);
+    let blind = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, None, None);
+    let ask = |view| Ask { view, question: OPENING, history: &[] };
+    let answers = eye.answer(&[ask(&blind), ask(&view)]);
+    assert!(matches!(&answers[0], Err(ModelError::NothingToSee { .. })));
+    assert_eq!(answers[1].as_deref(), Ok("A bed."));
+    assert_eq!(model.heard.lock().unwrap()[0].messages[0].image, Some(image));
+}
+
+#[test]
+fn what_a_model_does_not_do_is_told() {
+    let stop = ModelError::Stopped { reason: "the budget is spent".into(), hint: "raise --max-usd".into() };
+    let model = Scripted::with(vec![Err(stop.clone())]);
+    assert_eq!(ModelAsker::new(model, prompts()).next_question(&[]), Err(stop));
+}

@@ -1,0 +1,79 @@
+//! How well captions fit the labels of their views: objects named rightly, ghosts, and objects missed.
+//!
+//! The paper claims that its dialogue removes ghosts and does not measure it; this does, for any answerer.
+
+use crate::{
+    dialogue::{OPENING, sightings},
+    evidence::SeenThing,
+    lexicon::{Class, agree, thing},
+};
+use serde::Serialize;
+use wayword_core::{Exchange, Witness};
+
+/// What a caption got right.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Score {
+    /// Different objects that it names and labels can judge.
+    pub named: usize,
+    /// Those of them that no label of the view agrees with.
+    pub ghosts: Vec<String>,
+    /// Different names among the labels of the view.
+    pub labelled: usize,
+    /// Those of them that it names.
+    pub found: usize,
+}
+
+/// Holds a caption's words against the labels of its view.
+///
+/// Walls, floors, doors and the like are left out on both sides: most label sets leave them out, so that they can be neither
+/// found nor ghosts.
+#[must_use]
+pub fn score(caption: &str, labels: &[SeenThing]) -> Score {
+    let judged = |name: &str| !matches!(thing(name).map(|thing| thing.class), Some(Class::Fabric | Class::Door));
+    let told = sightings(&[Exchange::new(OPENING, caption)], "");
+    let seen = told.iter().filter(|sighting| sighting.witness == Witness::Seen);
+    let named = distinct(seen.map(|sighting| sighting.name.as_str()).filter(|name| judged(name)));
+    let labelled = distinct(labels.iter().map(|label| label.name.as_str()).filter(|name| judged(name)));
+    let in_list = |list: &[&str], name: &str| list.iter().any(|other| agree(other, name));
+    let ghosts = named.iter().filter(|name| !in_list(&labelled, name)).map(|name| (*name).to_owned());
+    Score {
+        named: named.len(),
+        ghosts: ghosts.collect(),
+        labelled: labelled.len(),
+        found: labelled.iter().filter(|name| in_list(&named, name)).count(),
+    }
+}
+
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut kept: Vec<&str> = Vec::new();
+    for name in names {
+        if !kept.iter().any(|before| agree(before, name)) {
+            kept.push(name);
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(names: &[&str]) -> Vec<SeenThing> {
+        let label = |name: &&str| SeenThing { name: (*name).to_owned(), object: None, colour: None, turn_rad: None };
+        names.iter().map(label).collect()
+    }
+
+    #[test]
+    fn ghosts_and_misses_are_counted_by_kind() {
+        let score =
+            score("A bedroom with a bed, two lamps and a mirror.", &labels(&["bed", "lamp", "lamp", "wardrobe"]));
+        assert_eq!((score.named, score.labelled, score.found), (3, 3, 2));
+        assert_eq!(score.ghosts, ["mirror"]);
+    }
+
+    #[test]
+    fn what_a_caption_says_is_absent_is_no_ghost_and_walls_are_not_judged() {
+        let score = score("There is a bed and no mirror. The wall is white.", &labels(&["bed"]));
+        assert_eq!((score.named, score.ghosts.len(), score.found), (1, 0, 1));
+    }
+}

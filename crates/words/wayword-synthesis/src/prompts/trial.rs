@@ -1,0 +1,50 @@
+//! Fills every prompt once when they are loaded: a template that asks for what it is not given is told before a run begins,
+//! not at its first frame.
+
+use super::{PromptError, Prompts};
+use crate::{
+    style::{Profile, built_in},
+    walk::{Observation, Walk},
+    writer::{Brief, Complaint},
+};
+use wayword_core::{
+    Check, DVec3, Exchange, Finding, ObjectId, Path, SceneId, Sighting, Target, Verdict, Witness, path::Stop,
+};
+
+pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
+    let transcript = [Exchange::new("Is there a bed?", "No.")];
+    let denied = Sighting {
+        name: "bed".to_owned(),
+        witness: Witness::Denied,
+        place: None,
+        colour: None,
+        several: false,
+        by: String::new(),
+    };
+    let complaints = ["it names a bed".to_owned()];
+    prompts.question(&transcript)?;
+    prompts.answer("Is there a bed?", &transcript)?;
+    prompts.summary(&transcript, &[denied], &complaints)?;
+    prompts.condense(&[("ahead", "A hallway.")], 20, &complaints)?;
+    // Names that every build holds; without them there is nothing to try the template on.
+    let (Ok(style), Some(walk)) = (built_in("r2r"), walk()) else { return Ok(()) };
+    let finding = Finding { check: Check::Form, verdict: Verdict::Fail, reason: "too long".to_owned(), span: None };
+    let complaints = [Complaint { text: "Go.".to_owned(), findings: vec![finding] }];
+    let profile = Profile::measure(&style.references);
+    prompts.write(&Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &complaints })?;
+    Ok(())
+}
+
+fn walk() -> Option<Walk> {
+    let stop = |y: f64| Stop { position: DVec3::new(0.0, y, 1.5), viewpoint: None, level: None };
+    let target =
+        Target { object: ObjectId::new("1").ok()?, name: "lamp".to_owned(), told_by: Vec::new(), has_namesake: false };
+    let path = Path {
+        id: "trial".to_owned(),
+        scene: SceneId::new("trial").ok()?,
+        frames: Path::frames_along(vec![stop(0.0), stop(2.0)], None),
+        target: Some(target),
+    };
+    let seen = |summary: &str| Observation { looks: Vec::new(), summary: summary.to_owned() };
+    Some(Walk::new(path, vec![seen("A hallway."), seen("A bedroom with a lamp.")]))
+}

@@ -1,0 +1,129 @@
+use super::*;
+use crate::{
+    dialogue::{RulesAsker, RulesSummariser},
+    minds::Labels,
+    style::built_in,
+    walk::{Look, Observation},
+    writer::RulesWriter,
+};
+use std::sync::Mutex;
+use wayword_core::{Caption, DVec3, Gaze, Path, SceneId, Sighting, Where, Witness, path::Stop};
+
+/// A writer that says what it was told to say, in order, and counts the complaints that it heard.
+struct Scripted {
+    texts: Mutex<Vec<Result<String, WriteError>>>,
+    complaints: Mutex<Vec<usize>>,
+}
+
+impl Scripted {
+    fn new(mut texts: Vec<Result<String, WriteError>>) -> Self {
+        texts.reverse();
+        Self { texts: Mutex::new(texts), complaints: Mutex::default() }
+    }
+}
+
+impl Writer for Scripted {
+    fn name(&self) -> &str {
+        "test/scripted"
+    }
+
+    fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
+        self.complaints.lock().unwrap().push(brief.complaints.len());
+        self.texts.lock().unwrap().pop().expect("it was asked too often")
+    }
+}
+
+fn walk() -> Walk {
+    let stop = |x: f64, y: f64| Stop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: None };
+    let path = Path {
+        id: "p".into(),
+        scene: SceneId::new("s").unwrap(),
+        frames: Path::frames_along(vec![stop(0.0, 0.0), stop(0.0, 3.0), stop(3.0, 3.0)], None),
+        target: None,
+    };
+    let seen = |name: &str| Sighting {
+        name: name.into(),
+        witness: Witness::Seen,
+        place: Some(Where::Middle),
+        colour: None,
+        several: false,
+        by: "test".into(),
+    };
+    let observations = path.frames.iter().zip(["sofa", "lamp", "sink"]).map(|(frame, name)| {
+        let caption = Caption { text: format!("A {name}."), sightings: vec![seen(name)], ..Caption::default() };
+        let look = Look { gaze: Gaze::quarter(frame.pose.heading), caption };
+        Observation { summary: look.caption.text.clone(), looks: vec![look] }
+    });
+    let observations = observations.collect();
+    Walk::new(path, observations)
+}
+
+fn outcome(
+    texts: Vec<Result<String, WriteError>>,
+    finisher: bool,
+    repairs: u32,
+) -> (Result<Outcome, ModelError>, Vec<usize>) {
+    let (walk, style) = (walk(), built_in("r2r").unwrap());
+    let evidence = walk.evidence().unwrap();
+    let profile = Profile::measure(&style.references);
+    let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed: 0, repairs };
+    let mode = Mode::Dialogue { questions: 9 };
+    let asker = RulesAsker::default();
+    let minds =
+        Minds { asker: &asker, answerer: &Labels, summariser: &RulesSummariser, mode, prompts_hash: Some("hash") };
+    let writer = Scripted::new(texts);
+    let finisher = finisher.then_some(&RulesWriter as &dyn Writer);
+    let outcome = write_and_repair(Writers { writer: &writer, finisher }, minds, order);
+    (outcome, writer.complaints.into_inner().unwrap())
+}
+
+fn said(text: &str) -> Result<String, WriteError> {
+    Ok(text.to_owned())
+}
+
+const GOOD: &str = "Walk past the sofa to the lamp and turn right. Stop at the sink.";
+const GHOST: &str = "Walk past the piano to the lamp and turn right. Stop at the sink.";
+
+#[test]
+fn a_text_with_a_ghost_goes_back_with_the_reason_until_it_is_right() {
+    let cut_off = Err(WriteError::Unusable { text: "Walk past".into(), reason: "it was cut off" });
+    let (outcome, complaints) = outcome(vec![said(GHOST), cut_off, said(GOOD)], true, 3);
+    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    assert_eq!((instruction.text.as_str(), instruction.provenance.repairs), (GOOD, 2));
+    assert_eq!(instruction.provenance.writer, "test/scripted");
+    assert_eq!(instruction.provenance.prompts_hash.as_deref(), Some("hash"));
+    assert_eq!(instruction.provenance.finished_for, None);
+    assert_eq!(complaints, [0, 1, 2]);
+}
+
+#[test]
+fn rules_finish_what_a_model_cannot_and_say_so() {
+    let (outcome, complaints) = outcome(vec![said(GHOST), said(GHOST)], true, 1);
+    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    assert!(!instruction.text.contains("piano"), "{}", instruction.text);
+    assert_eq!(instruction.provenance.writer, "rules");
+    assert_eq!(instruction.provenance.finished_for.as_deref(), Some("test/scripted"));
+    assert_eq!(complaints.len(), 2);
+}
+
+#[test]
+fn without_a_finisher_it_is_rejected_with_the_reason() {
+    let (outcome, _) = outcome(vec![said(GHOST)], false, 0);
+    let Outcome::Rejected { last, reason } = outcome.unwrap() else { panic!("it was accepted") };
+    assert!(reason.contains("piano") && last.unwrap().text == GHOST, "{reason}");
+}
+
+#[test]
+fn a_writer_that_says_nothing_is_rejected_with_that_reason() {
+    let empty = || Err(WriteError::Unusable { text: String::new(), reason: "it was empty" });
+    let (outcome, _) = outcome(vec![empty(), empty()], false, 1);
+    let Outcome::Rejected { last: None, reason } = outcome.unwrap() else { panic!("there is a text") };
+    assert!(reason.contains("it was empty"), "{reason}");
+}
+
+#[test]
+fn a_model_that_gives_nothing_ends_the_writing() {
+    let failed = ModelError::Failed { model: "test/scripted".into(), reason: "content filter".into() };
+    let (outcome, _) = outcome(vec![Err(failed.clone().into())], true, 3);
+    assert_eq!(outcome, Err(failed));
+}
