@@ -4,7 +4,7 @@ use std::time::Duration;
 use wayword_core::seed;
 
 /// Wait before the second attempt.
-const FIRST_S: f64 = 0.5;
+const FIRST_S: f64 = 0.3;
 
 /// Longest wait that was not asked for by the server.
 const LONGEST_S: f64 = 30.0;
@@ -36,7 +36,7 @@ mod tests {
     fn waits_double_and_are_bounded() {
         for attempt in 1..40 {
             let wait = backoff("key", attempt).as_secs_f64();
-            let whole = (0.5 * 2_f64.powi(attempt as i32 - 1)).min(30.0);
+            let whole = (0.3 * 2_f64.powi(attempt as i32 - 1)).min(30.0);
             assert!(wait > whole / 2.0 - 1e-9 && wait <= whole, "{attempt}: {wait}");
         }
     }

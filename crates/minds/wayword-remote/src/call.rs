@@ -116,10 +116,9 @@ impl Sending<'_> {
                 let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
                 return Err(Unanswered::Failed(format!("{} ({times})", retry.reason)));
             }
-            self.rest(match retry.after {
-                Some(asked) => after(asked, self.key, attempt),
-                None => backoff(self.key, attempt),
-            });
+            // A service that asks for too little is asked less and less often all the same.
+            let asked = retry.after.map_or(Duration::ZERO, |asked| after(asked, self.key, attempt));
+            self.rest(asked.max(backoff(self.key, attempt)));
         }
     }
 

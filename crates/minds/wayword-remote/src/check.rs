@@ -53,10 +53,10 @@ impl Finding {
 }
 
 impl Services {
-    /// Looks at everything that a model needs: its key, its service, its price; and asks it for a word, and for the colour of a
-    /// red square. Both are calls like any other: kept, counted and bounded.
+    /// Looks at everything that a model needs: its key, its service, its price; and asks it for a word and, where it is to
+    /// see, for the colour of a red square. Both are calls like any other: kept, counted and bounded.
     #[must_use]
-    pub fn check(&self, name: &str) -> Vec<Finding> {
+    pub fn check(&self, name: &str, is_to_see: bool) -> Vec<Finding> {
         let model = match self.model(name) {
             Ok(model) => model,
             Err(error) => return vec![Finding::error(&error.to_string())],
@@ -66,7 +66,7 @@ impl Services {
             return findings;
         }
         price(&model, &mut findings);
-        if speaks(&model, &mut findings) {
+        if speaks(&model, &mut findings) && is_to_see {
             sees(&model, &mut findings);
         }
         findings

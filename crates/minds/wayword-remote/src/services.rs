@@ -105,6 +105,7 @@ impl Services {
 
 impl fmt::Debug for Services {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Services").field("config", &self.config).finish_non_exhaustive()
+        // Settings are as a user typed them: a key may stand in the wrong place.
+        f.debug_struct("Services").field("providers", &self.names()).finish_non_exhaustive()
     }
 }

@@ -37,6 +37,12 @@ const PROBE_PER_S: f64 = 0.001;
 /// See [`PROBE_PER_S`], seconds.
 const CALM_S: f64 = 10.0;
 
+/// A pace beyond so many times what was let in was not what held requests back.
+const TRIED: f64 = 2.0;
+
+/// No service is asked more often than this, per second.
+const FASTEST_PER_S: f64 = 1e5;
+
 /// A learned pace.
 #[derive(Debug)]
 pub(super) struct Pace {
@@ -77,6 +83,7 @@ impl Pace {
         self.active_s += passed_s;
         if let Some(learned) = &mut self.learned {
             learned.grow(passed_s, self.active_s);
+            learned.per_s = learned.per_s.min(FASTEST_PER_S);
         }
     }
 
@@ -107,21 +114,30 @@ impl Pace {
 
     /// A request was refused as too much. `first` unless another one that was out at the same time has told it.
     pub(super) fn refused(&mut self, first: bool) {
-        let Some(let_in_per_s) = self.let_in_per_s().filter(|_| first) else { return };
+        let let_in_per_s = if first { self.let_in_per_s() } else { None };
+        let Some(let_in_per_s) = let_in_per_s else { return };
         let careful = let_in_per_s * CAUTION;
-        let (per_s, refused_per_s, confirmed) = match &self.learned {
+        // A pace that grew far beyond what was asked was never tried, and tells nothing.
+        let old = self.learned.as_ref().filter(|old| old.per_s < let_in_per_s * TRIED);
+        let (per_s, refused_per_s, confirmed) = match old {
             None => (careful, let_in_per_s, false),
             Some(old) => {
                 let soon = self.active_s - old.refused_s < SOON_S;
                 let close = (0.87..1.15).contains(&(old.per_s / old.refused_per_s));
                 // A single refusal among many that were let in is not a new limit, so the step down is bounded.
                 let least = old.per_s * if soon || !old.confirmed { 0.6 } else { 0.8 };
-                let refused_per_s = if close && !soon { old.per_s.max(old.refused_per_s * 0.98) } else { old.per_s };
+                // The limit lies between what was let in and what was refused; right after a refusal, what was let in is less
+                // than could be.
+                let refused_per_s = if close && !soon {
+                    old.per_s.midpoint(let_in_per_s.clamp(old.per_s * 0.9, old.per_s))
+                } else {
+                    old.per_s
+                };
                 (careful.clamp(least, old.per_s * 0.98), refused_per_s, close)
             }
         };
         let refused_s = self.active_s;
-        self.learned = Some(Learned { per_s: per_s.max(0.05), refused_per_s, refused_s, confirmed });
+        self.learned = Some(Learned { per_s: per_s.clamp(0.05, FASTEST_PER_S), refused_per_s, refused_s, confirmed });
     }
 
     /// The rate of what was let in lately, where there was enough of it.

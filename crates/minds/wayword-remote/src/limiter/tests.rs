@@ -183,6 +183,33 @@ fn a_storm_at_an_unknown_rate_brings_most_of_what_is_possible() {
 }
 
 #[test]
+fn a_pace_that_nobody_tried_is_forgotten() {
+    let start = Instant::now();
+    let mut state = State::new(rules(Concurrency::Fixed(64)), start);
+    let mut now = start;
+    // Ten a second for so long, and then one that is refused.
+    let mut ten_a_second = |state: &mut State, seconds: u64| {
+        for _ in 0..10 * seconds {
+            now += ms(100);
+            assert_eq!(state.turn(now), Turn::Now);
+            let ticket = state.leave(now, 0);
+            state.back(ticket, now + ms(20), Outcome::Answered { tokens: 1 });
+        }
+        now += ms(100);
+        assert_eq!(state.turn(now), Turn::Now);
+        let ticket = state.leave(now, 0);
+        state.back(ticket, now + ms(20), Outcome::Burdened { load: Load::Over, after: None });
+        now
+    };
+    ten_a_second(&mut state, 60);
+    // In a day the learned pace has grown without bounds; the next refusal brings it back at once.
+    let refused_at = ten_a_second(&mut state, 86_400);
+    state.turn(refused_at + ms(100));
+    state.leave(refused_at + ms(100), 0);
+    assert!(matches!(state.turn(refused_at + ms(100)), Turn::In(wait) if wait > ms(60)));
+}
+
+#[test]
 fn faults_alone_hold_nothing_back() {
     let storm = Storm { per_s: 1e6, burst: 1e6, retry_after: ms(0), faults: 0.3, latency: ms(200) };
     let (goodput, _) = goodput(&storm, Concurrency::Adaptive { most: 64 }, 60);

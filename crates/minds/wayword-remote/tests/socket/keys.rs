@@ -51,6 +51,20 @@ fn with_a_key_answers_are_scrubbed() {
 }
 
 #[test]
+fn a_key_in_the_wrong_place_is_not_repeated() {
+    for config in [
+        Config { key_env: Some(KEY.to_owned()), ..Config::default() },
+        Config { base_url: Some(format!("https://me:{KEY}@host/v1")), ..Config::default() },
+        Config { base_url: Some(format!("https://host/v1?key={KEY}")), ..Config::default() },
+    ] {
+        let services = Services::new(config, run()).unwrap();
+        let error = services.model("openai/m").unwrap_err();
+        let shown = format!("{services:?} {error} {error:?} {:?}", services.check("openai/m", true));
+        assert!(!shown.contains(KEY), "{shown}");
+    }
+}
+
+#[test]
 fn a_missing_key_stops_before_anything_is_sent() {
     let server = Server::start(|_, _, stream| reply(stream, 200, "", &answer("fine")));
     let config = Config {
@@ -84,8 +98,10 @@ fn says_the_key_back(dialect: &str, header: &str, folder: &Path) {
     let model = services.model("mine/m").unwrap();
     let (failed, stopped) = (asked(&model, "One?").unwrap_err(), asked(&model, "Two?").unwrap_err());
     assert!(!failed.ends_run() && stopped.ends_run(), "{dialect}: {failed:?} {stopped:?}");
-    let shown =
-        format!("{failed} {failed:?} {stopped} {stopped:?} {services:?} {model:?} {:?}", services.check("mine/m"));
+    let shown = format!(
+        "{failed} {failed:?} {stopped} {stopped:?} {services:?} {model:?} {:?}",
+        services.check("mine/m", true)
+    );
     assert!(shown.contains("***") && !shown.contains(KEY), "{shown}");
     let requests = server.requests();
     assert!(requests.iter().all(|request| request.to_lowercase().contains(&format!("{header}{KEY}"))), "{requests:?}");

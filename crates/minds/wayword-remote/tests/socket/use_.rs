@@ -7,7 +7,8 @@ use crate::{
 };
 use std::sync::Arc;
 use wayword_core::{Finish, Image, LanguageModel, Message, Role};
-use wayword_remote::{Config, Level, Services};
+use wayword_ledger::{Ledger, Limits};
+use wayword_remote::{Config, Level, Prices, Services};
 
 /// Says the question back.
 fn echo() -> Server {
@@ -46,6 +47,61 @@ fn a_call_is_made_once() {
     anew.replicate = 1;
     assert!(model.complete(&[anew])[0].is_ok());
     assert_eq!(server.requests().len(), 2);
+}
+
+#[test]
+fn a_recording_answers_without_any_service() {
+    let server = echo();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("calls.jsonl");
+    let recorded = run();
+    assert!(asked(&model(&server, "", &recorded), "Hello?").is_ok());
+    recorded.record(&file).unwrap();
+    let replayed = Ledger::replay(&file).unwrap().run("replay", Limits::default()).unwrap();
+    // A key that is not there is not missed.
+    let model = model(&server, "key_env = \"WAYWORD_NO_SUCH_KEY\"", &replayed);
+    assert_eq!(asked(&model, "Hello?").unwrap().text, "Hello?");
+    let error = asked(&model, "Something else?").unwrap_err();
+    assert!(!error.ends_run() && error.to_string().contains("does not hold"), "{error}");
+    assert_eq!(server.requests().len(), 1);
+}
+
+#[test]
+fn a_spent_bound_stops_and_says_how_to_go_on() {
+    let server = echo();
+    let limits = Limits { max_calls: Some(2), ..Limits::default() };
+    let run = Ledger::in_memory().unwrap().run("test", limits).unwrap();
+    let model = model(&server, "", &run);
+    assert!(asked(&model, "One?").is_ok() && asked(&model, "Two?").is_ok());
+    let error = asked(&model, "Three?").unwrap_err();
+    assert!(error.ends_run() && error.to_string().contains("larger --max-calls"), "{error}");
+    assert!(asked(&model, "One?").is_ok());
+    assert_eq!(server.requests().len(), 2);
+}
+
+#[test]
+fn what_a_call_costs_is_reckoned_and_bounded() {
+    let server = echo();
+    let row = "\"server/m\" = { usd_per_million_in = 1e5, usd_per_million_out = 1e5, as_of = \"2026-01-01\" }";
+    let ledger = Ledger::in_memory().unwrap();
+    let replies = |max_usd: f64| {
+        let run = ledger.run("test", Limits { max_usd: Some(max_usd), ..Limits::default() }).unwrap();
+        let config = Config {
+            base_url: Some(server.base_url()),
+            prices: Prices::read(row).unwrap(),
+            needs_prices: true,
+            ..Config::default()
+        };
+        let reply = asked(&Services::new(config, run.clone()).unwrap().model("server/m").unwrap(), "Hello?");
+        (reply, run.totals().usd)
+    };
+    // At most 20 tokens come out, at 10 cents each.
+    let (refused, _) = replies(2.0);
+    assert!(refused.unwrap_err().to_string().contains("larger --max-usd"));
+    assert!(server.requests().is_empty());
+    // Ten tokens in and two out were counted by the service.
+    let (answered, usd) = replies(20.0);
+    assert!(answered.is_ok() && (usd - 1.2).abs() < 1e-9, "{usd}");
 }
 
 #[test]
@@ -104,7 +160,7 @@ fn settings_that_make_no_sense_are_refused() {
 /// What `check` finds, one line each.
 fn findings(server: &Server) -> Vec<(Level, String)> {
     services(server, "attempts = 1", &run())
-        .check("server/m")
+        .check("server/m", true)
         .into_iter()
         .map(|finding| (finding.level, finding.what))
         .collect()
@@ -121,6 +177,10 @@ fn a_model_that_works_is_found_to() {
     use Level::{Ok, Warning};
     assert_eq!(levels, [Ok, Ok, Ok, Warning, Ok, Ok], "{found:?}");
     assert!(found[3].1.contains("costs") && found[5].1.ends_with("sees"), "{found:?}");
+    // Who only writes is shown nothing.
+    let before = server.requests().len();
+    let found = services(&server, "attempts = 1", &run()).check("server/m", false);
+    assert_eq!((found.len(), server.requests().len()), (5, before + 2));
 }
 
 #[test]
