@@ -1,11 +1,13 @@
 //! A small made-up building in the file formats of Matterport3D, REVERIE and R2R, for tests: two storeys with stairs, nine
 //! rooms, 14 viewpoints, 42 objects (some of one name), ten paths with instructions. Nothing of it is taken from a dataset.
+//! And [`provider`]: models behind HTTP that answer by script, with every fault that services have.
 
 mod boxes;
 mod episodes;
 mod house_file;
 mod pictures;
 mod plan;
+pub mod provider;
 
 use serde_json::{Value, json};
 use std::{fs, io, path::Path};

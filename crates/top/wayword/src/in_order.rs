@@ -10,6 +10,17 @@ use std::{
 /// hold up the rest, few enough that finished ones do not pile up.
 const AHEAD: usize = 4;
 
+/// Calls what it holds when it is dropped, in a panic too.
+struct AtTheEnd<'a>(&'a dyn Fn());
+
+impl Drop for AtTheEnd<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            (self.0)();
+        }
+    }
+}
+
 /// Where the work stands.
 struct Progress {
     next: usize,
@@ -48,11 +59,14 @@ pub(crate) fn in_order<I: Sync, R: Send, E>(
         change(&mut progress.lock().unwrap_or_else(PoisonError::into_inner));
         moved.notify_all();
     };
+    let stop = || tell(&|progress| progress.stopped = true);
     thread::scope(|scope| {
         let (sender, results) = mpsc::channel();
         for _ in 0..workers {
-            let (sender, take, make) = (sender.clone(), &take, &make);
+            let (sender, take, make, stop) = (sender.clone(), &take, &make, &stop);
             scope.spawn(move || {
+                // A worker that panics would otherwise leave the others waiting for its item for ever.
+                let _last = AtTheEnd(stop);
                 while let Some(at) = take() {
                     // Nobody listens once `keep` has had enough.
                     let _ = sender.send((at, make(&items[at])));
@@ -67,7 +81,7 @@ pub(crate) fn in_order<I: Sync, R: Send, E>(
             while let Some(result) = waiting.remove(&kept) {
                 let goes_on = keep(&items[kept], result);
                 if !matches!(goes_on, Ok(true)) {
-                    tell(&|progress| progress.stopped = true);
+                    stop();
                     return goes_on.map(drop);
                 }
                 kept += 1;
@@ -100,6 +114,17 @@ mod tests {
         };
         in_order(&items, 16, make, keep).unwrap();
         assert_eq!(kept, items.iter().map(|item| (*item, item * 2)).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_panic_ends_the_work_instead_of_hanging_it() {
+        let items: Vec<usize> = (0..1000).collect();
+        let make = |item: &usize| {
+            assert_ne!(*item, 3, "this one panics on purpose");
+            *item
+        };
+        let work = || in_order(&items, 2, make, |_, _| Ok::<bool, ()>(true));
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).is_err());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What a run works through: paths from episodes, or random ones.
 
 use crate::{error::Error, settings::Settings};
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, seed};
 use wayword_formats::Episode;
 use wayword_platforms::path_of;
@@ -15,8 +15,10 @@ pub enum Item {
     Random {
         /// Its name.
         id: String,
-        /// The scene that it is to lie in, and those that take its place where that one holds no such path.
-        scenes: Vec<SceneId>,
+        /// All scenes of the run.
+        scenes: Arc<[SceneId]>,
+        /// The one that it is to lie in; those after it take its place where it holds no such path.
+        first: usize,
         /// Its own seed.
         seed: u64,
     },
@@ -63,11 +65,12 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
     if scenes.is_empty() {
         return Err(Error::usage("the platform offers no scene", "check --data"));
     }
-    // Scene after scene: a world keeps the last few of them ready.
-    let first = |number: usize| number * scenes.len() / settings.paths.max(1);
+    let scenes: Arc<[SceneId]> = scenes.into();
     let item = |number: usize| Item::Random {
         id: format!("random-{}-{number}", settings.seed),
-        scenes: (0..scenes.len()).map(|off| scenes[(first(number) + off) % scenes.len()].clone()).collect(),
+        scenes: Arc::clone(&scenes),
+        // Scene after scene: a world keeps the last few of them ready.
+        first: number * scenes.len() / settings.paths.max(1),
         seed: seed::derive(settings.seed, &["path", &number.to_string()]),
     };
     Ok((0..settings.paths).map(item).collect())
@@ -97,14 +100,14 @@ impl Item {
                 episode.start_heading,
                 episode.target_object.as_ref(),
             ),
-            Self::Random { id, scenes, seed } => {
+            Self::Random { id, scenes, first: start, seed } => {
                 let sample = |scene: &SceneId| platform.sample_path(scene, &settings.request, *seed);
-                let mut sampled = scenes.iter().map(sample);
+                let mut sampled = (0..scenes.len()).map(|off| sample(&scenes[(start + off) % scenes.len()]));
                 let fits = |path: &Result<Path, PlatformError>| !matches!(path, Err(PlatformError::NoSuchPath { .. }));
                 let first = sampled.next();
                 let path = match first.filter(fits).or_else(|| sampled.find(fits)) {
                     Some(path) => path?,
-                    None => sample(&scenes[0])?,
+                    None => sample(&scenes[*start])?,
                 };
                 Ok(Path { id: id.clone(), ..path })
             }

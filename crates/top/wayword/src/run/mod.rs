@@ -31,7 +31,6 @@ pub struct RunFolder {
     pub rejected: Journal,
     /// Items that failed because a model gave nothing. It begins empty with each command, which tries them again.
     pub errors: Journal,
-    id: String,
     /// Held for as long as the folder is worked in.
     _lock: File,
 }
@@ -72,16 +71,24 @@ impl RunFolder {
             instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
             rejected: Journal::open(&folder.join(file::REJECTED), Rejected::key_of)?,
             errors: Journal::begin(&folder.join(file::ERRORS), Rejected::key_of)?,
-            id: keep_id(folder)?,
             folder: folder.to_owned(),
             _lock: lock,
         })
     }
 
-    /// The name under which the ledger keeps what the run has spent; no two runs share one.
-    #[must_use]
-    pub fn id(&self) -> &str {
-        &self.id
+    /// The name under which the ledger keeps what the run has spent: made when it is first asked for, kept in the folder. A new
+    /// run in the place of a deleted one has spent nothing.
+    ///
+    /// # Errors
+    /// When it cannot be read or written.
+    pub fn id(&self) -> Result<String, Error> {
+        let path = self.folder.join(file::ID);
+        if path.exists() {
+            return Ok(text_file::read(&path, "read the run's name")?.trim().to_owned());
+        }
+        let id = fresh_id("run");
+        fs::write(&path, &id).map_err(Error::io(&path, "write"))?;
+        Ok(id)
     }
 
     /// Where pictures of frames go.
@@ -121,17 +128,6 @@ fn lock(folder: &Path) -> Result<File, Error> {
         Err(TryLockError::WouldBlock) => Err(Error::Busy(folder.to_owned())),
         Err(TryLockError::Error(source)) => Err(Error::Io { path, doing: "lock", source }),
     }
-}
-
-/// The run's own name: made with the folder, kept in it. A new run in the place of a deleted one has spent nothing.
-fn keep_id(folder: &Path) -> Result<String, Error> {
-    let path = folder.join(file::ID);
-    if path.exists() {
-        return Ok(text_file::read(&path, "read the run's name")?.trim().to_owned());
-    }
-    let id = fresh_id("run");
-    fs::write(&path, &id).map_err(Error::io(&path, "write"))?;
-    Ok(id)
 }
 
 /// A name that no other process gives: kind, time and process.

@@ -3,11 +3,11 @@
 use crate::{
     calls::Spent,
     error::{Error, Exit},
-    run::{RunFolder, file},
+    run::{RunFolder, file, lines},
 };
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::{fmt, path::Path};
-use wayword_core::{ModelError, Verdict};
+use wayword_core::{ModelError, Provenance, Verdict};
 
 /// What a run came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -53,30 +53,43 @@ pub(super) fn summary(
     spent: Option<Spent>,
     stopped: Option<ModelError>,
 ) -> Result<Summary, Error> {
-    let records = wayword_formats::jsonl::read(&folder.join(file::INSTRUCTIONS))?;
-    let count = |verdict| records.iter().filter(|record| record.instruction.verdict == verdict).count();
-    let minds = records.first().map_or_else(String::new, |record| {
-        let provenance = &record.instruction.provenance;
-        format!(
-            "{} asked, {} answered, {} summed up, {} wrote, checked against {}",
-            provenance.asker,
-            provenance.answerer,
-            provenance.summariser,
-            provenance.finished_for.as_ref().unwrap_or(&provenance.writer),
-            provenance.checked_against
-        )
-    });
+    let (mut passed, mut unverified, mut minds) = (0, 0, None);
+    lines::each(&folder.join(file::INSTRUCTIONS), |line| {
+        let Told { verdict, provenance } = line.parse()?;
+        passed += usize::from(verdict == Verdict::Pass);
+        unverified += usize::from(verdict == Verdict::Unverified);
+        minds.get_or_insert_with(|| told(&provenance));
+        Ok(())
+    })?;
     Ok(Summary {
         run: folder.display().to_string(),
         items,
-        passed: count(Verdict::Pass),
-        unverified: count(Verdict::Unverified),
+        passed,
+        unverified,
         rejected: run.rejected.len(),
         errors: run.errors.len(),
-        minds,
+        minds: minds.unwrap_or_default(),
         spent,
         stopped: stopped.map(|reason| reason.to_string()),
     })
+}
+
+/// The fields of an instruction's line that are counted and told.
+#[derive(Deserialize)]
+struct Told {
+    verdict: Verdict,
+    provenance: Provenance,
+}
+
+fn told(provenance: &Provenance) -> String {
+    format!(
+        "{} asked, {} answered, {} summed up, {} wrote, checked against {}",
+        provenance.asker,
+        provenance.answerer,
+        provenance.summariser,
+        provenance.finished_for.as_ref().unwrap_or(&provenance.writer),
+        provenance.checked_against
+    )
 }
 
 impl fmt::Display for Summary {

@@ -1,0 +1,69 @@
+//! How a provider behaves.
+
+use super::{Faults, Rate};
+use std::{collections::BTreeMap, sync::Arc, time::Duration};
+use wayword_core::Role;
+
+/// How a provider behaves. It has no `Debug`, because it holds a key.
+#[derive(Clone, Default)]
+pub struct Behaviour {
+    /// Who answers for a model's name. Any other name is answered with 404.
+    pub scripts: BTreeMap<String, Arc<dyn Script>>,
+    /// From a request to its answer or fault. What is refused for its key or its rate is refused at once.
+    pub latency: Duration,
+    /// What goes wrong.
+    pub faults: Faults,
+    /// How many requests are allowed; `None` for any number.
+    pub rate: Option<Rate>,
+    /// The only key that is accepted, in the header that the dialect has for it; `None` where none is asked for.
+    pub key: Option<String>,
+    /// Seed of the faults.
+    pub seed: u64,
+}
+
+impl Behaviour {
+    /// One model, without faults, limits, delay or key.
+    #[must_use]
+    pub fn of(model: &str, script: impl Script + 'static) -> Self {
+        Self::default().and(model, script)
+    }
+
+    /// The same with one more model.
+    #[must_use]
+    pub fn and(mut self, model: &str, script: impl Script + 'static) -> Self {
+        self.scripts.insert(model.to_owned(), Arc::new(script));
+        self
+    }
+}
+
+/// Plays a model.
+pub trait Script: Send + Sync {
+    /// What the model says. It should depend on what it hears alone, so that runs can be repeated.
+    fn reply(&self, heard: &Heard) -> String;
+}
+
+/// What a model is told, the same in every dialect.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Heard {
+    /// Its name, without its provider's.
+    pub model: String,
+    /// Who said what, in order.
+    pub messages: Vec<(Role, String)>,
+    /// The bytes of all pictures, in order.
+    pub pictures: Vec<Vec<u8>>,
+    /// 0 for the likeliest words.
+    pub temperature: Option<f64>,
+    /// Most words of the reply: a token is a word here.
+    pub max_tokens: Option<u64>,
+    /// Seed of the draw.
+    pub seed: Option<u64>,
+}
+
+impl Heard {
+    /// The last message that is not the model's own.
+    #[must_use]
+    pub fn prompt(&self) -> &str {
+        let last = self.messages.iter().rev().find(|(role, _)| *role != Role::Assistant);
+        last.map_or("", |(_, text)| text)
+    }
+}

@@ -1,0 +1,82 @@
+//! Anthropic's messages.
+
+use super::{End, Said, Wrong, parts};
+use crate::provider::Heard;
+use serde_json::{Value, json};
+use wayword_core::Role;
+
+pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
+    let mut heard = Heard { model: parts::text(body, "model")?, ..Heard::default() };
+    if let Some(system) = body.get("system") {
+        let text = content(system, &mut heard.pictures)?;
+        heard.messages.push((Role::System, text));
+    }
+    for message in parts::list(body, "messages")? {
+        let role = parts::role(message)?;
+        let text = content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
+        heard.messages.push((role, text));
+    }
+    parts::sampling(&mut heard, body, &["max_tokens"]);
+    // The service refuses a request without it.
+    heard.max_tokens.ok_or("max_tokens: Field required")?;
+    Ok(heard)
+}
+
+fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
+    let parts = match content {
+        Value::String(text) => return Ok(text.clone()),
+        Value::Array(parts) => parts,
+        _ => return Err("A message has no content."),
+    };
+    let mut texts = Vec::new();
+    for part in parts {
+        match part.get("type").and_then(Value::as_str) {
+            Some("text") => texts.push(parts::text(part, "text")?),
+            Some("image") => {
+                let source = part.get("source").ok_or("An image has no source.")?;
+                pictures.push(parts::picture(&parts::text(source, "data")?)?);
+            }
+            _ => return Err("A part of a message has no type that is known."),
+        }
+    }
+    Ok(texts.join("\n"))
+}
+
+pub(super) fn answer(said: &Said) -> Value {
+    let (content, reason) = match said.end {
+        End::Stop => (json!([{ "type": "text", "text": said.text }]), "end_turn"),
+        End::Length => (json!([{ "type": "text", "text": said.text }]), "max_tokens"),
+        End::Filtered | End::Refused => (json!([]), "refusal"),
+    };
+    json!({
+        "id": "msg_test", "type": "message", "role": "assistant", "model": said.model, "content": content,
+        "stop_reason": reason, "stop_sequence": null,
+        "usage": { "input_tokens": said.tokens_in, "output_tokens": said.tokens_out },
+    })
+}
+
+pub(super) fn no_choices() -> Value {
+    json!({ "id": "msg_test", "type": "message", "role": "assistant" })
+}
+
+pub(super) fn models(names: &[&str]) -> Value {
+    let model = |name: &&str| json!({ "type": "model", "id": name, "display_name": name });
+    let data: Vec<Value> = names.iter().map(model).collect();
+    json!({ "data": data, "has_more": false, "first_id": names.first(), "last_id": names.last() })
+}
+
+pub(super) fn error(wrong: Wrong, message: &str, details: Option<Value>) -> Value {
+    let kind = match wrong {
+        Wrong::Request | Wrong::Quota => "invalid_request_error",
+        Wrong::Key => "authentication_error",
+        Wrong::Model => "not_found_error",
+        Wrong::TooMany => "rate_limit_error",
+        Wrong::Server | Wrong::Unavailable => "api_error",
+        Wrong::Overloaded => "overloaded_error",
+    };
+    let mut error = json!({ "type": kind, "message": message });
+    if let (Some(details), Some(error)) = (details, error.as_object_mut()) {
+        error.insert("details".to_owned(), details);
+    }
+    json!({ "type": "error", "error": error })
+}

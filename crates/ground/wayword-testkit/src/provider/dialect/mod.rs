@@ -1,0 +1,202 @@
+//! What providers speak: one file per dialect, with a request's parts and the shapes of replies, errors and lists of models.
+
+mod anthropic;
+mod completions;
+mod gemini;
+mod ollama;
+mod openai;
+mod parts;
+
+use super::{Heard, RetryAfter};
+use axum::{
+    http::{HeaderName, HeaderValue, StatusCode, header},
+    response::{IntoResponse, Response},
+};
+use serde_json::Value;
+use std::time::Duration;
+
+/// What a provider speaks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialect {
+    /// OpenAI's chat completions.
+    OpenAi,
+    /// OpenAI's legacy completions.
+    Completions,
+    /// Anthropic's messages.
+    Anthropic,
+    /// Gemini's `generateContent`.
+    Gemini,
+    /// Ollama's own chat.
+    Ollama,
+}
+
+/// What a model says.
+#[derive(Debug, Clone)]
+pub(super) struct Said {
+    pub(super) model: String,
+    pub(super) text: String,
+    pub(super) end: End,
+    /// Words of all messages, and 85 for each picture.
+    pub(super) tokens_in: u64,
+    /// Words of the reply.
+    pub(super) tokens_out: u64,
+}
+
+/// Why a reply ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    Stop,
+    Length,
+    Filtered,
+    Refused,
+}
+
+/// What is wrong with a request, or with the service.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wrong {
+    Request,
+    Key,
+    Model,
+    Quota,
+    TooMany,
+    Server,
+    Unavailable,
+    Overloaded,
+}
+
+/// What a model that will not answer says where its dialect has no mark for that.
+const SORRY: &str = "I'm sorry, but I can't help with that.";
+
+impl Dialect {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::OpenAi, Self::Completions, Self::Anthropic, Self::Gemini, Self::Ollama];
+
+    /// Its name, as settings have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OpenAi => "openai",
+            Self::Completions => "completions",
+            Self::Anthropic => "anthropic",
+            Self::Gemini => "gemini",
+            Self::Ollama => "ollama",
+        }
+    }
+
+    pub(super) fn base_path(self) -> &'static str {
+        match self {
+            Self::OpenAi | Self::Completions | Self::Anthropic => "/v1",
+            Self::Gemini => "/v1beta",
+            Self::Ollama => "",
+        }
+    }
+
+    /// The header that carries the key, and what stands before the key in it.
+    pub(super) fn key_header(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Anthropic => ("x-api-key", ""),
+            Self::Gemini => ("x-goog-api-key", ""),
+            Self::OpenAi | Self::Completions | Self::Ollama => ("authorization", "Bearer "),
+        }
+    }
+
+    pub(super) fn heard(self, body: &Value, model: Option<&str>) -> Result<Heard, &'static str> {
+        match self {
+            Self::OpenAi => openai::heard(body),
+            Self::Completions => completions::heard(body),
+            Self::Anthropic => anthropic::heard(body),
+            Self::Gemini => gemini::heard(body, model.unwrap_or_default()),
+            Self::Ollama => ollama::heard(body),
+        }
+    }
+
+    pub(super) fn answer(self, said: &Said) -> Value {
+        match self {
+            Self::OpenAi => openai::answer(said),
+            Self::Completions => completions::answer(said),
+            Self::Anthropic => anthropic::answer(said),
+            Self::Gemini => gemini::answer(said),
+            Self::Ollama => ollama::answer(said),
+        }
+    }
+
+    /// A reply without anything said in it.
+    pub(super) fn no_choices(self) -> Value {
+        match self {
+            Self::OpenAi | Self::Completions => openai::no_choices(),
+            Self::Anthropic => anthropic::no_choices(),
+            Self::Gemini => gemini::no_choices(),
+            Self::Ollama => ollama::no_choices(),
+        }
+    }
+
+    pub(super) fn models(self, names: &[&str]) -> Value {
+        match self {
+            Self::OpenAi | Self::Completions => openai::models(names),
+            Self::Anthropic => anthropic::models(names),
+            Self::Gemini => gemini::models(names),
+            Self::Ollama => ollama::models(names),
+        }
+    }
+
+    pub(super) fn error(self, wrong: Wrong, message: &str, details: Option<Value>) -> Value {
+        match self {
+            Self::OpenAi | Self::Completions => openai::error(wrong, message, details),
+            Self::Anthropic => anthropic::error(wrong, message, details),
+            Self::Gemini => gemini::error(wrong, message, details, self.status(wrong)),
+            Self::Ollama => ollama::error(message),
+        }
+    }
+
+    /// An error with its status.
+    pub(super) fn refuse(self, wrong: Wrong, message: &str) -> Response {
+        self.refusal(wrong, message, Vec::new(), None)
+    }
+
+    /// A 429 that tells when to come back.
+    pub(super) fn too_many(self, form: RetryAfter, wait: Duration) -> Response {
+        let message = "Rate limit reached: too many requests.";
+        self.refusal(Wrong::TooMany, message, form.headers(wait, self), form.details(wait))
+    }
+
+    fn refusal(
+        self,
+        wrong: Wrong,
+        message: &str,
+        headers: Vec<(&'static str, String)>,
+        details: Option<Value>,
+    ) -> Response {
+        let status = StatusCode::from_u16(self.status(wrong)).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let body = self.error(wrong, message, details).to_string();
+        let mut response = (status, [(header::CONTENT_TYPE, "application/json")], body).into_response();
+        for (name, value) in headers {
+            if let Ok(value) = HeaderValue::from_str(&value) {
+                response.headers_mut().insert(HeaderName::from_static(name), value);
+            }
+        }
+        response
+    }
+
+    fn status(self, wrong: Wrong) -> u16 {
+        match wrong {
+            Wrong::Request => 400,
+            Wrong::Key => 401,
+            Wrong::Model => 404,
+            // An empty account is no matter of rate to some.
+            Wrong::Quota if self == Self::Anthropic => 400,
+            Wrong::Quota if self == Self::Ollama => 402,
+            Wrong::Quota | Wrong::TooMany => 429,
+            Wrong::Server => 500,
+            Wrong::Unavailable => 503,
+            Wrong::Overloaded => 529,
+        }
+    }
+
+    /// How it says that the account is empty.
+    pub(super) fn quota_message(self) -> &'static str {
+        match self {
+            Self::Anthropic => "Your credit balance is too low to access the Anthropic API.",
+            _ => "You exceeded your current quota, please check your plan and billing details.",
+        }
+    }
+}

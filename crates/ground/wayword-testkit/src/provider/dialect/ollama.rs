@@ -1,0 +1,47 @@
+//! Ollama's own chat endpoint.
+
+use super::{End, Said, parts};
+use crate::provider::Heard;
+use serde_json::{Value, json};
+
+pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
+    if body.get("stream") != Some(&Value::Bool(false)) {
+        return Err("Only whole answers are given here: set stream to false.");
+    }
+    let mut heard = Heard { model: parts::text(body, "model")?, ..Heard::default() };
+    for message in parts::list(body, "messages")? {
+        heard.messages.push((parts::role(message)?, parts::text(message, "content")?));
+        for image in message.get("images").and_then(Value::as_array).into_iter().flatten() {
+            heard.pictures.push(parts::picture(image.as_str().ok_or("An image is no text.")?)?);
+        }
+    }
+    parts::sampling(&mut heard, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
+    Ok(heard)
+}
+
+pub(super) fn answer(said: &Said) -> Value {
+    // It has no filter of its own: a model that will not answer says so.
+    let (text, reason) = match said.end {
+        End::Stop => (said.text.as_str(), "stop"),
+        End::Length => (said.text.as_str(), "length"),
+        End::Filtered | End::Refused => (super::SORRY, "stop"),
+    };
+    json!({
+        "model": said.model, "created_at": "2026-01-01T00:00:00Z", "message": { "role": "assistant", "content": text },
+        "done": true, "done_reason": reason, "total_duration": 1_000_000, "load_duration": 0,
+        "prompt_eval_count": said.tokens_in, "prompt_eval_duration": 0, "eval_count": said.tokens_out, "eval_duration": 0,
+    })
+}
+
+pub(super) fn no_choices() -> Value {
+    json!({ "model": "", "created_at": "2026-01-01T00:00:00Z", "done": true })
+}
+
+pub(super) fn models(names: &[&str]) -> Value {
+    let model = |name: &&str| json!({ "name": name, "model": name });
+    json!({ "models": names.iter().map(model).collect::<Vec<_>>() })
+}
+
+pub(super) fn error(message: &str) -> Value {
+    json!({ "error": message })
+}

@@ -1,0 +1,174 @@
+//! Which request meets which fault.
+
+use super::RetryAfter;
+use rand::Rng;
+use std::time::Duration;
+
+/// What can go wrong with one request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fault {
+    /// 429 though the rate was kept.
+    TooMany(RetryAfter),
+    /// 500.
+    Server,
+    /// 502 with a page of HTML, as gateways have it.
+    Gateway,
+    /// 503.
+    Unavailable,
+    /// 529: overloaded.
+    Overloaded,
+    /// The head and half of the body, then a TCP reset.
+    Reset,
+    /// The connection is closed before any byte of a response.
+    Closed,
+    /// The body comes a byte at a time, with [`Faults::trickle`] between two.
+    Trickle,
+    /// Half of the JSON, with a `content-length` that says it is all.
+    Truncated,
+    /// A reply without a choice in it.
+    NoChoices,
+    /// 200, and in it an error.
+    ErrorInOk,
+    /// A page of HTML under 200.
+    WrongType,
+    /// 500 whose words repeat the key that came with the request.
+    EchoesKey,
+    /// Half of the answer, said to have been cut off for its length.
+    CutOff,
+    /// The service's filter keeps the answer back.
+    Filtered,
+    /// The model refuses.
+    Refused,
+    /// A body of JSON that never ends.
+    Endless,
+}
+
+/// What goes wrong, and how often.
+///
+/// A fault is drawn from the seed, the request (its dialect, model and body) and how many like it were let in before. So the same
+/// requests meet the same faults in every run, in any order, and one that is repeated may succeed.
+#[derive(Debug, Clone)]
+pub struct Faults {
+    shares: Vec<(Fault, f64)>,
+    first: Vec<Option<Fault>>,
+    /// So many requests are let in; to every later one the key is wrong (401).
+    pub key_refused_after: Option<u64>,
+    /// So many requests are let in; then the account is empty.
+    pub quota_after: Option<u64>,
+    /// The wait that a 429 out of turn asks for. Forms that have whole seconds round it up.
+    pub wait: Duration,
+    /// Between two bytes of [`Fault::Trickle`].
+    pub trickle: Duration,
+}
+
+impl Default for Faults {
+    fn default() -> Self {
+        Self {
+            shares: Vec::new(),
+            first: Vec::new(),
+            key_refused_after: None,
+            quota_after: None,
+            wait: Duration::from_millis(50),
+            trickle: Duration::from_millis(200),
+        }
+    }
+}
+
+/// The faults after which the same request may succeed; 429 comes besides, in each of its forms.
+const PASSING: [Fault; 12] = [
+    Fault::Server,
+    Fault::Gateway,
+    Fault::Unavailable,
+    Fault::Overloaded,
+    Fault::Reset,
+    Fault::Closed,
+    Fault::Trickle,
+    Fault::Truncated,
+    Fault::NoChoices,
+    Fault::ErrorInOk,
+    Fault::WrongType,
+    Fault::EchoesKey,
+];
+
+impl Faults {
+    /// All faults that pass, equally often, in sum at `share` (0 to 1) of the requests: the twelve of 500, 502, 503, 529, reset,
+    /// closed, trickle, truncated, no choices, error under 200, wrong type and echoed key, and 429, whose forms share its part.
+    #[must_use]
+    pub fn storm(share: f64) -> Self {
+        let each = share / (PASSING.len() + 1) as f64;
+        let each_form = each / RetryAfter::ALL.len() as f64;
+        let many = RetryAfter::ALL.iter().map(|form| (Fault::TooMany(*form), each_form));
+        let shares = PASSING.iter().map(|fault| (*fault, each)).chain(many).collect();
+        Self { shares, ..Self::default() }
+    }
+
+    /// The same with one more fault, at a share (0 to 1) of all requests.
+    #[must_use]
+    pub fn with(mut self, fault: Fault, share: f64) -> Self {
+        self.shares.push((fault, share));
+        self
+    }
+
+    /// The same, but the first requests that are let in meet these, in the order in which they come.
+    #[must_use]
+    pub fn first(mut self, faults: &[Option<Fault>]) -> Self {
+        self.first = faults.to_vec();
+        self
+    }
+
+    /// The share of requests that meet no drawn fault.
+    #[must_use]
+    pub fn free_share(&self) -> f64 {
+        (1.0 - self.shares.iter().map(|(_, share)| share).sum::<f64>()).max(0.0)
+    }
+
+    /// The fault of a request: `index` were let in before it, `nth` of them equal to it.
+    pub(super) fn of(&self, seed: u64, index: u64, request: u64, nth: u64) -> Option<Fault> {
+        if let Some(scripted) = usize::try_from(index).ok().and_then(|index| self.first.get(index)) {
+            return *scripted;
+        }
+        let purpose = ["fault", &format!("{request:016x}"), &nth.to_string()];
+        let mut left: f64 = wayword_core::rng(seed, &purpose).random();
+        self.shares.iter().find_map(|(fault, share)| {
+            left -= share;
+            (left < 0.0).then_some(*fault)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn faults_come_at_their_shares_and_the_same_each_time() {
+        let faults = Faults::storm(0.3).with(Fault::Filtered, 0.1);
+        let draw = || (0..20_000).map(|request| faults.of(7, 0, request, 0)).collect::<Vec<_>>();
+        let drawn = draw();
+        assert_eq!(drawn, draw());
+        let mut counts: BTreeMap<Option<Fault>, i32> = BTreeMap::new();
+        drawn.iter().for_each(|fault| *counts.entry(*fault).or_default() += 1);
+        assert!((counts[&None] - 12_000).abs() < 300, "{counts:?}");
+        assert!((counts[&Some(Fault::Filtered)] - 2_000).abs() < 200, "{counts:?}");
+        assert!((counts[&Some(Fault::Reset)] - 461).abs() < 100, "{counts:?}");
+        let many = RetryAfter::ALL.iter().map(|form| counts[&Some(Fault::TooMany(*form))]).sum::<i32>();
+        assert!((many - 461).abs() < 100, "{counts:?}");
+        assert!((faults.free_share() - 0.6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_request_that_is_repeated_gets_through() {
+        let faults = Faults::storm(0.5);
+        let attempts = |request| (0..64).position(|nth| faults.of(1, 0, request, nth).is_none());
+        let needed: Vec<usize> = (0..500).map(|request| attempts(request).unwrap()).collect();
+        let mean = needed.iter().sum::<usize>() as f64 / 500.0;
+        assert!((0.8..1.2).contains(&mean), "half fail, so one more attempt is needed on average, not {mean}");
+    }
+
+    #[test]
+    fn a_list_of_faults_comes_first() {
+        let faults = Faults::default().first(&[Some(Fault::Reset), None]);
+        assert_eq!([0, 1, 2].map(|index| faults.of(0, index, 9, 0)), [Some(Fault::Reset), None, None]);
+    }
+}

@@ -1,0 +1,83 @@
+//! What a provider remembers.
+
+use super::Fault;
+use std::collections::BTreeMap;
+
+/// Counts of what has happened.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Log {
+    /// Requests that came, refused ones too.
+    pub received: u64,
+    /// Requests that were let in: neither their key nor the rate was against it. The key and the quota that run out after so many
+    /// requests count these.
+    pub admitted: u64,
+    /// Requests that got a whole answer: what a real service would bill.
+    pub answered: u64,
+    /// Requests above the rate.
+    pub rate_limited: u64,
+    /// Requests without the right key, or after it was withdrawn.
+    pub key_refused: u64,
+    /// Requests after the quota was used up.
+    pub out_of_quota: u64,
+    /// Requests that make no sense, or name a model that is none.
+    pub unfit: u64,
+    /// Faults that were committed.
+    pub faults: BTreeMap<Fault, u64>,
+    /// Most requests that were worked on at the same time.
+    pub most_at_once: u64,
+    /// Each distinct request (its dialect, model and body), by hash.
+    pub bodies: BTreeMap<u64, Body>,
+    pub(super) at_once: u64,
+}
+
+/// How often one and the same request came.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Body {
+    /// Times that it came.
+    pub received: u32,
+    /// Times that it was let in.
+    pub admitted: u32,
+    /// Times that it got a whole answer.
+    pub answered: u32,
+}
+
+impl Log {
+    /// Answers beyond the first to the same request: what was paid again.
+    #[must_use]
+    pub fn answered_again(&self) -> u64 {
+        self.bodies.values().map(|body| u64::from(body.answered.saturating_sub(1))).sum()
+    }
+
+    /// Distinct requests that got an answer.
+    #[must_use]
+    pub fn distinct_answered(&self) -> u64 {
+        self.bodies.values().filter(|body| body.answered > 0).count() as u64
+    }
+
+    /// All faults that were committed.
+    #[must_use]
+    pub fn faults_committed(&self) -> u64 {
+        self.faults.values().sum()
+    }
+
+    pub(super) fn receive(&mut self, request: u64) {
+        self.received += 1;
+        self.at_once += 1;
+        self.most_at_once = self.most_at_once.max(self.at_once);
+        self.bodies.entry(request).or_default().received += 1;
+    }
+
+    /// How many were let in before this request, and how many of them equal to it.
+    pub(super) fn admit(&mut self, request: u64) -> (u64, u64) {
+        let body = self.bodies.entry(request).or_default();
+        let before = (self.admitted, u64::from(body.admitted));
+        self.admitted += 1;
+        body.admitted += 1;
+        before
+    }
+
+    pub(super) fn answer(&mut self, request: u64) {
+        self.answered += 1;
+        self.bodies.entry(request).or_default().answered += 1;
+    }
+}

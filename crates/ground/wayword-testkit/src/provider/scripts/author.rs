@@ -1,0 +1,89 @@
+//! Writes instructions from captions and moves, and is careless now and then.
+
+use super::{Script, prompt::things, rng};
+use crate::provider::Heard;
+use rand::{Rng, seq::IndexedRandom};
+
+/// Writes a sentence for each move with a landmark of the frame. Careless, it names a treadmill that nobody saw, or turns the
+/// wrong way.
+#[derive(Debug, Clone, Copy)]
+pub struct Author {
+    /// Seed of its draws.
+    pub seed: u64,
+    /// How often it is careless. Told what was wrong, it is half as often.
+    pub carelessness: f64,
+}
+
+/// A frame of the prompt: what is seen, and the move that follows.
+struct Frame<'a> {
+    caption: &'a str,
+    then: Option<&'a str>,
+}
+
+impl Script for Author {
+    fn reply(&self, heard: &Heard) -> String {
+        let prompt = heard.prompt();
+        let frames = frames(prompt);
+        let mut rng = rng(self.seed, prompt);
+        let share = if prompt.contains("was refused because") { self.carelessness / 2.0 } else { self.carelessness };
+        let careless = rng.random_bool(share);
+        let target = prompt.split("on this object of the last frame: ").nth(1).and_then(|rest| rest.lines().next());
+        let target = target.map(|target| target.split(" (").next().unwrap_or(target).trim_end_matches('.'));
+        let coarse = prompt.contains("an activity part");
+        if coarse { coarse_text(&frames, target, careless) } else { fine_text(&frames, target, careless, &mut rng) }
+    }
+}
+
+fn frames(prompt: &str) -> Vec<Frame<'_>> {
+    let mut frames: Vec<Frame<'_>> = Vec::new();
+    for line in prompt.lines() {
+        if let Some((_, caption)) = line.strip_prefix("Frame ").and_then(|rest| rest.split_once(": ")) {
+            frames.push(Frame { caption, then: None });
+        } else if let (Some(then), Some(last)) = (line.trim().strip_prefix("Then: "), frames.last_mut()) {
+            last.then = Some(then);
+        }
+    }
+    frames
+}
+
+/// The first thing of a caption that is no room.
+fn landmark(caption: &str) -> Option<String> {
+    things(caption).into_iter().find(|name| !name.ends_with("room") && !name.ends_with("way") && name != "place")
+}
+
+fn coarse_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool) -> String {
+    let last = frames.last().and_then(|frame| landmark(frame.caption));
+    let object = target.map(str::to_owned).or(last).unwrap_or_else(|| "door".to_owned());
+    let object = if careless { "treadmill".to_owned() } else { object };
+    format!("Go on until you see the {object} and clean the {object}.")
+}
+
+fn fine_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool, rng: &mut impl Rng) -> String {
+    let wrong = careless.then(|| rng.random_range(0..frames.len().max(1)));
+    let ghost = ["treadmill", "piano"].choose(rng).copied().unwrap_or("piano");
+    let mut sentences = Vec::new();
+    for (at, frame) in frames.iter().enumerate() {
+        let Some(then) = frame.then else { continue };
+        let turn = if then.starts_with("turns left") {
+            Some("left")
+        } else if then.starts_with("turns right") {
+            Some("right")
+        } else {
+            None
+        };
+        if let Some(side) = turn {
+            sentences.push(format!("Turn {side}."));
+        } else if then.starts_with("turns around") {
+            sentences.push("Turn around.".to_owned());
+        }
+        if wrong == Some(at) {
+            sentences.push(format!("Walk past the {ghost}."));
+        } else if let Some(name) = landmark(frame.caption).filter(|_| turn.is_none() && at > 0) {
+            sentences.push(format!("Walk past the {name}."));
+        }
+    }
+    let end = target.map(str::to_owned).or_else(|| frames.last().and_then(|frame| landmark(frame.caption)));
+    sentences.push("Go straight on.".to_owned());
+    sentences.push(end.map_or("Stop there.".to_owned(), |name| format!("Stop at the {name}.")));
+    sentences.join(" ")
+}

@@ -1,0 +1,267 @@
+//! A flawed eye: it answers about a picture from what is known to be there, with ghosts, misses and contradictions by seed.
+
+use crate::provider::{Gallery, Heard, Scenery, Script, Thing, barcode};
+use rand::{Rng, SeedableRng, seq::SliceRandom};
+use rand_chacha::ChaCha8Rng;
+use sha2::{Digest, Sha256};
+
+/// Answers questions about the pictures of a gallery, wrongly now and then. The same question about the same picture gets the
+/// same answer.
+#[derive(Debug, Clone)]
+pub struct FlawedEye {
+    /// What is really there.
+    pub gallery: Gallery,
+    /// Seed of all draws.
+    pub seed: u64,
+    /// Share of the objects of a free description that are not there, on average.
+    pub ghost_share: f64,
+    /// Share of the objects that are there and left out of a free description.
+    pub miss_share: f64,
+    /// How often, asked whether one of its ghosts is there, it says no and contradicts itself. Whoever asks about a ghost finds
+    /// it out with this probability.
+    pub contradiction_share: f64,
+    /// How often, asked whether something is there that is, it says no.
+    pub blindness_share: f64,
+}
+
+impl FlawedEye {
+    /// An eye with so many ghosts, which admits most of them when it is asked: 70 %. It misses a tenth of what is there and
+    /// denies 3 % of it.
+    #[must_use]
+    pub fn new(gallery: Gallery, seed: u64, ghost_share: f64) -> Self {
+        Self { gallery, seed, ghost_share, miss_share: 0.1, contradiction_share: 0.7, blindness_share: 0.03 }
+    }
+}
+
+/// Things that are seen where they are not.
+const GHOSTS: [&str; 16] = [
+    "piano",
+    "treadmill",
+    "fireplace",
+    "refrigerator",
+    "washing machine",
+    "bathtub",
+    "guitar",
+    "bicycle",
+    "clock",
+    "vase",
+    "fan",
+    "microwave",
+    "suitcase",
+    "bookshelf",
+    "sofa",
+    "chandelier",
+];
+/// Most objects that a description names.
+const MOST_NAMED: usize = 9;
+
+impl Script for FlawedEye {
+    fn reply(&self, heard: &Heard) -> String {
+        let known = heard.pictures.first().and_then(|picture| barcode::read(picture));
+        let Some((id, scenery)) = known.and_then(|id| Some((id, self.gallery.scenery(id)?))) else {
+            return "I am not sure what this picture shows.".to_owned();
+        };
+        let text = heard.prompt();
+        let question = text.rsplit("Question:").next().unwrap_or(text).replace("Answer:", "");
+        let question = question.rsplit("sentence:").next().unwrap_or_default().trim().to_lowercase();
+        Look { eye: self, id, scenery: &scenery }.answer(&question)
+    }
+}
+
+/// One look at one picture.
+struct Look<'a> {
+    eye: &'a FlawedEye,
+    id: u64,
+    scenery: &'a Scenery,
+}
+
+impl Look<'_> {
+    fn rng(&self, about: &str) -> ChaCha8Rng {
+        let mut hash = Sha256::new();
+        hash.update(self.eye.seed.to_le_bytes());
+        hash.update(self.id.to_le_bytes());
+        hash.update(about);
+        ChaCha8Rng::from_seed(hash.finalize().into())
+    }
+
+    fn is(&self, share: f64, about: &str) -> bool {
+        self.rng(about).random_bool(share.clamp(0.0, 1.0))
+    }
+
+    /// The things that a description names, each once.
+    fn noticed(&self) -> Vec<(&str, u8)> {
+        let mut noticed: Vec<(&str, u8)> = Vec::new();
+        for Thing { name, third, .. } in &self.scenery.things {
+            if !noticed.iter().any(|(before, _)| before == name)
+                && noticed.len() < MOST_NAMED
+                && !self.is(self.eye.miss_share, &format!("miss {name}"))
+            {
+                noticed.push((name, *third));
+            }
+        }
+        noticed
+    }
+
+    /// The things that it sees and that are not there.
+    fn ghosts(&self) -> Vec<(&'static str, u8)> {
+        let is_there = |ghost: &str| {
+            let last = ghost.rsplit(' ').next().unwrap_or(ghost);
+            self.scenery.things.iter().any(|thing| thing.name.contains(last) || ghost.contains(thing.name.as_str()))
+        };
+        let mut rng = self.rng("ghosts");
+        let share = self.eye.ghost_share.clamp(0.0, 0.9);
+        let mean = self.noticed().len() as f64 * share / (1.0 - share);
+        let count = mean.floor() as usize + usize::from(rng.random_bool(mean.fract()));
+        let mut candidates: Vec<&'static str> = GHOSTS.into_iter().filter(|ghost| !is_there(ghost)).collect();
+        candidates.shuffle(&mut rng);
+        candidates.into_iter().take(count).map(|ghost| (ghost, rng.random_range(0..3))).collect()
+    }
+
+    fn answer(&self, question: &str) -> String {
+        let starts = |leads: &[&str]| leads.iter().any(|lead| question.starts_with(lead));
+        if starts(&["is there", "are there", "do you see", "can you see", "is the", "are the", "does the"]) {
+            return self.presence(question);
+        }
+        if question.contains("colour") || question.contains("color") {
+            return self.colour(question);
+        }
+        if question.contains("room") && !question.contains("objects") {
+            return self.scenery.room.as_ref().map_or("I am not sure.".to_owned(), |room| format!("This is a {room}."));
+        }
+        match () {
+            () if question.contains("left") => self.part(0, "On the left"),
+            () if question.contains("right") => self.part(2, "On the right"),
+            () if question.contains("middle") || question.contains("centre") => self.part(1, "In the middle"),
+            () if question.contains("describe") || question.contains("objects") || question.contains("see") => {
+                self.describe()
+            }
+            () => "I am not sure.".to_owned(),
+        }
+    }
+
+    fn describe(&self) -> String {
+        let mut named: Vec<(&str, u8)> = self.noticed();
+        named.extend(self.ghosts());
+        named.shuffle(&mut self.rng("order"));
+        let items: Vec<String> =
+            named.iter().map(|(name, third)| format!("{} {}", article(name), place(*third))).collect();
+        match items.as_slice() {
+            [] => "I cannot see anything of note.".to_owned(),
+            [only] => format!("I can see {only}."),
+            [before @ .., last] => format!("I can see {} and {last}.", before.join(", ")),
+        }
+    }
+
+    fn part(&self, third: u8, lead: &str) -> String {
+        let all = self.noticed().into_iter().chain(self.ghosts());
+        let there: Vec<String> = all.filter(|(_, at)| *at == third).map(|(name, _)| article(name)).collect();
+        if there.is_empty() { "I am not sure.".to_owned() } else { format!("{lead} there is {}.", there.join(" and ")) }
+    }
+
+    fn presence(&self, question: &str) -> String {
+        let real = self.scenery.things.iter().find(|thing| mentions(question, &thing.name));
+        let ghost = self.ghosts().into_iter().find(|(name, _)| mentions(question, name));
+        let (seen, third) = match (real, ghost) {
+            (Some(Thing { name, third, .. }), _) => {
+                (!self.is(self.eye.blindness_share, &format!("blind {name}")), *third)
+            }
+            (None, Some((name, third))) => (!self.is(self.eye.contradiction_share, &format!("admit {name}")), third),
+            (None, None) => (false, 0),
+        };
+        match (seen, self.rng(question).random_range(0..3)) {
+            (true, 0) => format!("Yes, it is {}.", place(third)),
+            (true, _) => "Yes.".to_owned(),
+            (false, 0) => "No.".to_owned(),
+            (false, 1) => "No, I don't see one.".to_owned(),
+            (false, _) => "No, there isn't.".to_owned(),
+        }
+    }
+
+    fn colour(&self, question: &str) -> String {
+        let thing = self.scenery.things.iter().find(|thing| mentions(question, &thing.name));
+        match thing {
+            Some(Thing { name, colour: Some(colour), .. }) => format!("The {name} is {colour}."),
+            _ => "I am not sure.".to_owned(),
+        }
+    }
+}
+
+fn mentions(question: &str, name: &str) -> bool {
+    let words = |text: &str| {
+        let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+        words.map(|word| word.trim_end_matches('s').to_owned()).collect::<Vec<_>>()
+    };
+    let (question, name) = (words(question), words(&name.to_lowercase()));
+    !name.is_empty() && question.windows(name.len()).any(|window| window == name)
+}
+
+fn article(name: &str) -> String {
+    if name.starts_with(['a', 'e', 'i', 'o', 'u']) { format!("an {name}") } else { format!("a {name}") }
+}
+
+fn place(third: u8) -> &'static str {
+    match third {
+        0 => "on the left",
+        1 => "in the middle",
+        _ => "on the right",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn thing(name: &str) -> Thing {
+        Thing { name: name.to_owned(), third: 1, colour: None }
+    }
+
+    fn eye(ghost_share: f64) -> FlawedEye {
+        let gallery = Gallery::default();
+        for id in 0..500 {
+            let names = ["bed", "lamp", "wardrobe", "mirror", "door", "table"];
+            let things = names.iter().take(2 + id as usize % 5).map(|name| thing(name)).collect();
+            gallery.hang(id, Scenery { room: Some("bedroom".into()), things });
+        }
+        FlawedEye::new(gallery, 3, ghost_share)
+    }
+
+    fn look<T>(eye: &FlawedEye, id: u64, see: impl FnOnce(&Look<'_>) -> T) -> T {
+        let scenery = eye.gallery.scenery(id).unwrap();
+        see(&Look { eye, id, scenery: &scenery })
+    }
+
+    #[test]
+    fn ghosts_have_their_share_of_what_is_named() {
+        let eye = eye(0.15);
+        let counts = (0..500).map(|id| look(&eye, id, |look| (look.ghosts().len(), look.noticed().len())));
+        let (ghosts, real) = counts.fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+        let share = ghosts as f64 / (ghosts + real) as f64;
+        assert!((0.12..0.18).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn most_ghosts_are_admitted_and_what_is_not_there_is_denied() {
+        let eye = eye(0.3);
+        let (mut admitted, mut asked) = (0, 0);
+        for id in 0..500 {
+            look(&eye, id, |look| {
+                for (ghost, _) in look.ghosts() {
+                    asked += 1;
+                    admitted +=
+                        i32::from(look.answer(&format!("is there really {}?", article(ghost))).starts_with("No"));
+                }
+                assert!(look.answer("is there an elephant?").starts_with("No"));
+            });
+        }
+        assert!(asked > 200 && (60..80).contains(&(100 * admitted / asked)), "{admitted} of {asked}");
+    }
+
+    #[test]
+    fn the_same_question_has_the_same_answer() {
+        let eye = eye(0.15);
+        for question in ["describe what you see", "is there a bed?", "which room is this?", "what is on the left?"] {
+            assert_eq!(look(&eye, 7, |look| look.answer(question)), look(&eye, 7, |look| look.answer(question)));
+        }
+        assert_eq!(look(&eye, 7, |look| look.answer("which room is this?")), "This is a bedroom.");
+    }
+}

@@ -1,0 +1,76 @@
+//! Scripts for the roles of a run: they ask, sum up and write as a careless language model might, always in the same way.
+
+mod author;
+mod eye;
+mod prompt;
+mod questioner;
+mod summariser;
+
+use super::{Heard, Script};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use sha2::{Digest, Sha256};
+
+pub use author::Author;
+pub use eye::FlawedEye;
+pub use questioner::Questioner;
+pub use summariser::Summariser;
+
+/// All roles behind one model name: a picture goes to the eye, and words to whoever the prompt is for.
+#[derive(Debug, Clone)]
+pub struct Cast {
+    /// Sees.
+    pub eye: FlawedEye,
+    /// Asks.
+    pub questioner: Questioner,
+    /// Sums up.
+    pub summariser: Summariser,
+    /// Writes.
+    pub author: Author,
+}
+
+impl Cast {
+    /// A cast whose text roles each make a mistake with this probability.
+    #[must_use]
+    pub fn new(eye: FlawedEye, seed: u64, carelessness: f64) -> Self {
+        Self {
+            eye,
+            questioner: Questioner { seed, chatter: carelessness },
+            summariser: Summariser { seed, carelessness },
+            author: Author { seed, carelessness },
+        }
+    }
+}
+
+impl Script for Cast {
+    fn reply(&self, heard: &Heard) -> String {
+        let prompt = heard.prompt();
+        if !heard.pictures.is_empty() {
+            self.eye.reply(heard)
+        } else if prompt.contains("Frame 0:") {
+            self.author.reply(heard)
+        } else if prompt.contains("Ask one new question") {
+            self.questioner.reply(heard)
+        } else if prompt.contains("Sum up") {
+            self.summariser.reply(heard)
+        } else if prompt.contains("Describe the place in one sentence") {
+            prompt::condensed(prompt)
+        } else {
+            "ready".to_owned()
+        }
+    }
+}
+
+impl<F: Fn(&Heard) -> String + Send + Sync> Script for F {
+    fn reply(&self, heard: &Heard) -> String {
+        self(heard)
+    }
+}
+
+/// Chance that is the same for the same words.
+fn rng(seed: u64, about: &str) -> ChaCha8Rng {
+    let mut hash = Sha256::new();
+    hash.update(seed.to_le_bytes());
+    hash.update(about);
+    ChaCha8Rng::from_seed(hash.finalize().into())
+}

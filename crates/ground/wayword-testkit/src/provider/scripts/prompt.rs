@@ -1,0 +1,92 @@
+//! Reads prompts as far as the scripts need them.
+
+/// The questions and answers of a transcript.
+pub(super) fn exchanges(prompt: &str) -> Vec<(&str, &str)> {
+    let mut exchanges: Vec<(&str, &str)> = Vec::new();
+    for line in prompt.lines() {
+        if let Some(question) = line.strip_prefix("Question: ") {
+            exchanges.push((question, ""));
+        } else if let (Some(answer), Some(last)) = (line.strip_prefix("Answer: "), exchanges.last_mut()) {
+            last.1 = answer;
+        }
+    }
+    exchanges
+}
+
+/// The things that a text names after "a" or "an", each once.
+pub(super) fn things(text: &str) -> Vec<String> {
+    const ENDS: [&str; 16] = [
+        "on", "in", "and", "with", "to", "of", "at", "by", "it", "next", "beside", "near", "under", "above", "is",
+        "there",
+    ];
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let mut things: Vec<String> = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        let article = matches!(words[at].to_lowercase().as_str(), "a" | "an");
+        at += 1;
+        if !article {
+            continue;
+        }
+        let mut name: Vec<&str> = Vec::new();
+        while at < words.len() && !ENDS.contains(&words[at]) && name.len() < 4 {
+            let ends = words[at].ends_with([',', '.']);
+            name.push(words[at].trim_end_matches([',', '.']));
+            at += 1;
+            if ends {
+                break;
+            }
+        }
+        let name = name.join(" ");
+        if !name.is_empty() && !things.contains(&name) {
+            things.push(name);
+        }
+    }
+    things
+}
+
+/// Whether an answer says no.
+pub(super) fn denies(answer: &str) -> bool {
+    answer.to_lowercase().starts_with("no")
+}
+
+/// The room that a transcript tells of.
+pub(super) fn room<'a>(exchanges: &[(&str, &'a str)]) -> Option<&'a str> {
+    let (_, answer) =
+        exchanges.iter().find(|(question, answer)| question.contains("room") && answer.starts_with("This is a "))?;
+    Some(answer.trim_start_matches("This is a ").trim_end_matches('.'))
+}
+
+/// A name with its article.
+pub(super) fn article(name: &str) -> String {
+    if name.starts_with(['a', 'e', 'i', 'o', 'u']) { format!("an {name}") } else { format!("a {name}") }
+}
+
+/// "a, b and c".
+pub(super) fn enumerate(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [only] => only.clone(),
+        [before @ .., last] => format!("{} and {last}", before.join(", ")),
+    }
+}
+
+/// The first things of a panorama, in one sentence.
+pub(super) fn condensed(prompt: &str) -> String {
+    let seen =
+        prompt.split("It sees:").nth(1).and_then(|rest| rest.split("Describe the place").next()).unwrap_or_default();
+    let items: Vec<String> = things(seen).iter().take(4).map(|name| article(name)).collect();
+    if items.is_empty() { "A place.".to_owned() } else { format!("A place with {}.", enumerate(&items)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_end_where_their_places_begin() {
+        let text = "I can see a coffee table on the left, an oven in the middle and a lamp.";
+        assert_eq!(things(text), ["coffee table", "oven", "lamp"]);
+        assert_eq!(things("A bedroom with a bed and two lamps."), ["bedroom", "bed"]);
+    }
+}

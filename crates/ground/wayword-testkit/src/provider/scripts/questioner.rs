@@ -1,0 +1,48 @@
+//! Asks about a picture that it cannot see.
+
+use super::{
+    Script,
+    prompt::{article, exchanges, things},
+    rng,
+};
+use crate::provider::Heard;
+use rand::Rng;
+
+/// Asks which room it is, whether what was named is really there, and what is on either side.
+#[derive(Debug, Clone, Copy)]
+pub struct Questioner {
+    /// Seed of its draws.
+    pub seed: u64,
+    /// How often it talks around its question.
+    pub chatter: f64,
+}
+
+impl Script for Questioner {
+    fn reply(&self, heard: &Heard) -> String {
+        let prompt = heard.prompt();
+        let question = next_question(prompt);
+        let mut rng = rng(self.seed, prompt);
+        if !rng.random_bool(self.chatter) {
+            return question;
+        }
+        match rng.random_range(0..3) {
+            0 => format!("Sure! Question: {question}"),
+            1 => format!("{question}\nAnswer: Yes, there is one next to the elephant."),
+            _ => format!("\"{question}\""),
+        }
+    }
+}
+
+fn next_question(prompt: &str) -> String {
+    let told = exchanges(prompt);
+    let asked = |question: &String| !told.iter().any(|(before, _)| before == question);
+    let named = told.first().map_or_else(Vec::new, |(_, answer)| things(answer));
+    let doubts = named.iter().enumerate().map(|(at, name)| match at % 3 {
+        0 => format!("Is there really {}?", article(name)),
+        1 => format!("Is the {name} you mentioned really there?"),
+        _ => format!("Do you see {} in the picture?", article(name)),
+    });
+    let first = ["What kind of room is this?".to_owned()].into_iter();
+    let last = ["What is on the left?", "What is on the right?", "What is the floor made of?"].map(str::to_owned);
+    first.chain(doubts).chain(last).find(asked).unwrap_or_else(|| "What else can you see?".to_owned())
+}

@@ -1,0 +1,175 @@
+//! Connections that can be made to misbehave below HTTP.
+
+use axum::{
+    extract::connect_info::Connected,
+    serve::{IncomingStream, Listener},
+};
+use std::{
+    io,
+    net::SocketAddr,
+    pin::Pin,
+    sync::{Arc, Mutex, PoisonError},
+    task::{Context, Poll},
+    time::Duration,
+};
+use tokio::{
+    io::{AsyncRead, AsyncWrite, ReadBuf},
+    net::{TcpListener, TcpStream},
+    time::Sleep,
+};
+
+/// What a connection does with the response that is written to it next, and to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Break {
+    /// Closes before any byte.
+    Close,
+    /// Sends the head and half of the body, then a TCP reset.
+    Reset,
+    /// Sends the head, then a byte at a time, with so long between two.
+    Trickle(Duration),
+    /// Sends a body that never ends instead.
+    Endless,
+}
+
+/// Through which the server tells a connection to break.
+#[derive(Clone, Default)]
+pub(super) struct Line(Arc<Mutex<Option<Break>>>);
+
+impl Line {
+    pub(super) fn breaks(&self, how: Break) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(how);
+    }
+
+    fn told(&self) -> Option<Break> {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Connected<IncomingStream<'_, Door>> for Line {
+    fn connect_info(stream: IncomingStream<'_, Door>) -> Self {
+        stream.io().line.clone()
+    }
+}
+
+/// Accepts connections that can break.
+pub(super) struct Door(pub(super) TcpListener);
+
+impl Listener for Door {
+    type Io = Wire;
+    type Addr = SocketAddr;
+
+    async fn accept(&mut self) -> (Wire, SocketAddr) {
+        loop {
+            match self.0.accept().await {
+                Ok((stream, address)) => {
+                    // Without it an answer waits for the acknowledgement of the one before. It cannot be worse than not set.
+                    let _ = stream.set_nodelay(true);
+                    return (Wire { stream, line: Line::default(), sent: 0, half: None, pause: None }, address);
+                }
+                // Out of sockets: some will be free again.
+                Err(_) => tokio::time::sleep(Duration::from_millis(50)).await,
+            }
+        }
+    }
+
+    fn local_addr(&self) -> io::Result<SocketAddr> {
+        self.0.local_addr()
+    }
+}
+
+/// A connection.
+pub(super) struct Wire {
+    stream: TcpStream,
+    line: Line,
+    /// Bytes that were sent since it was told to break.
+    sent: usize,
+    /// Where the head, or the head and half of the body, ends.
+    half: Option<usize>,
+    pause: Option<Pin<Box<Sleep>>>,
+}
+
+const ENDLESS_HEAD: &[u8] = b"HTTP/1.1 200 OK\r\ncontent-type: application/json\r\nconnection: close\r\n\r\n\
+    {\"choices\":[{\"message\":{\"role\":\"assistant\",\"content\":\"";
+const ENDLESS_WORDS: [u8; 16 * 1024] = [b'w'; 16 * 1024];
+
+impl Wire {
+    fn send(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        let sent = Pin::new(&mut self.stream).poll_write(cx, bytes);
+        if let Poll::Ready(Ok(count)) = sent {
+            self.sent += count;
+        }
+        sent
+    }
+
+    /// Sends up to half of the body of a response that is written in one piece, as small ones are, then resets.
+    fn reset(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        let half = *self.half.get_or_insert_with(|| head_bytes(bytes) + (bytes.len() - head_bytes(bytes)) / 2);
+        match half.saturating_sub(self.sent) {
+            0 => {
+                self.stream.set_zero_linger()?;
+                Poll::Ready(Err(io::ErrorKind::ConnectionReset.into()))
+            }
+            left => self.send(cx, &bytes[..left.min(bytes.len())]),
+        }
+    }
+
+    fn trickle(&mut self, cx: &mut Context<'_>, bytes: &[u8], every: Duration) -> Poll<io::Result<usize>> {
+        let head = *self.half.get_or_insert_with(|| head_bytes(bytes));
+        if self.sent < head {
+            let left = (head - self.sent).min(bytes.len());
+            return self.send(cx, &bytes[..left]);
+        }
+        let pause = self.pause.get_or_insert_with(|| Box::pin(tokio::time::sleep(every)));
+        if pause.as_mut().poll(cx).is_pending() {
+            return Poll::Pending;
+        }
+        self.pause = None;
+        self.send(cx, &bytes[..bytes.len().min(1)])
+    }
+
+    /// Goes on until the other side hangs up.
+    fn endless(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
+        loop {
+            let next = ENDLESS_HEAD.get(self.sent..).filter(|rest| !rest.is_empty()).unwrap_or(&ENDLESS_WORDS);
+            match self.send(cx, next) {
+                Poll::Ready(Ok(_)) => {}
+                stopped => return stopped,
+            }
+        }
+    }
+}
+
+/// Bytes of a response up to its body.
+fn head_bytes(bytes: &[u8]) -> usize {
+    bytes.windows(4).position(|window| window == b"\r\n\r\n").map_or(bytes.len(), |at| at + 4)
+}
+
+impl AsyncRead for Wire {
+    fn poll_read(mut self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_read(cx, buffer)
+    }
+}
+
+impl AsyncWrite for Wire {
+    fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        match self.line.told() {
+            None => Pin::new(&mut self.stream).poll_write(cx, bytes),
+            Some(Break::Close) => Poll::Ready(Err(io::ErrorKind::ConnectionAborted.into())),
+            Some(Break::Reset) => self.reset(cx, bytes),
+            Some(Break::Trickle(every)) => self.trickle(cx, bytes, every),
+            Some(Break::Endless) => self.endless(cx),
+        }
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_flush(cx)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        // An orderly farewell would go out before the reset.
+        if self.line.told() == Some(Break::Reset) {
+            return Poll::Ready(Ok(()));
+        }
+        Pin::new(&mut self.stream).poll_shutdown(cx)
+    }
+}
