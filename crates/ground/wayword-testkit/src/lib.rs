@@ -43,9 +43,21 @@ pub fn write_building(data: &Path) -> io::Result<()> {
 /// # Errors
 /// When a file cannot be written.
 pub fn write_skyboxes(data: &Path) -> io::Result<()> {
+    write_skyboxes_marked(data, |_| 0)
+}
+
+/// The same, but no two places look the same: for those who tell views by their pictures.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_distinct_skyboxes(data: &Path) -> io::Result<()> {
+    write_skyboxes_marked(data, |index| u8::try_from(4 * (index + 1)).unwrap_or(u8::MAX))
+}
+
+fn write_skyboxes_marked(data: &Path, mark: impl Fn(usize) -> u8) -> io::Result<()> {
     let folder = data.join(format!("matterport/v1/scans/{SCAN}/matterport_skybox_images"));
     for (index, _) in plan::VIEWPOINTS.iter().enumerate() {
-        write(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), pictures::skybox()?)?;
+        write(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), pictures::skybox(mark(index))?)?;
     }
     Ok(())
 }

@@ -15,9 +15,10 @@ pub fn wall_colour(quarter: usize) -> [u8; 3] {
     FACES[[3, 4, 1, 2][quarter % 4]]
 }
 
-/// A strip of six faces as JPEG.
-pub(crate) fn skybox() -> io::Result<Vec<u8>> {
-    let strip = RgbImage::from_fn(6 * SIDE_PX, SIDE_PX, |x, _| Rgb(FACES[(x / SIDE_PX) as usize]));
+/// A strip of six faces as JPEG; `mark` shades each a little, so that no two places look the same.
+pub(crate) fn skybox(mark: u8) -> io::Result<Vec<u8>> {
+    let shade = |[red, green, blue]: [u8; 3]| Rgb([red, green, blue.wrapping_add(mark)]);
+    let strip = RgbImage::from_fn(6 * SIDE_PX, SIDE_PX, |x, _| shade(FACES[(x / SIDE_PX) as usize]));
     let mut bytes = Vec::new();
     JpegEncoder::new_with_quality(&mut bytes, 95)
         .write_image(&strip, strip.width(), strip.height(), image::ExtendedColorType::Rgb8)

@@ -57,15 +57,29 @@ const MOST_NAMED: usize = 9;
 
 impl Script for FlawedEye {
     fn reply(&self, heard: &Heard) -> String {
-        let known = heard.pictures.first().and_then(|picture| barcode::read(picture));
-        let Some((id, scenery)) = known.and_then(|id| Some((id, self.gallery.scenery(id)?))) else {
-            return "I am not sure what this picture shows.".to_owned();
-        };
+        let Some(picture) = heard.pictures.first() else { return "I see no picture.".to_owned() };
+        let known = barcode::read(picture).and_then(|id| Some((id, self.gallery.scenery(id)?)));
+        let (id, scenery) = known.unwrap_or_else(|| dream(picture));
         let text = heard.prompt();
         let question = text.rsplit("Question:").next().unwrap_or(text).replace("Answer:", "");
         let question = question.rsplit("sentence:").next().unwrap_or_default().trim().to_lowercase();
         Look { eye: self, id, scenery: &scenery }.answer(&question)
     }
+}
+
+/// Any other picture is dreamt up from its bytes: the same picture always shows the same.
+fn dream(picture: &[u8]) -> (u64, Scenery) {
+    const DREAMS: [&str; 12] =
+        ["sofa", "lamp", "table", "chair", "bed", "mirror", "plant", "desk", "cabinet", "picture", "rug", "sink"];
+    const ROOMS: [&str; 4] = ["bedroom", "kitchen", "hallway", "living room"];
+    let hash: [u8; 32] = Sha256::digest(picture).into();
+    let mut rng = ChaCha8Rng::from_seed(hash);
+    let mut names = DREAMS;
+    let (names, _) = names.partial_shuffle(&mut rng, 4);
+    let mut thing = |name: &&str| Thing { name: (*name).to_owned(), third: rng.random_range(0..3), colour: None };
+    let things = names.iter().map(&mut thing).collect();
+    let room = ROOMS[usize::from(hash[0]) % ROOMS.len()].to_owned();
+    (rng.random(), Scenery { room: Some(room), things })
 }
 
 /// One look at one picture.

@@ -1,0 +1,88 @@
+//! What the tests with models share: a provider that plays every role, and runs of the binary against it.
+
+use crate::common::{self, Building, Ran, run};
+use std::{path::Path, process::Command};
+use wayword_testkit::provider::{
+    Behaviour, Dialect, Gallery, Provider,
+    scripts::{Cast, FlawedEye},
+};
+
+/// The variable that holds the provider's key.
+pub(crate) const KEY_ENV: &str = "WAYWORD_TEST_KEY";
+/// The key: nobody else says this.
+pub(crate) const KEY: &str = "sk-test-7f3b19c2d4e5f6a7";
+
+/// A provider's behaviour with a careless cast behind two names.
+pub(crate) fn cast() -> Behaviour {
+    let cast = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.15), 1, 0.2);
+    Behaviour::of("words", cast.clone()).and("eye", cast)
+}
+
+/// The building with pictures, and a provider.
+pub(crate) struct Stage {
+    pub(crate) building: Building,
+    pub(crate) provider: Provider,
+}
+
+impl Stage {
+    pub(crate) fn new(behaviour: Behaviour) -> Self {
+        let building = Building::new();
+        wayword_testkit::write_distinct_skyboxes(&building.data()).unwrap();
+        Self { building, provider: Provider::start(behaviour).unwrap() }
+    }
+
+    /// The flags that name the models.
+    pub(crate) fn models(&self) -> Vec<String> {
+        let base = self.provider.base_url(Dialect::OpenAi);
+        [
+            "--llm",
+            "server/words",
+            "--see",
+            "server/eye",
+            "--base-url",
+            &base,
+            "--ledger",
+            "ledger.db",
+            "--key-env",
+            KEY_ENV,
+        ]
+        .map(str::to_owned)
+        .to_vec()
+    }
+
+    /// `wayword COMMAND --platform matterport --data data MODELS ARGS` with the key in the environment.
+    pub(crate) fn command(&self, command: &str, args: &[&str]) -> Command {
+        let models = self.models();
+        let mut all = vec![command, "--platform", "matterport", "--data", "data"];
+        all.extend(models.iter().map(String::as_str));
+        all.extend(args);
+        let mut command = self.building.command(&all);
+        command.env(KEY_ENV, KEY);
+        command
+    }
+
+    /// The same for `generate --out OUT --style r2r --hops 3..7 --evidence captions ARGS`.
+    pub(crate) fn generating(&self, out: &str, args: &[&str]) -> Command {
+        let mut all = vec!["--out", out, "--style", "r2r", "--hops", "3..7", "--evidence", "captions"];
+        all.extend(args);
+        self.command("generate", &all)
+    }
+
+    pub(crate) fn generate(&self, out: &str, args: &[&str]) -> Ran {
+        run(&mut self.generating(out, args))
+    }
+
+    /// The files that a run is about.
+    pub(crate) fn results(&self, out: &str) -> Vec<Vec<u8>> {
+        let file = |name: &str| std::fs::read(self.building.path(out).join(name)).unwrap();
+        ["walks.jsonl", "instructions.jsonl", "rejected.jsonl"].map(file).to_vec()
+    }
+}
+
+/// Asserts that the key is in no file below a folder.
+pub(crate) fn holds_no_key(folder: &Path) {
+    for (name, bytes) in common::files(folder) {
+        let held = bytes.windows(KEY.len()).any(|window| window == KEY.as_bytes());
+        assert!(!held, "{} holds the key", name.display());
+    }
+}

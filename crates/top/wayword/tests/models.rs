@@ -1,0 +1,267 @@
+//! Whole runs with models, against a provider that plays them.
+
+#![cfg(feature = "remote")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+#[path = "common/models.rs"]
+mod stage;
+
+use common::run;
+use serde_json::Value;
+use stage::{KEY, Stage, cast, holds_no_key};
+use std::fs;
+use wayword_testkit::provider::{Behaviour, Fault, Faults};
+
+#[test]
+fn models_play_every_role_and_say_so() {
+    let stage = Stage::new(cast());
+    let ran = stage.generate("run", &["--paths", "6", "--record", "calls.jsonl", "--json"]);
+    let summary = ran.json();
+    assert_eq!((ran.code, summary["errors"].as_u64()), (Some(0), Some(0)), "{ran:?}");
+    assert_eq!(summary["passed"], 6, "{ran:?}");
+    assert!(summary["spent"]["answered"].as_u64().unwrap() > 60);
+    for record in stage.building.records("run") {
+        let provenance = &record.instruction.provenance;
+        assert_eq!((&*provenance.asker, &*provenance.answerer), ("server/words", "server/eye"));
+        assert_eq!((&*provenance.summariser, &*provenance.checked_against), ("server/words", "captions"));
+        assert!(provenance.prompts_hash.is_some());
+        let finished = provenance.finished_for.as_deref();
+        assert!(provenance.writer == "server/words" || finished == Some("server/words"), "{provenance:?}");
+    }
+    let walks = stage.building.lines("run/walks.jsonl");
+    let transcript = walks[0]["observations"][0]["looks"][0]["caption"]["transcript"].as_array().unwrap();
+    assert!(transcript.len() > 2, "{transcript:?}");
+
+    // The whole run again, from the recording alone.
+    drop(stage.provider);
+    let args =
+        ["generate", "--platform", "matterport", "--data", "data", "--paths", "6", "--style", "r2r", "--hops", "3..7"];
+    let mut args: Vec<String> = args.iter().map(|arg| (*arg).to_owned()).collect();
+    let config: toml::Table = fs::read_to_string(stage.building.path("run/config.toml")).unwrap().parse().unwrap();
+    let base = config["roles"]["base_url"].as_str().unwrap();
+    let rest = [
+        "--evidence",
+        "captions",
+        "--llm",
+        "server/words",
+        "--see",
+        "server/eye",
+        "--base-url",
+        base,
+        "--out",
+        "again",
+    ];
+    args.extend(rest.iter().chain(&["--replay", "calls.jsonl", "--json"]).map(|arg| (*arg).to_owned()));
+    let again =
+        run(stage.building.command(&args.iter().map(String::as_str).collect::<Vec<_>>()).env_remove(stage::KEY_ENV));
+    assert_eq!(again.code, Some(0), "{again:?}");
+    assert_eq!(again.json()["spent"]["requests"], 0);
+    for file in ["walks.jsonl", "instructions.jsonl"] {
+        let read = |run: &str| fs::read(stage.building.path(run).join(file)).unwrap();
+        assert!(read("run") == read("again"), "{file} differs");
+    }
+}
+
+#[test]
+fn what_was_asked_once_is_never_asked_again() {
+    let stage = Stage::new(cast());
+    assert_eq!(stage.generate("first", &["--paths", "6"]).code, Some(0));
+    let asked = stage.provider.requests();
+    let second = stage.generate("second", &["--paths", "6"]);
+    assert_eq!(second.code, Some(0), "{second:?}");
+    assert_eq!(stage.provider.requests(), asked, "{}", second.out);
+    // More paths through the same building pass places that were looked at before.
+    stage.generate("third", &["--paths", "40"]);
+    let log = stage.provider.log();
+    assert_eq!(log.answered_again(), 0);
+    assert!(log.answered < 7 * asked, "{} after {asked}", log.answered);
+}
+
+#[test]
+fn a_storm_is_weathered_and_every_item_ends() {
+    let mut faults = Faults::storm(0.3).with(Fault::Filtered, 0.002).with(Fault::CutOff, 0.02);
+    faults.trickle = std::time::Duration::from_secs(2);
+    let behaviour = Behaviour { faults, ..cast() };
+    let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..behaviour });
+    let args = ["--paths", "12", "--concurrency", "16", "--timeout-s", "1", "--json"];
+    let ran = stage.generate("run", &args);
+    let summary = ran.json();
+    let ended = ["passed", "unverified", "rejected", "errors"].map(|fate| summary[fate].as_u64().unwrap());
+    assert_eq!(ended.iter().sum::<u64>(), 12, "{ran:?}");
+    assert!(stage.provider.log().faults_committed() > 50);
+    for error in stage.building.lines("run/errors.jsonl") {
+        assert!(!error["reason"].as_str().unwrap().is_empty());
+    }
+    holds_no_key(&stage.building.path(""));
+    assert!(!ran.out.contains(KEY) && !ran.err.contains(KEY));
+    let again = stage.generate("run", &args);
+    assert!(again.json()["errors"].as_u64() <= summary["errors"].as_u64(), "{again:?}");
+}
+
+#[test]
+fn one_bad_frame_is_an_error_row_that_the_next_command_retries() {
+    let faults = Faults::default().first(&[Some(Fault::Filtered)]);
+    let stage = Stage::new(Behaviour { faults, ..cast() });
+    let args = ["--paths", "4", "--concurrency", "1", "--json"];
+    let first = stage.generate("run", &args);
+    assert_eq!((first.code, first.json()["errors"].as_u64()), (Some(3), Some(1)), "{first:?}");
+    let errors = stage.building.lines("run/errors.jsonl");
+    assert!(errors[0]["reason"].as_str().unwrap().contains("filter"), "{errors:?}");
+    let page = stage.building.wayword(&["report", "--run", "run"]);
+    assert_eq!(page.code, Some(0), "{page:?}");
+    assert!(fs::read_to_string(stage.building.path("run/report.html")).unwrap().contains("filter"));
+    let second = stage.generate("run", &args);
+    assert_eq!((second.code, second.json()["errors"].as_u64()), (Some(0), Some(0)), "{second:?}");
+    assert_eq!(second.json()["passed"], 4);
+}
+
+#[test]
+fn a_refused_key_and_an_empty_account_stop_the_run_and_lose_nothing() {
+    for is_quota in [false, true] {
+        let mut faults = Faults::default();
+        let after = if is_quota { &mut faults.quota_after } else { &mut faults.key_refused_after };
+        *after = Some(40);
+        let stage = Stage::new(Behaviour { faults, key: Some(KEY.into()), ..cast() });
+        let ran = stage.generate("run", &["--paths", "12", "--concurrency", "2", "--json"]);
+        assert_eq!(ran.code, Some(5), "{ran:?}");
+        let requests = stage.provider.requests();
+        assert!(requests < 50, "{requests}: it goes on asking");
+        assert!(ran.json()["stopped"].as_str().unwrap().contains("hint: "), "{ran:?}");
+        let again = stage.generate("run", &["--paths", "12", "--concurrency", "2", "--json"]);
+        assert_eq!(again.code, Some(5));
+        assert_eq!(stage.provider.log().answered_again(), 0, "{again:?}");
+        holds_no_key(&stage.building.path(""));
+    }
+    let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..cast() });
+    let without = run(stage.generating("run", &["--paths", "2"]).env_remove(stage::KEY_ENV));
+    assert_eq!(without.code, Some(5), "{without:?}");
+    assert!(without.out.contains(stage::KEY_ENV), "it names the variable: {without:?}");
+}
+
+const PRICES: &str = "[\"server/words\"]\nusd_per_million_in = 10.0\nusd_per_million_out = 20.0\nas_of = \"2026-11-01\"\n\
+                      [\"server/eye\"]\nusd_per_million_in = 10.0\nusd_per_million_out = 20.0\nas_of = \"2026-11-01\"\n";
+
+#[test]
+fn money_and_calls_are_bounded_over_all_commands_of_a_run() {
+    let stage = Stage::new(cast());
+    stage.building.write("prices.toml", PRICES);
+    let bounded = |bound: &[&str]| {
+        let mut args = vec!["--paths", "30", "--concurrency", "4", "--prices", "prices.toml", "--json"];
+        args.extend(bound);
+        stage.generate("run", &args)
+    };
+    let spent = |ran: &common::Ran| ran.json()["spent"]["usd"].as_f64().unwrap();
+    let first = bounded(&["--max-usd", "0.3"]);
+    assert_eq!(first.code, Some(5), "{first:?}");
+    assert!(spent(&first) <= 0.3 && spent(&first) > 0.2, "{first:?}");
+    let second = bounded(&["--max-usd", "0.3"]);
+    assert!(second.code == Some(5) && spent(&first) + spent(&second) <= 0.3, "{second:?}");
+    let asked = stage.provider.requests();
+    let third = bounded(&["--max-calls", &(asked + 10).to_string()]);
+    assert!(third.code == Some(5) && stage.provider.requests() <= asked + 10, "{third:?}");
+    let last = bounded(&[]);
+    assert_eq!(last.json()["stopped"], Value::Null, "{last:?}");
+    let refused = stage.generate("other", &["--paths", "1", "--max-usd", "1"]);
+    assert_eq!(refused.code, Some(1), "a model without a price: {refused:?}");
+    assert!(refused.err.contains("--prices"), "{refused:?}");
+    let cost = stage.building.wayword(&["ledger", "cost", "--by", "run", "--ledger", "ledger.db", "--json"]);
+    assert!(cost.json()["lines"][0]["usd"].as_f64().unwrap() > 0.3);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_finishes_what_is_in_flight_and_the_same_command_goes_on() {
+    let latency = std::time::Duration::from_millis(20);
+    let stage = Stage::new(Behaviour { latency, ..cast() });
+    let args = ["--paths", "40", "--concurrency", "8", "--json"];
+    let child = stage
+        .generating("run", &args)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    while stage.provider.requests() < 60 {
+        std::thread::yield_now();
+    }
+    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(5), "{told}");
+    assert!(told.contains("finishing what is in flight"), "{told}");
+    let log = stage.provider.log();
+    assert_eq!(log.received, log.answered, "nothing was broken off");
+    let whole = stage.generate("run", &args);
+    assert_eq!(whole.json()["stopped"], Value::Null, "{whole:?}");
+    assert_eq!(stage.provider.log().answered_again(), 0);
+    stage.generate("other", &args);
+    assert!(stage.results("run") == stage.results("other"));
+}
+
+#[test]
+fn a_dry_run_asks_nothing_and_counts_what_a_run_would_ask() {
+    let stage = Stage::new(cast());
+    stage.building.write("prices.toml", PRICES);
+    let args = ["--style", "r2r", "--hops", "3..7", "--paths", "6", "--prices", "prices.toml", "--dry-run", "--json"];
+    let plan = run(&mut stage.command("generate", &args)).json();
+    assert_eq!(stage.provider.requests(), 0);
+    let models = plan["models"].as_array().unwrap();
+    assert!(models.iter().all(|model| model["usd"].as_f64().unwrap() > 0.0), "{plan}");
+    let planned: u64 = models.iter().map(|model| model["calls"].as_u64().unwrap()).sum();
+    stage.generate("run", &["--paths", "6"]);
+    let asked = stage.provider.requests();
+    // Repairs come on top of a plan, and dialogues that end early are below it.
+    assert!(planned >= asked * 9 / 10 && planned < 3 * asked, "{planned} planned, {asked} asked");
+}
+
+#[test]
+fn the_doctor_tells_what_works_and_what_to_do() {
+    let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..cast() });
+    let healthy = run(&mut stage.command("doctor", &[]));
+    assert!(healthy.out.contains("server/words") && healthy.out.contains("picture and labels"), "{healthy:?}");
+    let keyless = run(stage.command("doctor", &["--json"]).env_remove(stage::KEY_ENV));
+    assert_eq!(keyless.code, Some(1), "{keyless:?}");
+    let findings = keyless.json();
+    let problem =
+        findings["findings"].as_array().unwrap().iter().find(|finding| finding["state"] == "problem").unwrap();
+    assert!(problem["hint"].as_str().unwrap().contains(stage::KEY_ENV), "{findings}");
+    drop(stage.provider);
+    let offline = stage.building.wayword(&["doctor"]);
+    assert_eq!(offline.code, Some(0), "{offline:?}");
+}
+
+#[test]
+fn perception_is_measured_in_each_way_of_asking() {
+    let stage = Stage::new(cast());
+    let measured = run(&mut stage.command("perceive", &["--views", "12", "--json"])).json();
+    let rows = measured["rows"].as_array().unwrap();
+    let ways: Vec<&str> = rows.iter().map(|row| row["perception"].as_str().unwrap()).collect();
+    assert_eq!(ways, ["fixed", "single", "dialogue"]);
+    let calls: Vec<f64> = rows.iter().map(|row| row["calls_per_view"].as_f64().unwrap()).collect();
+    assert!(calls[0] == 2.0 && calls[1] == 1.0 && calls[2] > 4.0, "{calls:?}");
+    let labels =
+        stage.building.wayword(&["perceive", "--platform", "matterport", "--data", "data", "--views", "12", "--json"]);
+    let rows = labels.json();
+    assert_eq!(rows["rows"][2]["ghost_rate"], 0.0, "ground truth has no ghosts: {rows}");
+}
+
+#[test]
+fn the_ledger_can_be_shown_exported_and_pruned() {
+    let stage = Stage::new(cast());
+    let missing = stage.building.wayword(&["ledger", "show", "--ledger", "ledger.db"]);
+    assert!(missing.refused().contains("there is no ledger yet"));
+    stage.generate("run", &["--paths", "2"]);
+    let ledger = |args: &[&str]| {
+        let mut all = vec!["ledger", "--ledger", "ledger.db", "--json"];
+        all.extend(args);
+        stage.building.wayword(&all)
+    };
+    let shown = ledger(&["show", "--model", "server/eye", "--limit", "3"]);
+    assert_eq!(shown.json()["rows"].as_array().unwrap().len(), 3, "{shown:?}");
+    let exported = ledger(&["export", "--out", "all.jsonl"]).json()["rows"].as_u64().unwrap();
+    assert_eq!(stage.building.lines("all.jsonl").len() as u64, exported);
+    assert_eq!(exported, stage.provider.requests());
+    assert_eq!(ledger(&["prune"]).code, Some(1), "it does not empty the ledger by mistake");
+    let pruned = ledger(&["prune", "--model", "server/eye"]).json()["rows"].as_u64().unwrap();
+    assert!(pruned > 0 && pruned < exported);
+}
