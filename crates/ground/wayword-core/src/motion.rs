@@ -55,6 +55,17 @@ pub const AROUND_DEG: f64 = 150.0;
 /// From here on a rise is stairs and not a door sill, metres.
 pub const CLIMB_M: f64 = 0.5;
 
+/// From here on "turn around" is no mistake where others tell it, degrees. We say it from [`AROUND_DEG`] on only; people
+/// say it as soon as they end up looking back more than sideways.
+pub const AROUND_AT_LEAST_DEG: f64 = 120.0;
+/// From here on a bend over several moves may be told as one turn, degrees: no single move of it need be one, and together
+/// they have to be a clear one.
+pub const BEND_DEG: f64 = 60.0;
+/// Least turn of each move of such a bend, degrees: less is walking straight, and a bend has no straight stretch.
+pub const BEND_STEP_DEG: f64 = 10.0;
+/// Longest such bend, moves: a corner is rounded in two or three hops between viewpoints.
+pub const BEND_MOVES: usize = 3;
+
 impl Move {
     /// The move between two poses.
     #[must_use]

@@ -2,25 +2,15 @@
 //!
 //! A place is laid on a frame that shows it, a turn on a move (or a bend of up to three) that makes it. Places may not go
 //! back, each turn needs a move of its own after the last one's, and a turn and the places around it must be near each
-//! other. The search keeps every state that the text so far allows, so it fails only where no reading of the text fits.
+//! other. The search fails only where no reading of the text fits.
 
 use crate::evidence::Evidence;
-use std::collections::BTreeMap;
 use wayword_core::{Side, motion};
-
-/// Longest bend that is told as one turn, moves.
-const BEND_MOVES: usize = 3;
-/// Least turn of each move of a bend, degrees.
-const BEND_STEP_DEG: f64 = 10.0;
-/// Least turn of a bend, degrees.
-const BEND_DEG: f64 = 60.0;
-/// Least turn that is told as turning around, degrees.
-const ABOUT_DEG: f64 = 120.0;
 
 /// Something to lay along the walk.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
-    /// A place, and the frames that show it.
+    /// A place, and the frames that show it, ascending.
     Place(Vec<usize>),
     /// A turn.
     Turn(Side),
@@ -36,68 +26,182 @@ struct State {
     next_move: usize,
 }
 
+/// A state with the one before it, counted in the layer before, and the frame of the step between them.
+#[derive(Debug, Clone, Copy)]
+struct Reached {
+    state: State,
+    before: usize,
+    frame: Option<usize>,
+}
+
 /// The frame of each step, where all of them can be laid along the walk; else the first step at which none of the ways to
 /// lay those before it can go on.
 pub(super) fn align(steps: &[Step], evidence: &Evidence) -> Result<Vec<Option<usize>>, usize> {
-    // For each step the states after it, each with the state before it and its own frame.
-    let mut layers: Vec<BTreeMap<State, (State, Option<usize>)>> = Vec::with_capacity(steps.len());
-    let start = State { place: 0, turn: 0, next_move: 0 };
-    let mut now = vec![start];
+    let bends = Bends::of(evidence);
+    let start = Reached { state: State { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
+    let mut layers: Vec<Vec<Reached>> = vec![vec![start]];
     for (at, step) in steps.iter().enumerate() {
-        let mut layer = BTreeMap::new();
-        for state in &now {
-            for (next, frame) in after(*state, step, evidence) {
-                layer.entry(next).or_insert((*state, frame));
-            }
-        }
-        if layer.is_empty() {
+        let now = layers.last().map_or(&[][..], Vec::as_slice);
+        let next = now.iter().enumerate().flat_map(|(before, reached)| {
+            after(reached.state, step, &bends).into_iter().map(move |(state, frame)| Reached { state, before, frame })
+        });
+        let next = undominated(next.collect());
+        if next.is_empty() {
             return Err(at);
         }
-        now = layer.keys().copied().collect();
-        layers.push(layer);
+        layers.push(next);
     }
     let mut frames = vec![None; steps.len()];
-    let mut state = now.first().copied().unwrap_or(start);
-    for (frame, layer) in frames.iter_mut().zip(&layers).rev() {
-        if let Some((before, at)) = layer.get(&state) {
-            (*frame, state) = (*at, *before);
+    let mut at = 0;
+    for (frame, layer) in frames.iter_mut().zip(&layers[1..]).rev() {
+        if let Some(reached) = layer.get(at) {
+            (*frame, at) = (reached.frame, reached.before);
         }
     }
     Ok(frames)
 }
 
-fn after(state: State, step: &Step, evidence: &Evidence) -> Vec<(State, Option<usize>)> {
+/// Those states that no other one dominates, least first. A state dominates another where neither its place nor its turn
+/// nor its next move is later.
+///
+/// Nothing is lost with a dominated state: a step asks for frames and moves that are not before these three numbers, so
+/// whatever may follow the dominated state may follow the other too, and what it leaves there dominates again what it would
+/// have left here. What is kept is a handful, however long the text and the walk are; all states together would be as many
+/// as the square of the walk's length.
+fn undominated(mut reached: Vec<Reached>) -> Vec<Reached> {
+    // Whoever dominates a state comes before it.
+    reached.sort_by_key(|reached| reached.state);
+    let mut kept: Vec<Reached> = Vec::new();
+    for one in reached {
+        let dominates = |other: &Reached| {
+            let (a, b) = (other.state, one.state);
+            a.place <= b.place && a.turn <= b.turn && a.next_move <= b.next_move
+        };
+        if !kept.iter().any(dominates) {
+            kept.push(one);
+        }
+    }
+    kept
+}
+
+/// The states after a step, without most of those that another of them dominates.
+fn after(state: State, step: &Step, bends: &Bends) -> Vec<(State, Option<usize>)> {
     match step {
         Step::Free => vec![(state, None)],
-        Step::Place(frames) => frames
-            .iter()
-            .filter(|frame| **frame >= state.place && **frame >= state.turn)
-            .map(|frame| (State { place: *frame, ..state }, Some(*frame)))
-            .collect(),
-        // A place that is told before a turn may already be seen from the frame of the turn, a hop ahead of itself.
-        Step::Turn(side) => turns(*side, state.next_move, evidence)
-            .into_iter()
-            .filter(|(first, _)| first + 1 >= state.place)
-            .map(|(first, last)| (State { turn: first, next_move: last + 1, ..state }, Some(first)))
-            .collect(),
+        Step::Place(frames) => {
+            let first = frames.partition_point(|frame| *frame < state.place.max(state.turn));
+            frames.get(first).map(|frame| (State { place: *frame, ..state }, Some(*frame))).into_iter().collect()
+        }
+        Step::Turn(side) => {
+            // A place that is told before a turn may already be seen from the frame of the turn, a hop ahead of itself.
+            let from = state.next_move.max(state.place.saturating_sub(1));
+            let turned = |(first, last): (usize, usize)| State { turn: first, next_move: last + 1, ..state };
+            bends.soonest(*side, from).into_iter().map(|bend| (turned(bend), Some(bend.0))).collect()
+        }
     }
 }
 
-/// The moves, or bends of moves, from `from` on that make a turn to a side: first and last move of each.
-fn turns(side: Side, from: usize, evidence: &Evidence) -> Vec<(usize, usize)> {
+/// The moves, and bends of moves, that turn: first and last move of each, ascending.
+struct Bends {
+    left: Vec<(usize, usize)>,
+    right: Vec<(usize, usize)>,
+    around: Vec<(usize, usize)>,
+}
+
+impl Bends {
+    fn of(evidence: &Evidence) -> Self {
+        let deg: Vec<f64> = evidence.moves.iter().map(|step| step.turn_rad.to_degrees()).collect();
+        let to = |side: Side| {
+            let spans = (0..deg.len())
+                .flat_map(|first| (first..(first + motion::BEND_MOVES).min(deg.len())).map(move |last| (first, last)));
+            spans.filter(|(first, last)| is_turn(side, &deg[*first..=*last])).collect()
+        };
+        Self { left: to(Side::Left), right: to(Side::Right), around: to(Side::Behind) }
+    }
+
+    /// Those to a side, from a move on, that begin before every other has ended: the later ones leave a text no more to say.
+    fn soonest(&self, side: Side, from: usize) -> Vec<(usize, usize)> {
+        let all = match side {
+            Side::Left => &self.left,
+            Side::Right => &self.right,
+            Side::Ahead | Side::Behind => &self.around,
+        };
+        let rest = &all[all.partition_point(|(first, _)| *first < from)..];
+        let soonest_end = rest.iter().map(|(_, last)| *last).take(motion::BEND_MOVES * motion::BEND_MOVES).min();
+        rest.iter().copied().take_while(|(first, _)| soonest_end.is_some_and(|end| *first <= end)).collect()
+    }
+}
+
+/// Whether moves that turn by so many degrees, positive right, make a turn to a side.
+fn is_turn(side: Side, bend: &[f64]) -> bool {
     let sign = if side == Side::Left { -1.0 } else { 1.0 };
-    let deg: Vec<f64> = evidence.moves.iter().map(|step| step.turn_rad.to_degrees() * sign).collect();
-    let is_turn = |first: usize, last: usize| {
-        let bend = &deg[first..=last];
-        let total: f64 = bend.iter().sum();
-        let one_way = bend.len() == 1 || bend.iter().all(|deg| *deg >= BEND_STEP_DEG);
-        match side {
-            Side::Behind => bend.len() == 1 && total.abs() >= ABOUT_DEG || bend.len() == 2 && total.abs() >= ABOUT_DEG,
-            _ if bend.len() == 1 => total >= motion::SLIGHT_DEG || total <= -motion::AROUND_DEG,
-            _ => one_way && total >= BEND_DEG,
+    let total = bend.iter().sum::<f64>() * sign;
+    match (side, bend.len()) {
+        (Side::Ahead | Side::Behind, moves) => moves <= 2 && total.abs() >= motion::AROUND_AT_LEAST_DEG,
+        (_, 1) => total >= motion::SLIGHT_DEG || total <= -motion::AROUND_DEG,
+        _ => total >= motion::BEND_DEG && bend.iter().all(|deg| deg * sign >= motion::BEND_STEP_DEG),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::Source;
+    use proptest::prelude::*;
+    use std::time::{Duration, Instant};
+    use wayword_core::Move;
+
+    fn walk(turns_deg: &[f64]) -> Evidence {
+        let step = |deg: &f64| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: 0.0 };
+        Evidence { frames: Vec::new(), moves: turns_deg.iter().map(step).collect(), source: Source::Nothing }
+    }
+
+    /// Every way to lay the steps, without any bound.
+    fn fits(steps: &[Step], state: State, turns_deg: &[f64]) -> bool {
+        let Some((step, rest)) = steps.split_first() else { return true };
+        let moves = turns_deg.len();
+        match step {
+            Step::Free => fits(rest, state, turns_deg),
+            Step::Place(frames) => frames
+                .iter()
+                .filter(|frame| **frame >= state.place && **frame >= state.turn)
+                .any(|frame| fits(rest, State { place: *frame, ..state }, turns_deg)),
+            Step::Turn(side) => (state.next_move..moves)
+                .flat_map(|first| (first..moves.min(first + motion::BEND_MOVES)).map(move |last| (first, last)))
+                .filter(|(first, last)| first + 1 >= state.place && is_turn(*side, &turns_deg[*first..=*last]))
+                .any(|(first, last)| fits(rest, State { turn: first, next_move: last + 1, ..state }, turns_deg)),
         }
-    };
-    let spans =
-        (from..deg.len()).flat_map(|first| (first..(first + BEND_MOVES).min(deg.len())).map(move |last| (first, last)));
-    spans.filter(|(first, last)| is_turn(*first, *last)).collect()
+    }
+
+    fn step() -> impl Strategy<Value = Step> {
+        prop_oneof![
+            prop::collection::btree_set(0..6_usize, 1..4).prop_map(|frames| Step::Place(frames.into_iter().collect())),
+            prop_oneof![Just(Side::Left), Just(Side::Right), Just(Side::Behind)].prop_map(Step::Turn),
+            Just(Step::Free),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_dropped_could_not_have_gone_farther(
+            steps in prop::collection::vec(step(), 0..6),
+            turns in prop::collection::vec(prop_oneof![Just(0.0), Just(20.0), Just(-40.0), Just(70.0), Just(170.0)], 0..6),
+        ) {
+            let start = State { place: 0, turn: 0, next_move: 0 };
+            let laid = align(&steps, &walk(&turns));
+            prop_assert_eq!(laid.is_ok(), fits(&steps, start, &turns));
+            let upto = laid.err().unwrap_or(steps.len());
+            prop_assert!(fits(&steps[..upto], start, &turns));
+        }
+    }
+
+    #[test]
+    fn a_long_text_about_a_long_walk_back_and_forth_takes_no_time() {
+        let began = Instant::now();
+        let back_and_forth: Vec<f64> = (0..999).map(|at| if at % 2 == 0 { 180.0 } else { -90.0 }).collect();
+        let steps = [Step::Place((0..1000).collect()), Step::Turn(Side::Left)].into_iter().cycle().take(1400);
+        let steps: Vec<Step> = steps.collect();
+        assert!(align(&steps, &walk(&back_and_forth)).is_ok_and(|frames| frames.iter().all(Option::is_some)));
+        assert!(began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
+    }
 }
