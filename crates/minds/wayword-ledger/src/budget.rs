@@ -61,6 +61,11 @@ pub(crate) struct Spent {
     pub(crate) calls: u64,
 }
 
+/// An amount of money. What cannot be added up and compared, such as what a broken table of prices yields, is not known.
+pub(crate) fn known(usd: Option<f64>) -> Option<f64> {
+    usd.filter(|usd| usd.is_finite() && *usd >= 0.0)
+}
+
 /// Rounding of sums of many small amounts must not refuse the last request that fits.
 const ROUNDING_USD: f64 = 1e-9;
 
@@ -81,7 +86,8 @@ impl Budget {
                 return Err(Refused::NoPrice);
             }
             let spent_usd = spent.usd + spent.reserved_usd;
-            if spent_usd + next_usd > max_usd + ROUNDING_USD {
+            let fits = spent_usd + next_usd <= max_usd + ROUNDING_USD;
+            if !fits {
                 return Err(Refused::MaxUsd { max_usd, spent_usd, next_usd });
             }
         }

@@ -29,7 +29,7 @@ pub enum LedgerError {
         hint: &'static str,
     },
     /// A file would not.
-    #[error("{}: cannot {doing}: {source}", path.display())]
+    #[error("{}: cannot {doing}: {source}\nhint: see whether the file or its folder is there, may be used, and has room", path.display())]
     Io {
         /// The file.
         path: PathBuf,

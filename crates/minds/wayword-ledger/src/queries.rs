@@ -185,6 +185,7 @@ impl Ledger {
     /// # Errors
     /// When the ledger cannot be read.
     pub fn lost(&self) -> Result<u64, LedgerError> {
+        self.store().writer.flush()?;
         let sql = "SELECT COUNT(*) FROM sent WHERE outcome IS NULL OR outcome = 'lost'";
         let lost = self.store().reader().query_row(sql, [], |row| row.get::<_, i64>(0));
         lost.map(|lost| u64::try_from(lost).unwrap_or(0)).map_err(LedgerError::store(self.path(), "read"))
@@ -198,6 +199,7 @@ impl Ledger {
     ) -> Result<(), LedgerError> {
         let failed = LedgerError::store(self.path(), "read");
         let Where { sql, values } = filter.to_sql();
+        self.store().writer.flush()?;
         let reader = self.store().reader();
         let mut statement = reader.prepare(&format!("SELECT {COLUMNS} FROM calls{sql}{order}")).map_err(&failed)?;
         let mut rows = statement.query(params_from_iter(values)).map_err(&failed)?;

@@ -2,7 +2,7 @@
 
 use crate::{
     Answer, Call, Key, LedgerError, Limits, Refused, Row,
-    budget::Budget,
+    budget::{Budget, known},
     flight::Flights,
     queries::{Filter, now_unix_s},
     recording,
@@ -101,7 +101,7 @@ pub enum OnceError<E> {
 }
 
 impl Ledger {
-    /// Opens a ledger, or makes one.
+    /// Opens a ledger, or makes one that only its owner can read. Several programs may have it open.
     ///
     /// # Errors
     /// When the file is something else, or cannot be read and written.
@@ -142,7 +142,7 @@ impl Ledger {
     pub fn run(&self, id: &str, limits: Limits) -> Result<Run, LedgerError> {
         let state = State {
             id: id.to_owned(),
-            budget: Budget::new(limits, self.inner.store.spent(id)?),
+            budget: Budget::new(limits, self.store().spent(id)?),
             stopped: AtomicBool::new(false),
             totals: Mutex::default(),
         };
@@ -160,7 +160,8 @@ impl Ledger {
 
 impl Run {
     /// The answer of a call. If it is in the ledger, that is the answer; if another thread is making the call, it waits for that;
-    /// else `send` makes it. What `send` answers is on disk before it is returned.
+    /// else `send` makes it. What `send` answers is on disk before it is returned. If another program was faster, its answer
+    /// stands and is returned: whoever asks hears the same.
     ///
     /// # Errors
     /// When `send` fails, a limit would be broken, or the ledger cannot be used.
@@ -184,10 +185,7 @@ impl Run {
             }
             let mut attempts = Attempts { run: self, key: &key, open: None };
             return match send(&mut attempts) {
-                Ok(answer) => {
-                    attempts.answered(call, &answer)?;
-                    Ok(answer)
-                }
+                Ok(answer) => Ok(attempts.answered(call, answer)?),
                 Err(error) => {
                     attempts.failed("given up", true);
                     Err(OnceError::Call(error))
@@ -228,7 +226,6 @@ impl Run {
     /// # Errors
     /// When the ledger cannot be read or the file cannot be written.
     pub fn record(&self, path: &Path) -> Result<usize, LedgerError> {
-        self.ledger.store().writer.flush()?;
         self.ledger.export_to(&Filter { run: Some(self.state.id.clone()), ..Filter::default() }, path)
     }
 
@@ -238,7 +235,8 @@ impl Run {
 }
 
 impl Attempts<'_> {
-    /// To be called before each request. Once it returns, the ledger knows on disk that the request leaves.
+    /// To be called before each request, with the most that it may cost. Once it returns, the ledger knows on disk that the
+    /// request leaves.
     ///
     /// # Errors
     /// When the request may not leave: the run was stopped, or a limit would be broken.
@@ -247,6 +245,7 @@ impl Attempts<'_> {
         if self.run.is_stopped() {
             return Err(Refused::Stopped);
         }
+        let most_usd = known(most_usd);
         self.run.state.budget.reserve(most_usd)?;
         let write =
             Write::Sent { run: self.run.state.id.clone(), key: self.key.to_string(), most_usd, at: now_unix_s() };
@@ -288,8 +287,12 @@ impl Attempts<'_> {
         self.run.ledger.store().writer.note(Write::Ended { sent, outcome, reason: reason.to_owned() });
     }
 
-    fn answered(&mut self, call: &Call, answer: &Answer) -> Result<(), LedgerError> {
+    /// Keeps an answer; returns the one that stands.
+    fn answered(&mut self, call: &Call, answer: Answer) -> Result<Answer, LedgerError> {
         let open = self.open.take();
+        let most_usd = open.and_then(|(_, most_usd)| most_usd);
+        let answer = Answer { usd: known(answer.usd), ..answer };
+        self.run.state.budget.settle(most_usd, answer.usd.or(most_usd).unwrap_or(0.0));
         let row = Row {
             key: self.key.clone(),
             call: call.clone(),
@@ -298,16 +301,16 @@ impl Attempts<'_> {
             run: self.run.state.id.clone(),
         };
         let sent = open.map(|(sent, _)| sent);
-        let usd = answer.usd.unwrap_or(0.0);
-        self.run.state.budget.settle(open.and_then(|(_, most_usd)| most_usd), usd);
-        self.run.ledger.store().writer.keep(Write::Answered { sent, row: Box::new(row) })?;
+        let store = self.run.ledger.store();
+        let is_first = store.writer.keep(Write::Answered { sent, row: Box::new(row) })? != 0;
         self.run.count(|totals| {
             totals.answered += 1;
             totals.tokens_in += answer.tokens_in;
             totals.tokens_out += answer.tokens_out;
-            totals.usd += usd;
+            totals.usd += answer.usd.unwrap_or(0.0);
         });
-        Ok(())
+        let stands = if is_first { None } else { store.answer(self.key)? };
+        Ok(stands.unwrap_or(answer))
     }
 }
 

@@ -60,11 +60,11 @@ fn threads_that_ask_the_same_get_one_answer_that_is_asked_for_once() {
     let run = Ledger::open(&folder.path().join("l.db")).unwrap().run("a", Limits::default()).unwrap();
     let made: Mutex<BTreeMap<usize, usize>> = Mutex::default();
     thread::scope(|scope| {
-        for thread in 0..32 {
+        for thread in 0..64 {
             let (run, made) = (&run, &made);
             scope.spawn(move || {
-                for step in 0..200 {
-                    let number = (thread * 7 + step) % 200;
+                for step in 0..500 {
+                    let number = (thread * 7 + step) % 500;
                     let text = run.once(&call(number), |attempts| -> Result<Answer, Refused> {
                         attempts.begin(None)?;
                         *made.lock().unwrap().entry(number).or_default() += 1;
@@ -77,9 +77,9 @@ fn threads_that_ask_the_same_get_one_answer_that_is_asked_for_once() {
         }
     });
     let made = made.into_inner().unwrap();
-    assert_eq!(made.len(), 200);
+    assert_eq!(made.len(), 500);
     assert!(made.values().all(|times| *times == 1), "{made:?}");
-    assert_eq!(run.totals().hits, 32 * 200 - 200);
+    assert_eq!(run.totals().hits, 64 * 500 - 500);
 }
 
 #[test]

@@ -28,6 +28,8 @@ pub(crate) struct Store {
 
 impl Store {
     pub(crate) fn open(path: &Path) -> Result<Self, LedgerError> {
+        // The database gives names such as ":memory:" a meaning of their own, unless they are those of files beyond doubt.
+        let path = &std::path::absolute(path).map_err(LedgerError::io(path, "find the ledger"))?;
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(LedgerError::io(folder, "make the folder"))?;
         }
@@ -84,8 +86,10 @@ impl Store {
     /// What a run has spent so far: what was paid, and upper bounds of what may have been.
     pub(crate) fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
         let failed = LedgerError::store(&self.path, "read");
+        self.writer.flush()?;
         let reader = self.reader();
-        let sql = "SELECT TOTAL(CASE WHEN outcome = 'answered' THEN usd WHEN outcome IS NULL OR outcome = 'lost' THEN most_usd END),
+        let sql = "SELECT TOTAL(CASE WHEN outcome = 'answered' THEN COALESCE(usd, most_usd)
+                                     WHEN outcome IS NULL OR outcome = 'lost' THEN most_usd END),
                    COUNT(*) FROM sent WHERE run = ?1 AND outcome IS NOT 'cancelled'";
         let spent =
             reader.query_row(sql, params![run], |row| Ok((row.get(0)?, row.get::<_, i64>(1)?))).map_err(&failed)?;

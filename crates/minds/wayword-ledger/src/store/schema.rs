@@ -1,8 +1,12 @@
 //! Tables and rows.
 
 use crate::{Answer, Call, Key, LedgerError, call::Row};
-use rusqlite::{Connection, TransactionBehavior};
-use std::path::Path;
+use rusqlite::{Connection, ErrorCode, Transaction, TransactionBehavior};
+use std::{
+    path::Path,
+    thread,
+    time::{Duration, Instant},
+};
 
 /// Tells a ledger from any other database ("Wway").
 const APPLICATION: i64 = 0x5777_6179;
@@ -30,38 +34,56 @@ CREATE INDEX sent_of_run ON sent (run);
 pub(crate) const COLUMNS: &str = "calls.key, model, base_url, request, replicate, answer, finish, tokens_in, tokens_out, usd, \
                                   latency_ms, attempts, at, calls.run";
 
+/// How long one program waits for others that make the same ledger.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// And how long between two looks.
+const PAUSE: Duration = Duration::from_millis(5);
+
 /// Makes the tables, or makes sure that they are ours.
 pub(super) fn prepare(connection: &mut Connection, path: &Path) -> Result<(), LedgerError> {
     let failed = LedgerError::store(path, "open");
-    // A file that is no database fails here, before anything is written to it.
-    let is_new = |connection: &Connection| -> Result<bool, LedgerError> {
-        let number = |pragma: &str| connection.query_row(&format!("PRAGMA {pragma}"), [], |row| row.get::<_, i64>(0));
-        let no_database = |error: rusqlite::Error| match error.sqlite_error_code() {
-            Some(rusqlite::ErrorCode::NotADatabase) => LedgerError::NoLedger(path.to_owned()),
-            _ => failed(error),
-        };
-        let (application, format) =
-            (number("application_id").map_err(no_database)?, number("user_version").map_err(&failed)?);
-        let tables: i64 =
-            connection.query_row("SELECT COUNT(*) FROM sqlite_master", [], |row| row.get(0)).map_err(&failed)?;
-        match (application, format) {
-            (0, 0) if tables == 0 => Ok(true),
-            (APPLICATION, FORMAT) => Ok(false),
-            (APPLICATION, format) => Err(LedgerError::Newer { path: path.to_owned(), format }),
-            _ => Err(LedgerError::NoLedger(path.to_owned())),
-        }
-    };
-    is_new(connection)?;
-    connection.pragma_update(None, "journal_mode", "WAL").map_err(&failed)?;
+    // Nothing is written to a file that is not ours. One look is one transaction, so that it sees the tables of another program
+    // that makes them whole or not at all.
+    is_new(&connection.transaction().map_err(&failed)?, path)?;
+    write_ahead(connection).map_err(&failed)?;
     connection.pragma_update(None, "synchronous", "FULL").map_err(&failed)?;
     // Two programs may open a new ledger at the same moment: the second finds the tables made.
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(&failed)?;
-    if is_new(&transaction)? {
+    if is_new(&transaction, path)? {
         transaction.execute_batch(TABLES).map_err(&failed)?;
         transaction.pragma_update(None, "application_id", APPLICATION).map_err(&failed)?;
         transaction.pragma_update(None, "user_version", FORMAT).map_err(&failed)?;
     }
     transaction.commit().map_err(&failed)
+}
+
+/// Whether there is nothing in the file yet.
+fn is_new(transaction: &Transaction<'_>, path: &Path) -> Result<bool, LedgerError> {
+    let failed = |error: rusqlite::Error| match error.sqlite_error_code() {
+        Some(ErrorCode::NotADatabase) => LedgerError::NoLedger(path.to_owned()),
+        _ => LedgerError::store(path, "open")(error),
+    };
+    let number = |sql: &str| transaction.query_row(sql, [], |row| row.get::<_, i64>(0)).map_err(failed);
+    let tables = number("SELECT COUNT(*) FROM sqlite_master")?;
+    match (number("PRAGMA application_id")?, number("PRAGMA user_version")?) {
+        (0, 0) if tables == 0 => Ok(true),
+        (APPLICATION, FORMAT) => Ok(false),
+        (APPLICATION, format) => Err(LedgerError::Newer { path: path.to_owned(), format }),
+        _ => Err(LedgerError::NoLedger(path.to_owned())),
+    }
+}
+
+/// Lets readers read while somebody writes. The database does not wait by itself for another program that does the same.
+fn write_ahead(connection: &Connection) -> rusqlite::Result<()> {
+    let until = Instant::now() + PATIENCE;
+    loop {
+        match connection.pragma_update(None, "journal_mode", "WAL") {
+            Err(error) if error.sqlite_error_code() == Some(ErrorCode::DatabaseBusy) && Instant::now() < until => {
+                thread::sleep(PAUSE);
+            }
+            done => return done,
+        }
+    }
 }
 
 /// A row of `calls` with [`COLUMNS`].

@@ -4,12 +4,16 @@ use crate::{LedgerError, call::Row};
 use rusqlite::{Connection, Transaction, TransactionBehavior, params};
 use std::{
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError, mpsc},
+    sync::mpsc,
     thread::{self, JoinHandle},
+    time::Duration,
 };
 
-/// Most writes of one commit.
+/// Most writes that wait, and about the most of one commit. Who comes with more is held up, so that memory is bounded.
 const MOST_AT_ONCE: usize = 1024;
+
+/// How long the last checkpoint waits for other programs. They can make it as well.
+const LAST_PATIENCE: Duration = Duration::from_secs(1);
 
 /// Something to be kept.
 #[derive(Debug)]
@@ -26,7 +30,8 @@ pub(crate) enum Write {
     Flush,
 }
 
-/// What was written: the number of the request, where one is about to leave.
+/// What was written: the number of the request, where one is about to leave; for an answer, whether it is the first (1) or one
+/// stood there before (0).
 type Written = Result<i64, LedgerError>;
 
 struct Job {
@@ -38,20 +43,20 @@ struct Job {
 /// The way to the writing thread. When it is dropped, what has come in is written first.
 #[derive(Debug)]
 pub(crate) struct Writer {
-    jobs: Option<Mutex<mpsc::Sender<Job>>>,
+    jobs: Option<mpsc::SyncSender<Job>>,
     thread: Option<JoinHandle<()>>,
     path: PathBuf,
 }
 
 impl Writer {
     pub(super) fn start(connection: Connection, path: &Path) -> Result<Self, LedgerError> {
-        let (sender, jobs) = mpsc::channel();
+        let (sender, jobs) = mpsc::sync_channel(MOST_AT_ONCE);
         let of = path.to_owned();
         let thread = thread::Builder::new()
             .name("ledger".to_owned())
             .spawn(move || work(connection, &jobs, &of))
             .map_err(LedgerError::io(path, "start the ledger's thread"))?;
-        Ok(Self { jobs: Some(Mutex::new(sender)), thread: Some(thread), path: path.to_owned() })
+        Ok(Self { jobs: Some(sender), thread: Some(thread), path: path.to_owned() })
     }
 
     /// Keeps something; returns once it is on disk.
@@ -61,7 +66,7 @@ impl Writer {
         written.recv().unwrap_or_else(|_| Err(self.gone()))
     }
 
-    /// Keeps something soon. Where that fails, so will the next thing that somebody waits for.
+    /// Keeps something soon: with the next commit that succeeds.
     pub(crate) fn note(&self, write: Write) {
         self.send(Job { write, done: None });
     }
@@ -73,7 +78,8 @@ impl Writer {
 
     fn send(&self, job: Job) {
         if let Some(jobs) = &self.jobs {
-            let _ = jobs.lock().unwrap_or_else(PoisonError::into_inner).send(job);
+            // If the thread is gone, whoever waits is told.
+            let _ = jobs.send(job);
         }
     }
 
@@ -97,26 +103,40 @@ impl Drop for Writer {
 }
 
 fn work(mut connection: Connection, jobs: &mpsc::Receiver<Job>, path: &Path) {
+    let mut group = Vec::new();
     while let Ok(first) = jobs.recv() {
-        let mut group = vec![first];
+        group.push(first);
         while group.len() < MOST_AT_ONCE {
             let Ok(next) = jobs.try_recv() else { break };
             group.push(next);
         }
         let written = commit(&mut connection, &group, path);
-        for (at, job) in group.into_iter().enumerate() {
-            if let Some(done) = job.done {
-                let result = match &written {
-                    Ok(numbers) => Ok(numbers.get(at).copied().unwrap_or(0)),
-                    Err(error) => Err(error.clone()),
-                };
-                // Whoever asked may have given up.
-                let _ = done.send(result);
-            }
-        }
+        group = tell(group, &written);
+    }
+    if !group.is_empty() {
+        let _ = commit(&mut connection, &group, path);
     }
     // A short file beside a whole one is easier to copy; the next program would do it otherwise.
+    let _ = connection.busy_timeout(LAST_PATIENCE);
     let _ = connection.execute_batch("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+/// Tells those who wait. Returns what is not on disk though nobody waits for it: it goes with the next group.
+fn tell(group: Vec<Job>, written: &Result<Vec<i64>, LedgerError>) -> Vec<Job> {
+    let mut unwritten = Vec::new();
+    for (at, job) in group.into_iter().enumerate() {
+        let result = match written {
+            Ok(numbers) => Ok(numbers.get(at).copied().unwrap_or(0)),
+            Err(error) => Err(error.clone()),
+        };
+        match job.done {
+            // Whoever asked may have given up.
+            Some(done) => drop(done.send(result)),
+            None if result.is_err() => unwritten.push(job),
+            None => {}
+        }
+    }
+    unwritten
 }
 
 fn commit(connection: &mut Connection, group: &[Job], path: &Path) -> Result<Vec<i64>, LedgerError> {
@@ -142,21 +162,22 @@ fn apply(transaction: &Transaction<'_>, write: &Write) -> rusqlite::Result<i64> 
         }
         Write::Flush => {}
         Write::Answered { sent, row } => {
-            answered(transaction, row)?;
+            let is_first = answered(transaction, row)?;
             run("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![row.run, row.key.as_str()])?;
             if let Some(sent) = sent {
                 run("UPDATE sent SET outcome = 'answered', usd = ?2 WHERE id = ?1", params![sent, row.answer.usd])?;
             }
+            return Ok(i64::from(is_first));
         }
     }
     Ok(0)
 }
 
-/// The first answer stands: another program may have asked the same at the same time.
-fn answered(transaction: &Transaction<'_>, row: &Row) -> rusqlite::Result<usize> {
+/// The first answer stands: another program may have asked the same at the same time. Whether this is the first.
+fn answered(transaction: &Transaction<'_>, row: &Row) -> rusqlite::Result<bool> {
     let count = |count: u64| i64::try_from(count).unwrap_or(i64::MAX);
     let (call, answer) = (&row.call, &row.answer);
-    transaction
+    let added = transaction
         .prepare_cached(
             "INSERT OR IGNORE INTO calls VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",
         )?
@@ -175,5 +196,6 @@ fn answered(transaction: &Transaction<'_>, row: &Row) -> rusqlite::Result<usize>
             answer.attempts,
             row.at_unix_s,
             row.run
-        ])
+        ])?;
+    Ok(added == 1)
 }
