@@ -79,3 +79,72 @@ fn id(scene: &SceneId, from: &Frame, gaze: Gaze) -> u64 {
     let bytes: [u8; 32] = hash.finalize().into();
     u64::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3], bytes[4], bytes[5], bytes[6], bytes[7]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+    use wayword_core::{DVec3, GroundTruth, Heading, Label, Pose};
+
+    /// A world of one place, with a lamp ahead and a bed on the right.
+    struct Cell;
+
+    impl Platform for Cell {
+        fn name(&self) -> &'static str {
+            "cell"
+        }
+
+        fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+            Ok(vec![SceneId::new("cell").unwrap()])
+        }
+
+        fn graph(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+            panic!("nobody walks here")
+        }
+
+        fn sample_path(&self, _: &SceneId, _: &PathRequest, _: u64) -> Result<Path, PlatformError> {
+            panic!("nobody walks here")
+        }
+
+        fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+            let label = |name: &str, turn_rad: f64| Label {
+                object: ObjectId::new(name).unwrap(),
+                name: name.to_owned(),
+                heading: gaze.heading.turned(turn_rad),
+                elevation_rad: 0.0,
+                box_px: None,
+                distance_m: None,
+                position: None,
+                colour: None,
+            };
+            let truth = GroundTruth { labels: vec![label("lamp", 0.0), label("bed", 0.7)], room: Some("cell".into()) };
+            let pose = Pose { heading: gaze.heading, ..from.pose };
+            Ok(View::new(pose, gaze.horizontal_fov_rad, None, Some(truth)))
+        }
+
+        fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
+            Ok(None)
+        }
+    }
+
+    #[test]
+    fn what_is_shown_can_be_looked_up_by_its_picture() {
+        let gallery = Gallery::default();
+        let world = Pictured::new(Cell, gallery.clone());
+        let scene = world.scenes().unwrap().remove(0);
+        let pose = Pose { position: DVec3::ZERO, heading: Heading::NORTH, elevation_rad: 0.0 };
+        let frame = Frame { pose, viewpoint: None, level: None };
+        let look = |rad: f64| world.look(&scene, &frame, Gaze::quarter(Heading::new(rad).unwrap())).unwrap();
+        let (first, second, again) = (look(0.0), look(1.0), look(0.0));
+        assert_eq!(first.image, again.image);
+        assert_ne!(first.image, second.image);
+        let picture = first.image.unwrap();
+        let mut file = Vec::new();
+        let encoder = PngEncoder::new(&mut file);
+        encoder.write_image(picture.rgb(), picture.width_px(), picture.height_px(), ExtendedColorType::Rgb8).unwrap();
+        let scenery = gallery.scenery(barcode::read(&file).unwrap()).unwrap();
+        let thing = |name: &str, third| Thing { name: name.to_owned(), third, colour: None };
+        assert_eq!(scenery.things, [thing("lamp", 1), thing("bed", 2)]);
+        assert_eq!(scenery.room.as_deref(), Some("cell"));
+    }
+}

@@ -5,6 +5,7 @@ mod eye;
 mod prompt;
 mod questioner;
 mod summariser;
+mod troubles;
 
 use super::{Heard, Script};
 use rand::SeedableRng;
@@ -15,6 +16,7 @@ pub use author::Author;
 pub use eye::FlawedEye;
 pub use questioner::Questioner;
 pub use summariser::Summariser;
+pub use troubles::Troubled;
 
 /// All roles behind one model name: a picture goes to the eye, and words to whoever the prompt is for.
 #[derive(Debug, Clone)]
