@@ -30,6 +30,8 @@ pub struct View {
 pub struct GroundTruth {
     /// Objects whose box's centre lies in the view.
     pub labels: Vec<Label>,
+    /// Whether the platform lists the objects here: without it, that there are no labels says nothing.
+    pub lists_objects: bool,
     /// The room in which the eye is ("living room").
     pub room: Option<String>,
 }

@@ -4,45 +4,44 @@ use super::{finding, or_pass, sides};
 use crate::{
     evidence::{Evidence, Source},
     lexicon::{Class, agree, thing},
-    reading::{Place, Reading, What},
+    reading::{Link, Place, Reading, What},
 };
-use wayword_core::{Check, Finding, Target, Verdict};
+use wayword_core::{Check, Finding, Verdict};
 
 /// What was found about the places of a text.
 pub(super) struct Places {
     pub(super) findings: Vec<Finding>,
-    /// For each event of the reading, the frames that show it; empty for what is no place or is not shown.
-    pub(super) frames: Vec<Vec<usize>>,
+    /// For each event of the reading, the frames that show it.
+    pub(super) shown: Vec<Shown>,
 }
 
-pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, target: Option<&Target>) -> Places {
-    let object = reading.task.as_ref().and_then(|task| task.object);
-    let (mut findings, mut frames) = (Vec::new(), Vec::new());
+/// Where a place is seen; both empty for what is no place.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Shown {
+    /// The frames that show it.
+    pub(super) frames: Vec<usize>,
+    /// The frames of which nobody knows whether they show it.
+    pub(super) unknown: Vec<usize>,
+}
+
+/// Checks each place of a text but the object of a task that has a check of its own.
+pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<usize>) -> Places {
+    let (mut findings, mut all_shown) = (Vec::new(), Vec::new());
     for (at, event) in reading.events.iter().enumerate() {
         let What::Place(place) = &event.what else {
-            frames.push(Vec::new());
+            all_shown.push(Shown::default());
             continue;
         };
         let is_object = object == Some(at);
-        let shown = if is_object { at_the_end(place, evidence) } else { frames_of(place, evidence) };
-        // The task check speaks about its object, and a given target may be out of sight.
-        let given = is_object && target.is_some_and(|target| agree(&target.name, &place.name));
-        if shown.is_empty() && !is_object && !given {
-            let verdict = absent(place, evidence);
-            let reason = match verdict {
-                Verdict::Fail => format!("no frame of the path shows {:?}", place.name),
-                _ => format!("nothing here can tell whether there is {:?}", place.name),
-            };
-            findings.push(finding(Check::Landmarks, verdict, reason, Some(event.span)));
-        } else if let Some(side) = sides::wrong_side(place, &shown, evidence).filter(|_| !is_object) {
-            let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
-            findings.push(finding(Check::Landmarks, Verdict::Fail, reason, Some(event.span)));
-        }
+        let shown = if is_object { at_the_end(place, evidence) } else { shown(place, evidence) };
+        let wrong = if is_object { None } else { presence(place, &shown, evidence) };
         findings.extend(
-            colour(place, &shown, evidence)
+            wrong
+                .into_iter()
+                .chain(colour(place, &shown, evidence))
                 .map(|(verdict, reason)| finding(Check::Landmarks, verdict, reason, Some(event.span))),
         );
-        frames.push(shown);
+        all_shown.push(shown);
     }
     if evidence.source == Source::Nothing && findings.is_empty() {
         findings.push(finding(
@@ -52,14 +51,33 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, target: Option<&
             None,
         ));
     }
-    Places { findings: or_pass(Check::Landmarks, findings), frames }
+    Places { findings: or_pass(Check::Landmarks, findings), shown: all_shown }
+}
+
+/// What is wrong with where a place is told to be: nowhere along the path, or on another side.
+fn presence(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict, String)> {
+    if shown.frames.is_empty() {
+        let verdict = absent(place, evidence);
+        return Some(match verdict {
+            Verdict::Fail => (verdict, format!("no frame of the path shows {:?}", place.name)),
+            _ => (verdict, format!("nothing here can tell whether there is {:?}", place.name)),
+        });
+    }
+    let side = sides::wrong_side(place, &shown.frames, evidence)?;
+    let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
+    Some((wrong_unless_elsewhere(shown), reason))
+}
+
+/// The verdict on what is wrong wherever a place is seen: it may be right where nobody knows what is seen.
+fn wrong_unless_elsewhere(shown: &Shown) -> Verdict {
+    if shown.unknown.is_empty() { Verdict::Fail } else { Verdict::Unverified }
 }
 
 /// What is wrong with the colour that a place is told with.
-fn colour(place: &Place, frames: &[usize], evidence: &Evidence) -> Option<(Verdict, String)> {
+fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict, String)> {
     let told = place.colour.as_ref()?;
     let things =
-        frames.iter().flat_map(|at| &evidence.frames[*at].things).filter(|thing| agree(&thing.name, &place.name));
+        shown.frames.iter().flat_map(|at| &evidence.frames[*at].things).filter(|thing| agree(&thing.name, &place.name));
     let known: Vec<&String> = things.filter_map(|thing| thing.colour.as_ref()).collect();
     // "the brown chair" for a dark brown one is no mistake.
     let fits = known.iter().any(|colour| {
@@ -67,45 +85,48 @@ fn colour(place: &Place, frames: &[usize], evidence: &Evidence) -> Option<(Verdi
     });
     match (known.is_empty(), fits) {
         (_, true) => None,
-        (true, false) if frames.is_empty() => None,
+        (true, false) if shown.frames.is_empty() => None,
         (true, false) => {
             Some((Verdict::Unverified, format!("nothing here can tell whether {:?} is {told}", place.name)))
         }
-        (false, false) => Some((Verdict::Fail, format!("no {:?} along the path is {told}", place.name))),
+        (false, false) => {
+            Some((wrong_unless_elsewhere(shown), format!("no {:?} along the path is {told}", place.name)))
+        }
     }
 }
 
-fn frames_of(place: &Place, evidence: &Evidence) -> Vec<usize> {
-    let mut frames = Vec::new();
+fn shown(place: &Place, evidence: &Evidence) -> Shown {
+    let (mut frames, mut unknown) = (Vec::new(), Vec::new());
     if place.is_room {
         frames.extend(evidence.frames_in_room(&place.name));
+        unknown.extend(evidence.frames_without_room());
     }
     if place.is_thing {
         frames.extend(evidence.frames_with_thing(&place.name));
+        unknown.extend(evidence.frames_without_things());
     }
     if thing(&place.name).is_some_and(|thing| thing.class == Class::Stairs) {
         frames.extend(evidence.frames_on_stairs());
     }
     frames.sort_unstable();
     frames.dedup();
-    frames
+    unknown.sort_unstable();
+    unknown.dedup();
+    unknown.retain(|frame| !frames.contains(frame));
+    Shown { frames, unknown }
 }
 
-fn at_the_end(place: &Place, evidence: &Evidence) -> Vec<usize> {
+fn at_the_end(place: &Place, evidence: &Evidence) -> Shown {
     let last = evidence.frames.len().saturating_sub(1);
-    let shown = evidence.final_things().iter().any(|thing| agree(&thing.name, &place.name));
-    if shown { vec![last] } else { Vec::new() }
+    let is_seen = evidence.final_things().iter().any(|thing| agree(&thing.name, &place.name));
+    Shown { frames: if is_seen { vec![last] } else { Vec::new() }, unknown: Vec::new() }
 }
 
 /// What it means that no frame shows a place.
 fn absent(place: &Place, evidence: &Evidence) -> Verdict {
-    let thing_denied = place.is_thing && evidence.could_tell(&place.name);
+    let thing_denied = place.is_thing && evidence.denies_thing(&place.name);
     // What lies next to a path need not lie on it.
-    let room_denied = place.is_room && evidence.knows_rooms() && !place.related;
+    let room_denied = place.is_room && evidence.denies_rooms() && place.link != Link::Beside;
     // A name that means either is denied where one of them is.
-    if evidence.source != Source::Nothing && (thing_denied || (room_denied && !place.is_thing)) {
-        Verdict::Fail
-    } else {
-        Verdict::Unverified
-    }
+    if thing_denied || (room_denied && !place.is_thing) { Verdict::Fail } else { Verdict::Unverified }
 }

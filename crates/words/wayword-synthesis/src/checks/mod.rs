@@ -8,6 +8,8 @@ mod leak;
 mod order;
 mod sides;
 mod task;
+#[cfg(test)]
+mod tests;
 
 use crate::{
     evidence::Evidence,
@@ -53,12 +55,15 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
     let reading = read(text, &names(subject.evidence));
     let mut findings = Vec::new();
     findings.extend(form::form(text, &subject.style.constraints));
-    if subject.style.constraints.ends_in_task {
+    let ends_in_task = subject.style.constraints.ends_in_task;
+    if ends_in_task {
         findings.push(task::task(&reading, subject.evidence, subject.target));
     }
-    let places = landmarks::landmarks(&reading, subject.evidence, subject.target);
+    // Where no task is asked for, the object of one is a landmark like any other.
+    let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
+    let places = landmarks::landmarks(&reading, subject.evidence, object);
     findings.extend(places.findings);
-    let walk = order::order(&reading, subject.evidence, &places.frames);
+    let walk = order::order(&reading, subject.evidence, &places.shown);
     findings.extend(walk.findings);
     findings.extend(floors::floors(&reading, subject.evidence));
     findings.push(leak::leak(text, &subject.style.references));

@@ -2,11 +2,13 @@
 
 use super::{
     align::{Step, align},
-    finding, pass,
+    finding,
+    landmarks::Shown,
+    pass,
 };
 use crate::{
     evidence::Evidence,
-    reading::{Event, Reading, What},
+    reading::{Event, Link, Reading, What},
 };
 use wayword_core::{Check, Finding, Side, Verdict};
 
@@ -17,39 +19,41 @@ pub(super) struct Order {
     pub(super) frames: Vec<Option<usize>>,
 }
 
-/// Checks the order of places by themselves, then that of turns among them. `shown` holds the frames of each event.
-pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Vec<usize>]) -> Order {
+/// Checks the order of places by themselves, then that of turns among them.
+pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> Order {
     let sequence = in_order_of_walk(&reading.events);
-    let steps: Vec<Step> = sequence
-        .iter()
-        .map(|at| if is_aside(reading, *at) { Step::Free } else { step(&reading.events[*at], &shown[*at], evidence) })
-        .collect();
-    let places_alone: Vec<Step> =
-        steps.iter().map(|step| if matches!(step, Step::Turn(_)) { Step::Free } else { step.clone() }).collect();
+    let steps_with = |frames: &dyn Fn(&Shown) -> Vec<usize>| -> Vec<Step> {
+        let step_of = |at: &usize| match is_aside(reading, *at) {
+            true => Step::Free,
+            false => step(&reading.events[*at], frames(&shown[*at]), evidence),
+        };
+        sequence.iter().map(step_of).collect()
+    };
+    let certain = steps_with(&|shown| shown.frames.clone());
+    let possible = steps_with(&|shown| {
+        let mut frames = [shown.frames.as_slice(), if shown.frames.is_empty() { &[] } else { &shown.unknown }].concat();
+        frames.sort_unstable();
+        frames
+    });
     let span = |at: usize| Some(reading.events[sequence[at]].span);
 
-    let mut findings = Vec::new();
-    let mut laid = align(&steps, evidence);
-    match align(&places_alone, evidence) {
+    let (places, laid_places) = lay(&places_alone(&certain), &places_alone(&possible), evidence);
+    let (findings, laid) = match laid_places {
         Err(at) => {
-            findings.push(finding(
-                Check::Order,
-                Verdict::Fail,
-                "it comes too late in the text: the path passed it before",
-                span(at),
-            ));
-            findings.push(turns_alone(reading, evidence));
-            laid = Err(at);
+            let reason = match places {
+                Verdict::Fail => "it comes too late in the text: the path passed it before",
+                _ => "the path passed it before, and nobody knows whether it does again",
+            };
+            (vec![finding(Check::Order, places, reason, span(at)), turns_alone(reading, evidence)], None)
         }
-        Ok(places) => {
-            findings.push(pass(Check::Order));
-            match &laid {
-                Ok(_) => findings.push(pass(Check::Turns)),
-                Err(at) => findings.push(finding(Check::Turns, Verdict::Fail, turn_reason(&steps, *at), span(*at))),
+        Ok(laid_places) => match lay(&certain, &possible, evidence) {
+            (_, Ok(laid)) => (vec![pass(Check::Order), pass(Check::Turns)], Some(laid)),
+            (turns, Err(at)) => {
+                let wrong = finding(Check::Turns, turns, turn_reason(&certain, at), span(at));
+                (vec![pass(Check::Order), wrong], Some(laid_places))
             }
-            laid = laid.or(Ok(places));
-        }
-    }
+        },
+    };
     let mut frames = vec![None; reading.events.len()];
     for (at, frame) in sequence.iter().zip(laid.unwrap_or_default()) {
         frames[*at] = frame;
@@ -57,14 +61,38 @@ pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Vec<usize>]
     Order { findings, frames }
 }
 
+/// Lays steps along the walk. What does not fit is wrong only where it does not fit with what nobody knows either.
+fn lay(certain: &[Step], possible: &[Step], evidence: &Evidence) -> (Verdict, Result<Vec<Option<usize>>, usize>) {
+    let laid = align(certain, evidence);
+    let verdict = match &laid {
+        Ok(_) => Verdict::Pass,
+        Err(_) if align(possible, evidence).is_ok() => Verdict::Unverified,
+        Err(_) => Verdict::Fail,
+    };
+    (verdict, laid)
+}
+
+fn places_alone(steps: &[Step]) -> Vec<Step> {
+    steps.iter().map(|step| if matches!(step, Step::Turn(_)) { Step::Free } else { step.clone() }).collect()
+}
+
 /// Whether an event is a place that only tells where another place of its clause, or the task's object, is.
 fn is_aside(reading: &Reading, at: usize) -> bool {
     let event = &reading.events[at];
     let What::Place(place) = &event.what else { return false };
     let object = reading.task.as_ref().and_then(|task| task.object);
-    let other_in_clause =
-        reading.events[..at].iter().any(|other| other.clause == event.clause && matches!(other.what, What::Place(_)));
-    (place.related && other_in_clause) || object.is_some_and(|object| object < at)
+    let in_clause = reading.events[..at].iter().rev().take_while(|other| other.clause == event.clause);
+    let mut before = in_clause.filter_map(|other| match &other.what {
+        What::Place(place) => Some(place),
+        _ => None,
+    });
+    let tells_where = match place.link {
+        Link::Within | Link::Beside => before.next().is_some(),
+        // "To the bathroom past the kitchen": the goal is told first, and reached last.
+        Link::Along => before.any(|other| other.link == Link::Goal),
+        Link::Plain | Link::Goal => false,
+    };
+    tells_where || object.is_some_and(|object| object < at)
 }
 
 fn turn_reason(steps: &[Step], at: usize) -> &'static str {
@@ -79,17 +107,17 @@ fn turn_reason(steps: &[Step], at: usize) -> &'static str {
 /// Turns by themselves, where the places are out of order anyway.
 fn turns_alone(reading: &Reading, evidence: &Evidence) -> Finding {
     let turns: Vec<&Event> = reading.events.iter().filter(|event| matches!(event.what, What::Turn(_))).collect();
-    let steps: Vec<Step> = turns.iter().map(|event| step(event, &[], evidence)).collect();
+    let steps: Vec<Step> = turns.iter().map(|event| step(event, Vec::new(), evidence)).collect();
     match align(&steps, evidence) {
         Ok(_) => pass(Check::Turns),
         Err(at) => finding(Check::Turns, Verdict::Fail, turn_reason(&steps, at), Some(turns[at].span)),
     }
 }
 
-fn step(event: &Event, shown: &[usize], evidence: &Evidence) -> Step {
+fn step(event: &Event, shown: Vec<usize>, evidence: &Evidence) -> Step {
     match &event.what {
         What::Turn(side) => Step::Turn(*side),
-        What::Place(_) if !shown.is_empty() => Step::Place(shown.to_vec()),
+        What::Place(_) if !shown.is_empty() => Step::Place(shown),
         What::Climb(climb) => {
             let frames = evidence.frames_with_climb(*climb);
             if frames.is_empty() { Step::Free } else { Step::Place(frames) }

@@ -22,17 +22,10 @@ pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Targe
     if let Some(target) = target.filter(|target| !agree(&target.name, name)) {
         return fail(format!("its task is about {name:?}, and the given target is {:?}", target.name), Some(span));
     }
-    if !evidence.knows_things() {
-        return finding(Check::Task, Verdict::Unverified, "no object is known on this path", Some(span));
-    }
     let alike: Vec<_> = evidence.final_things().iter().filter(|thing| agree(&thing.name, name)).collect();
-    if alike.is_empty() && !evidence.could_tell(name) {
-        return finding(
-            Check::Task,
-            Verdict::Unverified,
-            format!("nothing here can tell whether there is {name:?}"),
-            Some(span),
-        );
+    if alike.is_empty() && !evidence.denies_thing_at_end(name) {
+        let reason = format!("nothing here can tell whether there is {name:?}");
+        return finding(Check::Task, Verdict::Unverified, reason, Some(span));
     }
     if alike.is_empty() {
         return fail(format!("{name:?} is not seen from the final viewpoint"), Some(span));

@@ -1,7 +1,7 @@
 //! Evidence from what was seen and told.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
-use crate::walk::Observation;
+use crate::walk::{Look, Observation};
 use wayword_core::{Path, Where, Witness};
 
 impl Evidence {
@@ -13,7 +13,10 @@ impl Evidence {
             .iter()
             .zip(observations)
             .map(|(frame, seen)| {
-                let mut evidence = FrameEvidence::default();
+                // Somebody who names the room and no object has looked; somebody who says nothing may not have.
+                let has_looked = |look: &Look| look.caption.room.is_some() || !look.caption.sightings.is_empty();
+                let knows_things = !seen.looks.is_empty() && seen.looks.iter().all(has_looked);
+                let mut evidence = FrameEvidence { knows_things, ..FrameEvidence::default() };
                 for look in &seen.looks {
                     evidence.rooms.extend(look.caption.room.clone().filter(|room| !evidence.rooms.contains(room)));
                     let off_rad = frame.pose.heading.turn_to(look.gaze.heading);

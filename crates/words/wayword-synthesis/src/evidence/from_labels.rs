@@ -10,7 +10,9 @@ impl Evidence {
     pub fn from_labels(path: &Path, panoramas: &[Vec<View>]) -> Option<Self> {
         let known = panoramas.iter().flatten().any(|view| view.ground_truth().is_some());
         let frames = path.frames.iter().zip(panoramas).map(|(frame, views)| {
-            let mut evidence = FrameEvidence::default();
+            let lists = |view: &View| view.ground_truth().is_some_and(|truth| truth.lists_objects);
+            let knows_things = !views.is_empty() && views.iter().all(lists);
+            let mut evidence = FrameEvidence { knows_things, ..FrameEvidence::default() };
             for truth in views.iter().filter_map(View::ground_truth) {
                 evidence.rooms.extend(truth.room.clone().filter(|room| !evidence.rooms.contains(room)));
                 evidence.things.extend(truth.labels.iter().map(|label| SeenThing {

@@ -20,10 +20,12 @@ pub struct Evidence {
 /// What is known to be seen from one frame, all around.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FrameEvidence {
-    /// The room, or the rooms where witnesses differ.
+    /// The room, or the rooms where witnesses differ; empty where nobody knows.
     pub rooms: Vec<String>,
     /// Objects.
     pub things: Vec<SeenThing>,
+    /// Whether somebody told the objects: without it, that there are none says nothing.
+    pub knows_things: bool,
     /// The storey, the lowest being 1.
     pub level: Option<u32>,
 }
@@ -78,26 +80,45 @@ impl Evidence {
         Self::of(path, vec![FrameEvidence::default(); path.frames.len()], Source::Nothing)
     }
 
-    /// Whether objects are known at all along the path.
+    /// Whether a thing of that name, which no frame shows, is nowhere along the path: the objects of every frame are known,
+    /// and whoever told them could have named it.
     #[must_use]
-    pub fn knows_things(&self) -> bool {
-        self.frames.iter().any(|frame| !frame.things.is_empty())
+    pub fn denies_thing(&self, name: &str) -> bool {
+        self.frames_without_things().is_empty() && self.could_name(name)
+    }
+
+    /// The same of the last frame alone.
+    #[must_use]
+    pub fn denies_thing_at_end(&self, name: &str) -> bool {
+        self.frames.last().is_some_and(|frame| frame.knows_things) && self.could_name(name)
     }
 
     /// Whether the witnesses could have named a thing of that name. Most leave doors and walls out: where they name none at
     /// all, they deny none.
-    #[must_use]
-    pub fn could_tell(&self, name: &str) -> bool {
+    fn could_name(&self, name: &str) -> bool {
         let class = thing(name).map(|thing| thing.class);
         let left_out = matches!(class, Some(Class::Fabric | Class::Door));
-        let things = || self.frames.iter().flat_map(|frame| &frame.things);
-        self.knows_things() && (!left_out || things().any(|seen| thing(&seen.name).map(|thing| thing.class) == class))
+        let mut things = self.frames.iter().flat_map(|frame| &frame.things);
+        self.source != Source::Nothing
+            && (!left_out || things.any(|seen| thing(&seen.name).map(|thing| thing.class) == class))
     }
 
-    /// Whether rooms are known at all along the path.
+    /// Whether a room in which no frame lies is nowhere along the path: the room of every frame is known.
     #[must_use]
-    pub fn knows_rooms(&self) -> bool {
-        self.frames.iter().any(|frame| !frame.rooms.is_empty())
+    pub fn denies_rooms(&self) -> bool {
+        self.source != Source::Nothing && self.frames_without_room().is_empty()
+    }
+
+    /// The frames of which nobody told the objects.
+    #[must_use]
+    pub fn frames_without_things(&self) -> Vec<usize> {
+        self.frames_where(|frame| !frame.knows_things)
+    }
+
+    /// The frames of which nobody told the room.
+    #[must_use]
+    pub fn frames_without_room(&self) -> Vec<usize> {
+        self.frames_where(|frame| frame.rooms.is_empty())
     }
 
     /// The frames from which something of that name is seen.

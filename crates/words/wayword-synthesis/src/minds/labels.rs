@@ -170,7 +170,7 @@ mod tests {
             label("3", "lamp", -35.0, None),
             label("4", "oven", 35.0, None),
         ];
-        let truth = GroundTruth { labels, room: Some("office".into()) };
+        let truth = GroundTruth { labels, lists_objects: true, room: Some("office".into()) };
         View::new(Pose::level(DVec3::ZERO, Heading::NORTH), std::f64::consts::FRAC_PI_2, None, Some(truth))
     }
 

@@ -3,6 +3,7 @@
 //!
 //! The reader knows nothing of any writer: it takes the words of people, of models and of our own writer alike.
 
+mod links;
 mod places;
 mod task;
 mod turns;
@@ -54,14 +55,29 @@ pub struct Place {
     pub is_thing: bool,
     /// Whether the name can be a room's.
     pub is_room: bool,
-    /// It stands after "next to", "across from", "with" and the like: it tells where something else is.
-    pub related: bool,
+    /// How it hangs in its sentence.
+    pub link: Link,
     /// The side of the walker on which it is said to be ("on your left").
     pub side: Option<Side>,
     /// The colour that it is said to have.
     pub colour: Option<String>,
     /// It follows a turn that happens at, by or after it ("turn left at the sofa").
     pub tells_turn: bool,
+}
+
+/// How a place hangs in its sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Link {
+    /// No word says so: "leave the kitchen", "the kitchen is on your left".
+    Plain,
+    /// The walker gets there: "to", "into", "enter".
+    Goal,
+    /// Something is there, or the walker is: "in", "at", "from", "of".
+    Within,
+    /// Something lies beside it, and nobody need go there: "next to", "across from", "with".
+    Beside,
+    /// The walker goes past or through it: "past", "down".
+    Along,
 }
 
 /// The closing task of an instruction.
@@ -89,16 +105,19 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     Reading { events, task }
 }
 
-/// The number of the clause that each token stands in: commas, "and", "then" and full stops begin new ones.
+/// The number of the clause that each token stands in. Commas, full stops and "then" begin new ones, and so does an "and"
+/// that a verb follows: "the lounge and the bedroom" are in one clause.
 fn clauses(tokens: &[Token]) -> Vec<usize> {
     let mut clause = 0;
-    tokens
-        .iter()
-        .map(|token| {
-            clause += usize::from(!token.is_word() || matches!(token.word.as_str(), "and" | "then"));
-            clause
-        })
-        .collect()
+    let begins = |at: usize, token: &Token| match token.word.as_str() {
+        "and" => task::verb_of(tokens, at + 1).is_some(),
+        word => !token.is_word() || word == "then",
+    };
+    let number = |(at, token)| {
+        clause += usize::from(begins(at, token));
+        clause
+    };
+    tokens.iter().enumerate().map(number).collect()
 }
 
 /// Marks the places that say where the turn before them happens.

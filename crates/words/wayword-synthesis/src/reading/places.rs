@@ -1,6 +1,6 @@
 //! Landmarks and rooms.
 
-use super::{Event, Place, What, vocabulary as v};
+use super::{Event, Place, What, links::link, vocabulary as v};
 use crate::{
     lexicon::{is_room, is_thing, longest_name, normal_word},
     text::Token,
@@ -40,10 +40,10 @@ pub(super) fn places(
     let event = |place: Found| {
         let span = [tokens[place.from].span[0], tokens[place.to - 1].span[1]];
         let side = side_after(tokens, place.to);
-        let related = is_related(tokens, place.from);
+        let link = link(tokens, clauses, place.from);
         let colour = colour_before(tokens, place.from);
         let Found { name, is_thing, is_room, .. } = place;
-        let what = What::Place(Place { name, is_thing, is_room, related, side, colour, tells_turn: false });
+        let what = What::Place(Place { name, is_thing, is_room, link, side, colour, tells_turn: false });
         Event { what, span, clause: clauses[place.from] }
     };
     found.into_iter().map(event).collect()
@@ -140,23 +140,6 @@ fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Foun
     }
     let name = tokens[at + 1..to].iter().map(|token| normal_word(&token.word)).collect::<Vec<_>>().join(" ");
     Some(Found { from: at + 1, to, name, is_thing: true, is_room: false })
-}
-
-/// Whether a place stands behind a word of nearness or belonging.
-fn is_related(tokens: &[Token], from: usize) -> bool {
-    let before = tokens[..from]
-        .iter()
-        .rev()
-        .take_while(|token| token.is_word() && token.word != "and" && token.word != "then")
-        .take(5);
-    let words: Vec<&str> = before.map(|token| token.word.as_str()).collect();
-    let is_preposition = |word: &&str| v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word);
-    match words.iter().position(is_preposition) {
-        // "next to" and "closest to", but not "walk to".
-        Some(at) if words[at] == "to" => words.get(at + 1).is_some_and(|word| v::RELATIONS.contains(word)),
-        Some(at) => v::RELATIONS.contains(&words[at]),
-        None => false,
-    }
 }
 
 /// The colour that is told among the adjectives before a place.

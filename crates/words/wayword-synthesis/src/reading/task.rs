@@ -23,7 +23,7 @@ pub(super) fn closing_task(tokens: &[Token], events: &[Event]) -> Option<Task> {
 }
 
 /// Where the verb of the clause that begins at a token stands; `None` where the clause has none.
-fn verb_of(tokens: &[Token], start: usize) -> Option<usize> {
+pub(super) fn verb_of(tokens: &[Token], start: usize) -> Option<usize> {
     let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
     let mut at = start;
     while v::ADVERBS.contains(&word(at)) {

@@ -65,13 +65,16 @@ pub(crate) static ABSTRACT: Words = LazyLock::new(|| {
     )
 });
 
-/// Words after which a place tells where something else is.
-pub(super) static RELATIONS: Words = LazyLock::new(|| {
+/// Words after which a place tells where something else is, and need not be where anybody goes.
+pub(super) static BESIDE: Words = LazyLock::new(|| {
     split(
-        "adjacent adjoining attached across off beside near nearest closest close next opposite by from outside \
-     connected overlooking with of in inside on under above below over behind between at that which",
+        "adjacent adjoining attached off beside near nearest closest close next opposite by outside connected overlooking \
+     with under above below over behind between before beyond against facing leading leads lead opening opens",
     )
 });
+
+/// Verbs whose object is where the walker gets.
+pub(super) static ARRIVING: Words = LazyLock::new(|| split("enter entering find reach reaching visit locate approach"));
 
 /// Colours, sizes and the like: no verbs, whatever they look like.
 pub(super) static ADJECTIVES: Words = LazyLock::new(|| {

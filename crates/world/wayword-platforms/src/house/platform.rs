@@ -144,6 +144,7 @@ impl Home {
         let refused = |reason: String| PlatformError::UnknownScene { scene: self.id.to_string(), hint: reason };
         let picture = self.scene.picture(&camera).map_err(|error| refused(error.to_string()))?;
         let truth = GroundTruth {
+            lists_objects: true,
             labels: labels(&self.scene, &camera, gaze, &picture),
             room: self.room_seen(pose.position, gaze.heading),
         };

@@ -152,6 +152,7 @@ impl Platform for Matterport {
         let here = known(id, &scene, viewpoint)?;
         let labels = self.labels(id, &scene, viewpoint)?;
         let truth = (labels.is_some() || scene.knows_rooms()).then(|| GroundTruth {
+            lists_objects: labels.is_some(),
             labels: labels.into_iter().flatten().filter(|label| gaze.holds(label.heading)).collect(),
             room: scene.room(viewpoint).map(str::to_owned),
         });

@@ -1,0 +1,150 @@
+//! What the checks say about texts on made-up paths.
+
+use super::{Subject, check};
+use crate::evidence::{Evidence, FrameEvidence, SeenThing, Source};
+use wayword_core::{Check, Constraints, Move, Style, Verdict};
+
+/// A frame in a room (none where nobody knows it), with things (`None` where nobody knows them), on a floor.
+fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
+    let seen = |name: &&str| SeenThing { name: (*name).to_owned(), object: None, colour: None, turn_rad: None };
+    FrameEvidence {
+        rooms: Some(room).filter(|room| !room.is_empty()).map(str::to_owned).into_iter().collect(),
+        things: things.unwrap_or_default().iter().map(seen).collect(),
+        knows_things: things.is_some(),
+        level: Some(level).filter(|level| *level > 0),
+    }
+}
+
+/// A walk along frames, with a turn (degrees) and a rise (metres) before each but the first.
+fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
+    let step = |(deg, rise_m): &(f64, f64)| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: *rise_m };
+    let knows = frames.iter().any(|frame| !frame.rooms.is_empty() || frame.knows_things);
+    let source = if knows { Source::Labels } else { Source::Nothing };
+    Evidence { frames, moves: moves.iter().map(step).collect(), source }
+}
+
+/// Through the hallway past a sofa, and right into the bedroom with a lamp and a bed.
+fn to_the_bedroom() -> Evidence {
+    let frames = vec![
+        frame("hallway", Some(&["rug"]), 1),
+        frame("hallway", Some(&["sofa"]), 1),
+        frame("bedroom", Some(&["lamp", "bed"]), 1),
+    ];
+    walk(frames, &[(0.0, 0.0), (90.0, 0.0)])
+}
+
+fn style(ends_in_task: bool) -> Style {
+    let constraints = Constraints { ends_in_task, ..Constraints::default() };
+    Style { name: "any".into(), references: Vec::new(), constraints }
+}
+
+/// What a text about a path fails, or where it fails nothing, what is unverified about it.
+fn told(text: &str, evidence: &Evidence) -> (Verdict, Vec<Check>) {
+    told_in(text, evidence, &style(false))
+}
+
+fn told_in(text: &str, evidence: &Evidence, style: &Style) -> (Verdict, Vec<Check>) {
+    let checked = check(text, Subject { evidence, style, target: None });
+    let verdict = checked.verdict();
+    let worst = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
+    let mut checks: Vec<Check> = worst.map(|finding| finding.check).collect();
+    checks.dedup();
+    (verdict, checks)
+}
+
+#[track_caller]
+fn passes(text: &str, evidence: &Evidence) {
+    assert_eq!(told(text, evidence), (Verdict::Pass, vec![]), "{text}");
+}
+
+#[track_caller]
+fn fails(check: Check, text: &str, evidence: &Evidence) {
+    assert_eq!(told(text, evidence), (Verdict::Fail, vec![check]), "{text}");
+}
+
+#[track_caller]
+fn is_unverified(check: Check, text: &str, evidence: &Evidence) {
+    assert_eq!(told(text, evidence), (Verdict::Unverified, vec![check]), "{text}");
+}
+
+#[test]
+fn the_object_of_a_task_that_nobody_asked_for_is_a_landmark() {
+    let path = to_the_bedroom();
+    passes("Walk to the bedroom and clean the lamp.", &path);
+    fails(Check::Landmarks, "Walk to the bedroom and clean the piano.", &path);
+    fails(Check::Order, "Walk to the bedroom and clean the sofa.", &path);
+    // Where a task is asked for, its own check speaks about its object, and nobody else does.
+    let task = told_in("Walk to the bedroom and clean the piano", &path, &style(true));
+    assert_eq!(task, (Verdict::Fail, vec![Check::Task]));
+}
+
+#[test]
+fn what_may_be_where_nobody_knows_is_not_denied() {
+    let known = to_the_bedroom();
+    fails(Check::Landmarks, "Walk past the piano into the bedroom.", &known);
+    fails(Check::Landmarks, "Walk through the kitchen into the bedroom.", &known);
+    let mut unknown = known.clone();
+    unknown.frames[1] = frame("", None, 1);
+    is_unverified(Check::Landmarks, "Walk past the piano into the bedroom.", &unknown);
+    is_unverified(Check::Landmarks, "Walk through the kitchen into the bedroom.", &unknown);
+    // The final viewpoint is known, and that is all that its task needs.
+    let task = |text: &str| told_in(text, &unknown, &style(true));
+    assert_eq!(task("Go to the bedroom and clean the piano"), (Verdict::Fail, vec![Check::Task]));
+    // A viewpoint whose list of objects is empty shows none.
+    let mut bare = known;
+    bare.frames[1] = frame("hallway", Some(&[]), 1);
+    fails(Check::Landmarks, "Walk past the piano into the bedroom.", &bare);
+}
+
+#[test]
+fn an_order_that_the_unknown_may_save_is_not_denied() {
+    let text = "Walk past the lamp and pass the rug, then stop.";
+    fails(Check::Order, text, &to_the_bedroom());
+    let mut path = to_the_bedroom();
+    path.frames.push(frame("", None, 1));
+    path.moves.push(path.moves[0]);
+    is_unverified(Check::Order, text, &path);
+}
+
+#[test]
+fn a_room_in_which_one_is_said_to_be_has_to_be_on_the_path() {
+    let path = to_the_bedroom();
+    for text in [
+        "Walk down the hallway and stop in the kitchen.",
+        "Walk down the hallway. Stop inside the kitchen.",
+        "Come from the kitchen and walk down the hallway.",
+        "Walk down the hallway and wait at the kitchen.",
+    ] {
+        fails(Check::Landmarks, text, &path);
+    }
+    for text in [
+        "Walk to the bedroom next to the kitchen.",
+        "Walk to the bedroom off the kitchen.",
+        "Walk to the bedroom across from the kitchen.",
+        "Walk to the bedroom near the kitchen.",
+    ] {
+        is_unverified(Check::Landmarks, text, &path);
+    }
+}
+
+#[test]
+fn what_only_tells_where_a_goal_is_holds_no_place_in_the_order() {
+    let frames = vec![
+        frame("bedroom", Some(&["bed"]), 1),
+        frame("living room", Some(&["sofa"]), 1),
+        frame("hallway", Some(&[]), 1),
+        frame("bathroom", Some(&["sink"]), 1),
+    ];
+    let path = walk(frames, &[(0.0, 0.0); 3]);
+    for text in [
+        "Go to the bathroom near the living room and bedroom and clean the sink.",
+        "Go to the bathroom past the living room.",
+        "Go to the bathroom down the hallway.",
+        "Go to the bathroom through the bedroom and living room.",
+        "Go to the bathroom facing the bedroom.",
+    ] {
+        passes(text, &path);
+    }
+    fails(Check::Order, "Walk past the sofa through the bedroom into the bathroom.", &path);
+    fails(Check::Order, "Go to the bathroom and walk past the sofa.", &path);
+}

@@ -1,0 +1,98 @@
+//! How a place hangs in its sentence: what the words before it say of it.
+
+use super::{Link, vocabulary as v};
+use crate::{
+    lexicon::{is_room, normal_word},
+    text::Token,
+};
+
+/// How far before a place its preposition may stand, words.
+const REACH: usize = 7;
+
+/// How the place that begins at a token hangs in its sentence.
+pub(super) fn link(tokens: &[Token], clauses: &[usize], from: usize) -> Link {
+    // In the order of reading backwards, up to the beginning of the clause.
+    let in_clause = tokens[..from]
+        .iter()
+        .zip(clauses)
+        .rev()
+        .take_while(|(token, clause)| token.is_word() && **clause == clauses[from.min(clauses.len() - 1)]);
+    let words: Vec<&str> = in_clause.map(|(token, _)| token.word.as_str()).take(REACH).collect();
+    let is_link = |word: &&str| {
+        let breaks = v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word);
+        (breaks || v::BESIDE.contains(word)) && !matches!(*word, "and" | "or")
+    };
+    let Some(at) = words.iter().position(is_link) else {
+        return if words.iter().any(|word| v::ARRIVING.contains(word)) { Link::Goal } else { Link::Plain };
+    };
+    let before = words.get(at + 1).copied().unwrap_or("");
+    let said_across = || words[at + 1..].iter().take(3).any(|word| *word == "across");
+    match words[at] {
+        // "next to" and "closest to", but not "walk to".
+        "to" if v::BESIDE.contains(&before) => Link::Beside,
+        "to" | "into" | "onto" | "toward" | "towards" | "until" | "till" => Link::Goal,
+        "from" if said_across() => Link::Beside,
+        // "The end of the hallway" is in it, "the door of the kitchen" may be seen from without.
+        "of" if !matches!(before, "out" | "inside" | "end" | "middle" | "center" | "centre" | "top" | "bottom") => {
+            Link::Beside
+        }
+        // "The bathroom in the hallway" is off it, "the bedroom across the hallway" beyond it.
+        "in" | "at" | "on" | "across" if is_room(&normal_word(before)) => Link::Beside,
+        "in" | "inside" | "within" | "at" | "on" | "upon" | "from" | "of" | "that" | "which" => Link::Within,
+        "past" | "through" | "down" | "along" | "across" | "up" | "around" | "after" => Link::Along,
+        word if v::BESIDE.contains(&word) => Link::Beside,
+        _ => Link::Plain,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::{What, read};
+    use std::collections::BTreeSet;
+
+    fn last(text: &str) -> Link {
+        match read(text, &BTreeSet::new()).events.last().map(|event| event.what.clone()) {
+            Some(What::Place(place)) => place.link,
+            other => panic!("{text}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn only_words_of_nearness_leave_a_place_aside() {
+        for text in [
+            "stop next to the kitchen",
+            "the closet off the bedroom",
+            "the door across the hall from the kitchen",
+            "wait to the left of the kitchen",
+            "go to the bathroom near the living room and bedroom",
+            "the stairs leading to the kitchen",
+            "the bedroom with the bathroom",
+            "the bathroom in the hallway",
+            "the bedroom across the hallway",
+            "touch the door of the kitchen",
+        ] {
+            assert_eq!(last(text), Link::Beside, "{text}");
+        }
+        for text in [
+            "stop in the kitchen",
+            "start at the kitchen",
+            "walk out of the kitchen",
+            "wait at the end of the hallway",
+            "coming from the kitchen",
+        ] {
+            assert_eq!(last(text), Link::Within, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_goal_and_what_leads_there_are_told_apart() {
+        for text in ["walk to the kitchen", "enter the kitchen", "turn left into the kitchen"] {
+            assert_eq!(last(text), Link::Goal, "{text}");
+        }
+        for text in ["walk to the bathroom past the kitchen", "go down the hallway", "walk across the kitchen"] {
+            assert_eq!(last(text), Link::Along, "{text}");
+        }
+        assert_eq!(last("leave the kitchen"), Link::Plain);
+    }
+}
