@@ -3,6 +3,7 @@
 //!
 //! The reader knows nothing of any writer: it takes the words of people, of models and of our own writer alike.
 
+mod climbs;
 mod links;
 mod places;
 mod task;
@@ -95,7 +96,7 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     let tokens = tokens(text);
     let clauses = clauses(&tokens);
     let mut events = turns::turns(&tokens, &clauses);
-    events.extend(turns::climbs_and_floors(&tokens, &clauses));
+    events.extend(climbs::climbs_and_floors(&tokens, &clauses));
     let taken: Vec<[usize; 2]> =
         events.iter().filter(|event| matches!(event.what, What::Floor(_))).map(|event| event.span).collect();
     events.extend(places::places(&tokens, &clauses, known, &taken));

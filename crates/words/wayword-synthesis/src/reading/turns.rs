@@ -1,8 +1,40 @@
-//! Turn words, stairs and floors.
+//! Turn words.
 
 use super::{Event, What, vocabulary as v};
-use crate::text::Token;
-use wayword_core::{Climb, Side};
+use crate::{
+    lexicon::{is_room, is_thing, normal_word},
+    text::Token,
+};
+use wayword_core::Side;
+
+/// The turns of a text.
+pub(super) fn turns(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
+    let text = Text(tokens);
+    let mut turns: Vec<Event> = Vec::new();
+    let mut told_in_sentence = false;
+    let mut verb_of_about = None;
+    for at in 0..tokens.len() {
+        if tokens[at].ends_sentence() {
+            (told_in_sentence, verb_of_about) = (false, None);
+        }
+        let found = match text.about(at) {
+            Some(about) => Some((Side::Behind, about.verb, about.last)),
+            None => text.side(at, told_in_sentence).map(|(side, verb)| (side, verb, at)),
+        };
+        let Some((side, verb, last)) = found else { continue };
+        // "Turn 180 degrees to the right" is one turn.
+        if verb.is_some() && verb == verb_of_about {
+            continue;
+        }
+        if side == Side::Behind {
+            verb_of_about = verb;
+        }
+        told_in_sentence = true;
+        let span = [tokens[at].span[0], tokens[last].span[1]];
+        turns.push(Event { what: What::Turn(side), span, clause: clauses[at] });
+    }
+    turns
+}
 
 fn side_word(word: &str) -> Option<Side> {
     match word {
@@ -12,104 +44,290 @@ fn side_word(word: &str) -> Option<Side> {
     }
 }
 
-/// The turns of a text.
-pub(super) fn turns(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let mut turns: Vec<Event> = Vec::new();
-    for at in 0..tokens.len() {
-        let told_before = turns
-            .last()
-            .is_some_and(|turn| sentence_of(tokens, turn.span[0]) == sentence_of(tokens, tokens[at].span[0]));
-        let around = matches!(word(at), "around" | "180" | "back")
-            && at > 0
-            && matches!(word(at - 1), "turn" | "turned" | "turning");
-        let side = if around {
-            Some(Side::Behind)
-        } else {
-            side_word(word(at)).filter(|side| is_turn(tokens, at, *side, told_before))
+/// A turn around: its verb, where it has one, and its last token.
+struct About {
+    verb: Option<usize>,
+    last: usize,
+}
+
+struct Text<'a>(&'a [Token]);
+
+impl<'a> Text<'a> {
+    /// The word or mark at a place, nothing behind the end.
+    fn word(&self, at: usize) -> &'a str {
+        self.0.get(at).map_or("", |token| token.word.as_str())
+    }
+
+    /// The first of the words right before a place that may all be skipped.
+    fn skip_back(&self, at: usize, may: impl Fn(&str) -> bool) -> usize {
+        (0..at).rev().find(|before| !may(self.word(*before))).map_or(0, |blocks| blocks + 1)
+    }
+
+    /// The turn around that begins at a token.
+    fn about(&self, at: usize) -> Option<About> {
+        let next = self.word(at + 1);
+        let verb = || {
+            let from = self.skip_back(at, |word| v::BEFORE_ABOUT.contains(&word));
+            let verb = from.checked_sub(1).filter(|verb| v::SPINNING.contains(&self.word(*verb)))?;
+            Some(About { verb: Some(verb), last: at })
         };
-        if let Some(side) = side {
-            turns.push(Event { what: What::Turn(side), span: tokens[at].span, clause: clauses[at] });
-        }
-    }
-    turns
-}
-
-fn sentence_of(tokens: &[Token], at: usize) -> usize {
-    tokens.iter().take_while(|token| token.span[0] < at).filter(|token| token.ends_sentence()).count()
-}
-
-/// Whether the side word at `at` tells a turn and not where something is.
-fn is_turn(tokens: &[Token], at: usize, side: Side, told_before: bool) -> bool {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let after = word(at + 1);
-    if matches!(after, "of" | "side" | "hand" | "wall" | "corner" | "most") {
-        return false;
-    }
-    if after == "turn" {
-        return true;
-    }
-    // What stands right before the side, without the words that may come between.
-    let mut before = at;
-    while before > 0 && v::BEFORE_SIDE.contains(&word(before - 1)) {
-        before -= 1;
-    }
-    let directly = before == at;
-    let verb = if before > 0 { word(before - 1) } else { "" };
-    if side == Side::Right && directly && v::AFTER_ADVERB_RIGHT.contains(&after) && !v::TURNING.contains(&verb) {
-        return false;
-    }
-    if v::TURNING.contains(&verb) {
-        return true;
-    }
-    let skipped: Vec<&str> = (before..at).map(word).collect();
-    if v::GOING.contains(&verb) {
-        return directly
-            || skipped.contains(&"to")
-            || skipped.iter().all(|word| matches!(*word, "immediately" | "slightly" | "then"));
-    }
-    let begins_clause = verb.is_empty() || verb == "," || verb == ".";
-    told_before
-        && (skipped.iter().any(|word| matches!(*word, "then" | "another" | "again"))
-            || (begins_clause && !skipped.contains(&"to")))
-        || begins_clause && skipped.is_empty() && matches!(after, "at" | "into" | "through" | "," | "onto" | "down")
-}
-
-/// The climbs and floors of a text.
-pub(super) fn climbs_and_floors(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let is_stairs =
-        |word: &str| matches!(word, "stairs" | "stair" | "staircase" | "steps" | "stairway" | "flight" | "stairwell");
-    let stairs_follow =
-        |at: usize| (at + 1..=at + 5).map(word).take_while(|word| *word != "." && *word != ",").any(is_stairs);
-    let mut events = Vec::new();
-    for at in 0..tokens.len() {
-        let climb = match word(at) {
-            "upstairs" => Some(Climb::Up),
-            "downstairs" => Some(Climb::Down),
-            "up" | "climb" | "climbing" | "ascend" if stairs_follow(at) && word(at + 1) != "to" => Some(Climb::Up),
-            "down" | "descend" | "descending" if stairs_follow(at) && word(at + 1) != "to" => Some(Climb::Down),
+        let by_itself = |last: usize| Some(About { verb: None, last });
+        match self.word(at) {
+            "u" if next == "turn" => by_itself(at + 1),
+            "uturn" => by_itself(at),
+            "face" if at > 0 && self.word(at - 1) == "about" => by_itself(at),
+            // "Turn around the corner" is no turn around.
+            "around" if !matches!(next, "the" | "a" | "an" | "this" | "that") => verb(),
+            "180" => {
+                let is_noun = [next, self.word(at + 2)].contains(&"turn");
+                let done = at > 1 && self.word(at - 1) == "a" && v::DOING.contains(&self.word(at - 2));
+                if is_noun || done { by_itself(at) } else { verb() }
+            }
+            "back" if !matches!(next, "around" | "180" | "on" | "off" | "left" | "right") => {
+                verb().filter(|about| about.verb == at.checked_sub(1))
+            }
+            "opposite" if matches!(next, "direction" | "way") => verb(),
             _ => None,
-        };
-        let said_already = |climb: Climb| matches!(events.last(), Some(Event { what: What::Climb(last), clause, .. }) if *last == climb && *clause == clauses[at]);
-        if let Some(climb) = climb.filter(|climb| !said_already(*climb)) {
-            events.push(Event { what: What::Climb(climb), span: tokens[at].span, clause: clauses[at] });
-        }
-        if let Some((number, last)) = floor(tokens, at) {
-            let span = [tokens[at].span[0], tokens[last].span[1]];
-            events.push(Event { what: What::Floor(number), span, clause: clauses[at] });
         }
     }
-    events
+
+    /// The side to which a turn goes that is told at a token, and its verb, where it has one.
+    fn side(&self, at: usize, told_before: bool) -> Option<(Side, Option<usize>)> {
+        let side = side_word(self.word(at))?;
+        let after = self.word(at + 1);
+        if after == "turn" || (after == "hand" && self.word(at + 2) == "turn") {
+            return Some((side, None));
+        }
+        // What stands right before the side, without the words that may come between.
+        let from = self.skip_back(at, |word| v::BEFORE_SIDE.contains(&word));
+        let far = self.skip_back(at, |word| {
+            v::BEFORE_SIDE.contains(&word)
+                || v::BEFORE_SIDE_OF_TURN.contains(&word)
+                || word.chars().all(|c| c.is_ascii_digit())
+        });
+        let turning = far.checked_sub(1).filter(|verb| self.turns(*verb, far..at));
+        if self.tells_a_place(at, turning) || (side == Side::Right && self.is_adverb(at, turning, told_before)) {
+            return None;
+        }
+        let is_turn = turning.is_some()
+            || self.goes_there(from, at)
+            || self.stands_alone(from, at, told_before)
+            || self.follows_a_way(at);
+        is_turn.then_some((side, turning))
+    }
+
+    /// Whether the word at `verb` is one of turning, with these words between it and the side.
+    fn turns(&self, verb: usize, mut between: std::ops::Range<usize>) -> bool {
+        let word = self.word(verb);
+        v::TURNING.contains(&word)
+            || (matches!(word, "round" | "rounding") && between.any(|at| self.word(at) == "corner"))
+    }
+
+    /// "The left wall", "left of the sofa": the side tells which thing is meant, or where it is.
+    fn tells_a_place(&self, at: usize, turning: Option<usize>) -> bool {
+        let after = self.word(at + 1);
+        if matches!(after, "of" | "side" | "hand" | "wall" | "corner" | "most") {
+            return true;
+        }
+        // "Turn left hallway" lacks a comma; "take left doorway" lacks an article.
+        let directly = |verb: usize| verb + 1 == at && !v::DOING.contains(&self.word(verb));
+        if turning.is_some_and(directly) {
+            return false;
+        }
+        let is_noun = |word: &str| {
+            let name = normal_word(word);
+            is_thing(&name) || is_room(&name) || v::HAVE_SIDES.contains(&word)
+        };
+        let of_a_noun = is_noun(after) || (v::ADJECTIVES.contains(&after) && is_noun(self.word(at + 2)));
+        let definite = at > 0 && matches!(self.word(at - 1), "the" | "your" | "that" | "far");
+        let unknown_noun = definite
+            && self.0.get(at + 1).is_some_and(Token::is_word)
+            && !v::BREAKERS.contains(&after)
+            && !v::ADVERBS.contains(&after)
+            && !matches!(after, "again" | "here" | "during" | "following" | "entering");
+        of_a_noun || unknown_noun
+    }
+
+    /// "Right before the sofa", "walk right up to the table": no side.
+    fn is_adverb(&self, at: usize, turning: Option<usize>, told_before: bool) -> bool {
+        let after = self.word(at + 1);
+        let before = at.checked_sub(1).map_or("", |before| self.word(before));
+        // "Left, then right past the sofa" goes on with turns; "stop, then right after the sofa" does not.
+        let directly = !v::BEFORE_SIDE.contains(&before) || (matches!(before, "and" | "then") && !told_before);
+        matches!(after, "away" | "now")
+            || (after == "around" && turning.is_some())
+            || (turning.is_none() && directly && v::AFTER_ADVERB_RIGHT.contains(&after))
+    }
+
+    /// "Go left", "head to your right": a verb of going before the side, with the words between them from `from` on.
+    fn goes_there(&self, from: usize, at: usize) -> bool {
+        let verb = from.checked_sub(1).map_or("", |verb| self.word(verb));
+        let mut skipped = (from..at).map(|at| self.word(at));
+        v::GOING.contains(&verb)
+            && (skipped.clone().any(|word| word == "to")
+                || skipped.all(|word| matches!(word, "immediately" | "slightly" | "slight" | "then" | "back")))
+    }
+
+    /// ", then left", "and left.", "Left at the sofa": a side that makes a clause of its own.
+    fn stands_alone(&self, from: usize, at: usize, told_before: bool) -> bool {
+        let skipped: Vec<&str> = (from..at).map(|at| self.word(at)).collect();
+        let joined = skipped.iter().any(|word| matches!(*word, "and" | "then"));
+        let again = skipped.iter().any(|word| matches!(*word, "another" | "again"));
+        let begins = from == 0 || !self.0[from - 1].is_word();
+        let to = skipped.contains(&"to");
+        let ends = self.0.get(at + 1).is_none_or(|token| !token.is_word() && token.word != ")")
+            || v::AFTER_SIDE.contains(&self.word(at + 1));
+        // "On your left and right": no turn where the side before was none.
+        let lists_sides = joined && !told_before && from > 0 && side_word(self.word(from - 1)).is_some();
+        if lists_sides {
+            return false;
+        }
+        told_before && (again || (joined && !to) || (begins && !to)) || (ends && (joined || (begins && !to)))
+    }
+
+    /// "Take the hallway left": a side behind a way that is taken.
+    fn follows_a_way(&self, at: usize) -> bool {
+        let ends =
+            self.0.get(at + 1).is_none_or(|token| !token.is_word()) || v::AFTER_SIDE.contains(&self.word(at + 1));
+        let Some(noun) = at.checked_sub(1).filter(|_| ends) else { return false };
+        let name = normal_word(self.word(noun));
+        let verb = (noun.saturating_sub(4)..noun).rev().find(|before| v::DETERMINERS.contains(&self.word(*before)));
+        let taken = verb.and_then(|article| article.checked_sub(1)).map_or("", |verb| self.word(verb));
+        (is_thing(&name) || is_room(&name) || matches!(self.word(noun), "path" | "way" | "passage"))
+            && matches!(taken, "take" | "taking" | "follow" | "following" | "use")
+    }
 }
 
-/// A floor that begins at a token, and its last token: "level 2", "second floor", "2nd level".
-fn floor(tokens: &[Token], at: usize) -> Option<(u32, usize)> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let is_floor = |word: &str| matches!(word, "floor" | "level" | "story" | "storey");
-    if is_floor(word(at)) && !(at > 0 && v::floor_number(word(at - 1)).is_some()) {
-        return v::floor_number(word(at + 1)).map(|number| (number, at + 1));
+#[cfg(test)]
+mod tests {
+    use crate::reading::{What, read};
+    use std::collections::BTreeSet;
+    use wayword_core::Side;
+
+    fn turns(text: &str) -> Vec<Side> {
+        let turn = |what: What| if let What::Turn(side) = what { Some(side) } else { None };
+        read(text, &BTreeSet::new()).events.into_iter().filter_map(|event| turn(event.what)).collect()
     }
-    let number = v::floor_number(word(at)).filter(|_| is_floor(word(at + 1)))?;
-    Some((number, at + 1))
+
+    #[test]
+    fn people_tell_a_turn_in_many_ways() {
+        for text in [
+            "Make a 90 degree left.",
+            "Turn 90 degrees left.",
+            "Turn to the immediate left.",
+            "Go through the doorway and left.",
+            "Exit and then left.",
+            "Continue to the left.",
+            "Continue left.",
+            "Once past the table, go to your left.",
+            "Turn about 90 degrees to your left.",
+            "At the hallway, left.",
+            "Hang left.",
+            "Swing left.",
+            "Round the corner to the left.",
+            "Turn the corner to the left.",
+            "Take the hallway left.",
+            "Walk left.",
+            "Pivot 90 degrees left.",
+            "Turn sharply to the left.",
+            "Rotate left.",
+            "Your first left.",
+            "Left turn.",
+            "Take a left hand turn.",
+            "Make the first available left.",
+            "Turn your body left.",
+            "Slight left.",
+            "Then a left.",
+            "Face left.",
+            "Bend left.",
+            "Veer off to the left.",
+            "Take the second door on your left, turning left.",
+            "Turn, heading left.",
+            "Angle left.",
+            "Keep left.",
+            "Walk forward then left.",
+            "Walk forward, left.",
+            "Turn left hallway.",
+            "Take the first left after the sofa.",
+            "Turn left next to the sofa.",
+        ] {
+            assert_eq!(turns(text), [Side::Left], "{text}");
+        }
+        assert_eq!(turns("Turn right through the door."), [Side::Right]);
+        assert_eq!(turns("Go right into the kitchen, then left."), [Side::Right, Side::Left]);
+    }
+
+    #[test]
+    fn people_tell_a_turn_around_in_many_ways() {
+        for text in [
+            "Turn around.",
+            "Turn all the way around.",
+            "Turn completely around.",
+            "Turn back around.",
+            "Turn right around.",
+            "Do a 180.",
+            "Do a 180 degree turn.",
+            "Make a u-turn.",
+            "U-turn.",
+            "Turn 180 degrees to the right.",
+            "Rotate 180 degrees.",
+            "Turn in the opposite direction.",
+            "Turn and face the opposite direction.",
+            "Spin around.",
+            "About face.",
+        ] {
+            assert_eq!(turns(text), [Side::Behind], "{text}");
+        }
+        for text in ["Walk around the table.", "Turn around the corner.", "Turn back on the lamp."] {
+            assert_eq!(turns(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_side_that_tells_a_place_is_no_turn() {
+        for text in [
+            "Walk through the door on the right.",
+            "Use the right-hand door.",
+            "Keep the table on your right.",
+            "Go through the left door.",
+            "Walk past the sofa to your left.",
+            "Walk right up to the table.",
+            "Go right through the doorway ahead.",
+            "Leave the room you left before.",
+            "Keep to the left of the table.",
+            "Take the door on the left.",
+            "Walk along the left wall.",
+            "There is a table to the right.",
+            "Stay left of the table.",
+            "Walk straight, keeping the table on your left.",
+            "Go straight past the hallway on the left and then right away stop.",
+            "Head to the left side of the bed.",
+            "Take the left doorway.",
+            "Take left doorway.",
+            "Walk to the far right end.",
+            "Walk towards the bed, right past the table.",
+            "Move to the right bed.",
+            "Move to the right xylorimba.",
+            "The bed should be on your left, stop.",
+            "The doors are on your left and right.",
+            "Enter the right bedroom.",
+            "Face the right wall.",
+            "Then right after the table stop.",
+            "Exit the door to the left of the table.",
+            "Proceed to the right of the bed.",
+            "Continue right along the rug.",
+            "Take two steps right in front of the rug.",
+            "Take the staircase on the right.",
+        ] {
+            assert_eq!(turns(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_long_text_takes_no_time_to_read() {
+        let began = std::time::Instant::now();
+        let text = "Pass the sofa on level 2 and turn left, ".repeat(5000);
+        assert_eq!(turns(&text).len(), 5000);
+        assert!(began.elapsed() < std::time::Duration::from_secs(20), "{:?}", began.elapsed());
+    }
 }

@@ -18,16 +18,35 @@ pub(super) static WALKING: Words = LazyLock::new(|| {
 /// Verbs after which "left" or "right" is a turn.
 pub(super) static TURNING: Words = LazyLock::new(|| {
     split(
-        "turn turning veer veering bear bearing take taking make making hang hook rotate curve curving swing pivot \
-     cut steer turns turned",
+        "turn turning veer veering bear bearing take taking make making hang hook rotate rotating curve curving swing \
+     pivot cut steer turns turned angle bend spin",
+    )
+});
+
+/// Those of them that say by themselves what is done to a thing: "take the left door".
+pub(super) static DOING: Words = LazyLock::new(|| split("take taking make making hang hook cut do doing pull"));
+
+/// Verbs after which "around" and "180 degrees" are a turn around.
+pub(super) static SPINNING: Words =
+    LazyLock::new(|| split("turn turns turned turning spin spinning rotate rotating pivot swing whirl"));
+
+/// Words that may stand between such a verb and its "around".
+pub(super) static BEFORE_ABOUT: Words = LazyLock::new(|| {
+    split(
+        "all the way completely fully right back yourself your body a full about just quickly once 180 degrees to in \
+     toward towards and face facing",
     )
 });
 
 /// Verbs after which "left" or "right" is a turn when it follows at once, or after "to the" and "to your".
-pub(super) static GOING: Words =
-    LazyLock::new(|| split("go going head heading walk walking move step keep face exit leave proceed enter"));
+pub(super) static GOING: Words = LazyLock::new(|| {
+    split(
+        "go going head heading walk walking move moving step keep face exit leave proceed enter continue continuing \
+     advance travel",
+    )
+});
 
-/// Words that may stand between a turning verb and its side.
+/// Words that may stand between a verb and its side.
 pub(super) static BEFORE_SIDE: Words = LazyLock::new(|| {
     split(
         "a an the your to first second third next immediate immediately slight slightly sharp sharply hard quick \
@@ -35,9 +54,28 @@ pub(super) static BEFORE_SIDE: Words = LazyLock::new(|| {
     )
 });
 
+/// Words that may stand between a verb of turning and its side besides.
+pub(super) static BEFORE_SIDE_OF_TURN: Words = LazyLock::new(|| {
+    split(
+        "degree degrees about approximately roughly completely fully body yourself off corner available possible full \
+     quarter it out face facing very just",
+    )
+});
+
+/// Words that may follow a side that is a turn by itself: "then left at the sofa".
+pub(super) static AFTER_SIDE: Words = LazyLock::new(|| {
+    split("at into through onto down past towards toward after before when once until and then out around")
+});
+
 /// Words after which "right" is no side ("stop right before the sofa").
-pub(super) static AFTER_ADVERB_RIGHT: Words =
-    LazyLock::new(|| split("before next in outside beside there inside beyond above"));
+pub(super) static AFTER_ADVERB_RIGHT: Words = LazyLock::new(|| {
+    split("before next in outside beside there here inside beyond above up through past along by to over under after")
+});
+
+/// What has a left and a right one, and is in no lexicon.
+pub(super) static HAVE_SIDES: Words = LazyLock::new(|| {
+    split("end part half one ones path room area direction fork branch wing edge section lane doors rooms")
+});
 
 /// Words that begin a noun phrase.
 pub(super) static DETERMINERS: Words = LazyLock::new(|| split("the a an this that these those your its another some"));
