@@ -76,7 +76,8 @@ fn encode(image: &Image, longer_px: u32) -> Result<Picture, String> {
     let mut encoder = JpegEncoder::new_with_quality(&mut jpeg, QUALITY);
     let encoded = match scaled_down(width, height, longer_px) {
         Some((width, height)) => {
-            encoder.encode_image(&imageops::resize(&pixels, width, height, imageops::FilterType::Triangle))
+            // Averages whole pixels: as good as a filter where a picture shrinks, and several times as fast.
+            encoder.encode_image(&imageops::thumbnail(&pixels, width, height))
         }
         None => encoder.encode(image.rgb(), width, height, image::ExtendedColorType::Rgb8),
     };

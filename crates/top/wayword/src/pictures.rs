@@ -15,14 +15,12 @@ pub struct Picture {
     jpeg: Vec<u8>,
 }
 
-/// Encodes what is seen ahead from each frame, where the platform has pictures: `panoramas` holds, for each frame, the views
-/// around it, ahead first.
+/// Encodes what is seen ahead from each frame, where the platform has pictures.
 ///
 /// # Errors
 /// When the platform gave a picture that no JPEG can hold.
-pub fn encode(panoramas: &[Vec<View>]) -> Result<Vec<Picture>, Error> {
-    let ahead = panoramas.iter().enumerate();
-    let images = ahead.filter_map(|(frame, views)| Some((frame, views.first()?.image.as_deref()?)));
+pub fn encode(ahead: &[View]) -> Result<Vec<Picture>, Error> {
+    let images = ahead.iter().enumerate().filter_map(|(frame, view)| Some((frame, view.image.as_deref()?)));
     let encoded = images.map(|(frame, image)| {
         let jpeg = jpeg(image).map_err(|error| {
             Error::usage(format!("the picture of frame {frame} cannot be kept: {error}"), "report this as a bug")

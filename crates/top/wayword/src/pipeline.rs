@@ -42,17 +42,16 @@ pub fn make(
 ) -> Result<Made, Error> {
     let world = Remembering::new(platform);
     let path = path(item, settings, &world)?;
-    let panoramas = panoramas(&world, &path)?;
     let observations = observe(&world, &path, settings.frames, team.minds())?;
     let walk = Walk::new(path, observations);
-    let evidence = evidence(&walk, &panoramas, settings.evidence);
+    let evidence = evidence(&walk, &world, settings.evidence)?;
     let outcomes = styles.iter().map(|Measured { style, profile }| {
         let order =
             Order { walk: &walk, evidence: &evidence, style, profile, seed: settings.seed, repairs: settings.repairs };
         write_and_repair(team.writers(), team.minds(), order)
     });
     let outcomes = outcomes.collect::<Result<_, _>>()?;
-    let pictures = pictures::encode(&panoramas)?;
+    let pictures = pictures::encode(&ahead(&world, &walk.path)?)?;
     Ok(Made { walk, outcomes, pictures })
 }
 
@@ -84,9 +83,18 @@ fn look_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Resul
     Gaze::around(frame.pose.heading).map(|gaze| platform.look(scene, frame, gaze)).into_iter().collect()
 }
 
+/// What is ahead of each frame.
+fn ahead(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, PlatformError> {
+    let look = |frame: &Frame| platform.look(&path.scene, frame, Gaze::quarter(frame.pose.heading));
+    path.frames.iter().map(look).collect()
+}
+
 /// What texts are held against: labels where they are wanted and there are any, else captions, else the path alone.
-#[must_use]
-pub fn evidence(walk: &Walk, panoramas: &[Vec<View>], against: Against) -> Evidence {
-    let labels = Evidence::from_labels(&walk.path, panoramas).filter(|_| against == Against::Labels);
-    labels.or_else(|| walk.evidence()).unwrap_or_else(|| Evidence::of_path_alone(&walk.path))
+fn evidence(walk: &Walk, platform: &dyn Platform, against: Against) -> Result<Evidence, PlatformError> {
+    let labels = match against {
+        Against::Labels => Evidence::from_labels(&walk.path, &panoramas(platform, &walk.path)?),
+        // Looking around takes longer than all the rest.
+        Against::Captions => None,
+    };
+    Ok(labels.or_else(|| walk.evidence()).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))
 }

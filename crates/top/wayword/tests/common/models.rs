@@ -1,5 +1,7 @@
 //! What the tests with models share: a provider that plays every role, and runs of the binary against it.
 
+#![allow(dead_code, reason = "each test binary uses its own part")]
+
 use crate::common::{self, Building, Ran, run};
 use std::{path::Path, process::Command};
 use wayword_testkit::provider::{
@@ -72,10 +74,12 @@ impl Stage {
         run(&mut self.generating(out, args))
     }
 
-    /// The files that a run is about.
-    pub(crate) fn results(&self, out: &str) -> Vec<Vec<u8>> {
-        let file = |name: &str| std::fs::read(self.building.path(out).join(name)).unwrap();
-        ["walks.jsonl", "instructions.jsonl", "rejected.jsonl"].map(file).to_vec()
+    /// Whether a run here and one elsewhere came to the same files, byte for byte but for the port of the provider.
+    pub(crate) fn same_results(&self, other: &Self, out: &str) -> bool {
+        ["walks.jsonl", "instructions.jsonl", "rejected.jsonl"].iter().all(|name| {
+            let read = |stage: &Self| std::fs::read(stage.building.path(out).join(name)).unwrap();
+            read(self) == read(other)
+        })
     }
 }
 

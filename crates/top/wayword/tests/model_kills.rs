@@ -1,0 +1,58 @@
+//! A run with models that is killed again and again ends like one that was left alone, and pays twice at most for what was on
+//! the wire.
+//!
+//! `WAYWORD_KILLS` sets how often it is killed (default 3).
+
+#![cfg(all(unix, feature = "remote"))]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking, and tells what it counted")]
+
+mod common;
+#[path = "common/models.rs"]
+mod stage;
+
+use rand::Rng;
+use stage::{Stage, cast};
+use std::{env, process::Stdio, thread, time::Duration};
+use wayword_core::rng;
+use wayword_testkit::provider::Behaviour;
+
+const CONCURRENCY: u64 = 16;
+/// Some 2,000 calls.
+const RUN: [&str; 6] = ["--paths", "150", "--concurrency", "16", "--quiet", "--json"];
+
+#[test]
+fn a_run_that_is_killed_ends_the_same_and_pays_once() {
+    let kills: usize = env::var("WAYWORD_KILLS").map_or(3, |kills| kills.parse().unwrap());
+    let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
+    let (whole, killed) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
+    whole.generate("run", &RUN);
+    let calls = whole.provider.log().answered;
+
+    let mut rng = rng(3, &["kills"]);
+    let mut moments: Vec<u64> = (0..kills).map(|_| rng.random_range(1..calls * 19 / 20)).collect();
+    moments.sort_unstable();
+    let mut at_work = 0;
+    for moment in moments {
+        let mut child = killed.generating("run", &RUN).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        while killed.provider.requests() < moment && child.try_wait().unwrap().is_none() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        // A process that has nothing to ask yet is killed while it reads what it has.
+        thread::sleep(Duration::from_millis(rng.random_range(0..60)));
+        child.kill().unwrap();
+        at_work += usize::from(child.wait().unwrap().code().is_none());
+    }
+    let last = killed.generate("run", &RUN);
+    assert_eq!(last.json()["stopped"], serde_json::Value::Null, "{last:?}");
+    assert!(at_work * 10 >= kills * 9, "only {at_work} of {kills} kills landed while it was at work");
+    assert!(whole.same_results(&killed, "run"), "the results differ");
+
+    let log = killed.provider.log();
+    let cost = killed.building.wayword(&["ledger", "cost", "--ledger", "ledger.db", "--json"]).json();
+    let lost = cost["lost"].as_u64().unwrap();
+    let again = log.answered - log.distinct_answered();
+    eprintln!("{kills} kills, {calls} calls: {again} paid again, {lost} counted as perhaps paid");
+    assert_eq!(log.distinct_answered(), whole.provider.log().distinct_answered());
+    assert!(again <= lost, "{again} calls were paid again, and {lost} are counted");
+    assert!(lost <= kills as u64 * CONCURRENCY * 2, "{lost}");
+}
