@@ -14,6 +14,8 @@ pub(super) enum Step {
     Place(Vec<usize>),
     /// A turn.
     Turn(Side),
+    /// A walk, however short.
+    Onward,
     /// Something that holds no place in the order.
     Free,
 }
@@ -88,6 +90,13 @@ fn undominated(mut reached: Vec<Reached>) -> Vec<Reached> {
 fn after(state: State, step: &Step, bends: &Bends) -> Vec<(State, Option<usize>)> {
     match step {
         Step::Free => vec![(state, None)],
+        Step::Onward => {
+            if bends.moves {
+                vec![(state, None)]
+            } else {
+                Vec::new()
+            }
+        }
         Step::Place(frames) => {
             let first = frames.partition_point(|frame| *frame < state.place.max(state.turn));
             frames.get(first).map(|frame| (State { place: *frame, ..state }, Some(*frame))).into_iter().collect()
@@ -106,6 +115,8 @@ struct Bends {
     left: Vec<(usize, usize)>,
     right: Vec<(usize, usize)>,
     around: Vec<(usize, usize)>,
+    /// Whether the walk goes anywhere at all.
+    moves: bool,
 }
 
 impl Bends {
@@ -116,7 +127,12 @@ impl Bends {
                 .flat_map(|first| (first..(first + motion::BEND_MOVES).min(deg.len())).map(move |last| (first, last)));
             spans.filter(|(first, last)| is_turn(side, &deg[*first..=*last])).collect()
         };
-        Self { left: to(Side::Left), right: to(Side::Right), around: to(Side::Behind) }
+        Self {
+            left: to(Side::Left),
+            right: to(Side::Right),
+            around: to(Side::Behind),
+            moves: evidence.moves.iter().any(|step| step.distance_m > 0.0),
+        }
     }
 
     /// Those to a side, from a move on, that begin before every other has ended: the later ones leave a text no more to say.
@@ -162,6 +178,7 @@ mod tests {
         let moves = turns_deg.len();
         match step {
             Step::Free => fits(rest, state, turns_deg),
+            Step::Onward => moves > 0 && fits(rest, state, turns_deg),
             Step::Place(frames) => frames
                 .iter()
                 .filter(|frame| **frame >= state.place && **frame >= state.turn)
@@ -178,6 +195,7 @@ mod tests {
             prop::collection::btree_set(0..6_usize, 1..4).prop_map(|frames| Step::Place(frames.into_iter().collect())),
             prop_oneof![Just(Side::Left), Just(Side::Right), Just(Side::Behind)].prop_map(Step::Turn),
             Just(Step::Free),
+            Just(Step::Onward),
         ]
     }
 

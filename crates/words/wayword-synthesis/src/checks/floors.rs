@@ -3,28 +3,101 @@
 use super::{finding, or_pass};
 use crate::{
     evidence::Evidence,
-    reading::{Reading, What},
+    reading::{Event, Floor, Reading, What},
 };
 use wayword_core::{Check, Climb, Finding, Verdict};
 
 pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
-    let levels: Vec<u32> = evidence.frames.iter().filter_map(|frame| frame.level).collect();
-    let last = levels.last().copied();
-    let wrong = reading.events.iter().filter_map(|event| {
-        let (right, reason) = match event.what {
-            What::Floor(_) if levels.is_empty() => (None, "no floor is known on this path".to_owned()),
-            What::Floor(number) => (Some(levels.contains(&number)), format!("the path does not touch floor {number}")),
-            What::Climb(climb) => {
-                // "the bedroom upstairs" tells a place to somebody who stands anywhere.
-                let is_there = last.is_some_and(|last| if climb == Climb::Up { last >= 2 } else { last == 1 });
-                let climbs = !evidence.frames_with_climb(climb).is_empty();
-                let way = if climb == Climb::Up { "up" } else { "down" };
-                (Some(climbs || is_there), format!("the path does not go {way} any stairs"))
+    let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();
+    let stairs = reading.events.iter().filter_map(|event| {
+        let (verdict, reason) = match event.what {
+            What::Climb(climb) => (climbed(climb, evidence), format!("the path does not go {} any stairs", way(climb))),
+            What::Steps(climb) if evidence.steps(climb) => return None,
+            What::Steps(climb) => (Verdict::Fail, format!("the path does not go {} any steps", way(climb))),
+            What::Storey(climb) => {
+                (storey(climb, evidence), format!("the path does not end {} any stairs", way(climb)))
             }
-            What::Place(_) | What::Turn(_) => return None,
+            _ => return None,
         };
-        let verdict = right.map_or(Verdict::Unverified, |right| if right { Verdict::Pass } else { Verdict::Fail });
         (verdict != Verdict::Pass).then(|| finding(Check::Floors, verdict, reason, Some(event.span)))
     });
-    or_pass(Check::Floors, wrong.collect())
+    or_pass(Check::Floors, stairs.chain(wrong_floor(&told(reading), reading, &levels)).collect())
+}
+
+fn way(climb: Climb) -> &'static str {
+    if climb == Climb::Up { "up" } else { "down" }
+}
+
+fn climbed(climb: Climb, evidence: &Evidence) -> Verdict {
+    if evidence.frames_with_climb(climb).is_empty() { Verdict::Fail } else { Verdict::Pass }
+}
+
+/// "The bedroom upstairs" tells a place to somebody who stands anywhere.
+fn storey(climb: Climb, evidence: &Evidence) -> Verdict {
+    let ends_there = match evidence.frames.last().and_then(|frame| frame.level) {
+        Some(level) => (level >= 2) == (climb == Climb::Up),
+        None if climbed(climb, evidence) == Verdict::Fail => return Verdict::Unverified,
+        None => true,
+    };
+    if ends_there { Verdict::Pass } else { climbed(climb, evidence) }
+}
+
+/// The floors that a text tells, in the order of the walk.
+fn told(reading: &Reading) -> Vec<(&Event, Floor)> {
+    let mut told: Vec<(&Event, Floor)> = Vec::new();
+    for event in &reading.events {
+        let What::Floor(floor) = event.what else { continue };
+        if floor.aside {
+            continue;
+        }
+        // "To the second floor from the first".
+        let behind =
+            told.last().is_some_and(|(before, other)| floor.leaves && !other.leaves && before.clause == event.clause);
+        told.insert(told.len() - usize::from(behind), (event, floor));
+    }
+    told
+}
+
+/// What is wrong with the floors of a text: they are passed in their order, and the walk ends on the last one that is told
+/// as a goal.
+fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32>]) -> Option<Finding> {
+    let wrong = |verdict: Verdict, (event, floor): &(&Event, Floor)| {
+        let name = floor.number.map_or("the top floor".to_owned(), |number| format!("floor {number}"));
+        let touched = floor.number.is_some_and(|number| levels.contains(&Some(number)));
+        let reason = match (verdict, touched) {
+            (Verdict::Fail, true) => format!("the path is on {name}, but not then"),
+            (Verdict::Fail, false) => format!("the path does not touch {name}"),
+            _ => format!("nothing here can tell whether the path is on {name}"),
+        };
+        finding(Check::Floors, verdict, reason, Some(event.span))
+    };
+    let ends = |at: usize| {
+        let (event, floor) = told[at];
+        let goes_on = reading.events.iter().any(|other| {
+            matches!(other.what, What::Climb(_)) && other.span[0] > event.span[0] && other.clause != event.clause
+        });
+        at + 1 == told.len() && !floor.leaves && !goes_on
+    };
+    // Whether the levels allow the floors; what is not known allows all.
+    let first_off = |allows: &dyn Fn(Option<u32>, Floor) -> bool| {
+        let mut from = 0;
+        told.iter().enumerate().position(|(at, (_, floor))| {
+            let first = if ends(at) { levels.len().saturating_sub(1).max(from) } else { from };
+            let found = (first..levels.len()).find(|frame| allows(levels[*frame], *floor));
+            from = found.unwrap_or(from);
+            found.is_none()
+        })
+    };
+    let highest = levels.iter().flatten().max().copied();
+    let certain = |level: Option<u32>, floor: Floor| floor.number.is_some() && level == floor.number;
+    let possible = |level: Option<u32>, floor: Floor| match (level, floor.number) {
+        (None, _) => true,
+        (Some(level), Some(number)) => level == number,
+        // There may be higher ones that the path does not touch, but none that it does.
+        (Some(level), None) => Some(level) == highest,
+    };
+    if let Some(at) = first_off(&possible) {
+        return Some(wrong(Verdict::Fail, &told[at]));
+    }
+    first_off(&certain).map(|at| wrong(Verdict::Unverified, &told[at]))
 }

@@ -126,7 +126,7 @@ fn at_the_end(place: &Place, evidence: &Evidence) -> Shown {
 fn absent(place: &Place, evidence: &Evidence) -> Verdict {
     let thing_denied = place.is_thing && evidence.denies_thing(&place.name);
     // What lies next to a path need not lie on it.
-    let room_denied = place.is_room && evidence.denies_rooms() && place.link != Link::Beside;
+    let room_denied = place.is_room && evidence.denies_room(&place.name) && place.link != Link::Beside;
     // A name that means either is denied where one of them is.
     if thing_denied || (room_denied && !place.is_thing) { Verdict::Fail } else { Verdict::Unverified }
 }

@@ -52,7 +52,7 @@ impl Checked {
 /// Checks a text.
 #[must_use]
 pub fn check(text: &str, subject: Subject<'_>) -> Checked {
-    let reading = read(text, &names(subject.evidence));
+    let reading = read(text, &names(subject.evidence)).claims();
     let mut findings = Vec::new();
     findings.extend(form::form(text, &subject.style.constraints));
     let ends_in_task = subject.style.constraints.ends_in_task;
@@ -83,8 +83,8 @@ fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
         What::Place(_) if object == Some(at) => MentionKind::Target,
         What::Place(place) if place.is_room => MentionKind::Room,
         What::Place(_) => MentionKind::Landmark,
-        What::Turn(_) => MentionKind::Turn,
-        What::Climb(_) | What::Floor(_) => MentionKind::Floor,
+        What::Turn(_) | What::Onward => MentionKind::Turn,
+        What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => MentionKind::Floor,
     };
     let told = reading.events.iter().zip(frames).enumerate();
     told.filter_map(|(at, (event, frame))| Some(Mention { span: event.span, kind: kind(at, event), frame: (*frame)? }))

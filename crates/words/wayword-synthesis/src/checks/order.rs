@@ -73,7 +73,10 @@ fn lay(certain: &[Step], possible: &[Step], evidence: &Evidence) -> (Verdict, Re
 }
 
 fn places_alone(steps: &[Step]) -> Vec<Step> {
-    steps.iter().map(|step| if matches!(step, Step::Turn(_)) { Step::Free } else { step.clone() }).collect()
+    steps
+        .iter()
+        .map(|step| if matches!(step, Step::Turn(_) | Step::Onward) { Step::Free } else { step.clone() })
+        .collect()
 }
 
 /// Whether an event is a place that only tells where another place of its clause, or the task's object, is.
@@ -100,13 +103,15 @@ fn turn_reason(steps: &[Step], at: usize) -> &'static str {
         Step::Turn(Side::Left) => "no move of the path turns left here",
         Step::Turn(Side::Right) => "no move of the path turns right here",
         Step::Turn(_) => "no move of the path turns around here",
+        Step::Onward => "the path does not go anywhere",
         _ => "the path turns differently before it gets here",
     }
 }
 
 /// Turns by themselves, where the places are out of order anyway.
 fn turns_alone(reading: &Reading, evidence: &Evidence) -> Finding {
-    let turns: Vec<&Event> = reading.events.iter().filter(|event| matches!(event.what, What::Turn(_))).collect();
+    let turns: Vec<&Event> =
+        reading.events.iter().filter(|event| matches!(event.what, What::Turn(_) | What::Onward)).collect();
     let steps: Vec<Step> = turns.iter().map(|event| step(event, Vec::new(), evidence)).collect();
     match align(&steps, evidence) {
         Ok(_) => pass(Check::Turns),
@@ -122,7 +127,8 @@ fn step(event: &Event, shown: Vec<usize>, evidence: &Evidence) -> Step {
             let frames = evidence.frames_with_climb(*climb);
             if frames.is_empty() { Step::Free } else { Step::Place(frames) }
         }
-        What::Place(_) | What::Floor(_) => Step::Free,
+        What::Onward => Step::Onward,
+        What::Place(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => Step::Free,
     }
 }
 

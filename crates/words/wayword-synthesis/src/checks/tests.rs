@@ -148,3 +148,76 @@ fn what_only_tells_where_a_goal_is_holds_no_place_in_the_order() {
     fails(Check::Order, "Walk past the sofa through the bedroom into the bathroom.", &path);
     fails(Check::Order, "Go to the bathroom and walk past the sofa.", &path);
 }
+
+/// Along a level walk on one floor.
+fn flat(level: u32) -> Evidence {
+    let frames = vec![frame("hallway", Some(&[]), level), frame("bathroom", Some(&["sink"]), level)];
+    walk(frames, &[(0.0, 0.0)])
+}
+
+/// From one floor to the next by stairs.
+fn by_stairs(from: u32, to: u32) -> Evidence {
+    let rise_m = if to > from { 3.0 } else { -3.0 };
+    let frames = vec![frame("hallway", Some(&[]), from), frame("bathroom", Some(&["sink"]), to)];
+    walk(frames, &[(0.0, rise_m)])
+}
+
+#[test]
+fn who_is_told_to_climb_has_to_climb() {
+    for text in ["Go upstairs and stop in the bathroom.", "Walk up one floor and stop in the bathroom."] {
+        passes(text, &by_stairs(1, 2));
+        fails(Check::Floors, text, &flat(2));
+    }
+    fails(Check::Floors, "Go downstairs. Wait in the hallway.", &flat(1));
+    let low = walk(flat(1).frames, &[(0.0, 0.3)]);
+    passes("Walk up two steps and stop in the bathroom.", &low);
+    fails(Check::Floors, "Walk up the stairs and stop in the bathroom.", &low);
+    fails(Check::Floors, "Walk up two steps and stop in the bathroom.", &flat(1));
+    // A place that lies upstairs is there for somebody who stands upstairs already.
+    passes("Go to the bathroom upstairs.", &flat(2));
+    passes("Go to the bathroom downstairs.", &flat(1));
+    fails(Check::Floors, "Go to the bathroom upstairs.", &flat(1));
+    is_unverified(Check::Floors, "Go to the bathroom upstairs.", &flat(0));
+}
+
+#[test]
+fn floors_are_passed_in_their_order_up_to_the_last() {
+    for (text, from, to) in [
+        ("Walk from the second floor to the first floor.", 2, 1),
+        ("Walk to the first floor from the second floor.", 2, 1),
+        ("Start on the second floor and walk to the bathroom on the first floor.", 2, 1),
+        ("Walk to the bathroom on the second floor.", 1, 2),
+        ("Walk along the first floor hallway. Go up the stairs and stop.", 1, 2),
+    ] {
+        passes(text, &by_stairs(from, to));
+    }
+    fails(Check::Floors, "Walk from the second floor to the first floor.", &by_stairs(1, 2));
+    fails(Check::Floors, "Start on the second floor and walk to the bathroom on the first floor.", &by_stairs(1, 2));
+    fails(Check::Floors, "Walk to the bathroom on the first floor.", &by_stairs(1, 2));
+    for text in ["Go to the bathroom on the 7th floor.", "Go to the bathroom on floor 12."] {
+        fails(Check::Floors, text, &flat(1));
+        is_unverified(Check::Floors, text, &flat(0));
+    }
+}
+
+#[test]
+fn how_many_floors_there_are_is_not_known() {
+    is_unverified(Check::Floors, "Go to the bathroom on the top floor.", &by_stairs(1, 2));
+    fails(Check::Floors, "Go to the bathroom on the top floor.", &by_stairs(2, 1));
+    is_unverified(Check::Landmarks, "Go to the basement.", &flat(1));
+    fails(Check::Landmarks, "Go to the basement.", &flat(2));
+    is_unverified(Check::Landmarks, "Go to the basement bathroom.", &flat(1));
+}
+
+#[test]
+fn what_is_not_to_be_done_is_not_held_against_a_text() {
+    passes("Do not turn left. Walk past the sofa, don't enter the kitchen and stop in the bedroom.", &to_the_bedroom());
+}
+
+#[test]
+fn nobody_walks_on_where_the_path_goes_nowhere() {
+    let standing = walk(vec![frame("kitchen", Some(&["sink"]), 1)], &[]);
+    fails(Check::Turns, "Walk straight ahead and stop at the sink.", &standing);
+    fails(Check::Turns, "Continue through the kitchen and stop at the sink.", &standing);
+    passes("Stop at the sink.", &standing);
+}

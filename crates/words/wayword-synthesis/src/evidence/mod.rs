@@ -3,7 +3,7 @@
 mod from_captions;
 mod from_labels;
 
-use crate::lexicon::{Class, agree, same_room, thing};
+use crate::lexicon::{Class, agree, room_name, same_room, thing};
 use wayword_core::{Climb, Move, ObjectId, Path, motion};
 
 /// What is known of a path, frame by frame.
@@ -66,6 +66,9 @@ impl Source {
     }
 }
 
+/// The lowest step that is told as one, metres.
+const STEP_M: f64 = 0.1;
+
 impl Evidence {
     fn of(path: &Path, mut frames: Vec<FrameEvidence>, source: Source) -> Self {
         for (evidence, frame) in frames.iter_mut().zip(&path.frames) {
@@ -103,10 +106,15 @@ impl Evidence {
             && (!left_out || things.any(|seen| thing(&seen.name).map(|thing| thing.class) == class))
     }
 
-    /// Whether a room in which no frame lies is nowhere along the path: the room of every frame is known.
+    /// Whether a room of that name, in which no frame lies, is nowhere along the path: the room of every frame is known.
+    /// A basement or an attic is a floor, and its rooms have names of their own; no basement is above the lowest floor.
     #[must_use]
-    pub fn denies_rooms(&self) -> bool {
-        self.source != Source::Nothing && self.frames_without_room().is_empty()
+    pub fn denies_room(&self, name: &str) -> bool {
+        match room_name(name) {
+            Some("basement") => self.frames.iter().all(|frame| frame.level.is_some_and(|level| level > 1)),
+            Some("attic") => false,
+            _ => self.source != Source::Nothing && self.frames_without_room().is_empty(),
+        }
     }
 
     /// The frames of which nobody told the objects.
@@ -142,6 +150,13 @@ impl Evidence {
     pub fn frames_with_climb(&self, climb: Climb) -> Vec<usize> {
         let climbs = |at: &usize| self.flight_from(*at, climb).is_some();
         (0..self.moves.len()).filter(climbs).collect()
+    }
+
+    /// Whether some move gains or loses the height of a step.
+    #[must_use]
+    pub fn steps(&self, climb: Climb) -> bool {
+        let way = if climb == Climb::Down { -1.0 } else { 1.0 };
+        self.moves.iter().any(|step| step.rise_m * way >= STEP_M)
     }
 
     /// The frames on a flight of stairs that is climbed either way, its foot and its head among them.

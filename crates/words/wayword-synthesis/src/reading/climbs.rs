@@ -1,44 +1,251 @@
 //! Stairs and floors.
 
-use super::{Event, What, vocabulary as v};
-use crate::text::Token;
+use super::{Event, Floor, Link, What, links::link, vocabulary as v};
+use crate::{
+    lexicon::{is_room, is_thing, normal_word},
+    text::Token,
+};
 use wayword_core::Climb;
 
 /// The climbs and floors of a text.
 pub(super) fn climbs_and_floors(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let is_stairs =
-        |word: &str| matches!(word, "stairs" | "stair" | "staircase" | "steps" | "stairway" | "flight" | "stairwell");
-    let stairs_follow =
-        |at: usize| (at + 1..=at + 5).map(word).take_while(|word| *word != "." && *word != ",").any(is_stairs);
-    let mut events = Vec::new();
+    let text = Text { tokens, clauses };
+    let mut events: Vec<Event> = Vec::new();
     for at in 0..tokens.len() {
-        let climb = match word(at) {
-            "upstairs" => Some(Climb::Up),
-            "downstairs" => Some(Climb::Down),
-            "up" | "climb" | "climbing" | "ascend" if stairs_follow(at) && word(at + 1) != "to" => Some(Climb::Up),
-            "down" | "descend" | "descending" if stairs_follow(at) && word(at + 1) != "to" => Some(Climb::Down),
-            _ => None,
+        let said_already = |what: &What| {
+            let of_clause = events.iter().rev().take_while(|event| event.clause == clauses[at]);
+            of_clause.map(|event| &event.what).any(|other| other == what)
         };
-        let said_already = |climb: Climb| matches!(events.last(), Some(Event { what: What::Climb(last), clause, .. }) if *last == climb && *clause == clauses[at]);
-        if let Some(climb) = climb.filter(|climb| !said_already(*climb)) {
-            events.push(Event { what: What::Climb(climb), span: tokens[at].span, clause: clauses[at] });
+        if let Some(what) = text.climb(at).filter(|what| !said_already(what)) {
+            events.push(Event { what, span: tokens[at].span, clause: clauses[at], denied: false });
         }
-        if let Some((number, last)) = floor(tokens, at) {
+        if let Some((floor, last)) = text.floor(at) {
             let span = [tokens[at].span[0], tokens[last].span[1]];
-            events.push(Event { what: What::Floor(number), span, clause: clauses[at] });
+            events.push(Event { what: What::Floor(floor), span, clause: clauses[at], denied: false });
         }
     }
     events
 }
 
-/// A floor that begins at a token, and its last token: "level 2", "second floor", "2nd level".
-fn floor(tokens: &[Token], at: usize) -> Option<(u32, usize)> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let is_floor = |word: &str| matches!(word, "floor" | "level" | "story" | "storey");
-    if is_floor(word(at)) && !(at > 0 && v::floor_number(word(at - 1)).is_some()) {
-        return v::floor_number(word(at + 1)).map(|number| (number, at + 1));
+fn is_stairs(word: &str) -> bool {
+    matches!(
+        word,
+        "stairs" | "stair" | "staircase" | "staircases" | "steps" | "stairway" | "flight" | "flights" | "stairwell"
+    )
+}
+
+fn is_floor(word: &str) -> bool {
+    matches!(word, "floor" | "floors" | "level" | "levels" | "story" | "storey")
+}
+
+/// What is climbed.
+#[derive(Clone, Copy)]
+enum Way {
+    Flight,
+    Steps,
+}
+
+impl Way {
+    fn told(self, climb: Climb, is_command: bool) -> What {
+        match self {
+            Self::Flight => told(climb, is_command),
+            Self::Steps => What::Steps(climb),
+        }
     }
-    let number = v::floor_number(word(at)).filter(|_| is_floor(word(at + 1)))?;
-    Some((number, at + 1))
+}
+
+fn told(climb: Climb, is_command: bool) -> What {
+    if is_command { What::Climb(climb) } else { What::Storey(climb) }
+}
+
+struct Text<'a> {
+    tokens: &'a [Token],
+    clauses: &'a [usize],
+}
+
+impl<'a> Text<'a> {
+    fn word(&self, at: usize) -> &'a str {
+        self.tokens.get(at).map_or("", |token| token.word.as_str())
+    }
+
+    fn before(&self, at: usize) -> &'a str {
+        at.checked_sub(1).map_or("", |before| self.word(before))
+    }
+
+    /// The climb that is told at a token, or the place up or down the stairs.
+    fn climb(&self, at: usize) -> Option<What> {
+        if self.describes_stairs(at) {
+            return None;
+        }
+        let next = self.word(at + 1);
+        match self.word(at) {
+            "upstairs" => Some(told(Climb::Up, self.commands_upstairs(at))),
+            "downstairs" => Some(told(Climb::Down, self.commands_upstairs(at))),
+            "climb" | "climbing" | "ascend" | "ascending" if next != "down" => {
+                Some(self.leads_on(at)?.told(Climb::Up, true))
+            }
+            "descend" | "descending" => Some(self.leads_on(at)?.told(Climb::Down, true)),
+            "up" => Some(self.leads_on(at).or(self.behind_stairs(at))?.told(Climb::Up, self.commands(at))),
+            "down" => Some(self.leads_on(at).or(self.behind_stairs(at))?.told(Climb::Down, self.commands(at))),
+            _ => None,
+        }
+    }
+
+    /// "The stairs leading up to the bedroom", "the stairs going up": nobody need climb them.
+    fn describes_stairs(&self, at: usize) -> bool {
+        let Some(before) = self.before_climb(at) else { return false };
+        match self.word(before) {
+            "leading" | "leads" | "lead" => true,
+            "going" | "goes" => is_stairs(self.before(before)) || self.before(before) == "that",
+            _ => false,
+        }
+    }
+
+    /// What stands before a word of climbing, without adverbs.
+    fn before_climb(&self, at: usize) -> Option<usize> {
+        (0..at).rev().find(|before| !v::BEFORE_CLIMB.contains(&self.word(*before)))
+    }
+
+    /// "Up the old stairs", "up one floor", "up to the second floor", but not "up to the stairs".
+    fn leads_on(&self, at: usize) -> Option<Way> {
+        let to = usize::from(self.word(at + 1) == "to");
+        let in_phrase = |at: &usize| {
+            let (word, name) = (self.word(*at), normal_word(self.word(*at)));
+            let joins =
+                word != "of" || matches!(self.before(*at), "flight" | "flights" | "set" | "sets" | "rest" | "couple");
+            let is_end = is_stairs(word) || is_floor(word);
+            let is_noun = (is_thing(&name) || is_room(&name)) && !v::ADJECTIVES.contains(&word);
+            let breaks = v::BREAKERS.contains(&word) && !v::DETERMINERS.contains(&word) && word != "of";
+            self.tokens.get(*at).is_some_and(Token::is_word)
+                && joins
+                && (is_end || !(is_noun || breaks || matches!(word, "passed" | "passing")))
+        };
+        let phrase: Vec<&str> = (at + 1 + to..at + 7).take_while(in_phrase).map(|at| self.word(at)).collect();
+        let end = phrase.iter().position(|word| is_floor(word) || (to == 0 && is_stairs(word)))?;
+        // A floor's height is many steps, and so is a flight.
+        let few = phrase[..end].iter().any(|word| v::FEW.contains(word)) && matches!(phrase[end], "steps" | "stairs");
+        Some(if few { Way::Steps } else { Way::Flight })
+    }
+
+    /// "Take the stairs up".
+    fn behind_stairs(&self, at: usize) -> Option<Way> {
+        let mut words = (at.saturating_sub(4)..at).rev().map(|at| self.word(at));
+        let taken = words.next().is_some_and(is_stairs)
+            && words.any(|word| matches!(word, "take" | "taking" | "follow" | "use"));
+        taken.then_some(Way::Flight)
+    }
+
+    /// Whether somebody is told to climb, and not that a place lies up or down there.
+    fn commands(&self, at: usize) -> bool {
+        let Some(before) = (0..at).rev().find(|before| !v::BEFORE_CLIMB.contains(&self.word(*before))) else {
+            return true;
+        };
+        let name = normal_word(self.word(before));
+        let is_place = is_thing(&name) || is_room(&name);
+        // "To the bathroom up the stairs", but "past the sofa up the stairs".
+        !is_place || is_stairs(self.word(before)) || link(self.tokens, self.clauses, before) == Link::Along
+    }
+
+    /// The same for "upstairs" and "downstairs", which tell a place wherever no verb of going stands before them.
+    fn commands_upstairs(&self, at: usize) -> bool {
+        let name = normal_word(self.word(at + 1));
+        if is_thing(&name) || is_room(&name) {
+            return false;
+        }
+        let before = self.before_climb(at).map_or("", |before| self.word(before));
+        let joined =
+            matches!(self.before(at), "and" | "then") && !matches!(self.word(at + 1), "in" | "at" | "on" | "is");
+        v::CLIMBING.contains(&before) || joined
+    }
+
+    /// A floor that begins at a token, and its last token: "level 2", "second floor", "top floor".
+    fn floor(&self, at: usize) -> Option<(Floor, usize)> {
+        let is_numbered = |at: usize| v::floor_number(self.word(at));
+        let (number, last) = if is_floor(self.word(at)) {
+            let told_before = at > 0 && (is_numbered(at - 1).is_some() || self.word(at - 1) == "top");
+            (Some(is_numbered(at + 1).filter(|_| !told_before)?), at + 1)
+        } else if self.word(at) == "top" && is_floor(self.word(at + 1)) {
+            (None, at + 1)
+        } else {
+            // "Up one floor" and "two floors up" tell how many, and not which.
+            let is_one = matches!(self.word(at + 1), "floor" | "level" | "story" | "storey");
+            (Some(is_numbered(at).filter(|_| is_one && self.word(at) != "one")?), at + 1)
+        };
+        let in_clause = (0..at).rev().take_while(|before| self.clauses[*before] == self.clauses[at]);
+        let words: Vec<&str> = in_clause.map(|before| self.word(before)).take(7).collect();
+        let joint = words.iter().find(|word| v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word));
+        let leaves = joint == Some(&"from") || words.iter().any(|word| v::LEAVING.contains(word));
+        let going = |pair: &[&str]| matches!(pair[0], "going" | "goes") && (is_stairs(pair[1]) || pair[1] == "that");
+        let aside =
+            words.iter().any(|word| matches!(*word, "leading" | "leads" | "lead")) || words.windows(2).any(going);
+        Some((Floor { number, leaves, aside }, last))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::read;
+    use std::collections::BTreeSet;
+
+    fn told(text: &str) -> Vec<What> {
+        let events = read(text, &BTreeSet::new()).events.into_iter().map(|event| event.what);
+        events
+            .filter(|what| matches!(what, What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_)))
+            .collect()
+    }
+
+    #[test]
+    fn commands_to_climb_are_told_from_places_up_there() {
+        for text in [
+            "Go upstairs.",
+            "Walk back upstairs to the bedroom.",
+            "Exit the bedroom and upstairs.",
+            "Walk up the stairs.",
+            "Turn left up the stairs.",
+            "Walk past the sofa up the stairs.",
+            "Take the stairs up.",
+            "Climb the old wooden stairs.",
+            "Go up one floor.",
+            "Go up the first flight of stairs.",
+            "Turn around and go all the way up the stairs.",
+        ] {
+            assert_eq!(told(text), [What::Climb(Climb::Up)], "{text}");
+        }
+        for text in
+            ["Go to the bathroom upstairs.", "Clean the upstairs bathroom.", "Go to the bathroom up the stairs."]
+        {
+            assert_eq!(told(text), [What::Storey(Climb::Up)], "{text}");
+        }
+        for text in ["Walk down two steps.", "Go down the few steps to the sofa."] {
+            assert_eq!(told(text), [What::Steps(Climb::Down)], "{text}");
+        }
+        for text in [
+            "Stop at the top of the stairs leading down to another floor.",
+            "Wait by the stairs going up another flight.",
+            "Go down the hall passing the stairs.",
+            "Walk down the hallway to the stairs.",
+            "Walk up to the stairs.",
+            "Stop at the top of the stairs.",
+        ] {
+            assert_eq!(told(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn floors_have_numbers_and_a_way_to_be_told() {
+        let floor = |text: &str| match told(text).pop() {
+            Some(What::Floor(floor)) => (floor.number, floor.leaves),
+            other => panic!("{text}: {other:?}"),
+        };
+        assert_eq!(floor("Go to the bedroom on the 7th floor"), (Some(7), false));
+        assert_eq!(floor("Go to the bedroom on floor 12"), (Some(12), false));
+        assert_eq!(floor("Go to the twelfth floor"), (Some(12), false));
+        assert_eq!(floor("Go to the bedroom on the top floor"), (None, false));
+        assert_eq!(floor("Walk down from the second floor"), (Some(2), true));
+        assert_eq!(floor("Start on the second floor"), (Some(2), true));
+        assert_eq!(told("Clean the rug on the floor"), []);
+        let aside = told("Wait by the stairs going up to the second level.");
+        assert_eq!(aside, [What::Floor(Floor { number: Some(2), leaves: false, aside: true })]);
+    }
 }

@@ -4,7 +4,9 @@
 //! The reader knows nothing of any writer: it takes the words of people, of models and of our own writer alike.
 
 mod climbs;
+mod denial;
 mod links;
+mod onward;
 mod places;
 mod task;
 mod turns;
@@ -32,6 +34,8 @@ pub struct Event {
     pub span: [usize; 2],
     /// The clause that it stands in, counted over the whole text.
     pub clause: usize,
+    /// The text says not to do it, or that it is not so: "do not turn right".
+    pub denied: bool,
 }
 
 /// The kinds of things that instructions say.
@@ -41,10 +45,27 @@ pub enum What {
     Place(Place),
     /// A turn to a side, or around (`Behind`).
     Turn(Side),
-    /// Up or down a flight of stairs.
+    /// A command to go up or down a flight of stairs.
     Climb(Climb),
-    /// A numbered floor, the lowest being 1.
-    Floor(u32),
+    /// A command to go up or down a few steps, fewer than a flight.
+    Steps(Climb),
+    /// A place that lies up or down the stairs ("the bedroom upstairs"), wherever the walker starts.
+    Storey(Climb),
+    /// A floor.
+    Floor(Floor),
+    /// A command to walk on ("walk straight ahead").
+    Onward,
+}
+
+/// A floor in a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Floor {
+    /// Its number, the lowest being 1; none for the top floor.
+    pub number: Option<u32>,
+    /// The walk comes from there: "from the second floor", "start on level 1".
+    pub leaves: bool,
+    /// It only tells where something leads: "the stairs leading to the second floor".
+    pub aside: bool,
 }
 
 /// An object or a room in a text.
@@ -97,13 +118,31 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     let clauses = clauses(&tokens);
     let mut events = turns::turns(&tokens, &clauses);
     events.extend(climbs::climbs_and_floors(&tokens, &clauses));
+    events.extend(onward::onward(&tokens, &clauses));
     let taken: Vec<[usize; 2]> =
         events.iter().filter(|event| matches!(event.what, What::Floor(_))).map(|event| event.span).collect();
     events.extend(places::places(&tokens, &clauses, known, &taken));
     events.sort_by_key(|event| event.span);
+    let denied = denial::denied(&tokens, &clauses);
+    for event in &mut events {
+        event.denied = denied[tokens.partition_point(|token| token.span[0] < event.span[0])];
+    }
     mark_turn_places(&tokens, &mut events);
     let task = task::closing_task(&tokens, &events);
     Reading { events, task }
+}
+
+impl Reading {
+    /// What the text claims: everything but what it says not to do or not to be so.
+    #[must_use]
+    pub fn claims(mut self) -> Self {
+        if let Some(task) = &mut self.task {
+            let claimed = |at: usize| self.events[..at].iter().filter(|event| !event.denied).count();
+            task.object = task.object.filter(|at| !self.events[*at].denied).map(claimed);
+        }
+        self.events.retain(|event| !event.denied);
+        self
+    }
 }
 
 /// The number of the clause that each token stands in. Commas, full stops and "then" begin new ones, and so does an "and"
@@ -149,7 +188,10 @@ mod tests {
             What::Place(place) => place.name.clone(),
             What::Turn(side) => format!("turn {side:?}"),
             What::Climb(climb) => format!("climb {climb:?}"),
-            What::Floor(number) => format!("floor {number}"),
+            What::Steps(climb) => format!("steps {climb:?}"),
+            What::Storey(climb) => format!("storey {climb:?}"),
+            What::Floor(floor) => format!("floor {}", floor.number.map_or("top".into(), |number| number.to_string())),
+            What::Onward => "on".into(),
         };
         reading.events.iter().map(word).collect()
     }
@@ -160,7 +202,7 @@ mod tests {
             told(
                 "Walk past the dining table, turn left at the large grey couch and go up the stairs. Wait by the sink."
             ),
-            ["dining table", "turn Left", "couch", "climb Up", "stair", "sink"]
+            ["on", "dining table", "turn Left", "couch", "climb Up", "stair", "sink"]
         );
     }
 
@@ -171,6 +213,26 @@ mod tests {
         assert_eq!(told("Turn to your right and head left."), ["turn Right", "turn Left"]);
         assert_eq!(told("The chair to the left of the fireplace"), ["chair", "fireplace"]);
         assert_eq!(told("Turn around and leave."), ["turn Behind"]);
+    }
+
+    #[test]
+    fn what_is_not_to_be_done_is_not_claimed() {
+        let claims = |text: &str| read(text, &BTreeSet::new()).claims().events.len();
+        for text in [
+            "Do not turn right.",
+            "Don't go up the stairs.",
+            "Never enter the kitchen.",
+            "Wait without turning left or passing the sofa.",
+            "Turn neither left nor right.",
+        ] {
+            assert_eq!(claims(text), 0, "{text}");
+        }
+        assert_eq!(claims("Do not turn right but left at the sofa."), 2);
+        assert_eq!(claims("Do not stop, turn left."), 1);
+        assert_eq!(claims("Don't turn and go to the sofa."), 1);
+        let reading = read("Don't pass the sofa. Go to the bed and clean the lamp", &BTreeSet::new()).claims();
+        let object = reading.task.and_then(|task| task.object).unwrap();
+        assert!(matches!(&reading.events[object].what, What::Place(place) if place.name == "lamp"));
     }
 
     #[test]

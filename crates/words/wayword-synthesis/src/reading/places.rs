@@ -2,7 +2,7 @@
 
 use super::{Event, Place, What, links::link, vocabulary as v};
 use crate::{
-    lexicon::{is_room, is_thing, longest_name, normal_word},
+    lexicon::{is_room, is_thing, longest_name, normal_word, room_name},
     text::Token,
 };
 use std::collections::BTreeSet;
@@ -32,7 +32,9 @@ pub(super) fn places(
         at = next.as_ref().map_or(at + 1, |place| place.to);
         let Some(mut place) = next else { continue };
         // "the kitchen table": what stands right before a place only tells which one it is.
-        if let Some(before) = found.pop_if(|before| before.to == place.from) {
+        // A basement does not: it is a floor.
+        let tells_which = |before: &mut Found| before.to == place.from && room_name(&before.name) != Some("basement");
+        if let Some(before) = found.pop_if(tells_which) {
             place.name = if before.is_room { place.name } else { format!("{} {}", before.name, place.name) };
         }
         found.push(place);
@@ -44,7 +46,7 @@ pub(super) fn places(
         let colour = colour_before(tokens, place.from);
         let Found { name, is_thing, is_room, .. } = place;
         let what = What::Place(Place { name, is_thing, is_room, link, side, colour, tells_turn: false });
-        Event { what, span, clause: clauses[place.from] }
+        Event { what, span, clause: clauses[place.from], denied: false }
     };
     found.into_iter().map(event).collect()
 }
@@ -70,6 +72,10 @@ fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
         return false;
     }
     let after_determiner = at > 0 && (v::DETERMINERS.contains(&word(at - 1)) || v::ADJECTIVES.contains(&word(at - 1)));
+    // "The upper floor" is no floor to look at.
+    let storey = word(at) == "floor"
+        && ((at > 0 && v::STOREYS.contains(&word(at - 1)))
+            || (at > 1 && word(at - 1) == "a" && matches!(word(at - 2), "up" | "down")));
     let verb_like = matches!(
         word(at),
         "step"
@@ -110,7 +116,7 @@ fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
         || is_room(&normal_word(word(at + 1)))
         || v::ADJECTIVES.contains(&word(at + 1));
     let shade = word(at) == "light" && v::COLOURS.contains(&word(at + 1));
-    (verb_like && !after_determiner) || (word(at) == "light" && before_noun && !after_determiner) || shade
+    (verb_like && !after_determiner) || (word(at) == "light" && before_noun && !after_determiner) || shade || storey
 }
 
 /// A noun phrase that no name covers: "the shiny gizmo".

@@ -31,7 +31,7 @@ pub(super) fn turns(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
         }
         told_in_sentence = true;
         let span = [tokens[at].span[0], tokens[last].span[1]];
-        turns.push(Event { what: What::Turn(side), span, clause: clauses[at] });
+        turns.push(Event { what: What::Turn(side), span, clause: clauses[at], denied: false });
     }
     turns
 }
@@ -171,7 +171,7 @@ impl<'a> Text<'a> {
     /// ", then left", "and left.", "Left at the sofa": a side that makes a clause of its own.
     fn stands_alone(&self, from: usize, at: usize, told_before: bool) -> bool {
         let skipped: Vec<&str> = (from..at).map(|at| self.word(at)).collect();
-        let joined = skipped.iter().any(|word| matches!(*word, "and" | "then"));
+        let joined = skipped.iter().any(|word| matches!(*word, "and" | "then" | "but"));
         let again = skipped.iter().any(|word| matches!(*word, "another" | "again"));
         let begins = from == 0 || !self.0[from - 1].is_word();
         let to = skipped.contains(&"to");

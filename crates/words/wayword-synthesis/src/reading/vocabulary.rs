@@ -46,11 +46,39 @@ pub(super) static GOING: Words = LazyLock::new(|| {
     )
 });
 
+/// Verbs of going: "upstairs" behind one is a command.
+pub(super) static CLIMBING: Words = LazyLock::new(|| {
+    split(
+        "go goes going walk walking head heading move moving continue continuing proceed proceeding come coming run \
+     climb climbing return travel get getting take taking bring advance step hurry keep",
+    )
+});
+
+/// Words that may stand between such a verb and its "upstairs".
+pub(super) static BEFORE_CLIMB: Words =
+    LazyLock::new(|| split("back straight all the way right directly then immediately again on further just"));
+
+/// Words that tell how many steps, where they are fewer than a flight.
+pub(super) static FEW: Words = LazyLock::new(|| split("one two three four five few couple 2 3 4 5"));
+
+/// Words behind such a verb that say to walk on.
+pub(super) static ONWARD: Words =
+    LazyLock::new(|| split("straight ahead forward forwards onward onwards past through along across down"));
+
+/// Words that make a storey of a "floor".
+pub(super) static STOREYS: Words = LazyLock::new(|| {
+    split("one two another main upper lower same next other ground top bottom whole entire middle upstairs downstairs")
+});
+
+/// Verbs that tell a floor from which a walk comes.
+pub(super) static LEAVING: Words =
+    LazyLock::new(|| split("leave leaving exit exiting start starting starts begin beginning begins"));
+
 /// Words that may stand between a verb and its side.
 pub(super) static BEFORE_SIDE: Words = LazyLock::new(|| {
     split(
         "a an the your to first second third next immediate immediately slight slightly sharp sharply hard quick \
-     another then and again towards toward back around small gentle soft far one more",
+     another then and but again towards toward back around small gentle soft far one more",
     )
 });
 
@@ -99,7 +127,7 @@ pub(crate) static ABSTRACT: Words = LazyLock::new(|| {
      entire length distance turn bit few couple feet foot meter metre degree point part half line row set pair \
      group lot number view spot position inside outside far near opposite person robot ground main upper lower \
      wing base head moment time section region piece straight around surface dust minute upstairs downstairs goal \
-     destination start",
+     destination start floor angle",
     )
 });
 
@@ -154,14 +182,26 @@ fn split(words: &'static str) -> Vec<&'static str> {
     words.split_whitespace().collect()
 }
 
-/// The number that an ordinal or a numeral says, where it is one that floors bear.
+/// The number that an ordinal or a numeral says: that of a floor.
 pub(super) fn floor_number(word: &str) -> Option<u32> {
-    let numbers: &[(&[&str], u32)] = &[
-        (&["1", "one", "first", "1st", "ground", "bottom"], 1),
-        (&["2", "two", "second", "2nd"], 2),
-        (&["3", "three", "third", "3rd"], 3),
-        (&["4", "four", "fourth", "4th"], 4),
-        (&["5", "five", "fifth", "5th"], 5),
+    const NUMBERS: [[&str; 2]; 12] = [
+        ["one", "first"],
+        ["two", "second"],
+        ["three", "third"],
+        ["four", "fourth"],
+        ["five", "fifth"],
+        ["six", "sixth"],
+        ["seven", "seventh"],
+        ["eight", "eighth"],
+        ["nine", "ninth"],
+        ["ten", "tenth"],
+        ["eleven", "eleventh"],
+        ["twelve", "twelfth"],
     ];
-    numbers.iter().find(|(words, _)| words.contains(&word)).map(|(_, number)| *number)
+    if matches!(word, "ground" | "bottom") {
+        return Some(1);
+    }
+    let digits = ["st", "nd", "rd", "th"].iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word);
+    let in_words = || NUMBERS.iter().zip(1..).find(|(words, _)| words.contains(&word)).map(|(_, number)| number);
+    digits.parse().ok().filter(|number| (1..1000).contains(number)).or_else(in_words)
 }
