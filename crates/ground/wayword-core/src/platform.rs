@@ -43,6 +43,32 @@ pub trait Platform: Send + Sync {
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError>;
 }
 
+impl<P: Platform + ?Sized> Platform for Box<P> {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        (**self).scenes()
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        (**self).graph(scene)
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        (**self).sample_path(scene, request, seed)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        (**self).look(scene, from, gaze)
+    }
+
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        (**self).object_name(scene, near, object)
+    }
+}
+
 /// What a random path has to be like.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathRequest {

@@ -2,8 +2,11 @@
 
 mod corrupt;
 mod corruptions;
+mod eye;
+mod reuse;
 mod sample;
 mod skeleton;
+mod stage;
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
@@ -53,6 +56,30 @@ enum What {
         #[arg(long, default_value_t = 0)]
         seed: u64,
     },
+    /// Ghosts in the captions and instructions of a flawed eye, for each way of asking.
+    Eye {
+        /// The world.
+        #[command(flatten)]
+        world: stage::World,
+        /// Views that are captioned.
+        #[arg(long, default_value_t = 100)]
+        views: usize,
+        /// Paths that instructions are written for.
+        #[arg(long, default_value_t = 40)]
+        paths: usize,
+        /// Share of what the eye names that is not there.
+        #[arg(long, default_value_t = 0.15)]
+        ghosts: f64,
+    },
+    /// Calls per instruction on paths of one building, against the paper's way.
+    Reuse {
+        /// The world.
+        #[command(flatten)]
+        world: stage::World,
+        /// Paths that instructions are written for.
+        #[arg(long, default_value_t = 200)]
+        paths: usize,
+    },
 }
 
 fn main() -> ExitCode {
@@ -70,6 +97,8 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
     match what {
         What::Corruptions { runs, count, seed, show } => corruptions::measure(&runs, count, seed, show, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),
+        What::Eye { world, views, paths, ghosts } => eye::measure(&world, views, paths, ghosts, output),
+        What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }
 }

@@ -55,7 +55,10 @@ fn episodes_get_an_instruction_in_each_style_that_passes_every_check() {
         }
     }
     let found: Vec<String> = files(&building.path("run")).into_keys().map(|path| path.display().to_string()).collect();
-    assert_eq!(found, ["config.toml", "instructions.jsonl", "rejected.jsonl", "run.lock", "walks.jsonl"]);
+    assert_eq!(
+        found,
+        ["config.toml", "errors.jsonl", "instructions.jsonl", "rejected.jsonl", "run.lock", "walks.jsonl"]
+    );
     assert_eq!((building.lines("run/walks.jsonl").len(), building.lines("run/rejected.jsonl").len()), (10, 0));
 }
 

@@ -21,6 +21,7 @@ use crate::{
 
 pub use check::{CheckReport, CheckedText, Counts, check_file};
 pub use generate::{Summary, generate_into};
+pub use perceive::{Extent, Measured, Row, perceive};
 
 /// Runs a command.
 ///

@@ -1,9 +1,12 @@
 //! Whether an exchange brings anything new.
 
-use super::answers::{room, sightings};
-use crate::{lexicon::normal_word, text::words};
+use super::answers::{Asked, asked, room, sightings};
+use crate::{
+    lexicon::{agree, normal_word},
+    text::words,
+};
 use std::collections::BTreeSet;
-use wayword_core::Exchange;
+use wayword_core::{Exchange, Witness};
 
 /// Words that tell nothing of a picture.
 const EMPTY_WORDS: &str = "a an the this that these those it its am is are was were be been being there here i you we they he she him \
@@ -25,7 +28,24 @@ pub(super) fn is_new(transcript: &[Exchange]) -> bool {
     let known: BTreeSet<String> = texts.flat_map(|text| words(text)).map(|word| normal_word(&word)).collect();
     let says_more =
         || words(&last.answer).iter().any(|word| !empty.contains(word.as_str()) && !known.contains(&normal_word(word)));
-    says_more() || sightings(transcript, "") != sightings(before, "") || room(transcript) != room(before)
+    says_more()
+        || sightings(transcript, "") != sightings(before, "")
+        || room(transcript) != room(before)
+        || settles_a_doubt(last, before)
+}
+
+/// Whether the exchange is the first to ask straight out whether a thing is there, and has an answer: that a description holds
+/// no ghost is worth knowing, even where it changes nothing.
+fn settles_a_doubt(last: &Exchange, before: &[Exchange]) -> bool {
+    let doubted = |exchange: &Exchange| match asked(&exchange.question) {
+        Asked::Presence { wanted, .. } => wanted.into_iter().map(|wanted| wanted.name).collect(),
+        _ => Vec::new(),
+    };
+    let earlier: Vec<String> = before.iter().flat_map(doubted).collect();
+    let told = sightings(std::slice::from_ref(last), "");
+    let answered =
+        |name: &String| told.iter().any(|sighting| sighting.witness != Witness::Unsure && agree(&sighting.name, name));
+    doubted(last).iter().any(|name| answered(name) && !earlier.iter().any(|other| agree(other, name)))
 }
 
 #[cfg(test)]
@@ -56,8 +76,6 @@ mod tests {
     fn what_was_said_before_is_no_news() {
         let opening = ("Describe.", "There is a bed and a red chair.");
         for last in [
-            ("Is there a bed?", "Yes."),
-            ("Is there a bed?", "Yes, there is a bed in the picture."),
             ("What else is there?", "I am not sure."),
             ("What else is there?", "There is a red chair."),
             ("What is the bed made of?", ""),
@@ -66,5 +84,13 @@ mod tests {
             assert!(!last_is_new(&[opening, last]), "{last:?}");
         }
         assert!(!is_new(&[]));
+    }
+
+    #[test]
+    fn a_doubt_that_is_settled_is_news_once() {
+        let opening = ("Describe.", "There is a bed and a red chair.");
+        let doubt = ("Is there really a bed?", "Yes.");
+        assert!(last_is_new(&[opening, doubt]));
+        assert!(!last_is_new(&[opening, doubt, ("Is the bed you mentioned really there?", "Yes.")]));
     }
 }

@@ -10,34 +10,39 @@ use crate::{
     in_order::in_order,
     output::Output,
     run::fresh_id,
-    settings::{Perception, Settings},
+    settings::{Job, Perception, Settings},
     team::{Team, cores},
     world,
 };
 use serde::Serialize;
-use table::{Row, Table};
+use table::Table;
 use views::{Labelled, labelled_views};
-use wayword_core::{Caption, ModelError};
+use wayword_core::{Caption, ModelError, Platform};
 use wayword_synthesis::{
     observe::talk_about,
     perception::{Score, score},
 };
 
+pub use table::Row;
+
 /// What was measured.
 #[derive(Debug, Serialize)]
-pub(super) struct Measured {
+pub struct Measured {
     /// Name of the platform.
-    platform: String,
+    pub platform: String,
     /// Views with labels that were captioned.
-    views: usize,
+    pub views: usize,
     /// Who asked, answered and summed up.
-    minds: String,
+    pub minds: String,
     /// One per way of asking.
-    rows: Vec<Row>,
+    pub rows: Vec<Row>,
     /// Captions, where they were asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shown: Vec<Shown>,
 }
+
+/// All ways of asking, the simplest first.
+const WAYS: [Perception; 3] = [Perception::Fixed, Perception::Single, Perception::Dialogue];
 
 /// A caption with what was found.
 #[derive(Debug, Serialize)]
@@ -58,7 +63,33 @@ struct Captioned {
 pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
     let job = args.asked().job()?;
     let platform = world::open(&job.settings)?;
-    let views = labelled_views(&job.settings, platform.as_ref(), args.views)?;
+    let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or(WAYS.to_vec());
+    let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;
+    output.data(&measured, Table(&measured));
+    Ok(if measured.rows.iter().all(|row| row.failed == 0) { Exit::Done } else { Exit::WithLoss })
+}
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Extent {
+    /// Views that are captioned, at most.
+    pub views: usize,
+    /// Captions of each way of asking that are shown.
+    pub show: usize,
+}
+
+/// Captions views in several ways, and holds the captions against the views' labels.
+///
+/// # Errors
+/// When no view has labels, a model cannot be reached, or nothing more can be asked for.
+pub fn perceive(
+    platform: &dyn Platform,
+    job: &Job,
+    extent: Extent,
+    ways: &[Perception],
+    output: &Output,
+) -> Result<Measured, Error> {
+    let views = labelled_views(&job.settings, platform, extent.views)?;
     let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("perceive"))?;
     if let Some(calls) = &calls {
         let talk = *output;
@@ -71,7 +102,7 @@ pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
         rows: Vec::new(),
         shown: Vec::new(),
     };
-    for perception in args.perceptions() {
+    for &perception in ways {
         let settings = Settings { perception, ..job.settings.clone() };
         let (captions, row) = measure(&settings, calls.as_ref(), &views, output)?;
         measured.rows.push(row);
@@ -85,14 +116,13 @@ pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
                 ghosts: score.ghosts.clone(),
             })
         });
-        measured.shown.extend(shown.take(args.show));
+        measured.shown.extend(shown.take(extent.show));
     }
     if let Some(calls) = &calls {
         calls.record()?;
         output.say(format_args!("models: {}", calls.spent()));
     }
-    output.data(&measured, Table(&measured));
-    Ok(if measured.rows.iter().all(|row| row.failed == 0) { Exit::Done } else { Exit::WithLoss })
+    Ok(measured)
 }
 
 fn minds(settings: &Settings) -> String {
@@ -135,16 +165,6 @@ fn captioned(
         Err(error) => {
             output.say(format_args!("{}: {error}", view.scene));
             Ok(None)
-        }
-    }
-}
-
-/// The job's ways of asking, or all of them.
-impl Perceive {
-    fn perceptions(&self) -> Vec<Perception> {
-        match &self.perception {
-            Some(asked) if !asked.is_empty() => asked.clone(),
-            _ => vec![Perception::Fixed, Perception::Single, Perception::Dialogue],
         }
     }
 }

@@ -7,26 +7,27 @@ use std::fmt;
 
 /// One way of asking.
 #[derive(Debug, Serialize)]
-pub(super) struct Row {
-    pub(super) perception: Perception,
+pub struct Row {
+    /// How it was asked.
+    pub perception: Perception,
     /// Views that were captioned.
-    captions: usize,
+    pub captions: usize,
     /// Views that a model would not caption.
-    pub(super) failed: usize,
+    pub failed: usize,
     /// Different objects that captions named, summed over captions.
-    named: usize,
+    pub named: usize,
     /// Share of them that a label agrees with.
-    precision: f64,
+    pub precision: f64,
     /// Share of them that are not there.
-    ghost_rate: f64,
+    pub ghost_rate: f64,
     /// Share of the different labels of a view that its caption names.
-    recall: f64,
+    pub recall: f64,
     /// Share of captions that hold a ghost.
-    captions_with_ghosts: f64,
+    pub captions_with_ghosts: f64,
     /// Questions per view that were answered, the opening among them.
-    questions_per_view: f64,
+    pub questions_per_view: f64,
     /// Calls to models per view, those among them that the ledger answered.
-    calls_per_view: f64,
+    pub calls_per_view: f64,
 }
 
 impl Row {

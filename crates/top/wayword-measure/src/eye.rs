@@ -1,0 +1,98 @@
+//! Does the dialogue remove ghosts? Captions and instructions of a flawed eye, for each way of asking.
+
+use crate::stage::{CARELESSNESS, Stage, World};
+use std::collections::BTreeSet;
+use wayword::{
+    commands::{Extent, perceive},
+    error::Error,
+    output::Output,
+    pipeline::{Made, panoramas},
+    settings::{Job, Perception, Settings},
+};
+use wayword_core::Platform;
+use wayword_synthesis::{
+    evidence::Evidence,
+    reading::{What, read},
+    repair::Outcome,
+};
+
+/// Objects that instructions name, and those of them that no label along the path agrees with.
+#[derive(Debug, Default)]
+struct Named {
+    texts: usize,
+    rejected: usize,
+    finished_by_rules: usize,
+    objects: usize,
+    ghosts: usize,
+    haunted: usize,
+}
+
+pub(super) fn measure(world: &World, views: usize, paths: usize, ghosts: f64, output: &Output) -> Result<(), Error> {
+    let stage = Stage::new(world, ghosts)?;
+    let ways = [Perception::Fixed, Perception::Single, Perception::Dialogue];
+    let extent = Extent { views, show: 0 };
+    let captions = perceive(&stage.world, &stage.job(views)?, extent, &ways, output)?;
+    let mut lines = vec![
+        format!(
+            "{} views of {}, and instructions for {paths} paths; a scripted eye that names {:.0} % ghosts and denies 70 % of them \
+             when it is asked about one; scripted text roles that err with {:.0} %",
+            captions.views,
+            captions.platform,
+            100.0 * ghosts,
+            100.0 * CARELESSNESS
+        ),
+        "asked     caption: ghosts  with ghost  precision  recall  calls/view | instruction: ghosts  with ghost  by rules  rejected"
+            .to_owned(),
+    ];
+    for row in &captions.rows {
+        let job = stage.job(paths)?;
+        let job = Job { settings: Settings { perception: row.perception, ..job.settings }, ..job };
+        let mut named = Named::default();
+        for made in stage.make(&job)? {
+            named.count(&made, &stage.world)?;
+        }
+        lines.push(format!(
+            "{:<9}{:>15.1}% {:>10.1}% {:>9.1}% {:>6.1}% {:>11.1} | {:>18.1}% {:>10.1}% {:>9} {:>9}",
+            format!("{:?}", row.perception).to_lowercase(),
+            100.0 * row.ghost_rate,
+            100.0 * row.captions_with_ghosts,
+            100.0 * row.precision,
+            100.0 * row.recall,
+            row.calls_per_view,
+            100.0 * named.ghosts as f64 / named.objects.max(1) as f64,
+            100.0 * named.haunted as f64 / named.texts.max(1) as f64,
+            named.finished_by_rules,
+            named.rejected
+        ));
+    }
+    output.data(&(), lines.join("\n"));
+    Ok(())
+}
+
+impl Named {
+    fn count(&mut self, made: &Made, world: &dyn Platform) -> Result<(), Error> {
+        let panoramas = panoramas(world, &made.walk.path)?;
+        let Some(labels) = Evidence::from_labels(&made.walk.path, &panoramas) else { return Ok(()) };
+        for outcome in &made.outcomes {
+            let Outcome::Accepted(instruction) = outcome else {
+                self.rejected += 1;
+                continue;
+            };
+            self.texts += 1;
+            self.finished_by_rules += usize::from(instruction.provenance.finished_for.is_some());
+            let reading = read(&instruction.text, &BTreeSet::new());
+            let things = reading.events.iter().filter_map(|event| match &event.what {
+                What::Place(place) if place.is_thing && !place.is_room => Some(place.name.as_str()),
+                _ => None,
+            });
+            // What labels leave out is no ghost, and no object here either.
+            let (real, others): (Vec<&str>, Vec<&str>) =
+                things.partition(|name| !labels.frames_with_thing(name).is_empty());
+            let ghosts = others.iter().filter(|name| labels.denies_thing(name)).count();
+            self.objects += real.len() + ghosts;
+            self.ghosts += ghosts;
+            self.haunted += usize::from(ghosts > 0);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,112 @@
+//! A world whose pictures a flawed eye can read, and a provider that plays every role: what `eye` and `reuse` measure on.
+
+use rayon::{ThreadPoolBuilder, prelude::*};
+use std::path::PathBuf;
+use tempfile::TempDir;
+use wayword::{
+    calls::Calls,
+    error::Error,
+    pipeline::{Made, make},
+    run::fresh_id,
+    settings::{Against, Asked, AskedRoles, Job, Service},
+    styles::{self, Measured},
+    team::Team,
+    world,
+};
+use wayword_core::Platform;
+use wayword_testkit::provider::{
+    Behaviour, Dialect, Gallery, Pictured, Provider,
+    scripts::{Cast, FlawedEye},
+};
+
+/// How often the scripted text roles are careless.
+pub(super) const CARELESSNESS: f64 = 0.2;
+/// Items that are made at a time: calls are waited for.
+const AT_A_TIME: usize = 16;
+
+/// Which world is looked at.
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct World {
+    /// house or matterport.
+    #[arg(long, default_value = "house")]
+    pub(super) platform: String,
+    /// Folder of the world's data.
+    #[arg(long)]
+    pub(super) data: Option<PathBuf>,
+    /// Keep to this scene.
+    #[arg(long)]
+    pub(super) scan: Option<String>,
+    /// Seed of paths and of all that the scripts draw.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+}
+
+/// A world, a provider, and a ledger of their own.
+pub(super) struct Stage {
+    pub(super) world: Pictured<Box<dyn Platform>>,
+    pub(super) provider: Provider,
+    folder: TempDir,
+    seed: u64,
+    asked: World,
+}
+
+impl Stage {
+    /// A stage whose eye has so large a share of ghosts.
+    pub(super) fn new(asked: &World, ghost_share: f64) -> Result<Self, Error> {
+        let io = |source| Error::Io { path: std::env::temp_dir(), doing: "set the measurement up in", source };
+        let gallery = Gallery::default();
+        let platform = world::open(&asked_job(asked, 1).resolve()?)?;
+        let cast = Cast::new(FlawedEye::new(gallery.clone(), asked.seed, ghost_share), asked.seed, CARELESSNESS);
+        Ok(Self {
+            world: Pictured::new(platform, gallery),
+            provider: Provider::start(Behaviour::of("words", cast.clone()).and("eye", cast)).map_err(io)?,
+            folder: tempfile::tempdir().map_err(io)?,
+            seed: asked.seed,
+            asked: asked.clone(),
+        })
+    }
+
+    /// So many paths, with every role played by the provider. Texts are held against captions, as in a world without labels.
+    pub(super) fn job(&self, paths: usize) -> Result<Job, Error> {
+        let roles = AskedRoles {
+            llm: Some("server/words".into()),
+            see: Some("server/eye".into()),
+            base_url: Some(self.provider.base_url(Dialect::OpenAi)),
+            ..AskedRoles::default()
+        };
+        let service = Service { ledger: Some(self.folder.path().join("ledger.db")), ..Service::default() };
+        Asked {
+            roles,
+            service,
+            evidence: Some(Against::Captions),
+            style: Some(vec!["r2r".into()]),
+            seed: Some(self.seed),
+            ..asked_job(&self.asked, paths)
+        }
+        .job()
+    }
+
+    /// Makes every item of a job.
+    pub(super) fn make(&self, job: &Job) -> Result<Vec<Made>, Error> {
+        let styles: Vec<Measured> = styles::find(&job.settings.style, job.settings.seed)?;
+        let items = wayword::item::items(&job.settings, &self.world)?;
+        let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("measure"))?;
+        let team = Team::new(&job.settings, calls.as_ref())?;
+        let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
+        let work = || items.par_iter().map(|item| make(item, &job.settings, &self.world, &team, &styles)).collect();
+        match threads {
+            Ok(threads) => threads.install(work),
+            Err(_) => work(),
+        }
+    }
+}
+
+fn asked_job(world: &World, paths: usize) -> Asked {
+    Asked {
+        platform: Some(world.platform.clone()),
+        data: world.data.clone(),
+        scan: world.scan.clone().map(|scan| vec![scan]),
+        paths: Some(paths),
+        ..Asked::default()
+    }
+}
