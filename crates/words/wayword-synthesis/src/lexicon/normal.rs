@@ -3,9 +3,27 @@
 /// A name in one spelling: lower case, words separated by one space, each in the singular, without punctuation.
 #[must_use]
 pub fn normal(name: &str) -> String {
-    let words = name.split(|c: char| !c.is_alphanumeric() && c != '\'').filter(|word| !word.is_empty());
+    let words = name.split(|c: char| !c.is_alphanumeric() && !matches!(c, '\'' | '’')).filter(|word| !word.is_empty());
     words.map(normal_word).collect::<Vec<_>>().join(" ")
 }
+
+/// Plurals that the rules below take for those of other words.
+const IRREGULAR: [(&str, &str); 7] = [
+    ("shelves", "shelf"),
+    ("knives", "knife"),
+    ("leaves", "leaf"),
+    ("scarves", "scarf"),
+    ("loaves", "loaf"),
+    ("axes", "axe"),
+    ("buses", "bus"),
+];
+/// Words in "-ie", whose plurals look like those of words in "-y".
+const IN_IE: [&str; 14] = [
+    "cookie", "brownie", "movie", "hoodie", "smoothie", "walkie", "talkie", "veggie", "genie", "zombie", "foodie",
+    "calorie", "prairie", "birdie",
+];
+/// Words in "-che", whose plurals look like those of words in "-ch".
+const IN_CHE: [&str; 6] = ["niche", "cache", "quiche", "creche", "brioche", "porsche"];
 
 /// One word in lower case and in the singular.
 ///
@@ -13,26 +31,22 @@ pub fn normal(name: &str) -> String {
 #[must_use]
 pub fn normal_word(word: &str) -> String {
     let word = word.to_lowercase();
-    let keeps_its_s = ["ss", "us", "is"].iter().any(|end| word.ends_with(end)) || word.len() < 4;
-    if keeps_its_s {
-        return word;
+    let word = word.strip_suffix("'s").or(word.strip_suffix("’s")).unwrap_or(&word);
+    // "TVs", but not "bus".
+    let is_initials = !word.contains(['a', 'e', 'i', 'o', 'u', 'y']);
+    let keeps_its_s = ["ss", "us", "is"].iter().any(|end| word.ends_with(end)) || (word.len() < 4 && !is_initials);
+    let Some(stem) = word.strip_suffix('s').filter(|_| !keeps_its_s) else { return word.to_owned() };
+    if let Some((end, instead)) = IRREGULAR.into_iter().find(|(end, _)| word.ends_with(end)) {
+        return format!("{}{instead}", &word[..word.len() - end.len()]);
     }
-    for (end, instead) in
-        [("shelves", "shelf"), ("knives", "knife"), ("leaves", "leaf"), ("scarves", "scarf"), ("loaves", "loaf")]
-    {
-        if let Some(stem) = word.strip_suffix(end) {
-            return format!("{stem}{instead}");
-        }
+    let in_list = |list: &[&str]| list.iter().any(|end| stem.ends_with(end));
+    match stem.strip_suffix("ie") {
+        // "Pies" and "ties" are short, "berries" are long.
+        Some(short) if short.len() > 1 && !in_list(&IN_IE) => return format!("{short}y"),
+        _ => {}
     }
-    if let Some(stem) = word.strip_suffix("ies") {
-        return format!("{stem}y");
-    }
-    for end in ["ches", "shes", "xes", "sses", "zes"] {
-        if word.ends_with(end) {
-            return word[..word.len() - 2].to_owned();
-        }
-    }
-    word.strip_suffix('s').map_or(word.clone(), str::to_owned)
+    let adds_es = ["che", "she", "xe", "sse", "zze", "tze"].iter().any(|end| stem.ends_with(end)) && !in_list(&IN_CHE);
+    if adds_es { stem[..stem.len() - 1].to_owned() } else { stem.to_owned() }
 }
 
 #[cfg(test)]
@@ -43,6 +57,27 @@ mod tests {
     fn plurals_and_spellings_come_together() {
         assert_eq!(normal("Book-Shelves"), "book shelf");
         assert_eq!(normal("couches"), normal("couch"));
+        for (one, many) in [
+            ("tv", "TVs"),
+            ("niche", "niches"),
+            ("cookie", "cookies"),
+            ("size", "sizes"),
+            ("box", "boxes"),
+            ("dress", "dresses"),
+            ("berry", "berries"),
+            ("tie", "ties"),
+            ("maze", "mazes"),
+            ("brush", "brushes"),
+            ("waltz", "waltzes"),
+            ("axe", "axes"),
+            ("bookshelf", "bookshelves"),
+            ("bus", "buses"),
+            ("shoe", "shoes"),
+        ] {
+            assert_eq!(normal(many), one);
+            assert_eq!(normal(one), one);
+        }
+        assert_eq!(normal("robot’s"), "robot");
         assert_eq!(normal("glass"), "glass");
         assert_eq!(normal("  dining#chairs "), "dining chair");
     }

@@ -60,6 +60,7 @@ mod tests {
     fn names_of_one_room_agree_and_of_others_do_not() {
         assert!(same_room("foyer", "entryway"));
         assert!(same_room("Living Room", "family room"));
+        assert!(same_room("familyroom", "Family Room") && same_room("meetingroom", "conference room"));
         assert!(!same_room("kitchen", "bedroom"));
         assert!(same_room("observatory", "Observatories"));
         assert_eq!(room_name("corridor"), Some("hallway"));

@@ -238,13 +238,40 @@ mod tests {
     #[test]
     fn rooms_before_a_thing_belong_to_it() {
         assert_eq!(told("pass the kitchen table"), ["kitchen table"]);
+        assert_eq!(told("go to the corner bathroom"), ["bathroom"]);
+        assert_eq!(told("go to the corner meeting room"), ["meeting room"]);
         assert_eq!(told("go to the level 2 bathroom door"), ["floor 2", "door"]);
     }
 
     #[test]
     fn what_the_lexicon_lacks_is_still_a_landmark() {
         assert_eq!(told("walk to the shiny gizmo and stop"), ["shiny gizmo"]);
-        assert_eq!(told("walk all the way to the end"), Vec::<String>::new());
+        for (text, gizmo) in [
+            ("go past that xylorimba", "xylorimba"),
+            ("stop at two xylorimbas", "xylorimba"),
+            ("wait by my old xylorimba", "old xylorimba"),
+            ("stop near their 3 xylorimbas", "3 xylorimba"),
+        ] {
+            assert_eq!(told(text).last().unwrap(), gizmo);
+        }
+        for text in [
+            "walk all the way to the end",
+            "after this enter",
+            "stop where this takes you",
+            "take two more left turns",
+            "wait in the one that says so",
+            "turn to your immediate left",
+            "stop when on your left soon",
+        ] {
+            let places: Vec<String> = told(text).into_iter().filter(|what| !what.starts_with("turn")).collect();
+            assert_eq!(places, Vec::<String>::new(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_a_picture_shows_is_not_there() {
+        assert_eq!(told("stop at the picture of two hummingbirds"), ["picture"]);
+        assert_eq!(told("stop at the bowl of two hummingbirds"), ["bowl", "hummingbird"]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{Event, Place, What, links::link, vocabulary as v};
 use crate::{
-    lexicon::{is_room, is_thing, longest_name, normal_word, room_name},
+    lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, thing},
     text::Token,
 };
 use std::collections::BTreeSet;
@@ -35,7 +35,8 @@ pub(super) fn places(
         // A basement does not: it is a floor.
         let tells_which = |before: &mut Found| before.to == place.from && room_name(&before.name) != Some("basement");
         if let Some(before) = found.pop_if(tells_which) {
-            place.name = if before.is_room { place.name } else { format!("{} {}", before.name, place.name) };
+            place.name =
+                if before.is_room || place.is_room { place.name } else { format!("{} {}", before.name, place.name) };
         }
         found.push(place);
     }
@@ -122,13 +123,19 @@ fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
 /// A noun phrase that no name covers: "the shiny gizmo".
 fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Found> {
     let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    if !matches!(word(at), "the" | "a" | "an") {
+    let is_article = matches!(word(at), "the" | "a" | "an");
+    if is_depicted(tokens, at) || !(is_article || begins_noun(tokens, at)) {
         return None;
     }
-    let ends = |at: usize| {
-        tokens.get(at).is_none_or(|token| !token.is_word())
-            || v::BREAKERS.contains(&word(at))
-            || named(tokens, at, known).is_some()
+    let ends = |end: usize| {
+        // "After this enter the hall", "on your left soon": no noun.
+        let first = word(end);
+        let is_other = v::WALKING.contains(&first) || v::TURNING.contains(&first) || first.ends_with("ing");
+        let is_verb = !is_article && end == at + 1 && (is_other || matches!(first, "left" | "right"));
+        tokens.get(end).is_none_or(|token| !token.is_word())
+            || is_verb
+            || v::BREAKERS.contains(&word(end))
+            || named(tokens, end, known).is_some()
     };
     let mut to = at + 1;
     while to < at + 5 && !ends(to) {
@@ -146,6 +153,25 @@ fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Foun
     }
     let name = tokens[at + 1..to].iter().map(|token| normal_word(&token.word)).collect::<Vec<_>>().join(" ");
     Some(Found { from: at + 1, to, name, is_thing: true, is_room: false })
+}
+
+/// "A picture of two horses": the horses are on it and not there.
+fn is_depicted(tokens: &[Token], at: usize) -> bool {
+    let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].word.as_str());
+    word(1) == "of" && thing(&normal_word(word(2))).is_some_and(|thing| thing.class == Class::WallArt)
+}
+
+/// Whether a word other than an article begins a noun phrase: "my", "two", "past that".
+fn begins_noun(tokens: &[Token], at: usize) -> bool {
+    let word = tokens[at].word.as_str();
+    if !matches!(word, "this" | "that" | "these" | "those") {
+        return v::DETERMINERS.contains(&word) || v::COUNTING.contains(&word);
+    }
+    // "The door that leads on", "this takes you to the hall": these stand for a noun.
+    let before = at.checked_sub(1).map_or("", |before| tokens[before].word.as_str());
+    let begins_clause =
+        matches!(before, "where" | "when" | "until" | "till" | "while" | "as" | "if" | "that" | "which" | "and" | "so");
+    !begins_clause && (v::BREAKERS.contains(&before) || v::WALKING.contains(&before))
 }
 
 /// The colour that is told among the adjectives before a place.

@@ -108,6 +108,11 @@ pub(super) static HAVE_SIDES: Words = LazyLock::new(|| {
 /// Words that begin a noun phrase.
 pub(super) static DETERMINERS: Words = LazyLock::new(|| split("the a an this that these those your its another some"));
 
+/// Words besides that begin a noun phrase: whose it is, and how many.
+pub(super) static COUNTING: Words = LazyLock::new(|| {
+    split("my his her their our both several two three four five six seven eight nine ten 2 3 4 5 6 7 8 9")
+});
+
 /// Words that end a noun phrase.
 pub(crate) static BREAKERS: Words = LazyLock::new(|| {
     split(

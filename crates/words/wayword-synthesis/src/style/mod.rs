@@ -28,6 +28,9 @@ pub enum StyleError {
         /// What is wrong, with line and field.
         reason: String,
     },
+    /// No name to tell it by.
+    #[error("a style has no name: give one in `name`")]
+    Unnamed,
     /// Nothing to imitate.
     #[error("style {0} has no reference texts: give at least one in `references`")]
     NoReferences(String),
@@ -64,11 +67,14 @@ pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
     validated(style)
 }
 
-/// A style as it may be used: with references, and within bounds.
+/// A style as it may be used: with a name and references, and within bounds.
 ///
 /// # Errors
-/// When it has no or too many references.
+/// When it has no name, or no or too many references.
 pub fn validated(style: Style) -> Result<Style, StyleError> {
+    if style.name.trim().is_empty() {
+        return Err(StyleError::Unnamed);
+    }
     if style.references.iter().all(|text| text.trim().is_empty()) {
         return Err(StyleError::NoReferences(style.name));
     }
@@ -116,6 +122,7 @@ mod tests {
     fn what_is_no_style_is_refused_with_a_reason() {
         assert!(matches!(built_in("poem"), Err(StyleError::Unknown(_))));
         assert!(parse("x", "name = 3").unwrap_err().to_string().contains("style x"));
+        assert_eq!(parse("x", "name = \" \"\nreferences = [\"Stop.\"]"), Err(StyleError::Unnamed));
         assert_eq!(parse("x", "name = \"x\"\nreferences = [\" \"]"), Err(StyleError::NoReferences("x".into())));
     }
 }
