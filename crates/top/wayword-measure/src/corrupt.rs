@@ -1,4 +1,9 @@
-//! Makes good instructions wrong. Works on the words and the labels alone: what the checks think has no part in it.
+//! Makes good instructions wrong.
+//!
+//! The first kinds change words that the checks recognised when the instruction was made (its mentions), so what the checks
+//! do not recognise at all they cannot measure. The others are made from the path and its labels alone ([`by_path`]).
+
+mod by_path;
 
 use rand::{Rng, seq::IndexedRandom};
 use std::collections::BTreeSet;
@@ -19,11 +24,31 @@ pub(super) enum Kind {
     ReferenceCopied,
     /// The task's object replaced by one of another viewpoint that the last one does not show.
     TaskElsewhere,
+    /// Stairs on a path without any.
+    StairsAdded,
+    /// A floor on which the path does not end.
+    FloorWrong,
+    /// A room replaced by one in which no frame lies.
+    RoomWrong,
+    /// A thing told on the other side.
+    SideWrong,
+    /// A task on an object that no frame shows, in a style that asks for no task.
+    TaskUnasked,
 }
 
 impl Kind {
-    pub(super) const ALL: [Self; 5] =
-        [Self::TurnFlipped, Self::LandmarkAbsent, Self::OrderSwapped, Self::ReferenceCopied, Self::TaskElsewhere];
+    pub(super) const ALL: [Self; 10] = [
+        Self::TurnFlipped,
+        Self::LandmarkAbsent,
+        Self::OrderSwapped,
+        Self::ReferenceCopied,
+        Self::TaskElsewhere,
+        Self::StairsAdded,
+        Self::FloorWrong,
+        Self::RoomWrong,
+        Self::SideWrong,
+        Self::TaskUnasked,
+    ];
 
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -32,6 +57,11 @@ impl Kind {
             Self::OrderSwapped => "two places swapped in order",
             Self::ReferenceCopied => "a reference's words copied",
             Self::TaskElsewhere => "the task's object from elsewhere",
+            Self::StairsAdded => "stairs on a path without any",
+            Self::FloorWrong => "a floor where the path does not end",
+            Self::RoomWrong => "a room where the path does not lead",
+            Self::SideWrong => "a thing told on the other side",
+            Self::TaskUnasked => "an absent object of a task unasked for",
         }
     }
 }
@@ -116,6 +146,11 @@ pub(super) fn corrupt(
                 .collect();
             Some(replace(span, elsewhere.choose(rng)?))
         }
+        Kind::StairsAdded => by_path::stairs(text, &record.path, style, rng),
+        Kind::FloorWrong => by_path::floor(text, &record.path, style, rng),
+        Kind::RoomWrong => by_path::room(text, evidence, style, rng),
+        Kind::SideWrong => by_path::side(text, evidence, style, rng),
+        Kind::TaskUnasked => by_path::unasked_task(text, evidence, style, rng),
     }
 }
 

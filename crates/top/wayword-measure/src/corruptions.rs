@@ -66,7 +66,7 @@ pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize,
 
 fn table(counts: &BTreeMap<Kind, (usize, usize)>) -> String {
     let line = |name: &str, (caught, total): (usize, usize)| {
-        format!("{name:<36} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
+        format!("{name:<39} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
     };
     let sum = counts.values().fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
     let kinds = counts.iter().map(|(kind, count)| line(kind.name(), *count));

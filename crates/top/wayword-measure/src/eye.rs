@@ -48,8 +48,8 @@ pub(super) fn measure(world: &World, views: usize, paths: usize, ghosts: f64, ou
         let job = stage.job(paths)?;
         let job = Job { settings: Settings { perception: row.perception, ..job.settings }, ..job };
         let mut named = Named::default();
-        for made in stage.make(&job)? {
-            named.count(&made, &stage.world)?;
+        for made in stage.make(&job)?.0 {
+            named.count(&made?, &stage.world)?;
         }
         lines.push(format!(
             "{:<9}{:>15.1}% {:>10.1}% {:>9.1}% {:>6.1}% {:>11.1} | {:>18.1}% {:>10.1}% {:>9} {:>9}",

@@ -1,5 +1,6 @@
 //! Measurements that the documents quote, each a command: see `wayword-measure --help`.
 
+mod budget;
 mod corrupt;
 mod corruptions;
 mod eye;
@@ -71,6 +72,18 @@ enum What {
         #[arg(long, default_value_t = 0.15)]
         ghosts: f64,
     },
+    /// A run that a budget stops: what it has spent against the bound.
+    Budget {
+        /// The world.
+        #[command(flatten)]
+        world: stage::World,
+        /// Paths that would be made.
+        #[arg(long, default_value_t = 330)]
+        paths: usize,
+        /// The bound, US dollars, at 10 and 20 a million tokens in and out.
+        #[arg(long, default_value_t = 2.0)]
+        max_usd: f64,
+    },
     /// Calls per instruction on paths of one building, against the paper's way.
     Reuse {
         /// The world.
@@ -97,6 +110,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
     match what {
         What::Corruptions { runs, count, seed, show } => corruptions::measure(&runs, count, seed, show, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),
+        What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
         What::Eye { world, views, paths, ghosts } => eye::measure(&world, views, paths, ghosts, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),

@@ -6,7 +6,7 @@ use wayword_synthesis::dialogue::QUESTIONS;
 
 pub(super) fn measure(world: &World, paths: usize, output: &Output) -> Result<(), Error> {
     let stage = Stage::new(world, 0.15)?;
-    let made = stage.make(&stage.job(paths)?)?;
+    let made = stage.make(&stage.job(paths)?)?.0.into_iter().collect::<Result<Vec<_>, _>>()?;
     let frames: usize = made.iter().map(|made| made.walk.path.frames.len()).sum();
     let exchanges: usize = made
         .iter()

@@ -4,7 +4,7 @@ use rayon::{ThreadPoolBuilder, prelude::*};
 use std::path::PathBuf;
 use tempfile::TempDir;
 use wayword::{
-    calls::Calls,
+    calls::{Calls, Spent},
     error::Error,
     pipeline::{Made, make},
     run::fresh_id,
@@ -86,18 +86,28 @@ impl Stage {
         .job()
     }
 
-    /// Makes every item of a job.
-    pub(super) fn make(&self, job: &Job) -> Result<Vec<Made>, Error> {
+    /// A list of prices that makes everything cost something.
+    pub(super) fn prices(&self) -> Result<PathBuf, Error> {
+        let file = self.folder.path().join("prices.toml");
+        let row = "usd_per_million_in = 10.0\nusd_per_million_out = 20.0\nas_of = \"2026-11-01\"\n";
+        let text = format!("[\"server/words\"]\n{row}[\"server/eye\"]\n{row}");
+        std::fs::write(&file, text).map_err(Error::io(&file, "write"))?;
+        Ok(file)
+    }
+
+    /// Makes every item of a job; tells what was spent.
+    pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
         let styles: Vec<Measured> = styles::find(&job.settings.style, job.settings.seed)?;
         let items = wayword::item::items(&job.settings, &self.world)?;
         let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("measure"))?;
         let team = Team::new(&job.settings, calls.as_ref())?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let work = || items.par_iter().map(|item| make(item, &job.settings, &self.world, &team, &styles)).collect();
-        match threads {
+        let made = match threads {
             Ok(threads) => threads.install(work),
             Err(_) => work(),
-        }
+        };
+        Ok((made, calls.map_or_else(Spent::default, |calls| calls.spent())))
     }
 }
 
