@@ -165,6 +165,7 @@ fn money_and_calls_are_bounded_over_all_commands_of_a_run() {
     let refused = stage.generate("other", &["--paths", "1", "--max-usd", "1"]);
     assert_eq!(refused.code, Some(1), "a model without a price: {refused:?}");
     assert!(refused.err.contains("--prices"), "{refused:?}");
+    assert!(!stage.building.path("other").exists(), "what is refused leaves no folder behind");
     let cost = stage.building.wayword(&["ledger", "cost", "--by", "run", "--ledger", "ledger.db", "--json"]);
     assert!(cost.json()["lines"][0]["usd"].as_f64().unwrap() > 0.3);
 }

@@ -20,6 +20,14 @@ pub fn price_of(_: &Service, _: &str) -> Result<Option<Price>, Error> {
 }
 
 impl Calls {
+    /// Refuses every model.
+    ///
+    /// # Errors
+    /// Where the settings name one.
+    pub fn rehearse(settings: &Settings, service: &Service, providers: &Providers) -> Result<(), Error> {
+        Self::open(settings, service, providers, "").map(drop)
+    }
+
     /// `None` where the settings name no model.
     ///
     /// # Errors

@@ -23,6 +23,16 @@ pub struct Calls {
 const MOST_AT_A_TIME: usize = 64;
 
 impl Calls {
+    /// Refuses what [`Calls::open`] would refuse of names, prices and providers, before anything is written.
+    ///
+    /// # Errors
+    /// When a provider is not known, or a price is needed and not known.
+    pub fn rehearse(settings: &Settings, service: &Service, providers: &Providers) -> Result<(), Error> {
+        let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
+        let services = Services::new(config(settings, service, providers)?, nowhere)?;
+        settings.roles.models().into_iter().try_for_each(|name| Ok(services.model(name).map(drop)?))
+    }
+
     /// Opens ledger and services for the models that the settings name; `None` where they name none. `run` names what the
     /// calls are made for: its spending, earlier commands' included, is what the limits bound.
     ///

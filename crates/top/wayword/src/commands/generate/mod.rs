@@ -63,6 +63,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let styles = styles::find(&job.settings.style, job.settings.seed)?;
     let items = items(&job.settings, platform.as_ref())?;
     check_names(&items)?;
+    Calls::rehearse(&job.settings, &job.service, &job.providers)?;
     let inputs = inputs::inputs(job, &styles)?;
     let settings = &Settings { inputs, ..job.settings.clone() };
     let mut run = RunFolder::open(folder, settings)?;

@@ -127,7 +127,7 @@ pub fn perceive(
 
 fn minds(settings: &Settings) -> String {
     let roles = &settings.roles;
-    format!("{} asks, {} answers, {} sums up", roles.ask, roles.see, roles.summarise)
+    format!("asked by {}, answered by {}, summed up by {}", roles.ask, roles.see, roles.summarise)
 }
 
 /// Captions every view in one way.

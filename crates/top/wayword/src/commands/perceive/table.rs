@@ -64,7 +64,7 @@ impl fmt::Display for Table<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Measured { platform, views, minds, rows, shown } = self.0;
         writeln!(f, "{views} views of {platform}; {minds}")?;
-        if minds.contains(&format!("{LABELS} answers")) {
+        if minds.contains(&format!("answered by {LABELS}")) {
             writeln!(f, "labels answer: this measures how words come through, not perception")?;
         }
         writeln!(f)?;
