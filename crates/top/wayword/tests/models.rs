@@ -229,6 +229,15 @@ fn the_doctor_tells_what_works_and_what_to_do() {
     let problem =
         findings["findings"].as_array().unwrap().iter().find(|finding| finding["state"] == "problem").unwrap();
     assert!(problem["hint"].as_str().unwrap().contains(stage::KEY_ENV), "{findings}");
+    let base = stage.provider.base_url(wayword_testkit::provider::Dialect::Ollama);
+    let settings = format!(
+        "[roles]\nllm = \"lab/words\"\n[providers.lab]\ndialect = \"ollama\"\nbase_url = \"{base}\"\nkey_env = \"{}\"\n",
+        stage::KEY_ENV
+    );
+    stage.building.write("lab.toml", settings);
+    let args = ["doctor", "--config", "lab.toml", "--ledger", "ledger.db"];
+    let own = run(stage.building.command(&args).env(stage::KEY_ENV, KEY));
+    assert!(own.out.contains("lab/words answers"), "{own:?}");
     drop(stage.provider);
     let offline = stage.building.wayword(&["doctor"]);
     assert_eq!(offline.code, Some(0), "{offline:?}");

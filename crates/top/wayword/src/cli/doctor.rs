@@ -3,6 +3,7 @@
 use super::World;
 use crate::settings::{Asked, AskedRoles, Service};
 use clap::Args;
+use std::path::PathBuf;
 
 /// `wayword doctor`.
 #[derive(Debug, Args)]
@@ -12,6 +13,9 @@ Examples:
   wayword doctor --see server/llava --base-url http://127.0.0.1:8000/v1
   wayword doctor --platform matterport --data DATA")]
 pub struct Doctor {
+    /// Settings as TOML, with the providers and roles of `generate`; flags win.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
     /// The world.
     #[command(flatten)]
     pub world: World,

@@ -1,7 +1,7 @@
 //! `wayword perceive` as it is typed.
 
 use super::World;
-use crate::settings::{Asked, AskedRoles, Perception, Providers, Service};
+use crate::settings::{Asked, AskedRoles, Perception, Service};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -15,6 +15,9 @@ Examples:
   wayword perceive --perception dialogue --show 5
       What labels and rules make of a view: no model takes part.")]
 pub struct Perceive {
+    /// Settings as TOML, with the providers and roles of `generate`; flags win.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
     /// The world; it has to know labels.
     #[command(flatten)]
     pub world: World,
@@ -61,7 +64,6 @@ impl Perceive {
             seed: self.seed,
             roles: self.roles.clone(),
             service: self.service.clone(),
-            providers: Providers::new(),
             ..Asked::default()
         }
     }

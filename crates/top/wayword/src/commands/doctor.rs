@@ -3,6 +3,7 @@
 use crate::{
     calls::Calls,
     cli::Doctor,
+    commands::config,
     error::{Error, Exit},
     item::items,
     output::Output,
@@ -45,7 +46,7 @@ struct Report {
 }
 
 pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
-    let job = args.asked().job()?;
+    let job = args.asked().or(config::read(args.config.as_deref())?).job()?;
     let mut findings = vec![world_finding(&job.settings)];
     if job.settings.roles.prompts.is_some() {
         findings.push(match prompts(&job.settings) {

@@ -2,6 +2,7 @@
 
 mod check;
 mod completions;
+mod config;
 mod demo;
 #[cfg(feature = "remote")]
 mod doctor;

@@ -8,16 +8,17 @@ mod summary;
 use crate::{
     calls::Calls,
     cli::Generate,
+    commands::config,
     error::{Error, Exit},
     in_order::in_order,
     item::{Item, check_names, items},
     output::Output,
     pipeline::make,
     run::RunFolder,
-    settings::{Asked, Job, Settings},
+    settings::{Job, Settings},
     styles,
     team::{Team, cores},
-    text_file, world,
+    world,
 };
 use keep::{Fate, keep};
 use std::path::Path;
@@ -28,8 +29,7 @@ pub use summary::Summary;
 const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
-    let file = args.config.as_deref().map(read_config).transpose()?.unwrap_or_default();
-    let job = args.asked().or(file).job()?;
+    let job = args.asked().or(config::read(args.config.as_deref())?).job()?;
     if args.dry_run {
         let plan = plan::plan(&job)?;
         output.data(&plan, &plan);
@@ -41,16 +41,6 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let summary = generate_into(out, &job, output)?;
     output.data(&summary, &summary);
     Ok(summary.exit())
-}
-
-fn read_config(path: &Path) -> Result<Asked, Error> {
-    let text = text_file::read(path, "read the settings")?;
-    toml::from_str(&text).map_err(|error| {
-        Error::usage(
-            format!("{}: {}", path.display(), error.to_string().trim()),
-            "see wayword generate --help for the names",
-        )
-    })
 }
 
 /// Makes or continues a run.

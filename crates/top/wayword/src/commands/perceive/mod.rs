@@ -6,6 +6,7 @@ mod views;
 use crate::{
     calls::Calls,
     cli::Perceive,
+    commands::config,
     error::{Error, Exit},
     in_order::in_order,
     output::Output,
@@ -61,7 +62,7 @@ struct Captioned {
 }
 
 pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
-    let job = args.asked().job()?;
+    let job = args.asked().or(config::read(args.config.as_deref())?).job()?;
     let platform = world::open(&job.settings)?;
     let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or(WAYS.to_vec());
     let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;

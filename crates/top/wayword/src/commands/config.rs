@@ -1,0 +1,16 @@
+//! The settings file of a command.
+
+use crate::{error::Error, settings::Asked, text_file};
+use std::path::Path;
+
+/// What a settings file asks for; nothing where there is none.
+pub(super) fn read(path: Option<&Path>) -> Result<Asked, Error> {
+    let Some(path) = path else { return Ok(Asked::default()) };
+    let text = text_file::read(path, "read the settings")?;
+    toml::from_str(&text).map_err(|error| {
+        Error::usage(
+            format!("{}: {}", path.display(), error.to_string().trim()),
+            "see wayword generate --help for the names, and docs/MODELS.md for [roles], [service] and [providers.NAME]",
+        )
+    })
+}
