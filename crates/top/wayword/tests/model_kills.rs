@@ -18,7 +18,7 @@ use wayword_testkit::provider::Behaviour;
 
 const CONCURRENCY: u64 = 16;
 /// Some 2,000 calls.
-const RUN: [&str; 6] = ["--paths", "150", "--concurrency", "16", "--quiet", "--json"];
+const RUN: [&str; 6] = ["--paths", "100", "--concurrency", "16", "--quiet", "--json"];
 
 #[test]
 fn a_run_that_is_killed_ends_the_same_and_pays_once() {

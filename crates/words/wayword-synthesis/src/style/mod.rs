@@ -29,7 +29,7 @@ pub enum StyleError {
         reason: String,
     },
     /// No name to tell it by.
-    #[error("a style has no name: give one in `name`")]
+    #[error("a style has no name: give it one")]
     Unnamed,
     /// Nothing to imitate.
     #[error("style {0} has no reference texts: give at least one in `references`")]
@@ -60,11 +60,12 @@ pub fn built_in(name: &str) -> Result<Style, StyleError> {
 /// # Errors
 /// When it is no style, or has no or too many references.
 pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
-    let style: Style = toml::from_str(text).map_err(|error| StyleError::Unreadable {
-        name: name.to_owned(),
-        reason: error.to_string().trim().replace('\n', " "),
-    })?;
-    validated(style)
+    let unreadable = |reason: String| StyleError::Unreadable { name: name.to_owned(), reason };
+    let style: Style = toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().replace('\n', " ")))?;
+    validated(style).map_err(|error| match error {
+        StyleError::Unnamed => unreadable("its `name` is empty: give it one".into()),
+        other => other,
+    })
 }
 
 /// A style as it may be used: with a name and references, and within bounds.
@@ -122,7 +123,10 @@ mod tests {
     fn what_is_no_style_is_refused_with_a_reason() {
         assert!(matches!(built_in("poem"), Err(StyleError::Unknown(_))));
         assert!(parse("x", "name = 3").unwrap_err().to_string().contains("style x"));
-        assert_eq!(parse("x", "name = \" \"\nreferences = [\"Stop.\"]"), Err(StyleError::Unnamed));
+        let unnamed = parse("x.toml", "name = \" \"\nreferences = [\"Stop.\"]").unwrap_err().to_string();
+        assert!(unnamed.contains("x.toml") && unnamed.contains("`name` is empty"), "{unnamed}");
+        let unnamed = Style { name: String::new(), ..built_in("r2r").unwrap() };
+        assert_eq!(validated(unnamed), Err(StyleError::Unnamed));
         assert_eq!(parse("x", "name = \"x\"\nreferences = [\" \"]"), Err(StyleError::NoReferences("x".into())));
     }
 }
