@@ -117,7 +117,11 @@ mod tests {
                 position: None,
                 colour: None,
             };
-            let truth = GroundTruth { labels: vec![label("lamp", 0.0), label("bed", 0.7)], room: Some("cell".into()) };
+            let truth = GroundTruth {
+                labels: vec![label("lamp", 0.0), label("bed", 0.7)],
+                lists_objects: true,
+                room: Some("cell".into()),
+            };
             let pose = Pose { heading: gaze.heading, ..from.pose };
             Ok(View::new(pose, gaze.horizontal_fov_rad, None, Some(truth)))
         }
