@@ -1,13 +1,17 @@
 //! Measurements that the documents quote, each a command: see `wayword-measure --help`.
 
 mod budget;
+mod calls;
 mod corrupt;
 mod corruptions;
 mod eye;
+mod provider;
+mod resources;
 mod reuse;
 mod sample;
 mod skeleton;
 mod stage;
+mod storm;
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
@@ -72,6 +76,44 @@ enum What {
         #[arg(long, default_value_t = 0.15)]
         ghosts: f64,
     },
+    /// Calls per second, our own processor time for each, and memory, against a provider that is slow or is not.
+    Calls {
+        /// How many.
+        #[arg(long, default_value_t = 5000)]
+        calls: usize,
+        /// How long the provider takes for each, milliseconds.
+        #[arg(long, default_value_t = 200)]
+        latency_ms: u64,
+        /// Requests at a time.
+        #[arg(long, default_value_t = 32)]
+        concurrency: usize,
+    },
+    /// Our own processor time for calls with pictures.
+    Pictures {
+        /// How many.
+        #[arg(long, default_value_t = 500)]
+        calls: usize,
+    },
+    /// What gets through to a rate-limited provider in a storm of faults.
+    Storm {
+        /// How many calls.
+        #[arg(long, default_value_t = 3000)]
+        calls: usize,
+        /// Requests per second that the provider bears.
+        #[arg(long, default_value_t = 50.0)]
+        requests_per_second: f64,
+        /// And at once, after a rest.
+        #[arg(long, default_value_t = 10)]
+        burst: u32,
+        /// Share of requests that meet a fault.
+        #[arg(long, default_value_t = 0.3)]
+        share: f64,
+        /// Seed of the faults.
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+    },
+    /// Serves the test kit's provider until standard input closes.
+    Provider(provider::Flags),
     /// A run that a budget stops: what it has spent against the bound.
     Budget {
         /// The world.
@@ -110,6 +152,12 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
     match what {
         What::Corruptions { runs, count, seed, show } => corruptions::measure(&runs, count, seed, show, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),
+        What::Calls { calls, latency_ms, concurrency } => calls::measure(calls, latency_ms, concurrency, output),
+        What::Pictures { calls } => calls::pictures(calls, output),
+        What::Storm { calls, requests_per_second, burst, share, seed } => {
+            storm::measure(calls, requests_per_second, burst, share, seed, output)
+        }
+        What::Provider(flags) => provider::serve(&flags, output),
         What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
         What::Eye { world, views, paths, ghosts } => eye::measure(&world, views, paths, ghosts, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
