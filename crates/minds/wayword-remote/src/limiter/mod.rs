@@ -5,6 +5,7 @@
 mod advertised;
 mod bucket;
 mod pace;
+mod share;
 mod state;
 
 pub(crate) use advertised::Advertised;

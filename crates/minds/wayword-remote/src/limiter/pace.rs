@@ -128,11 +128,8 @@ impl Pace {
                 let least = old.per_s * if soon || !old.confirmed { 0.6 } else { 0.8 };
                 // The limit lies between what was let in and what was refused; right after a refusal, what was let in is less
                 // than could be.
-                let refused_per_s = if close && !soon {
-                    old.per_s.midpoint(let_in_per_s.clamp(old.per_s * 0.9, old.per_s))
-                } else {
-                    old.per_s
-                };
+                let refused_per_s =
+                    if close && !soon { let_in_per_s.clamp(old.per_s * 0.85, old.per_s) } else { old.per_s };
                 (careful.clamp(least, old.per_s * 0.98), refused_per_s, close)
             }
         };

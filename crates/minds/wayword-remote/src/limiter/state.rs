@@ -1,6 +1,6 @@
 //! What decides when a request leaves. It has no clock: every function is told the time.
 
-use super::{advertised::Advertised, bucket::Bucket, pace::Pace};
+use super::{advertised::Advertised, bucket::Bucket, pace::Pace, share::Share};
 use crate::{Concurrency, faults::Load};
 use std::time::{Duration, Instant};
 
@@ -12,6 +12,10 @@ const SHRINK: f64 = 0.7;
 
 /// A limit shrinks at most once in this time, or in the usual latency where that is longer.
 const SHORTEST_WINDOW: Duration = Duration::from_millis(100);
+
+/// Less than this share of refusals, or of answers that came too late, is chance and no limit: it holds back the request that met
+/// it, and no other. Services in trouble refuse at random, and each such refusal would else stop everybody for as long as it asks.
+const CHANCE: f64 = 0.125;
 
 /// What is to be kept.
 #[derive(Debug, Clone, Copy)]
@@ -74,6 +78,9 @@ pub(super) struct State {
     shrunk_at: Option<Instant>,
     /// Whether the service ever said that it was too much.
     refused: bool,
+    /// Requests that were refused as too much, and those that were not answered in time.
+    over: Share,
+    slow: Share,
     /// When a request last had to wait for another one to come back.
     crowded_at: Option<Instant>,
     requests: Option<Bucket>,
@@ -95,6 +102,8 @@ impl State {
             latency: Duration::ZERO,
             shrunk_at: None,
             refused: false,
+            over: Share::default(),
+            slow: Share::default(),
             crowded_at: None,
             requests: bucket(rules.requests_per_minute),
             tokens: bucket(rules.tokens_per_minute),
@@ -146,6 +155,8 @@ impl State {
         self.out = self.out.saturating_sub(1);
         let paused = self.paused_until.is_some_and(|until| until > now);
         self.pace.advance(now, paused);
+        let over = self.over.count(matches!(outcome, Outcome::Burdened { load: Load::Over, .. }));
+        let slow = self.slow.count(matches!(outcome, Outcome::Burdened { load: Load::Slow, .. }));
         match outcome {
             Outcome::Answered { tokens: used } => {
                 self.pace.let_in(ticket.left_s);
@@ -155,6 +166,8 @@ impl State {
                 }
             }
             Outcome::Failed => self.pace.let_in(ticket.left_s),
+            Outcome::Burdened { load: Load::Slow, .. } if slow < CHANCE => {}
+            Outcome::Burdened { load: Load::Over, .. } if over < CHANCE => {}
             Outcome::Burdened { load, after } => self.burdened(ticket.left_at, now, load, after),
         }
     }
@@ -173,7 +186,12 @@ impl State {
         // Those that were out together tell one thing, not many.
         let window = self.latency.max(SHORTEST_WINDOW);
         let first = self.shrunk_at.is_none_or(|shrunk_at| left_at >= shrunk_at && now >= shrunk_at + window);
+        // What has been acted on is not held against the service again.
+        if load == Load::Slow {
+            self.slow.settle();
+        }
         if load == Load::Over {
+            self.over.settle();
             self.refused = true;
             self.pace.refused(first);
             if let Some(until) = after.and_then(|after| now.checked_add(after)) {

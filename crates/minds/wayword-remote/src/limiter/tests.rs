@@ -36,6 +36,26 @@ fn a_pause_holds_everybody() {
 }
 
 #[test]
+fn a_refusal_among_many_answers_holds_nobody_else() {
+    let start = Instant::now();
+    let mut state = State::new(rules(Concurrency::Fixed(4)), start);
+    let mut now = start;
+    let mut meet = |state: &mut State, outcome: Outcome| {
+        now += ms(10);
+        let ticket = state.leave(now, 0);
+        state.back(ticket, now, outcome);
+        state.turn(now)
+    };
+    let refused = Outcome::Burdened { load: Load::Over, after: Some(ms(1000)) };
+    for _ in 0..50 {
+        meet(&mut state, Outcome::Answered { tokens: 1 });
+    }
+    assert_eq!(meet(&mut state, refused), Turn::Now);
+    // In a row they are no chance.
+    assert!((0..10).any(|_| meet(&mut state, refused) == Turn::In(ms(1000))));
+}
+
+#[test]
 fn an_adaptive_limit_grows_shrinks_once_and_ignores_chance() {
     let start = Instant::now();
     let mut state = State::new(rules(Concurrency::Adaptive { most: 16 }), start);
@@ -108,13 +128,42 @@ fn the_smaller_of_the_users_and_the_services_limit_counts() {
     }
 }
 
-/// A service that lets so many requests per second in, and refuses the others; a share of those that it lets in fail.
+/// A service that lets so many requests per second in, and refuses the others; of those that it lets in, shares fail, are refused
+/// all the same, or are never answered.
 struct Storm {
     per_s: f64,
     burst: f64,
     retry_after: Duration,
     faults: f64,
+    whims: f64,
+    lost: f64,
     latency: Duration,
+}
+
+/// When a request that is never answered is given up.
+const TIMEOUT: Duration = Duration::from_secs(3);
+
+/// What becomes of a request.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Fate {
+    Answered,
+    Failed,
+    Whim,
+    Lost,
+    Refused,
+}
+
+impl Storm {
+    /// The fate of a request that was let in, by chance from 0 to 1.
+    fn fate(&self, chance: f64) -> Fate {
+        let fates = [(Fate::Failed, self.faults), (Fate::Whim, self.whims), (Fate::Lost, self.lost)];
+        let mut left = chance;
+        let met = fates.into_iter().find(|(_, share)| {
+            left -= share;
+            left < 0.0
+        });
+        met.map_or(Fate::Answered, |(fate, _)| fate)
+    }
 }
 
 /// Requests answered per second in a run of so many seconds, and how many were refused.
@@ -124,7 +173,7 @@ fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) 
     let mut state = State::new(rules(concurrency), start);
     let (mut level, mut filled, mut answered, mut refused, mut drawn) = (storm.burst, start, 0, 0, 0_u64);
     // Requests on the wire by when they are back: the earliest first.
-    let mut out: BinaryHeap<std::cmp::Reverse<(Instant, usize, u8)>> = BinaryHeap::new();
+    let mut out: BinaryHeap<std::cmp::Reverse<(Instant, usize, Fate)>> = BinaryHeap::new();
     let mut tickets = Vec::new();
     let mut now = start;
     while now < end {
@@ -134,11 +183,14 @@ fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) 
                 filled = now;
                 drawn += 1;
                 let chance = wayword_core::seed::derive(drawn, &["storm"]).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11;
-                let fate =
-                    if level < 1.0 { 2 } else { u8::from((chance as f64 / (1_u64 << 53) as f64) < storm.faults) };
-                level -= if fate == 2 { 0.0 } else { 1.0 };
-                // Refusals come back at once.
-                let latency = if fate == 2 { ms(5) } else { storm.latency };
+                let fate = if level < 1.0 { Fate::Refused } else { storm.fate(chance as f64 / (1_u64 << 53) as f64) };
+                level -= if fate == Fate::Refused { 0.0 } else { 1.0 };
+                let latency = match fate {
+                    // Refusals come back at once.
+                    Fate::Refused => ms(5),
+                    Fate::Lost => TIMEOUT,
+                    Fate::Answered | Fate::Failed | Fate::Whim => storm.latency,
+                };
                 out.push(std::cmp::Reverse((now + latency, tickets.len(), fate)));
                 tickets.push(state.leave(now, 0));
                 continue;
@@ -151,12 +203,13 @@ fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) 
         while let Some(&std::cmp::Reverse((at, ticket, fate))) = out.peek().filter(|next| next.0.0 <= now) {
             out.pop();
             let outcome = match fate {
-                0 => Outcome::Answered { tokens: 1 },
-                1 => Outcome::Failed,
-                _ => Outcome::Burdened { load: Load::Over, after: Some(storm.retry_after) },
+                Fate::Answered => Outcome::Answered { tokens: 1 },
+                Fate::Failed => Outcome::Failed,
+                Fate::Lost => Outcome::Burdened { load: Load::Slow, after: None },
+                Fate::Whim | Fate::Refused => Outcome::Burdened { load: Load::Over, after: Some(storm.retry_after) },
             };
-            answered += u32::from(fate == 0);
-            refused += u32::from(fate == 2);
+            answered += u32::from(fate == Fate::Answered);
+            refused += u32::from(fate == Fate::Refused);
             state.back(tickets[ticket], at, outcome);
         }
     }
@@ -173,11 +226,16 @@ fn a_storm_at_an_unknown_rate_brings_most_of_what_is_possible() {
         (20.0, 5.0, 1000),
         (10.0, 10.0, 1000),
     ] {
-        let storm = Storm { per_s, burst, retry_after: ms(retry_after), faults: 0.3, latency: ms(200) };
-        for concurrency in [Concurrency::Adaptive { most: 64 }, Concurrency::Fixed(64)] {
-            let (goodput, refused) = goodput(&storm, concurrency, 120);
-            let share = goodput / (per_s * 0.7);
-            assert!(share > 0.8, "{per_s}/s, burst {burst}, {concurrency:?}: {share:.2}, {refused} refused");
+        for (faults, whims, lost) in [(0.0, 0.0, 0.0), (0.3, 0.0, 0.0), (0.23, 0.045, 0.025)] {
+            let storm = Storm { per_s, burst, retry_after: ms(retry_after), faults, whims, lost, latency: ms(200) };
+            for concurrency in [Concurrency::Adaptive { most: 64 }, Concurrency::Fixed(64)] {
+                let (goodput, refused) = goodput(&storm, concurrency, 120);
+                let share = goodput / (per_s * (1.0 - faults - whims - lost));
+                assert!(
+                    share > 0.8,
+                    "{per_s}/s, burst {burst}, {whims} whims, {concurrency:?}: {share:.2}, {refused} refused"
+                );
+            }
         }
     }
 }
@@ -187,7 +245,7 @@ fn a_pace_that_nobody_tried_is_forgotten() {
     let start = Instant::now();
     let mut state = State::new(rules(Concurrency::Fixed(64)), start);
     let mut now = start;
-    // Ten a second for so long, and then one that is refused.
+    // Ten a second for so long, and then so many refused that it is no whim.
     let mut ten_a_second = |state: &mut State, seconds: u64| {
         for _ in 0..10 * seconds {
             now += ms(100);
@@ -195,10 +253,11 @@ fn a_pace_that_nobody_tried_is_forgotten() {
             let ticket = state.leave(now, 0);
             state.back(ticket, now + ms(20), Outcome::Answered { tokens: 1 });
         }
-        now += ms(100);
-        assert_eq!(state.turn(now), Turn::Now);
-        let ticket = state.leave(now, 0);
-        state.back(ticket, now + ms(20), Outcome::Burdened { load: Load::Over, after: None });
+        for _ in 0..10 {
+            now += ms(100);
+            let ticket = state.leave(now, 0);
+            state.back(ticket, now + ms(20), Outcome::Burdened { load: Load::Over, after: None });
+        }
         now
     };
     ten_a_second(&mut state, 60);
@@ -206,12 +265,14 @@ fn a_pace_that_nobody_tried_is_forgotten() {
     let refused_at = ten_a_second(&mut state, 86_400);
     state.turn(refused_at + ms(100));
     state.leave(refused_at + ms(100), 0);
-    assert!(matches!(state.turn(refused_at + ms(100)), Turn::In(wait) if wait > ms(60)));
+    let turn = state.turn(refused_at + ms(100));
+    assert!(matches!(turn, Turn::In(wait) if wait > ms(60)), "{turn:?}");
 }
 
 #[test]
 fn faults_alone_hold_nothing_back() {
-    let storm = Storm { per_s: 1e6, burst: 1e6, retry_after: ms(0), faults: 0.3, latency: ms(200) };
+    let storm =
+        Storm { per_s: 1e6, burst: 1e6, retry_after: ms(0), faults: 0.3, whims: 0.0, lost: 0.0, latency: ms(200) };
     let (goodput, _) = goodput(&storm, Concurrency::Adaptive { most: 64 }, 60);
     let share = goodput / (64.0 / 0.2 * 0.7);
     assert!(share > 0.9, "{share:.2}");
