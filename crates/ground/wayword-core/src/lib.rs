@@ -7,6 +7,7 @@
 //! Architecture invariant: nothing here reads a file, a clock or a network, and nothing knows a model or a platform.
 
 pub mod caption;
+pub mod encoder;
 pub mod graph;
 pub mod heading;
 pub mod id;
@@ -24,6 +25,7 @@ pub mod verdict;
 pub mod view;
 
 pub use caption::{Answer, Answerer, Ask, Caption, Exchange, Sighting, Trouble, Where, Witness};
+pub use encoder::{Grounder, TextEncoder};
 pub use glam::DVec3;
 pub use graph::{Route, ViewpointGraph};
 pub use heading::{Compass, Heading, Side};

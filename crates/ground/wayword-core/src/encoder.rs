@@ -1,0 +1,29 @@
+//! Texts and views as numbers that can be compared.
+
+use crate::{ModelError, View};
+
+/// Turns texts into vectors whose dot product is their similarity.
+///
+/// Blocking, object-safe and batching; threads belong to the caller.
+pub trait TextEncoder: Send + Sync {
+    /// `provider/model`.
+    fn name(&self) -> &str;
+
+    /// One vector of length 1 per text, in their order, all with as many numbers.
+    ///
+    /// # Errors
+    /// When the model fails; nothing is answered in part.
+    fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError>;
+}
+
+/// Says how well phrases fit what views show.
+///
+/// Blocking, object-safe and batching; threads belong to the caller.
+pub trait Grounder: Send + Sync {
+    /// `provider/model`, or `labels`.
+    fn name(&self) -> &str;
+
+    /// One result per view, in their order: a score for each phrase, in their order. A higher one fits better; scores of the
+    /// same grounder can be compared between views and phrases. A view that fails does not fail the others.
+    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>>;
+}

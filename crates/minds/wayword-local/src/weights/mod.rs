@@ -1,0 +1,143 @@
+//! Weights of a checkpoint, read tensor by tensor.
+//!
+//! A file is never mapped into memory, and a tensor is turned into what computes as soon as it is read: so no more than one
+//! tensor is held twice.
+
+mod pickled;
+mod safetensor;
+mod scope;
+
+pub(crate) use scope::Scope;
+
+use crate::{Device, LocalError, Precision};
+use candle_core::{DType, Tensor};
+use pickled::Pickled;
+use safetensor::SafeFile;
+use serde::Deserialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+
+/// The index of a checkpoint in several files may be so long, bytes.
+const LONGEST_INDEX: u64 = 64 << 20;
+
+/// A checkpoint's tensors by their names.
+pub(crate) struct Weights {
+    /// What to name where a tensor is in no file.
+    path: PathBuf,
+    files: Vec<File>,
+    /// Where each tensor is.
+    at: BTreeMap<String, usize>,
+    device: candle_core::Device,
+    dtype: DType,
+}
+
+enum File {
+    Safe(SafeFile),
+    Pickled(Pickled),
+}
+
+#[derive(Deserialize)]
+struct Index {
+    weight_map: BTreeMap<String, String>,
+}
+
+impl Weights {
+    /// Opens a model's folder: `model.safetensors`, or its parts by `model.safetensors.index.json`, or `pytorch_model.bin`.
+    ///
+    /// # Errors
+    /// When there is none of these, or one is damaged.
+    pub(crate) fn open(folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+        let whole = folder.join("model.safetensors");
+        let index = folder.join("model.safetensors.index.json");
+        let pickled = folder.join("pytorch_model.bin");
+        let (path, files) = if whole.exists() {
+            let file = File::Safe(SafeFile::open(&whole)?);
+            (whole, vec![file])
+        } else if index.exists() {
+            let files = parts(folder, &index)?;
+            (index, files)
+        } else if pickled.exists() {
+            let file = File::Pickled(Pickled::open(&pickled)?);
+            (pickled, vec![file])
+        } else {
+            let hint =
+                "put the checkpoint's model.safetensors there, or fetch it: wayword models fetch NAME".to_owned();
+            return Err(LocalError::Missing { file: whole, what: "the checkpoint", hint });
+        };
+        let mut at = BTreeMap::new();
+        for (number, file) in files.iter().enumerate() {
+            at.extend(file.names().map(|name| (name, number)));
+        }
+        Ok(Self { path, files, at, device: device.0.clone(), dtype: precision.dtype() })
+    }
+
+    /// The tensors whose names begin so; "" for all.
+    pub(crate) fn scope(&self, prefix: &str) -> Scope<'_> {
+        Scope::new(self, prefix)
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.at.contains_key(name)
+    }
+
+    /// A tensor of a shape, in the weights' numbers on the weights' device.
+    fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let lacks = || LocalError::tensor(&self.path, name, "it is missing");
+        let file = self.at.get(name).and_then(|&at| self.files.get(at)).ok_or_else(lacks)?;
+        let tensor = match file {
+            File::Safe(file) => file.read(name, shape)?,
+            File::Pickled(file) => file.read(name, shape)?,
+        };
+        let wrong = |error: candle_core::Error| LocalError::tensor(file.path(), name, error.to_string());
+        tensor.to_dtype(self.dtype).and_then(|tensor| tensor.to_device(&self.device)).map_err(wrong)
+    }
+
+    /// The shape of a tensor, where there is one.
+    fn shape(&self, name: &str) -> Option<Vec<usize>> {
+        match self.files.get(*self.at.get(name)?)? {
+            File::Safe(file) => file.shape(name),
+            File::Pickled(file) => file.shape(name),
+        }
+    }
+}
+
+impl File {
+    fn path(&self) -> &Path {
+        match self {
+            Self::Safe(file) => file.path(),
+            Self::Pickled(file) => file.path(),
+        }
+    }
+
+    fn names(&self) -> Box<dyn Iterator<Item = String> + '_> {
+        match self {
+            Self::Safe(file) => Box::new(file.names()),
+            Self::Pickled(file) => Box::new(file.names()),
+        }
+    }
+}
+
+/// The files that an index names, each once.
+fn parts(folder: &Path, index: &Path) -> Result<Vec<File>, LocalError> {
+    let damaged = |problem: String| LocalError::File { file: index.to_owned(), problem, hint: "fetch it again" };
+    let length = std::fs::metadata(index).map_err(|error| LocalError::io(index, "read", error))?.len();
+    if length > LONGEST_INDEX {
+        return Err(damaged(format!("an index of {length} bytes is none")));
+    }
+    let text = std::fs::read_to_string(index).map_err(|error| LocalError::io(index, "read", error))?;
+    let parsed: Index = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
+    let names: BTreeSet<&String> = parsed.weight_map.values().collect();
+    let open = |name: &String| {
+        // It comes from outside, and must not lead out of the folder.
+        if Path::new(name).file_name().is_none_or(|file| file != name.as_str()) {
+            return Err(damaged(format!("{name:?} is no name of a file")));
+        }
+        SafeFile::open(&folder.join(name)).map(File::Safe)
+    };
+    names.into_iter().map(open).collect()
+}
+
+#[cfg(test)]
+mod tests;
