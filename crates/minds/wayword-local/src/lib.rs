@@ -6,11 +6,14 @@
 //! Architecture invariant: a checkpoint is untrusted. It is read tensor by tensor, each held against the shape that the
 //! configuration demands, and nothing in it is executed.
 
+mod bert;
 mod device;
 mod error;
+mod json;
 mod ops;
 mod text;
 mod weights;
 
+pub use bert::SentenceEncoder;
 pub use device::{Device, Precision};
 pub use error::LocalError;

@@ -80,7 +80,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The computation with a tensor failed.
-    fn wrong(&self, name: &str, error: &candle_core::Error) -> LocalError {
+    pub(crate) fn wrong(&self, name: &str, error: &candle_core::Error) -> LocalError {
         LocalError::tensor(&self.weights.path, self.name(name), error.to_string())
     }
 }
