@@ -13,7 +13,7 @@ use wayword_synthesis::{
     minds::Labels,
     models::{ModelAnswerer, ModelAsker, ModelSummariser, ModelWriter},
     observe::Minds,
-    prompts::Prompts,
+    prompts::{Manner, Prompts},
     repair::Writers,
     writer::{RulesWriter, Writer},
 };
@@ -62,7 +62,7 @@ impl Team {
                 None => Box::new(RulesSummariser),
             },
             answerer: match sees {
-                Some(model) => Box::new(ModelAnswerer::new(model, prompts())),
+                Some(model) => Box::new(ModelAnswerer::new(model, prompts(), Manner::Chat)),
                 None => Box::new(Labels),
             },
             writer: match writes {

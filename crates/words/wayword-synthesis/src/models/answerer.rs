@@ -1,7 +1,7 @@
 //! A language model that sees.
 
 use super::{PERCEPTION_SEED, clean::whole_sentences};
-use crate::prompts::Prompts;
+use crate::prompts::{Manner, Prompts};
 use std::sync::Arc;
 use wayword_core::{Answer, Answerer, Ask, Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling};
 
@@ -10,16 +10,17 @@ use wayword_core::{Answer, Answerer, Ask, Finish, LanguageModel, Message, ModelE
 pub struct ModelAnswerer {
     model: Arc<dyn LanguageModel>,
     prompts: Arc<Prompts>,
+    manner: Manner,
 }
 
 /// The likeliest answer: what is there does not change with a draw.
 const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
 
 impl ModelAnswerer {
-    /// An answerer behind a model.
+    /// An answerer behind a model that wants to be spoken to in a manner.
     #[must_use]
-    pub fn new(model: Arc<dyn LanguageModel>, prompts: Arc<Prompts>) -> Self {
-        Self { model, prompts }
+    pub fn new(model: Arc<dyn LanguageModel>, prompts: Arc<Prompts>, manner: Manner) -> Self {
+        Self { model, prompts, manner }
     }
 
     fn request(&self, ask: &Ask<'_>) -> Result<Request, ModelError> {
@@ -28,7 +29,7 @@ impl ModelAnswerer {
             needs: "a picture",
             hint: "use a platform or data folder with pictures, or `--see labels` where there are labels",
         })?;
-        let text = self.prompts.answer(ask.question, ask.history)?;
+        let text = self.prompts.answer(self.manner, ask.question, ask.history)?;
         let message = Message { role: Role::User, text, image: Some(image) };
         Ok(Request { messages: vec![message], sampling: SAMPLING, replicate: 0 })
     }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     dialogue::{Asker, OPENING, Summariser},
-    prompts::Prompts,
+    prompts::{Manner, Prompts},
 };
 use std::sync::{Arc, Mutex};
 use wayword_core::{Answerer, Ask, Exchange, Finish, Heading, Image, Pose, View};
@@ -91,7 +91,7 @@ fn a_model_asks_with_the_dialogue_so_far() {
 fn a_model_is_shown_the_picture_and_one_that_was_cut_off_keeps_whole_sentences() {
     let cut = Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length };
     let model = Scripted::with(vec![Ok(cut)]);
-    let eye = ModelAnswerer::new(model.clone(), prompts());
+    let eye = ModelAnswerer::new(model.clone(), prompts(), Manner::Chat);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
     let view = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, Some(image.clone()), None);
     let blind = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, None, None);

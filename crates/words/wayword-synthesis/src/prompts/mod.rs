@@ -10,16 +10,30 @@ use minijinja::{Environment, UndefinedBehavior, context};
 use sha2::{Digest, Sha256};
 use wayword_core::{Exchange, ModelError, Sighting, Witness};
 
-use crate::writer::Brief;
+use crate::{dialogue::OPENING, writer::Brief};
 
 /// The templates: name and source.
-const BUILT_IN: [(&str, &str); 5] = [
+const BUILT_IN: [(&str, &str); 7] = [
     ("question", include_str!("templates/question.j2")),
     ("answer", include_str!("templates/answer.j2")),
+    ("answer_question", include_str!("templates/answer_question.j2")),
+    ("answer_completion", include_str!("templates/answer_completion.j2")),
     ("summary", include_str!("templates/summary.j2")),
     ("condense", include_str!("templates/condense.j2")),
     ("write", include_str!("templates/write.j2")),
 ];
+
+/// How a model that sees wants to be spoken to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Manner {
+    /// It follows instructions, and is told how to answer (`answer`).
+    #[default]
+    Chat,
+    /// It takes a bare question, and describes where there are no words (`answer_question`): BLIP.
+    Question,
+    /// It goes on with a text (`answer_completion`): BLIP-2. The form is the one of ChatCaptioner.
+    Completion,
+}
 
 /// Filled templates, and the hash that tells which ones they were.
 #[derive(Debug)]
@@ -112,8 +126,13 @@ impl Prompts {
     ///
     /// # Errors
     /// When an overridden template does not fit.
-    pub fn answer(&self, question: &str, history: &[Exchange]) -> Result<String, PromptError> {
-        self.fill("answer", context! { question, history })
+    pub fn answer(&self, manner: Manner, question: &str, history: &[Exchange]) -> Result<String, PromptError> {
+        let name = match manner {
+            Manner::Chat => "answer",
+            Manner::Question => "answer_question",
+            Manner::Completion => "answer_completion",
+        };
+        self.fill(name, context! { question, history, is_opening => question == OPENING })
     }
 
     /// Asks a language model to sum a dialogue up; what was denied is named, so that it stays out, and so is what was wrong

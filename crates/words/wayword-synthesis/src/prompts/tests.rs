@@ -37,7 +37,15 @@ fn walk() -> Walk {
 fn the_dialogue_prompts() {
     let prompts = Prompts::new(&[]).unwrap();
     insta::assert_snapshot!("question", prompts.question(&transcript()).unwrap());
-    insta::assert_snapshot!("answer", prompts.answer("What colour is the bed?", &transcript()).unwrap());
+    let answer = |manner| prompts.answer(manner, "What colour is the bed?", &transcript()).unwrap();
+    insta::assert_snapshot!("answer", answer(Manner::Chat));
+    assert_eq!(answer(Manner::Question), "What colour is the bed?");
+    assert_eq!(
+        answer(Manner::Completion),
+        "Question: Is there a mirror? Answer: No, there is no mirror. Question: What colour is the bed? Answer:"
+    );
+    assert_eq!(prompts.answer(Manner::Question, OPENING, &[]).unwrap(), "");
+    assert_eq!(prompts.answer(Manner::Completion, OPENING, &[]).unwrap(), "a photo of");
     let told = crate::dialogue::sightings(&transcript(), "test");
     insta::assert_snapshot!("summary", prompts.summary(&transcript(), &told, &[]).unwrap());
     let complaints = ["it names a mirror, which was denied".to_owned()];
@@ -71,7 +79,7 @@ fn the_writing_prompts() {
 #[test]
 fn a_prompt_of_ones_own_takes_the_place_of_the_built_in_one_and_changes_the_hash() {
     let own = Prompts::new(&[("answer".into(), "{{ question }}!".into())]).unwrap();
-    assert_eq!(own.answer("What", &[]).unwrap(), "What!");
+    assert_eq!(own.answer(Manner::Chat, "What", &[]).unwrap(), "What!");
     assert_ne!(own.hash(), Prompts::new(&[]).unwrap().hash());
 }
 

@@ -1,7 +1,7 @@
 //! Fills every prompt once when they are loaded: a template that asks for what it is not given is told before a run begins,
 //! not at its first frame.
 
-use super::{PromptError, Prompts};
+use super::{Manner, PromptError, Prompts};
 use crate::{
     style::{Profile, built_in},
     walk::{Observation, Walk},
@@ -23,7 +23,9 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     };
     let complaints = ["it names a bed".to_owned()];
     prompts.question(&transcript)?;
-    prompts.answer("Is there a bed?", &transcript)?;
+    for manner in [Manner::Chat, Manner::Question, Manner::Completion] {
+        prompts.answer(manner, "Is there a bed?", &transcript)?;
+    }
     prompts.summary(&transcript, &[denied], &complaints)?;
     prompts.condense(&[("ahead", "A hallway.")], 20, &complaints)?;
     // Names that every build holds; without them there is nothing to try the template on.
