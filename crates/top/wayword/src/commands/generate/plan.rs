@@ -15,7 +15,7 @@ use std::{collections::BTreeSet, fmt};
 use wayword_core::{Exchange, Gaze, Path};
 use wayword_synthesis::{
     observe::gazes,
-    prompts::{PromptError, Prompts},
+    prompts::{Manner, PromptError, Prompts},
     walk::{FrameSelection, Observation, Walk},
     writer::Brief,
 };
@@ -151,7 +151,7 @@ impl Talk {
             if round > 0 {
                 asking.call(&prompts.question(&transcript)?, QUESTION_TOKENS);
             }
-            seeing.call(&prompts.answer(TYPICAL_QUESTION, &transcript)?, ANSWER_TOKENS);
+            seeing.call(&prompts.answer(Manner::Chat, TYPICAL_QUESTION, &transcript)?, ANSWER_TOKENS);
             seeing.tokens_in += picture;
             transcript.push(Exchange::new(TYPICAL_QUESTION, TYPICAL_ANSWER));
         }
