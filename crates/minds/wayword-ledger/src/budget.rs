@@ -44,6 +44,24 @@ pub enum Refused {
     Ledger(#[from] LedgerError),
 }
 
+impl Refused {
+    /// What stands in the way, and how to go on.
+    #[must_use]
+    pub fn told(&self) -> (String, String) {
+        let hint = match self {
+            Self::MaxUsd { .. } => "what was answered is kept: go on with the same command and a larger --max-usd",
+            Self::MaxCalls { .. } => "what was answered is kept: go on with the same command and a larger --max-calls",
+            Self::NoPrice => "add a row for it to a file, and give it as --prices FILE",
+            Self::Stopped => "what was answered is kept: go on with the same command",
+            Self::Ledger(_) => "see to the ledger's file, then go on with the same command",
+        };
+        // An error of the ledger brings its own hint.
+        let text = self.to_string();
+        let (reason, hint) = text.split_once("\nhint: ").unwrap_or((&text, hint));
+        (reason.to_owned(), hint.to_owned())
+    }
+}
+
 /// The purse of a run.
 #[derive(Debug)]
 pub(crate) struct Budget {

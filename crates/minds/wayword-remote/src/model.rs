@@ -134,17 +134,8 @@ impl RemoteModel {
 
 /// The ledger lets nothing out any more.
 fn stopped(refused: &Refused) -> ModelError {
-    let hint = match refused {
-        Refused::MaxUsd { .. } => "what was answered is kept: go on with the same command and a larger --max-usd",
-        Refused::MaxCalls { .. } => "what was answered is kept: go on with the same command and a larger --max-calls",
-        Refused::NoPrice => "add a row for it to a file, and give it as --prices FILE",
-        Refused::Stopped => "what was answered is kept: go on with the same command",
-        Refused::Ledger(_) => "see to the ledger's file, then go on with the same command",
-    };
-    // An error of the ledger brings its own hint.
-    let text = refused.to_string();
-    let (reason, hint) = text.split_once("\nhint: ").unwrap_or((&text, hint));
-    ModelError::Stopped { reason: reason.to_owned(), hint: hint.to_owned() }
+    let (reason, hint) = refused.told();
+    ModelError::Stopped { reason, hint }
 }
 
 fn size(request: &Request) -> Size {
