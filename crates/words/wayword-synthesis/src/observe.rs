@@ -104,13 +104,17 @@ pub fn talk_about(view: &View, minds: Minds<'_>) -> Result<Caption, ModelError> 
             Need::Answer(question) => {
                 let history: Vec<Exchange> = dialogue.transcript().to_vec();
                 let ask = Ask { view, question: &question, history: &history };
-                for answer in minds.answerer.answer(&[ask]) {
-                    dialogue.answer(&answer?);
-                }
+                let answer = minds.answerer.answer(&[ask]).pop().unwrap_or_else(|| Err(unanswered(minds.answerer)));
+                dialogue.answer(&answer?);
             }
             Need::Summary => return caption(dialogue.transcript(), minds),
         }
     }
+}
+
+/// An answerer that leaves a question out would otherwise be asked it for ever.
+fn unanswered(answerer: &dyn Answerer) -> ModelError {
+    ModelError::Failed { model: answerer.name().to_owned(), reason: "it left a question out".to_owned() }
 }
 
 /// What a dialogue comes to. Without a dialogue no language model takes part: the only answer is the caption, or rules join
@@ -140,5 +144,39 @@ fn direction(frame: &Frame, look: &Look) -> &'static str {
         Side::Right => "on the right",
         Side::Behind => "behind",
         Side::Left => "on the left",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dialogue::RulesAsker;
+    use wayword_core::{Answer, DVec3, Heading, Pose};
+
+    /// An answerer that breaks its word: no answer for a question.
+    struct Mute;
+
+    impl Answerer for Mute {
+        fn name(&self) -> &str {
+            "test/mute"
+        }
+
+        fn answer(&self, _: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
+            Vec::new()
+        }
+    }
+
+    #[test]
+    fn an_answerer_that_leaves_a_question_out_is_not_asked_for_ever() {
+        let view = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
+        let asker = RulesAsker::default();
+        let minds = Minds {
+            asker: &asker,
+            answerer: &Mute,
+            summariser: &RulesSummariser,
+            mode: Mode::Dialogue { questions: 9 },
+            prompts_hash: None,
+        };
+        assert!(matches!(talk_about(&view, minds), Err(ModelError::Failed { model, .. }) if model == "test/mute"));
     }
 }

@@ -3,7 +3,7 @@
 use super::{PERCEPTION_SEED, clean::whole_sentences};
 use crate::prompts::{Manner, Prompts};
 use std::sync::Arc;
-use wayword_core::{Answer, Answerer, Ask, Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling};
+use wayword_core::{Answer, Answerer, Ask, LanguageModel, Message, ModelError, Request, Role, Sampling};
 
 /// Puts questions about a view's picture to a language model that sees.
 #[derive(Clone)]
@@ -47,15 +47,8 @@ impl Answerer for ModelAnswerer {
         let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it left a question out".to_owned() };
         let answer = |request: Result<Request, ModelError>| {
             request?;
-            replies.next().unwrap_or_else(|| Err(lost())).map(text)
+            replies.next().unwrap_or_else(|| Err(lost())).map(|reply| whole_sentences(&reply).to_owned())
         };
         requests.into_iter().map(answer).collect()
-    }
-}
-
-fn text(reply: Reply) -> Answer {
-    match reply.finish {
-        Finish::Stop => reply.text,
-        Finish::Length => whole_sentences(&reply.text).to_owned(),
     }
 }

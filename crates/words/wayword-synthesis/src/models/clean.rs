@@ -1,9 +1,16 @@
 //! Takes from a model's reply what was asked for.
 
-/// The part of a text up to its last full stop; all of it where there is none.
-pub(super) fn whole_sentences(text: &str) -> &str {
-    let text = text.trim();
-    text.rfind(['.', '!', '?']).map_or(text, |end| &text[..=end])
+use wayword_core::{Finish, Reply};
+
+/// What a reply says: of one that was cut off, the part up to the end of its last sentence, or all of it where none ended.
+pub(super) fn whole_sentences(reply: &Reply) -> &str {
+    let text = reply.text.trim();
+    if reply.finish == Finish::Stop {
+        return text;
+    }
+    // The dot of "2.5 metres" ends nothing.
+    let ends = |(at, _): &(usize, &str)| text[at + 1..].chars().next().is_none_or(|next| !next.is_alphanumeric());
+    text.rmatch_indices(['.', '!', '?']).find(ends).map_or(text, |(end, _)| &text[..=end])
 }
 
 /// A text as one line, without the label, the quotes and the marks of emphasis that models put around it.
@@ -44,7 +51,15 @@ mod tests {
 
     #[test]
     fn a_sentence_that_was_cut_off_is_left_out() {
-        assert_eq!(whole_sentences("A bed. A lamp and a"), "A bed.");
-        assert_eq!(whole_sentences("A lamp and a"), "A lamp and a");
+        for (finish, told, wanted) in [
+            (Finish::Length, "A bed. A lamp and a", "A bed."),
+            (Finish::Length, "A lamp and a", "A lamp and a"),
+            (Finish::Length, "A bed. A rug 2.5 metres", "A bed."),
+            (Finish::Length, "He said \"go!\" and", "He said \"go!"),
+            (Finish::Stop, "A bed. A lamp and a rug", "A bed. A lamp and a rug"),
+            (Finish::Stop, " A rug 2.5 metres wide ", "A rug 2.5 metres wide"),
+        ] {
+            assert_eq!(whole_sentences(&Reply { text: told.to_owned(), finish }), wanted);
+        }
     }
 }

@@ -43,7 +43,7 @@ impl ModelSummariser {
         let mut complaints = Vec::new();
         for _ in 0..ATTEMPTS {
             let reply = say(self.model.as_ref(), Message::user(prompt(&complaints)?), SAMPLING)?;
-            let text = plain(whole_sentences(&reply.text), &["caption", "summary"]);
+            let text = plain(whole_sentences(&reply), &["caption", "summary"]);
             let found = if text.is_empty() { vec!["it was empty".to_owned()] } else { faults(&text) };
             if found.is_empty() {
                 return Ok(Ok(text));

@@ -77,6 +77,27 @@ fn the_writing_prompts() {
 }
 
 #[test]
+fn a_style_without_tasks_is_given_none_to_end_in() {
+    let (prompts, walk) = (Prompts::new(&[]).unwrap(), walk());
+    let tells_task = |name: &str| {
+        let style = built_in(name).unwrap();
+        let profile = Profile::measure(&style.references);
+        let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &[] };
+        prompts.write(&brief).unwrap().contains("ends in a task")
+    };
+    assert!(!tells_task("r2r") && tells_task("reverie"));
+}
+
+#[test]
+fn a_question_without_an_answer_is_not_told_again() {
+    let prompts = Prompts::new(&[]).unwrap();
+    let history = [Exchange::new(OPENING, "A bed."), Exchange::new("Is there a rug?", "")];
+    for manner in [Manner::Chat, Manner::Completion] {
+        assert!(!prompts.answer(manner, "Is there a lamp?", &history).unwrap().contains("rug"));
+    }
+}
+
+#[test]
 fn a_prompt_of_ones_own_takes_the_place_of_the_built_in_one_and_changes_the_hash() {
     let own = Prompts::new(&[("answer".into(), "{{ question }}!".into())]).unwrap();
     assert_eq!(own.answer(Manner::Chat, "What", &[]).unwrap(), "What!");

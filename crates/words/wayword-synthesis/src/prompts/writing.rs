@@ -15,10 +15,16 @@ pub(super) fn context(brief: &Brief<'_>) -> Value {
     context! {
         frames,
         references => brief.style.references,
-        target => walk.path.target.as_ref().map(target),
+        target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(target),
         constraints => constraints(&brief.style.constraints, brief.profile.tells_turns()),
         complaints => brief.complaints.iter().map(complaint).collect::<Vec<_>>(),
     }
+}
+
+/// Whether the style's texts end in a task: by its rule, or because most of its references do. To others a target is a thing
+/// like any other.
+fn ends_in_task(brief: &Brief<'_>) -> bool {
+    brief.style.constraints.ends_in_task || brief.profile.tasks >= 0.5
 }
 
 /// A move in words, with its numbers.

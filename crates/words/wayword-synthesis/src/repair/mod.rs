@@ -7,7 +7,7 @@ use crate::{
     observe::Minds,
     style::{Profile, hash},
     walk::Walk,
-    writer::{Brief, Complaint, WriteError, Writer},
+    writer::{Brief, Complaint, RulesWriter, WriteError, Writer},
 };
 use wayword_core::{Check, Finding, Instruction, ModelError, Provenance, Style, Verdict};
 
@@ -85,7 +85,9 @@ fn attempts(writer: &dyn Writer, minds: Minds<'_>, order: Order<'_>) -> Result<O
             Err(WriteError::Model(error)) => return Err(error),
         };
         let instruction = checked(text, provenance(writer, minds, order, repairs), order);
-        if instruction.verdict == Verdict::Pass {
+        // Rules write again for nothing; a model is only sent back what failed.
+        let good_enough = if writer.name() == RulesWriter.name() { Verdict::Pass } else { Verdict::Unverified };
+        if instruction.verdict <= good_enough {
             return Ok(Outcome::Accepted(instruction));
         }
         complaints.push(Complaint { text: instruction.text.clone(), findings: instruction.findings.clone() });
@@ -135,7 +137,10 @@ fn provenance(writer: &dyn Writer, minds: Minds<'_>, order: Order<'_>, repairs: 
         Mode::Fixed => "fixed queries",
         Mode::Single => "one fixed request",
     };
-    let summariser = if minds.mode == Mode::Single { "nobody" } else { minds.summariser.name() };
+    // The looks of a frame are condensed even where each was described at once.
+    let condensed = order.walk.observations.iter().any(|observation| observation.looks.len() > 1);
+    let summed_up = minds.mode != Mode::Single || condensed;
+    let summariser = if summed_up { minds.summariser.name() } else { "nobody" };
     Provenance {
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
         asker: asker.to_owned(),

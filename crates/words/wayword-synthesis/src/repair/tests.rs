@@ -34,11 +34,16 @@ impl Writer for Scripted {
 }
 
 fn walk() -> Walk {
-    let stop = |x: f64, y: f64| Stop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: None };
+    along(&[(0.0, 0.0), (0.0, 3.0), (3.0, 3.0)], &["sofa", "lamp", "sink"])
+}
+
+/// A walk over places, from each of which one thing is seen.
+fn along(places: &[(f64, f64)], things: &[&str]) -> Walk {
+    let stop = |(x, y): &(f64, f64)| Stop { position: DVec3::new(*x, *y, 1.5), viewpoint: None, level: None };
     let path = Path {
         id: "p".into(),
         scene: SceneId::new("s").unwrap(),
-        frames: Path::frames_along(vec![stop(0.0, 0.0), stop(0.0, 3.0), stop(3.0, 3.0)], None),
+        frames: Path::frames_along(places.iter().map(stop).collect(), None),
         target: None,
     };
     let seen = |name: &str| Sighting {
@@ -49,7 +54,7 @@ fn walk() -> Walk {
         several: false,
         by: "test".into(),
     };
-    let observations = path.frames.iter().zip(["sofa", "lamp", "sink"]).map(|(frame, name)| {
+    let observations = path.frames.iter().zip(things).map(|(frame, name)| {
         let caption = Caption { text: format!("A {name}."), sightings: vec![seen(name)], ..Caption::default() };
         let look = Look { gaze: Gaze::quarter(frame.pose.heading), caption };
         Observation { summary: look.caption.text.clone(), looks: vec![look] }
@@ -63,11 +68,22 @@ fn outcome(
     finisher: bool,
     repairs: u32,
 ) -> (Result<Outcome, ModelError>, Vec<usize>) {
-    let (walk, style) = (walk(), built_in("r2r").unwrap());
+    let walk = walk();
     let evidence = walk.evidence().unwrap();
+    outcome_against(&walk, &evidence, Mode::Dialogue { questions: 9 }, texts, finisher, repairs)
+}
+
+fn outcome_against(
+    walk: &Walk,
+    evidence: &Evidence,
+    mode: Mode,
+    texts: Vec<Result<String, WriteError>>,
+    finisher: bool,
+    repairs: u32,
+) -> (Result<Outcome, ModelError>, Vec<usize>) {
+    let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed: 0, repairs };
-    let mode = Mode::Dialogue { questions: 9 };
+    let order = Order { walk, evidence, style: &style, profile: &profile, seed: 0, repairs };
     let asker = RulesAsker::default();
     let minds =
         Minds { asker: &asker, answerer: &Labels, summariser: &RulesSummariser, mode, prompts_hash: Some("hash") };
@@ -126,4 +142,59 @@ fn a_model_that_gives_nothing_ends_the_writing() {
     let failed = ModelError::Failed { model: "test/scripted".into(), reason: "content filter".into() };
     let (outcome, _) = outcome(vec![Err(failed.clone().into())], true, 3);
     assert_eq!(outcome, Err(failed));
+}
+
+#[test]
+fn a_model_is_not_asked_again_where_nothing_failed() {
+    let walk = walk();
+    let nothing = Evidence::of_path_alone(&walk.path);
+    let mode = Mode::Dialogue { questions: 9 };
+    let (outcome, complaints) = outcome_against(&walk, &nothing, mode, vec![said(GHOST)], true, 3);
+    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    assert_eq!((instruction.verdict, complaints.len()), (Verdict::Unverified, 1));
+}
+
+#[test]
+fn who_condensed_the_looks_around_is_told_even_without_a_dialogue() {
+    let mut walk = walk();
+    let summariser = |walk: &Walk| {
+        let evidence = walk.evidence().unwrap();
+        let (outcome, _) = outcome_against(walk, &evidence, Mode::Single, vec![said(GOOD)], false, 0);
+        let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+        instruction.provenance.summariser
+    };
+    assert_eq!(summariser(&walk), "nobody");
+    let look = walk.observations[2].looks[0].clone();
+    walk.observations[2].looks.push(look);
+    assert_eq!(summariser(&walk), "rules");
+}
+
+#[test]
+fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
+    let minds = Minds {
+        asker: &RulesAsker::default(),
+        answerer: &Labels,
+        summariser: &RulesSummariser,
+        mode: Mode::Fixed,
+        prompts_hash: None,
+    };
+    for room in [None, Some("kitchen")] {
+        let mut walk = along(&[(0.0, 0.0)], &["sink"]);
+        walk.observations[0].looks[0].caption.room = room.map(str::to_owned);
+        let evidence = walk.evidence().unwrap();
+        for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
+            let profile = Profile::measure(&style.references);
+            for seed in 0..40 {
+                let order =
+                    Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 0 };
+                let writers = Writers { writer: &RulesWriter, finisher: None };
+                let outcome = write_and_repair(writers, minds, order).unwrap();
+                let Outcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+                assert_eq!(instruction.verdict, Verdict::Pass, "{instruction:?}");
+                for word in ["go", "walk", "head", "enter", "straight", "move", "proceed", "step"] {
+                    assert!(!crate::text::words(&instruction.text).contains(&word.to_owned()), "{}", instruction.text);
+                }
+            }
+        }
+    }
 }

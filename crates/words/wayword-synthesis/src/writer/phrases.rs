@@ -127,6 +127,8 @@ const ON: &[&str] = &[
     "walk straight",
     "continue forward",
 ];
+const STAY: &[&str] = &["stay where you are", "remain where you are", "stay here", "remain here"];
+const STAY_IN: &[&str] = &["stay in {r}", "remain in {r}", "stay here in {r}"];
 const STOP_BY: &[&str] = &[
     "stop next to {l}",
     "wait by {l}",
@@ -181,6 +183,7 @@ pub(super) fn phrase(step: &Step, told_room: Option<&str>, rng: &mut ChaCha8Rng)
             fill(pick(rng, if hall { ALONG_HALL } else { ALONG }), &[("{r}", &the(room))])
         }
         Step::On => pick(rng, ON).to_owned(),
+        Step::Stay => stay_phrase(None, rng),
         Step::Stop { by, room, climbed } => {
             let room = room.as_deref().filter(|room| told_room != Some(*room));
             stop_phrase(by.as_ref(), room, *climbed, rng)
@@ -242,6 +245,14 @@ fn pass_phrase(landmark: &Landmark, rng: &mut ChaCha8Rng) -> String {
     match side.filter(|_| rng.random_bool(0.3)) {
         Some(side) => format!("{pass} on {} {}", pick(rng, &["your", "the"]), side_word(side)),
         None => pass,
+    }
+}
+
+/// Nowhere to go, in a room where its name is known.
+pub(super) fn stay_phrase(room: Option<&str>, rng: &mut ChaCha8Rng) -> String {
+    match room {
+        Some(room) => fill(pick(rng, STAY_IN), &[("{r}", &the(room))]),
+        None => pick(rng, STAY).to_owned(),
     }
 }
 

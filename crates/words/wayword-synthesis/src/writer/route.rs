@@ -21,6 +21,8 @@ pub(super) enum Step {
     Along { room: String },
     /// On, with nothing to name.
     On,
+    /// No way at all: the path begins where it ends.
+    Stay,
     /// The end.
     Stop { by: Option<Landmark>, room: Option<String>, climbed: Option<Climb> },
 }
@@ -51,7 +53,7 @@ const LONG_M: f64 = 3.5;
 pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Weighed> {
     let mut steps: Vec<Weighed> = Vec::new();
     let mut climbed = None;
-    let mut at = 0;
+    let mut at = if stands_still(walk) { walk.moves.len() } else { 0 };
     while at < walk.moves.len() {
         let flight = motion::flight(&walk.moves, at);
         let last = flight.map_or(at, |(last, _)| last);
@@ -96,7 +98,8 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
         at = last + 1;
     }
     if steps.is_empty() {
-        steps.push(Weighed { step: Step::On, weight: 3 });
+        let step = if stands_still(walk) { Step::Stay } else { Step::On };
+        steps.push(Weighed { step, weight: 3 });
     }
     let end = walk.path.frames.len() - 1;
     let room = walk.room(end).and_then(usable_room);
@@ -127,6 +130,11 @@ fn onwards(
         }
         None => Some(Weighed { step: Step::On, weight: if walk.moves[at].distance_m >= LONG_M { 2 } else { 1 } }),
     }
+}
+
+/// Whether a walk goes nowhere: that of a path with a single viewpoint does.
+pub(super) fn stands_still(walk: &Walk) -> bool {
+    walk.moves.iter().all(|step| step.distance_m <= 0.0)
 }
 
 /// Which way the last flight of stairs of a walk goes.

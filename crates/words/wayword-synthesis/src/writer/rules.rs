@@ -5,7 +5,7 @@ use super::{
     landmarks::Landmarks,
     phrases::{self, fill, level_phrase, ordinal, pick, the},
     realise::{capital, join, sentences},
-    route::{Step, Weighed, last_climb, steps, usable_room},
+    route::{Step, Weighed, last_climb, stands_still, steps, usable_room},
     task,
 };
 use crate::{lexicon::room_name, text::word_count};
@@ -185,7 +185,11 @@ fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteErr
 fn goals(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<String> {
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
-    let Some(room) = walk.room(last).and_then(usable_room) else { return vec![without_room(brief, landmarks, rng)] };
+    let room = walk.room(last).and_then(usable_room);
+    if stands_still(walk) {
+        return vec![phrases::stay_phrase(room.as_deref(), rng)];
+    }
+    let Some(room) = room else { return vec![without_room(brief, landmarks, rng)] };
     let go = pick(rng, GO);
     let mut options = vec![fill(go, &[("{r}", &the(&room))])];
     let level = walk.path.frames[last].level.filter(|_| rng.random_bool(brief.profile.floors.clamp(0.0, 1.0)));
