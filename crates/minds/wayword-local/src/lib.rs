@@ -11,6 +11,7 @@ mod device;
 mod error;
 mod json;
 mod ops;
+mod picture;
 mod text;
 mod weights;
 

@@ -1,0 +1,96 @@
+//! Pictures as tensors, by a checkpoint's `preprocessor_config.json`.
+//!
+//! Does what transformers' processors of CLIP, BLIP and BLIP-2 do with Pillow, to the same numbers.
+
+mod config;
+mod resample;
+
+use crate::{Device, LocalError};
+use candle_core::Tensor;
+use config::Config;
+use rayon::prelude::*;
+use resample::{Axis, Filter, resample};
+use std::path::Path;
+use wayword_core::Image;
+
+/// How pictures become what a model sees.
+pub(crate) struct Processor {
+    size: Size,
+    height_px: usize,
+    width_px: usize,
+    filter: Filter,
+    /// The number of each value of a byte, for each colour.
+    numbers: [[f32; 256]; 3],
+}
+
+/// What a picture is resized to, pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Size {
+    /// The whole picture to what is handed out, whatever its proportions.
+    Whole,
+    /// Its shorter edge to this, keeping proportions; then its middle is cut out.
+    ShortestEdge(usize),
+    /// The whole picture to this height and width; then its middle is cut out.
+    Cropped(usize, usize),
+}
+
+impl Processor {
+    /// Reads `preprocessor_config.json` of a model's folder.
+    ///
+    /// # Errors
+    /// When it is missing, damaged, or of a processor that does other things.
+    pub(crate) fn load(folder: &Path) -> Result<Self, LocalError> {
+        Config::read(folder)?.processor(folder)
+    }
+
+    /// Height and width of what it hands out, pixels.
+    pub(crate) fn size_px(&self) -> (usize, usize) {
+        (self.height_px, self.width_px)
+    }
+
+    /// Pictures as [pictures, 3, height, width] of 32 bits.
+    ///
+    /// # Errors
+    /// When a picture has no pixels, or the device has no room.
+    pub(crate) fn tensor(&self, images: &[&Image], device: &Device) -> Result<Tensor, LocalError> {
+        let wrong = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
+        if let Some(empty) = images.iter().find(|image| image.width_px() == 0 || image.height_px() == 0) {
+            return Err(wrong(format!("{empty:?} has no pixels")));
+        }
+        let mut numbers = vec![0.0; images.len() * 3 * self.height_px * self.width_px];
+        let each = numbers.par_chunks_mut(3 * self.height_px * self.width_px);
+        each.zip(images).for_each(|(numbers, image)| self.one(image, numbers));
+        let shape = (images.len(), 3, self.height_px, self.width_px);
+        Tensor::from_vec(numbers, shape, &device.0).map_err(|error| wrong(error.to_string()))
+    }
+
+    fn one(&self, image: &Image, numbers: &mut [f32]) {
+        let (height, width) = (image.height_px() as usize, image.width_px() as usize);
+        let (to_height, to_width) = match self.size {
+            Size::Whole => (self.height_px, self.width_px),
+            Size::Cropped(height, width) => (height, width),
+            Size::ShortestEdge(edge) => match width <= height {
+                true => (longer(edge, height, width), edge),
+                false => (edge, longer(edge, width, height)),
+            },
+        };
+        let down = Axis::middle(self.filter, height, to_height, self.height_px);
+        let across = Axis::middle(self.filter, width, to_width, self.width_px);
+        let rgb = resample(image.rgb(), &down, &across);
+        for (numbers, (at, table)) in
+            numbers.chunks_mut(self.height_px * self.width_px).zip(self.numbers.iter().enumerate())
+        {
+            for (number, pixel) in numbers.iter_mut().zip(rgb.chunks_exact(3)) {
+                *number = table[usize::from(pixel[at])];
+            }
+        }
+    }
+}
+
+/// The longer edge when the shorter one becomes `edge`; Python's arithmetic.
+fn longer(edge: usize, long: usize, short: usize) -> usize {
+    ((edge * long) as f64 / short as f64) as usize
+}
+
+#[cfg(test)]
+mod tests;
