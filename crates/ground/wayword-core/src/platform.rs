@@ -36,6 +36,14 @@ pub trait Platform: Send + Sync {
     /// When the frame is not a place of the scene, or its data cannot be read.
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError>;
 
+    /// The same for somebody who looks at no picture: a world that has to read one from a file leaves it out.
+    ///
+    /// # Errors
+    /// When the frame is not a place of the scene, or its data cannot be read.
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.look(scene, from, gaze)
+    }
+
     /// The name of an object that an episode gives by its id, whether or not it can be seen from the frame.
     ///
     /// # Errors
@@ -62,6 +70,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         (**self).look(scene, from, gaze)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        (**self).look_without_picture(scene, from, gaze)
     }
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

@@ -71,7 +71,7 @@ pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result
     Ok(path)
 }
 
-/// What is all around each frame: ahead, right, behind, left.
+/// What labels tell of all that is around each frame: ahead, right, behind, left. Pictures may be left out.
 ///
 /// # Errors
 /// When a view cannot be had.
@@ -80,7 +80,7 @@ pub fn panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>,
 }
 
 fn look_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<View>, PlatformError> {
-    Gaze::around(frame.pose.heading).map(|gaze| platform.look(scene, frame, gaze)).into_iter().collect()
+    Gaze::around(frame.pose.heading).map(|gaze| platform.look_without_picture(scene, frame, gaze)).into_iter().collect()
 }
 
 /// What is ahead of each frame.

@@ -84,6 +84,19 @@ impl Platform for Remembering<'_> {
         Ok(view)
     }
 
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let key = key(from, gaze);
+        if let Some(view) = self.views.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Ok(view.clone());
+        }
+        let view = self.platform.look_without_picture(scene, from, gaze)?;
+        // With a picture it is all that a look gives.
+        if view.image.is_some() {
+            self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+        }
+        Ok(view)
+    }
+
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         self.platform.object_name(scene, near, object)
     }

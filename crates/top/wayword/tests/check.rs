@@ -247,3 +247,19 @@ fn a_wrong_colour_is_caught_in_a_house() {
     assert_eq!(bad.code, Some(3), "{bad:?}");
     assert!(bad.out.contains(&format!("no {name:?} along the path is {wrong}")), "{}", bad.out);
 }
+
+#[test]
+fn no_photograph_is_read_where_labels_are_all_that_is_asked_for() {
+    let building = Building::new();
+    wayword_testkit::write_distinct_skyboxes(&building.data()).unwrap();
+    let check = || check(&building, common::EPISODES, &["--style", "reverie", "--json"]);
+    let with = check();
+    for name in
+        common::files(&building.data()).into_keys().filter(|name| name.extension().is_some_and(|end| end == "jpg"))
+    {
+        std::fs::write(building.data().join(name), "no picture").unwrap();
+    }
+    let broken = check();
+    assert_eq!((with.code, &with.out), (broken.code, &broken.out), "{broken:?}");
+    assert!(with.json()["passed"].as_u64() > Some(0), "{with:?}");
+}

@@ -35,7 +35,7 @@ pub fn path_of(
 pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<Label>, PlatformError> {
     let mut labels = Vec::new();
     for gaze in Gaze::around(frame.pose.heading) {
-        let view = platform.look(scene, frame, gaze)?;
+        let view = platform.look_without_picture(scene, frame, gaze)?;
         labels.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
     }
     Ok(labels)

@@ -147,6 +147,13 @@ impl Platform for Matterport {
     }
 
     fn look(&self, id: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let mut view = self.look_without_picture(id, from, gaze)?;
+        let scene = self.scene(id)?;
+        view.image = self.image(id, known(id, &scene, viewpoint_of(id, from)?)?, gaze)?;
+        Ok(view)
+    }
+
+    fn look_without_picture(&self, id: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let scene = self.scene(id)?;
         let viewpoint = viewpoint_of(id, from)?;
         let here = known(id, &scene, viewpoint)?;
@@ -156,8 +163,7 @@ impl Platform for Matterport {
             labels: labels.into_iter().flatten().filter(|label| gaze.holds(label.heading)).collect(),
             room: scene.room(viewpoint).map(str::to_owned),
         });
-        let image = self.image(id, here, gaze)?;
-        Ok(View::new(Pose::level(here.position, gaze.heading), gaze.horizontal_fov_rad, image, truth))
+        Ok(View::new(Pose::level(here.position, gaze.heading), gaze.horizontal_fov_rad, None, truth))
     }
 
     fn object_name(&self, id: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
