@@ -105,6 +105,10 @@ impl Error {
     /// The exit code that it ends the program with.
     #[must_use]
     pub fn exit_code(&self) -> Exit {
-        if matches!(self, Self::Busy(_)) { Exit::Busy } else { Exit::BadInput }
+        match self {
+            Self::Busy(_) => Exit::Busy,
+            Self::Model(error) | Self::Observe(ObserveError::Model(error)) if error.ends_run() => Exit::Stopped,
+            _ => Exit::BadInput,
+        }
     }
 }

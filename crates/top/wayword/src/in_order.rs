@@ -61,6 +61,8 @@ pub(crate) fn in_order<I: Sync, R: Send, E>(
     };
     let stop = || tell(&|progress| progress.stopped = true);
     thread::scope(|scope| {
+        // Nor may they wait for room when it is `keep` that panics.
+        let _last = AtTheEnd(&stop);
         let (sender, results) = mpsc::channel();
         for _ in 0..workers {
             let (sender, take, make, stop) = (sender.clone(), &take, &make, &stop);
@@ -124,6 +126,17 @@ mod tests {
             *item
         };
         let work = || in_order(&items, 2, make, |_, _| Ok::<bool, ()>(true));
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).is_err());
+    }
+
+    #[test]
+    fn a_panic_while_keeping_ends_the_work_too() {
+        let items: Vec<usize> = (0..1000).collect();
+        let keep = |item: &usize, _| {
+            assert_ne!(*item, 3, "this one panics on purpose");
+            Ok::<bool, ()>(true)
+        };
+        let work = || in_order(&items, 2, |item| *item, keep);
         assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).is_err());
     }
 

@@ -6,7 +6,7 @@ use crate::{
     settings::{Finish, Settings, is_model},
     text_file,
 };
-use std::{path::Path, sync::Arc, thread};
+use std::{fs, path::Path, sync::Arc, thread};
 use wayword_core::{Answerer, LanguageModel};
 use wayword_synthesis::{
     dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
@@ -110,14 +110,17 @@ pub fn prompts(settings: &Settings) -> Result<Prompts, Error> {
     Ok(Prompts::new(&own)?)
 }
 
+/// Every template of a folder. One whose name no prompt has is misspelt, and would be paid for without being used.
 fn own_prompts(folder: &Path) -> Result<Vec<(String, String)>, Error> {
     let mut own = Vec::new();
-    for name in Prompts::names() {
-        let file = folder.join(format!("{name}.j2"));
-        if file.exists() {
-            own.push((name.to_owned(), text_file::read(&file, "read the prompt")?));
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    for entry in entries.map_err(Error::io(folder, "list the prompts in"))? {
+        let file = entry.path();
+        if let (Some(name), Some("j2")) = (file.file_stem(), file.extension().and_then(|end| end.to_str())) {
+            own.push((name.to_string_lossy().into_owned(), text_file::read(&file, "read the prompt")?));
         }
     }
+    own.sort();
     if own.is_empty() {
         return Err(Error::usage(
             format!("--prompts {}: it holds no prompt", folder.display()),

@@ -11,7 +11,10 @@ use common::run;
 use serde_json::Value;
 use stage::{KEY, Stage, cast, holds_no_key};
 use std::fs;
-use wayword_testkit::provider::{Behaviour, Fault, Faults};
+use wayword_testkit::provider::{
+    Behaviour, Fault, Faults, Gallery,
+    scripts::{Cast, FlawedEye},
+};
 
 #[test]
 fn models_play_every_role_and_say_so() {
@@ -202,6 +205,76 @@ fn an_interrupt_finishes_what_is_in_flight_and_the_same_command_goes_on() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_a_run_that_the_ledger_answers() {
+    let stage = Stage::new(cast());
+    let args = ["--paths", "40", "--concurrency", "1", "--json"];
+    assert_eq!(stage.generate("run", &args).code, Some(0));
+    let asked = stage.provider.requests();
+    let child = stage
+        .generating("again", &args)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let walks = stage.building.path("again/walks.jsonl");
+    while fs::metadata(&walks).map_or(0, |file| file.len()) == 0 {
+        std::thread::yield_now();
+    }
+    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(5));
+    let whole = stage.generate("again", &args);
+    assert_eq!((whole.code, stage.provider.requests()), (Some(0), asked), "{whole:?}");
+    for file in ["walks.jsonl", "instructions.jsonl"] {
+        let read = |run: &str| fs::read(stage.building.path(run).join(file)).unwrap();
+        assert!(read("run") == read("again"), "{file} differs");
+    }
+}
+
+#[test]
+fn what_rules_finished_is_told_on_the_screen() {
+    let careless = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.15), 1, 1.0);
+    let stage = Stage::new(Behaviour::of("words", careless.clone()).and("eye", careless));
+    let ran = stage.generate("run", &["--paths", "4", "--repairs", "0"]);
+    let finished = stage.building.records("run").into_iter();
+    let finished = finished.filter(|record| record.instruction.provenance.finished_for.is_some()).count();
+    assert!(finished > 0 && ran.out.contains(&format!("{finished} instructions were written by rules")), "{ran:?}");
+}
+
+#[test]
+fn what_is_refused_leaves_no_folder_and_plans_nothing() {
+    let stage = Stage::new(cast());
+    fs::create_dir(stage.building.path("own")).unwrap();
+    stage.building.write("own/questions.j2", "Ask.");
+    for (args, told) in [
+        (["--replay", "nowhere.jsonl"], "nowhere.jsonl"),
+        (["--record", "nowhere/calls.jsonl"], "--record"),
+        (["--prompts", "own"], "questions"),
+        (["--llm", "nobody/words"], "nobody"),
+    ] {
+        let base = ["generate", "--llm", "ollama/words", "--paths", "1"];
+        let mut run = base.iter().chain(&args).copied().collect::<Vec<_>>();
+        if args[0] == "--llm" {
+            run.drain(1..3);
+        }
+        run.extend(["--out", "run"]);
+        assert!(stage.building.wayword(&run).refused().contains(told), "{args:?}");
+        assert!(!stage.building.path("run").exists(), "{args:?}");
+        run.push("--dry-run");
+        assert!(stage.building.wayword(&run).refused().contains(told), "{args:?}");
+    }
+}
+
+#[test]
+fn a_plan_takes_what_runs_at_home_for_free() {
+    let stage = Stage::new(cast());
+    let lab = "[roles]\nllm = 'lab/words'\n[providers.lab]\ndialect = 'ollama'\nbase_url = 'http://127.0.0.1:9'\nlocal = true\n";
+    stage.building.write("lab.toml", lab);
+    let plan = stage.building.wayword(&["generate", "--config", "lab.toml", "--paths", "1", "--dry-run", "--json"]);
+    assert_eq!(plan.json()["models"][0]["usd"], 0.0, "{plan:?}");
+}
+
 #[test]
 fn a_dry_run_asks_nothing_and_counts_what_a_run_would_ask() {
     let stage = Stage::new(cast());
@@ -238,6 +311,9 @@ fn the_doctor_tells_what_works_and_what_to_do() {
     let args = ["doctor", "--config", "lab.toml", "--ledger", "ledger.db"];
     let own = run(stage.building.command(&args).env(stage::KEY_ENV, KEY));
     assert!(own.out.contains("lab/words answers"), "{own:?}");
+    stage.building.write("gone.toml", "platform = 'matterport'\ndata = 'data'\nepisodes = 'gone.json'\n");
+    let gone = stage.building.wayword(&["doctor", "--config", "gone.toml"]);
+    assert!(gone.code == Some(1) && gone.out.contains("gone.json"), "{gone:?}");
     drop(stage.provider);
     let offline = stage.building.wayword(&["doctor"]);
     assert_eq!(offline.code, Some(0), "{offline:?}");
@@ -246,6 +322,8 @@ fn the_doctor_tells_what_works_and_what_to_do() {
 #[test]
 fn perception_is_measured_in_each_way_of_asking() {
     let stage = Stage::new(cast());
+    let stopped = run(&mut stage.command("perceive", &["--views", "12", "--max-calls", "3"]));
+    assert_eq!(stopped.code, Some(5), "{stopped:?}");
     let measured = run(&mut stage.command("perceive", &["--views", "12", "--json"])).json();
     let rows = measured["rows"].as_array().unwrap();
     let ways: Vec<&str> = rows.iter().map(|row| row["perception"].as_str().unwrap()).collect();
@@ -256,6 +334,11 @@ fn perception_is_measured_in_each_way_of_asking() {
         stage.building.wayword(&["perceive", "--platform", "matterport", "--data", "data", "--views", "12", "--json"]);
     let rows = labels.json();
     assert_eq!(rows["rows"][2]["ghost_rate"], 0.0, "ground truth has no ghosts: {rows}");
+    let episodes = format!("episodes = '{}'\n", common::EPISODES);
+    stage.building.write("run.toml", format!("platform = 'matterport'\ndata = 'data'\n{episodes}"));
+    let shown = |args: &[&str]| stage.building.wayword(&[&["perceive", "--show", "4", "--views", "4"], args].concat());
+    let by_flags = shown(&["--platform", "matterport", "--data", "data", "--episodes", common::EPISODES]);
+    assert_eq!(shown(&["--config", "run.toml"]).out, by_flags.out, "the file's episodes are looked along");
 }
 
 #[test]
@@ -275,6 +358,8 @@ fn the_ledger_can_be_shown_exported_and_pruned() {
     assert_eq!(stage.building.lines("all.jsonl").len() as u64, exported);
     assert_eq!(exported, stage.provider.requests());
     assert_eq!(ledger(&["prune"]).code, Some(1), "it does not empty the ledger by mistake");
+    let old = ledger(&["prune", "--older-than-days", "213503982334602"]);
+    assert_eq!(old.json()["rows"], 0, "nothing is as old as that: {old:?}");
     let pruned = ledger(&["prune", "--model", "server/eye"]).json()["rows"].as_u64().unwrap();
     assert!(pruned > 0 && pruned < exported);
 }

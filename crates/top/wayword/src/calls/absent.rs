@@ -5,27 +5,23 @@ use crate::{
     error::Error,
     settings::{Providers, Service, Settings},
 };
-use std::sync::Arc;
-use wayword_core::LanguageModel;
+use std::{collections::BTreeMap, sync::Arc};
+use wayword_core::{LanguageModel, ModelError};
 
 /// No build without the feature `remote` holds one.
 pub enum Calls {}
-
-/// Nobody's price is known.
-///
-/// # Errors
-/// None.
-pub fn price_of(_: &Service, _: &str) -> Result<Option<Price>, Error> {
-    Ok(None)
-}
 
 impl Calls {
     /// Refuses every model.
     ///
     /// # Errors
     /// Where the settings name one.
-    pub fn rehearse(settings: &Settings, service: &Service, providers: &Providers) -> Result<(), Error> {
-        Self::open(settings, service, providers, "").map(drop)
+    pub fn rehearse(
+        settings: &Settings,
+        service: &Service,
+        providers: &Providers,
+    ) -> Result<BTreeMap<String, Option<Price>>, Error> {
+        Self::open(settings, service, providers, "").map(|_| BTreeMap::new())
     }
 
     /// `None` where the settings name no model.
@@ -64,6 +60,12 @@ impl Calls {
 
     /// Never called.
     pub fn stop_on_interrupt(&self, _: impl Fn() + Send + 'static) {
+        match *self {}
+    }
+
+    /// Never called.
+    #[must_use]
+    pub fn interrupted(&self) -> Option<ModelError> {
         match *self {}
     }
 

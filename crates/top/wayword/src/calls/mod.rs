@@ -12,10 +12,10 @@ mod price;
 mod spent;
 
 #[cfg(not(feature = "remote"))]
-pub use absent::{Calls, price_of};
+pub use absent::Calls;
 #[cfg(feature = "remote")]
 pub use place::ledger_path;
 #[cfg(feature = "remote")]
-pub use present::{Calls, price_of};
+pub use present::Calls;
 pub use price::Price;
 pub use spent::Spent;

@@ -6,8 +6,13 @@ use crate::{
     settings::{Providers, Service, Settings},
     text_file,
 };
-use std::{path::PathBuf, sync::Arc};
-use wayword_core::LanguageModel;
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+use wayword_core::{LanguageModel, ModelError};
 use wayword_ledger::{Ledger, Limits, Run};
 use wayword_remote::{Concurrency, Config, Finding, Prices, ProviderConfig, Services};
 
@@ -23,14 +28,32 @@ pub struct Calls {
 const MOST_AT_A_TIME: usize = 64;
 
 impl Calls {
-    /// Refuses what [`Calls::open`] would refuse of names, prices and providers, before anything is written.
+    /// Refuses what [`Calls::open`] would refuse of names, prices, providers and files, before anything is written. Gives each
+    /// model's price, where it is known.
     ///
     /// # Errors
-    /// When a provider is not known, or a price is needed and not known.
-    pub fn rehearse(settings: &Settings, service: &Service, providers: &Providers) -> Result<(), Error> {
+    /// When a provider is not known, a price is needed and not known, there is no recording to replay, or no folder for one
+    /// to be written.
+    pub fn rehearse(
+        settings: &Settings,
+        service: &Service,
+        providers: &Providers,
+    ) -> Result<BTreeMap<String, Option<Price>>, Error> {
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
         let services = Services::new(config(settings, service, providers)?, nowhere)?;
-        settings.roles.models().into_iter().try_for_each(|name| Ok(services.model(name).map(drop)?))
+        let price = |name: &str| Ok((name.to_owned(), services.model(name)?.price().map(price)));
+        let prices = settings.roles.models().into_iter().map(price).collect::<Result<_, Error>>()?;
+        if let Some(recording) = &service.replay {
+            File::open(recording).map_err(Error::io(recording, "read the recording"))?;
+        }
+        let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {
+            return Err(Error::usage(
+                format!("{}: there is no such folder for --record", missing.display()),
+                "make it, or name another file",
+            ));
+        }
+        Ok(prices)
     }
 
     /// Opens ledger and services for the models that the settings name; `None` where they name none. `run` names what the
@@ -108,6 +131,16 @@ impl Calls {
         });
     }
 
+    /// The reason to begin nothing more, where the user has interrupted. Calls are refused anyway; this is for work that
+    /// makes none, because the ledger has all its answers.
+    #[must_use]
+    pub fn interrupted(&self) -> Option<ModelError> {
+        self.run.is_stopped().then(|| ModelError::Stopped {
+            reason: "interrupted".to_owned(),
+            hint: "what was answered is kept: go on with the same command".to_owned(),
+        })
+    }
+
     /// Writes the recording, where one was asked for.
     ///
     /// # Errors
@@ -158,14 +191,10 @@ fn prices(service: &Service) -> Result<Prices, Error> {
     }
 }
 
-/// A model's price, by the user's list or the built-in one.
-///
-/// # Errors
-/// When the user's list cannot be read.
-pub fn price_of(service: &Service, model: &str) -> Result<Option<Price>, Error> {
-    Ok(prices(service)?.of(model).map(|price| Price {
+fn price(price: &wayword_remote::Price) -> Price {
+    Price {
         usd_per_million_in: price.usd_per_million_in,
         usd_per_million_out: price.usd_per_million_out,
-        as_of: price.as_of,
-    }))
+        as_of: price.as_of.clone(),
+    }
 }

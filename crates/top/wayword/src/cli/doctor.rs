@@ -34,7 +34,6 @@ impl Doctor {
         Asked {
             platform: self.world.platform.clone(),
             data: self.world.data.clone(),
-            paths: Some(1),
             roles: self.roles.clone(),
             service: self.service.clone(),
             ..Asked::default()

@@ -126,7 +126,7 @@ pub struct Generate {
     /// Where to put the run; the same command again continues it.
     #[arg(long, value_name = "DIR", required_unless_present = "dry_run")]
     pub out: Option<PathBuf>,
-    /// Only say what the run would ask of models: calls, tokens and money at most.
+    /// Only say what the run would ask of models, but for what is asked or written again: calls, tokens and money.
     #[arg(long)]
     pub dry_run: bool,
     /// The world.

@@ -51,13 +51,12 @@ pub struct Perceive {
 }
 
 impl Perceive {
-    /// What the flags ask for. Random paths are long enough in number that each new one gives at least a view.
+    /// What the flags ask for, but for the number of random paths.
     #[must_use]
     pub fn asked(&self) -> Asked {
         Asked {
             platform: self.world.platform.clone(),
             data: self.world.data.clone(),
-            paths: self.episodes.is_none().then_some(self.views),
             episodes: self.episodes.clone(),
             scan: self.scan.clone(),
             questions: self.questions,

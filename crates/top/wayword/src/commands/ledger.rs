@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
                 ));
             }
             let filter = Filter {
-                older_than_s: older_than_days.map(|days| days * SECONDS_PER_DAY),
+                older_than_s: older_than_days.map(|days| days.saturating_mul(SECONDS_PER_DAY)),
                 model: model.clone(),
                 ..Filter::default()
             };

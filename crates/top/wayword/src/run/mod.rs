@@ -87,7 +87,7 @@ impl RunFolder {
             return Ok(text_file::read(&path, "read the run's name")?.trim().to_owned());
         }
         let id = fresh_id("run");
-        fs::write(&path, &id).map_err(Error::io(&path, "write"))?;
+        write_whole(&path, &id)?;
         Ok(id)
     }
 
@@ -143,9 +143,7 @@ fn keep_config(folder: &Path, settings: &Settings) -> Result<(), Error> {
     if !path.exists() {
         let text = toml::to_string_pretty(settings)
             .map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
-        let temporary = folder.join("config.toml.new");
-        fs::write(&temporary, text).map_err(Error::io(&temporary, "write"))?;
-        return fs::rename(&temporary, &path).map_err(Error::io(&path, "write"));
+        return write_whole(&path, &text);
     }
     let before = settings_of(folder)?;
     if before == *settings {
@@ -154,6 +152,15 @@ fn keep_config(folder: &Path, settings: &Settings) -> Result<(), Error> {
     let differs = differing_keys(&before, settings).into_iter().collect::<Vec<_>>().join(", ");
     let problem = format!("{} holds a run with other settings ({differs})", folder.display());
     Err(Error::usage(problem, "give the same command to continue it, or another --out for a new run"))
+}
+
+/// Writes a small file that is there whole or not at all, whenever the process is killed.
+fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
+    let mut temporary = path.as_os_str().to_owned();
+    temporary.push(".new");
+    let temporary = PathBuf::from(temporary);
+    fs::write(&temporary, text).map_err(Error::io(&temporary, "write"))?;
+    fs::rename(&temporary, path).map_err(Error::io(path, "write"))
 }
 
 /// The settings of a run.

@@ -148,6 +148,8 @@ const REPAIRS: u32 = 8;
 const REPAIRS_OF_MODELS: u32 = 3;
 /// Most repairs that can be asked for.
 const MOST_REPAIRS: u32 = 100;
+/// Most questions of a dialogue that can be asked for: each is told everything before it.
+const MOST_QUESTIONS: usize = 100;
 /// Most random paths of a run.
 const MOST_PATHS: usize = 1_000_000;
 
@@ -221,6 +223,12 @@ impl Asked {
             return Err(Error::usage(
                 format!("--repairs is more than {MOST_REPAIRS}"),
                 "a text that fails so often will not come right",
+            ));
+        }
+        if self.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
+            return Err(Error::usage(
+                format!("--questions is more than {MOST_QUESTIONS}"),
+                "a dialogue brings little new after the ninth",
             ));
         }
         let length_m: RangeInclusive<f64> =
@@ -314,6 +322,12 @@ mod tests {
     fn lengths_are_finite() {
         let asked = |text: &str| Asked { metres: Some(text.into()), ..Asked::default() }.resolve();
         assert!(asked("5..1e400").is_err() && asked("5..20").is_ok());
+    }
+
+    #[test]
+    fn dialogues_are_bounded() {
+        let asked = |questions| Asked { questions: Some(questions), ..Asked::default() }.resolve();
+        assert!(asked(MOST_QUESTIONS).is_ok() && asked(MOST_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());
     }
 
     #[test]

@@ -123,8 +123,10 @@ impl AskedRoles {
     /// When a name is none that the role can have.
     pub fn resolve(self) -> Result<Roles, Error> {
         let default = Roles::default();
-        let text = |role: Option<String>, flag, none: &str| {
-            role.or_else(|| self.llm.clone()).map_or_else(|| Ok(none.to_owned()), |name| named(flag, name, RULES))
+        let text = |role: Option<String>, flag, none: &str| match (role, &self.llm) {
+            (Some(name), _) => named(flag, name, RULES),
+            (None, Some(name)) => named("--llm", name.clone(), RULES),
+            (None, None) => Ok(none.to_owned()),
         };
         let picture_px = self.picture_px.unwrap_or(default.picture_px);
         if !(32..=MOST_PICTURE_PX).contains(&picture_px) {
@@ -205,7 +207,9 @@ mod tests {
     #[test]
     fn names_that_are_no_minds_are_refused() {
         for bad in ["labels", "gpt", "/x", "x/", ""] {
-            assert!(asked(None, Some(bad)).resolve().is_err(), "{bad}");
+            let told = |llm, write| asked(llm, write).resolve().unwrap_err().to_string();
+            assert!(told(None, Some(bad)).starts_with("--write"), "{bad}");
+            assert!(told(Some(bad), None).starts_with("--llm"), "{bad}: the flag that was given is told");
         }
     }
 }

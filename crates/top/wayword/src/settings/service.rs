@@ -52,6 +52,9 @@ impl Service {
     /// What flags ask for, with the rest from a file.
     #[must_use]
     pub fn or(self, file: Self) -> Self {
+        // A replay and what it excludes: a flag for one wins over a file's other, which could be the very recording.
+        let replays = self.replay.is_some();
+        let keeps = self.record.is_some() || self.ledger.is_some();
         Self {
             max_usd: self.max_usd.or(file.max_usd),
             max_calls: self.max_calls.or(file.max_calls),
@@ -61,16 +64,16 @@ impl Service {
             timeout_s: self.timeout_s.or(file.timeout_s),
             key_env: self.key_env.or(file.key_env),
             prices: self.prices.or(file.prices),
-            ledger: self.ledger.or(file.ledger),
-            record: self.record.or(file.record),
-            replay: self.replay.or(file.replay),
+            ledger: self.ledger.or(file.ledger.filter(|_| !replays)),
+            record: self.record.or(file.record.filter(|_| !replays)),
+            replay: self.replay.or(file.replay.filter(|_| !keeps)),
         }
     }
 
     /// Refuses values that make no sense.
     ///
     /// # Errors
-    /// When a number is out of its range.
+    /// When a number is out of its range, or things exclude each other.
     pub fn checked(self) -> Result<Self, Error> {
         let refuse = |flag: &str, hint: &str| Err(Error::usage(format!("{flag} is out of its range"), hint));
         if self.max_usd.is_some_and(|usd| !usd.is_finite() || usd < 0.0) {
@@ -85,6 +88,12 @@ impl Service {
         let no_rate = |rate: Option<f64>| rate.is_some_and(|rate| !(rate.is_finite() && rate > 0.0));
         if no_rate(self.requests_per_minute) || no_rate(self.tokens_per_minute) {
             return refuse("a rate per minute", "give a number above 0, or leave the flag out for no limit");
+        }
+        if self.replay.is_some() && (self.record.is_some() || self.ledger.is_some()) {
+            return Err(Error::usage(
+                "replay excludes record and ledger",
+                "a replay takes every answer from its file, and makes none to be kept: leave the others out",
+            ));
         }
         Ok(self)
     }
@@ -106,5 +115,15 @@ mod tests {
             assert!(refused(bad), "{bad}");
         }
         assert!(!refused("max_usd = 0.0\nmax_calls = 0\nconcurrency = 32"));
+    }
+
+    #[test]
+    fn a_replay_never_writes_the_recording_of_a_settings_file() {
+        let read = |text: &str| toml::from_str::<Service>(text).unwrap();
+        let replayed = read("replay = 'calls.jsonl'").or(read("record = 'calls.jsonl'\nledger = 'calls.db'"));
+        assert_eq!(replayed, read("replay = 'calls.jsonl'"));
+        let recorded = read("record = 'new.jsonl'").or(read("replay = 'calls.jsonl'\nmax_calls = 3"));
+        assert_eq!(recorded, read("record = 'new.jsonl'\nmax_calls = 3"));
+        assert!(read("replay = 'calls.jsonl'\nrecord = 'calls.jsonl'").checked().is_err());
     }
 }

@@ -19,8 +19,9 @@ pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, 
         copied.map_err(Error::io(file, "read the episodes"))?;
         inputs.insert("episodes".into(), hex(hash));
     }
+    let prompts = prompts(&job.settings)?;
     if !job.settings.roles.models().is_empty() {
-        inputs.insert("prompts".into(), prompts(&job.settings)?.hash().to_owned());
+        inputs.insert("prompts".into(), prompts.hash().to_owned());
     }
     if !job.providers.is_empty() {
         inputs.insert("providers".into(), providers(&job.providers));

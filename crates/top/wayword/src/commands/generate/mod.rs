@@ -69,12 +69,14 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     }
     let bar = output.progress(items.len(), "items");
     bar.set_position((items.len() - left.len()) as u64);
+    // What earlier commands did tells nothing of the pace.
+    bar.reset_eta();
     if let Some(calls) = &calls {
         let talk = *output;
         calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));
     }
     let mut stopped = None;
-    let mut unflushed = 0;
+    let (mut unflushed, mut unmade) = (0, left.len());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
     let making = |item: &&Item| make(item, settings, platform.as_ref(), &team, &styles);
     in_order(&left, workers, making, |item, made| {
@@ -91,7 +93,9 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
             unflushed = 0;
         }
         bar.set_message(message(&run, calls.as_ref()));
-        Ok::<_, Error>(true)
+        unmade -= 1;
+        stopped = calls.as_ref().and_then(Calls::interrupted).filter(|_| unmade > 0);
+        Ok::<_, Error>(stopped.is_none())
     })?;
     run.sync()?;
     bar.finish_and_clear();

@@ -1,7 +1,7 @@
 //! What a run would ask of models, without asking: `generate --dry-run`.
 
 use crate::{
-    calls::{Price, price_of},
+    calls::Calls,
     error::Error,
     item::{check_names, items},
     pipeline,
@@ -20,7 +20,8 @@ use wayword_synthesis::{
     writer::Brief,
 };
 
-/// What a run would ask of models at most: no dialogue ends early, and the ledger holds nothing yet.
+/// About what a run would ask of models: no dialogue ends early, nothing is asked again or written again, and the ledger holds
+/// nothing yet.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Plan {
     /// Items of the run that have a path.
@@ -78,6 +79,7 @@ pub(super) fn plan(job: &Job) -> Result<Plan, Error> {
     let styles = styles::find(&settings.style, settings.seed)?;
     let items = items(settings, platform.as_ref())?;
     check_names(&items)?;
+    let prices = Calls::rehearse(settings, &job.service, &job.providers)?;
     let prompts = prompts(settings)?;
     let mut plan = Plan { questions: questions(settings), ..Plan::default() };
     let (mut views, mut panoramas, mut writing) = (BTreeSet::new(), BTreeSet::new(), Load::default());
@@ -112,9 +114,9 @@ pub(super) fn plan(job: &Job) -> Result<Plan, Error> {
         }
     }
     for asked in &mut plan.models {
-        let price: Option<Price> = price_of(&job.service, &asked.model)?;
-        asked.usd = price.as_ref().map(|price| price.usd(asked.tokens_in, asked.tokens_out));
-        asked.price_as_of = price.map(|price| price.as_of);
+        let price = prices.get(&asked.model).and_then(Option::as_ref);
+        asked.usd = price.map(|price| price.usd(asked.tokens_in, asked.tokens_out));
+        asked.price_as_of = price.map(|price| price.as_of.clone());
     }
     Ok(plan)
 }
@@ -219,7 +221,10 @@ impl fmt::Display for Plan {
         if self.models.is_empty() {
             return write!(f, "no model takes part: nothing is asked, nothing is paid");
         }
-        writeln!(f, "at most, before repairs, and with nothing in the ledger yet:")?;
+        writeln!(
+            f,
+            "with every dialogue at its full length, nothing asked or written again, and nothing in the ledger yet:"
+        )?;
         for asked in &self.models {
             write!(
                 f,

@@ -20,6 +20,8 @@ pub struct Summary {
     pub passed: usize,
     /// Instructions for which something could not be checked.
     pub unverified: usize,
+    /// Instructions among these that rules wrote, because every text of the model failed.
+    pub finished_by_rules: usize,
     /// Instructions, or whole items, that were rejected.
     pub rejected: usize,
     /// Items that failed because a model gave nothing; the same command tries them again.
@@ -53,11 +55,12 @@ pub(super) fn summary(
     spent: Option<Spent>,
     stopped: Option<ModelError>,
 ) -> Result<Summary, Error> {
-    let (mut passed, mut unverified, mut minds) = (0, 0, None);
+    let (mut passed, mut unverified, mut finished, mut minds) = (0, 0, 0, None);
     lines::each(&folder.join(file::INSTRUCTIONS), |line| {
         let Told { verdict, provenance } = line.parse()?;
         passed += usize::from(verdict == Verdict::Pass);
         unverified += usize::from(verdict == Verdict::Unverified);
+        finished += usize::from(provenance.finished_for.is_some());
         minds.get_or_insert_with(|| told(&provenance));
         Ok(())
     })?;
@@ -66,6 +69,7 @@ pub(super) fn summary(
         items,
         passed,
         unverified,
+        finished_by_rules: finished,
         rejected: run.rejected.len(),
         errors: run.errors.len(),
         minds: minds.unwrap_or_default(),
@@ -105,11 +109,14 @@ impl fmt::Display for Summary {
         if !self.minds.is_empty() {
             writeln!(f, "minds: {}", self.minds)?;
         }
+        if self.finished_by_rules > 0 {
+            writeln!(f, "{} instructions were written by rules, after the model's had failed", self.finished_by_rules)?;
+        }
         if let Some(spent) = &self.spent {
             writeln!(f, "models: {spent}")?;
         }
         if let Some(reason) = &self.stopped {
-            writeln!(f, "stopped before the end: {reason}\nThe same command goes on from here.")?;
+            writeln!(f, "stopped before the end: {reason}")?;
         }
         write!(f, "run folder: {}", self.run)
     }

@@ -62,7 +62,10 @@ struct Captioned {
 }
 
 pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
-    let job = args.asked().or(config::read(args.config.as_deref())?).job()?;
+    let mut asked = args.asked().or(config::read(args.config.as_deref())?);
+    // As many random paths as views are enough: each new one gives at least a view.
+    asked.paths = asked.episodes.is_none().then_some(args.views);
+    let job = asked.job()?;
     let platform = world::open(&job.settings)?;
     let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or(WAYS.to_vec());
     let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;
@@ -147,7 +150,7 @@ fn measure(
     in_order(views, calls.map_or_else(cores, Calls::workers), make, |view, caption| {
         bar.inc(1);
         captions.push(captioned(view, caption, output)?);
-        Ok::<_, Error>(true)
+        calls.and_then(Calls::interrupted).map_or(Ok(true), |interrupted| Err(Error::from(interrupted)))
     })?;
     bar.finish_and_clear();
     let row = Row::of(settings.perception, &captions, asked() - before);
