@@ -9,6 +9,7 @@
 mod bert;
 mod device;
 mod error;
+mod hub;
 mod json;
 mod ops;
 mod picture;
@@ -18,3 +19,4 @@ mod weights;
 pub use bert::SentenceEncoder;
 pub use device::{Device, Precision};
 pub use error::LocalError;
+pub use hub::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs, Progress};

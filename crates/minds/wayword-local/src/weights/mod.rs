@@ -119,8 +119,17 @@ impl File {
     }
 }
 
-/// The files that an index names, each once.
+/// The files that an index names, each opened once.
 fn parts(folder: &Path, index: &Path) -> Result<Vec<File>, LocalError> {
+    let open = |name: &String| SafeFile::open(&folder.join(name)).map(File::Safe);
+    part_names(index)?.iter().map(open).collect()
+}
+
+/// The names of the files that an index names, each once.
+///
+/// # Errors
+/// When it is damaged, or names what is no file beside it.
+pub(crate) fn part_names(index: &Path) -> Result<BTreeSet<String>, LocalError> {
     let damaged = |problem: String| LocalError::File { file: index.to_owned(), problem, hint: "fetch it again" };
     let length = std::fs::metadata(index).map_err(|error| LocalError::io(index, "read", error))?.len();
     if length > LONGEST_INDEX {
@@ -128,15 +137,12 @@ fn parts(folder: &Path, index: &Path) -> Result<Vec<File>, LocalError> {
     }
     let text = std::fs::read_to_string(index).map_err(|error| LocalError::io(index, "read", error))?;
     let parsed: Index = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
-    let names: BTreeSet<&String> = parsed.weight_map.values().collect();
-    let open = |name: &String| {
-        // It comes from outside, and must not lead out of the folder.
-        if Path::new(name).file_name().is_none_or(|file| file != name.as_str()) {
-            return Err(damaged(format!("{name:?} is no name of a file")));
-        }
-        SafeFile::open(&folder.join(name)).map(File::Safe)
-    };
-    names.into_iter().map(open).collect()
+    let names: BTreeSet<String> = parsed.weight_map.into_values().collect();
+    // They come from outside, and must not lead out of the folder.
+    match names.iter().find(|name| Path::new(name).file_name().is_none_or(|file| file != name.as_str())) {
+        Some(name) => Err(damaged(format!("{name:?} is no name of a file"))),
+        None => Ok(names),
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,182 @@
+//! Where models come from: the hub's cache on disk, the hub itself, or a folder of the user's.
+//!
+//! The cache has the layout of the hub's own client for Python, locks included, so that both use the same files:
+//!
+//! ```text
+//! models--ORG--NAME/refs/REVISION               the commit that a branch or tag stood for
+//! models--ORG--NAME/blobs/HASH                  a file's bytes, by the hash that the hub gives them
+//! models--ORG--NAME/snapshots/COMMIT/FILE       a link to them
+//! models--ORG--NAME/.no_exist/COMMIT/FILE       the commit has no such file
+//! .locks/models--ORG--NAME/HASH.lock            held while the bytes are fetched
+//! ```
+//!
+//! Architecture invariant: nothing is linked into a snapshot before its bytes have the hash that the hub gave them, and a token
+//! goes nowhere but to the hub's own address.
+
+mod address;
+mod blob;
+mod client;
+mod commit;
+mod config;
+mod fetching;
+mod hash;
+mod identity;
+mod layout;
+mod list;
+mod name;
+mod needs;
+mod on_disk;
+mod progress;
+mod refusal;
+mod trouble;
+
+pub use config::HubConfig;
+pub use list::CachedModel;
+pub use name::ModelName;
+pub use needs::Needs;
+pub use progress::Progress;
+
+use crate::LocalError;
+use client::Client;
+use commit::Commit;
+use fetching::Fetching;
+use layout::RepoFolder;
+use name::{OnHub, Place};
+use needs::Gathered;
+use on_disk::OnDisk;
+use std::path::{Path, PathBuf};
+
+/// The way to models.
+#[derive(Debug)]
+pub struct Hub {
+    config: HubConfig,
+    client: Client,
+}
+
+/// A model's files.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModelFolder {
+    /// The folder that they lie in.
+    pub path: PathBuf,
+    /// The one file that was named, for GGUF.
+    pub file: Option<PathBuf>,
+    /// What tells this model from another of the same name: the commit's hash, 40 hex digits. Where there is no commit (local
+    /// folders, files that were put into the cache by hand) `sha256:` and 64 digits over the small files, and over length,
+    /// beginning, end and samples of the weights, which cost a few hundred small reads. Weights that differ between the samples
+    /// alone look the same; no training does that.
+    pub identity: String,
+}
+
+impl Hub {
+    /// The way to models by a configuration.
+    ///
+    /// # Errors
+    /// When the endpoint is no web address.
+    pub fn new(config: HubConfig) -> Result<Self, LocalError> {
+        let client = Client::new(&config)?;
+        Ok(Self { config, client })
+    }
+
+    /// A model's folder with the files that are needed. What is in the cache is used as it is, whatever the branch stands for
+    /// by now, so that a model stays the same until [`Hub::fetch`] asks anew; what is missing is fetched.
+    ///
+    /// # Errors
+    /// When a file that is needed cannot be had: says which, and where it belongs.
+    pub fn folder(&self, name: &ModelName, needs: &Needs, progress: &dyn Progress) -> Result<ModelFolder, LocalError> {
+        self.have(name, needs, progress, false)
+    }
+
+    /// As [`Hub::folder`], but asks the hub what the revision stands for now. Offline it is the same.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn fetch(&self, name: &ModelName, needs: &Needs, progress: &dyn Progress) -> Result<ModelFolder, LocalError> {
+        self.have(name, needs, progress, true)
+    }
+
+    /// What the cache holds, by name and commit.
+    ///
+    /// # Errors
+    /// When a folder cannot be read.
+    pub fn list(&self) -> Result<Vec<CachedModel>, LocalError> {
+        list::list(&self.config.cache)
+    }
+
+    /// Where the cache is.
+    #[must_use]
+    pub fn cache(&self) -> &Path {
+        &self.config.cache
+    }
+
+    fn have(
+        &self,
+        name: &ModelName,
+        needs: &Needs,
+        progress: &dyn Progress,
+        anew: bool,
+    ) -> Result<ModelFolder, LocalError> {
+        let place = match &name.place {
+            Place::Hub(place) => place,
+            Place::Folder(path) => return on_disk(&mut OnDisk::local(path), needs, None, None),
+            Place::File(path) => {
+                let folder = path.parent().unwrap_or(Path::new("."));
+                let file = path.file_name().map(|file| file.to_string_lossy());
+                return on_disk(&mut OnDisk::local(folder), needs, file.as_deref(), None);
+            }
+        };
+        let repo = RepoFolder::new(&self.config.cache, place);
+        let known = repo.commit_of(&place.revision);
+        if self.config.offline {
+            return self.cached(place, &repo, known.as_ref(), needs);
+        }
+        if known.is_none() && !anew && repo.snapshot(&place.revision).is_dir() {
+            // Somebody put files there by hand; where they are not enough, the hub is asked.
+            if let Ok(model) = self.cached(place, &repo, None, needs) {
+                return Ok(model);
+            }
+        }
+        let start = if anew { Commit::parse(&place.revision) } else { known };
+        let mut files = Fetching::new(&self.client, place, repo, start, self.config.symlinks, progress);
+        let gathered = needs.gather(&mut files, place.file.as_deref())?;
+        Ok(model(gathered, place.file.is_some(), files.finish()?))
+    }
+
+    /// Without the network. Where no commit is known, a snapshot that is named like the revision will do.
+    fn cached(
+        &self,
+        place: &OnHub,
+        repo: &RepoFolder,
+        known: Option<&Commit>,
+        needs: &Needs,
+    ) -> Result<ModelFolder, LocalError> {
+        let identity = known.map(|commit| commit.as_str().to_owned());
+        let folder = repo.snapshot(known.map_or(place.revision.as_str(), Commit::as_str));
+        let hint = |file: &str| {
+            format!(
+                "the network is off (WAYWORD_OFFLINE or HF_HUB_OFFLINE): put there what {} gives, or run `wayword models fetch` where there is a network",
+                self.client.address(place, &place.revision, file)
+            )
+        };
+        on_disk(&mut OnDisk::new(folder, &hint), needs, place.file.as_deref(), identity)
+    }
+}
+
+/// What is on this machine; without an identity from elsewhere it is computed from the files.
+fn on_disk(
+    files: &mut OnDisk<'_>,
+    needs: &Needs,
+    file: Option<&str>,
+    identity: Option<String>,
+) -> Result<ModelFolder, LocalError> {
+    let gathered = needs.gather(files, file)?;
+    let identity = identity.map_or_else(|| identity::identity(&gathered), Ok)?;
+    Ok(model(gathered, file.is_some(), identity))
+}
+
+fn model(gathered: Gathered, is_file: bool, identity: String) -> ModelFolder {
+    let file = gathered.weights.into_iter().next().filter(|_| is_file);
+    ModelFolder { path: gathered.folder, file, identity }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,148 @@
+//! Names of models in process.
+
+use crate::LocalError;
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
+
+/// What names of models in process begin with.
+const PREFIX: &str = "hf/";
+
+/// Where a name says none.
+const MAIN: &str = "main";
+
+const LONGEST_PART: usize = 96;
+const LONGEST_REVISION: usize = 200;
+const LONGEST_FILE: usize = 200;
+const LONGEST_PATH: usize = 4096;
+
+/// Where a model is to be had, by one name:
+///
+/// - `hf/ORG/NAME`, `hf/ORG/NAME@REVISION`: the hub's, at a branch, tag or commit (`main` where none is named);
+/// - `hf/ORG/NAME@REVISION:FILE.gguf`: one file of such a repository;
+/// - `hf//abs/folder`, `hf/./folder`, `hf/../folder`: a folder on this machine;
+/// - the same with a path that ends in `.gguf`: a file on this machine.
+///
+/// Organisation, name, revision and file become paths and addresses: they hold nothing that leads elsewhere.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModelName {
+    text: String,
+    pub(super) place: Place,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Place {
+    Hub(OnHub),
+    Folder(PathBuf),
+    File(PathBuf),
+}
+
+/// A model of the hub.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct OnHub {
+    pub(super) org: String,
+    pub(super) name: String,
+    pub(super) revision: String,
+    /// The one file that was named.
+    pub(super) file: Option<String>,
+}
+
+impl ModelName {
+    /// Reads a name.
+    ///
+    /// # Errors
+    /// Says what is wrong with it.
+    pub fn parse(text: &str) -> Result<Self, LocalError> {
+        let place = place(text).map_err(|problem| LocalError::Name {
+            name: text.chars().take(LONGEST_REVISION).collect(),
+            problem: problem.to_owned(),
+        })?;
+        Ok(Self { text: text.to_owned(), place })
+    }
+
+    /// Whether it names one GGUF file.
+    #[must_use]
+    pub fn is_gguf(&self) -> bool {
+        match &self.place {
+            Place::Hub(place) => place.file.is_some(),
+            Place::Folder(_) => false,
+            Place::File(_) => true,
+        }
+    }
+}
+
+impl fmt::Display for ModelName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+fn place(text: &str) -> Result<Place, &'static str> {
+    let rest = text.strip_prefix(PREFIX).ok_or("it does not begin with hf/")?;
+    if ["/", "./", "../"].iter().any(|begin| rest.starts_with(begin)) {
+        return local(rest);
+    }
+    let (repo, file) = match rest.split_once(':') {
+        Some((repo, file)) => (repo, Some(file)),
+        None => (rest, None),
+    };
+    let (repo, revision) = repo.split_once('@').unwrap_or((repo, MAIN));
+    let (org, name) = repo.split_once('/').ok_or("it has no organisation before the model's name")?;
+    if !is_part(org) || !is_part(name) {
+        return Err(
+            "organisation and name hold letters, digits, and single '-', '_' and '.' between them, 96 characters at most",
+        );
+    }
+    if !is_revision(revision) {
+        return Err("its revision is no branch, tag or commit");
+    }
+    if file.is_some_and(|file| !is_file(file)) {
+        return Err("after the colon belongs a file of the repository that ends in .gguf");
+    }
+    Ok(Place::Hub(OnHub {
+        org: org.to_owned(),
+        name: name.to_owned(),
+        revision: revision.to_owned(),
+        file: file.map(str::to_owned),
+    }))
+}
+
+fn local(path: &str) -> Result<Place, &'static str> {
+    if path.chars().any(char::is_control) || path.len() > LONGEST_PATH {
+        return Err("its path holds control characters or is too long");
+    }
+    let place = if ends_in_gguf(path) { Place::File } else { Place::Folder };
+    Ok(place(PathBuf::from(path)))
+}
+
+/// The hub's own rule for the parts of a repository's name. Two dashes would make the cache's folders ambiguous.
+pub(super) fn is_part(part: &str) -> bool {
+    let inner = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let edge = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
+    part.len() <= LONGEST_PART
+        && part.chars().all(inner)
+        && edge(part.chars().next())
+        && edge(part.chars().last())
+        && !part.contains("--")
+        && !part.contains("..")
+}
+
+fn is_revision(revision: &str) -> bool {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | '+');
+    revision.len() <= LONGEST_REVISION && are_segments(revision, allowed)
+}
+
+fn is_file(file: &str) -> bool {
+    let allowed = |c: char| c.is_ascii_graphic() && !r#"\:*?"<>|%#"#.contains(c);
+    file.len() <= LONGEST_FILE && ends_in_gguf(file) && are_segments(file, allowed)
+}
+
+/// Names between slashes, none of which is empty, hidden, or the way up.
+fn are_segments(text: &str, allowed: impl Fn(char) -> bool) -> bool {
+    text.split('/').all(|segment| !segment.is_empty() && !segment.starts_with('.') && segment.chars().all(&allowed))
+}
+
+fn ends_in_gguf(path: &str) -> bool {
+    Path::new(path).extension().is_some_and(|end| end.eq_ignore_ascii_case("gguf"))
+}
