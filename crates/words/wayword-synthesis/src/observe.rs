@@ -1,7 +1,7 @@
 //! Looks around along a path and has each view talked about.
 
 use crate::{
-    dialogue::{Asker, Dialogue, Mode, Need, RulesSummariser, Summariser},
+    dialogue::{Asker, Condensed, Dialogue, Mode, Need, RulesSummariser, Summariser},
     walk::{FrameSelection, Look, Observation},
 };
 use wayword_core::{
@@ -64,7 +64,8 @@ pub fn observe(
             } else {
                 looks
             };
-            Ok(Observation { summary: summary(frame, &looks, minds)?, looks })
+            let Condensed { text, by } = summary(frame, &looks, minds)?;
+            Ok(Observation { summary: text, by, looks })
         })
         .collect()
 }
@@ -129,9 +130,9 @@ fn caption(transcript: &[Exchange], minds: Minds<'_>) -> Result<Caption, ModelEr
     }
 }
 
-fn summary(frame: &Frame, looks: &[Look], minds: Minds<'_>) -> Result<String, ModelError> {
+fn summary(frame: &Frame, looks: &[Look], minds: Minds<'_>) -> Result<Condensed, ModelError> {
     if let [only] = looks {
-        return Ok(only.caption.text.clone());
+        return Ok(Condensed { text: only.caption.text.clone(), by: None });
     }
     let directed = |look| (direction(frame, look), &look.caption);
     minds.summariser.condense(&looks.iter().map(directed).collect::<Vec<_>>(), CONDENSED_WORDS)

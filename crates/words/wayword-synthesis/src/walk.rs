@@ -31,6 +31,9 @@ pub struct Observation {
     pub looks: Vec<Look>,
     /// The frame in words: the caption of the only look, or the four condensed to under 20 words.
     pub summary: String,
+    /// Who condensed them, where that is another than the run's summariser, which failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
 }
 
 /// All that a writer is told about a path.

@@ -48,7 +48,7 @@ fn observation(room: &str, thing: &str) -> Observation {
         transcript: vec![Exchange::new("Is there a piano?", "No.")],
         by: None,
     };
-    Observation { looks: vec![Look { gaze: Gaze::quarter(Heading::NORTH), caption }], summary: text }
+    Observation { looks: vec![Look { gaze: Gaze::quarter(Heading::NORTH), caption }], summary: text, by: None }
 }
 
 fn walk(id: &str) -> WalkRecord {

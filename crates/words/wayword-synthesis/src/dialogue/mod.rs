@@ -49,11 +49,21 @@ pub trait Summariser: Send + Sync {
     /// When a model was to write it and gave nothing.
     fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError>;
 
-    /// Captions of one place, each with its direction in words ("north"), as one description of fewer words than that.
+    /// Captions of one place, each with its direction in words ("north"), as one description of fewer words than that; and who
+    /// made it, where that is another.
     ///
     /// # Errors
     /// When a model was to write it and gave nothing.
-    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<String, ModelError>;
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError>;
+}
+
+/// Captions of several looks as one description.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Condensed {
+    /// The description.
+    pub text: String,
+    /// Who made it, where that is another than the summariser, which failed.
+    pub by: Option<String>,
 }
 
 /// How a view is asked about.

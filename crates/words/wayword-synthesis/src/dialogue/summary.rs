@@ -1,7 +1,7 @@
 //! The summariser that works by rules.
 
 use super::{
-    Summariser,
+    Condensed, Summariser,
     answers::{counted, denies, room, sightings, with_article},
     faults::caption_faults,
 };
@@ -25,9 +25,9 @@ impl Summariser for RulesSummariser {
         Ok(Caption { text, room, sightings: told, transcript: transcript.to_vec(), by: None })
     }
 
-    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<String, ModelError> {
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError> {
         let captions: Vec<&Caption> = captions.iter().map(|(_, caption)| *caption).collect();
-        Ok(condense(&captions, fewer_words_than))
+        Ok(Condensed { text: condense(&captions, fewer_words_than), by: None })
     }
 }
 

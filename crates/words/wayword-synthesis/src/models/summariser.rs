@@ -6,7 +6,7 @@ use super::{
     say,
 };
 use crate::{
-    dialogue::{RulesSummariser, Summariser, caption_faults},
+    dialogue::{Condensed, RulesSummariser, Summariser, caption_faults},
     lexicon::agree,
     prompts::Prompts,
     text::word_count,
@@ -65,11 +65,11 @@ impl Summariser for ModelSummariser {
         let faults = |text: &str| faults(text, &by_rules.sightings);
         Ok(match self.attempt(prompt, faults)? {
             Ok(text) => Caption { text, ..by_rules },
-            Err(reasons) => Caption { by: Some(format!("rules, because {}", reasons.join("; "))), ..by_rules },
+            Err(reasons) => Caption { by: Some(instead(&reasons)), ..by_rules },
         })
     }
 
-    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<String, ModelError> {
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError> {
         let texts: Vec<(&str, &str)> =
             captions.iter().map(|(direction, caption)| (*direction, caption.text.as_str())).collect();
         let prompt = |complaints: &[String]| Ok(self.prompts.condense(&texts, fewer_words_than, complaints)?);
@@ -83,10 +83,18 @@ impl Summariser for ModelSummariser {
             faults
         };
         match self.attempt(prompt, faults)? {
-            Ok(text) => Ok(text),
-            Err(_) => RulesSummariser.condense(captions, fewer_words_than),
+            Ok(text) => Ok(Condensed { text, by: None }),
+            Err(reasons) => {
+                let by_rules = RulesSummariser.condense(captions, fewer_words_than)?;
+                Ok(Condensed { by: Some(instead(&reasons)), ..by_rules })
+            }
         }
     }
+}
+
+/// Who sums up instead of a model, and why.
+fn instead(reasons: &[String]) -> String {
+    format!("rules, because {}", reasons.join("; "))
 }
 
 fn faults(text: &str, told: &[Sighting]) -> Vec<String> {

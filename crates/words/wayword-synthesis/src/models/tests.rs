@@ -75,8 +75,19 @@ fn a_condensed_description_is_short_and_holds_what_any_direction_shows() {
     let model = Scripted::new(&[long, "A bedroom with a bed."]);
     let summariser = ModelSummariser::new(model.clone(), prompts());
     let caption = crate::dialogue::RulesSummariser.sum_up(&transcript(), "test").unwrap();
-    assert_eq!(summariser.condense(&[("ahead", &caption)], 20).unwrap(), "A bedroom with a bed.");
+    let condensed = summariser.condense(&[("ahead", &caption)], 20).unwrap();
+    assert_eq!((condensed.text.as_str(), condensed.by), ("A bedroom with a bed.", None));
     assert!(model.prompts()[1].contains("fewer than 20"));
+}
+
+#[test]
+fn a_condensed_description_that_stays_wrong_is_left_to_rules_and_says_so() {
+    let model = Scripted::new(&["A piano.", "A piano and a bed."]);
+    let caption = crate::dialogue::RulesSummariser.sum_up(&transcript(), "test").unwrap();
+    let condensed = ModelSummariser::new(model, prompts()).condense(&[("ahead", &caption)], 20).unwrap();
+    assert_eq!(condensed.text, "a bedroom with a bed");
+    let by = condensed.by.unwrap();
+    assert!(by.starts_with("rules, because") && by.contains("piano"), "{by}");
 }
 
 #[test]

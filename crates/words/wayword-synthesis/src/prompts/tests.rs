@@ -30,7 +30,7 @@ fn walk() -> Walk {
     let path = Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, target: Some(target) };
     let summaries =
         ["A hallway with a picture.", "A hallway with a plant.", "Some stairs.", "A bedroom with a bed and two lamps."];
-    Walk::new(path, summaries.map(|summary| Observation { looks: Vec::new(), summary: summary.into() }).to_vec())
+    Walk::new(path, summaries.map(|summary| Observation { summary: summary.into(), ..Observation::default() }).to_vec())
 }
 
 #[test]

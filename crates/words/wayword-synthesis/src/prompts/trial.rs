@@ -47,6 +47,6 @@ fn walk() -> Option<Walk> {
         frames: Path::frames_along(vec![stop(0.0), stop(2.0)], None),
         target: Some(target),
     };
-    let seen = |summary: &str| Observation { looks: Vec::new(), summary: summary.to_owned() };
+    let seen = |summary: &str| Observation { summary: summary.to_owned(), ..Observation::default() };
     Some(Walk::new(path, vec![seen("A hallway."), seen("A bedroom with a lamp.")]))
 }

@@ -57,7 +57,7 @@ fn along(places: &[(f64, f64)], things: &[&str]) -> Walk {
     let observations = path.frames.iter().zip(things).map(|(frame, name)| {
         let caption = Caption { text: format!("A {name}."), sightings: vec![seen(name)], ..Caption::default() };
         let look = Look { gaze: Gaze::quarter(frame.pose.heading), caption };
-        Observation { summary: look.caption.text.clone(), looks: vec![look] }
+        Observation { summary: look.caption.text.clone(), looks: vec![look], by: None }
     });
     let observations = observations.collect();
     Walk::new(path, observations)

@@ -167,7 +167,7 @@ impl Talk {
 
 /// Writing once for each style; repairs come on top, and nobody knows how many.
 fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path: &Path) -> Result<Load, PromptError> {
-    let seen = Observation { looks: Vec::new(), summary: TYPICAL_CAPTION.to_owned() };
+    let seen = Observation { summary: TYPICAL_CAPTION.to_owned(), ..Observation::default() };
     let walk = Walk::new(path.clone(), vec![seen; path.frames.len()]);
     let mut load = Load::default();
     for Measured { style, profile } in styles {
