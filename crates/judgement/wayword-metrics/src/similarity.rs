@@ -1,0 +1,128 @@
+//! How alike two sets of instructions are, with the two anchors without which the figure says nothing.
+
+use crate::{Estimate, clustered_interval};
+use rand::Rng;
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::rng;
+
+/// With so many others each item is compared for the anchor of chance.
+const OTHERS: usize = 10;
+
+/// What is said about one item.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Said<'a> {
+    /// The path that it is about: items of one path are not independent.
+    pub cluster: String,
+    /// A vector per text. All vectors of a comparison have as many numbers.
+    pub vectors: Vec<&'a [f32]>,
+}
+
+/// How chance is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drawing {
+    /// Resamples of the intervals.
+    pub resamples: usize,
+    /// What the intervals cover, as 0.95.
+    pub level: f64,
+    /// Seed of the intervals and of the random pairs.
+    pub seed: u64,
+}
+
+/// How alike two sets are.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Similarity {
+    /// A against B: over items, the mean cosine of a text in A and a text in B of the same item. `None` without a common item.
+    pub figure: Option<Estimate>,
+    /// The same between two texts of B on the same item: what two people reach. `None` where no item has two.
+    pub same_item: Option<Estimate>,
+    /// The same between a text of B on the item and one on an item of another path, drawn at random: what is reached without
+    /// having seen anything. Its interval knows the paths of the first text alone. `None` where there is a single path.
+    pub random_pairs: Option<Estimate>,
+    /// Items that A alone has.
+    pub only_in_a: usize,
+    /// Items that B alone has.
+    pub only_in_b: usize,
+    /// Common items of which B has one text only: they are not in `same_item`.
+    pub single_in_b: usize,
+}
+
+/// Compares A with B, item by item. Both anchors are taken over the common items, so that all three figures are about the same.
+///
+/// An item's figure is the mean cosine over all pairs of texts, the set's the mean over items (the average pairwise cosine of
+/// arXiv 2403.11487). Intervals draw paths. Items without a text count as absent.
+#[must_use]
+pub fn similarity(a: &BTreeMap<String, Said<'_>>, b: &BTreeMap<String, Said<'_>>, drawing: &Drawing) -> Similarity {
+    let ids = |set: &BTreeMap<String, Said<'_>>| -> BTreeSet<String> {
+        set.iter().filter(|(_, said)| !said.vectors.is_empty()).map(|(id, _)| id.clone()).collect()
+    };
+    let (in_a, in_b) = (ids(a), ids(b));
+    let common: Vec<(&str, &Said<'_>, &Said<'_>)> =
+        in_a.intersection(&in_b).map(|id| (id.as_str(), &a[id], &b[id])).collect();
+    let of_b: Vec<(&str, &Said<'_>)> = common.iter().map(|(id, _, b)| (*id, *b)).collect();
+    let estimate = |values: &[(&str, f64)]| clustered_interval(values, drawing.resamples, drawing.level, drawing.seed);
+    let figures: Vec<(&str, f64)> =
+        common.iter().filter_map(|(_, a, b)| Some((b.cluster.as_str(), across(a, b)?))).collect();
+    let same: Vec<(&str, f64)> =
+        of_b.iter().filter_map(|(_, said)| Some((said.cluster.as_str(), within(said)?))).collect();
+    Similarity {
+        figure: estimate(&figures),
+        same_item: estimate(&same),
+        random_pairs: estimate(&at_random(&of_b, drawing.seed)),
+        only_in_a: in_a.difference(&in_b).count(),
+        only_in_b: in_b.difference(&in_a).count(),
+        single_in_b: of_b.len() - same.len(),
+    }
+}
+
+/// Over all pairs of a text in A and one in B.
+fn across(a: &Said<'_>, b: &Said<'_>) -> Option<f64> {
+    mean(a.vectors.iter().flat_map(|a| b.vectors.iter().map(move |b| cosine(a, b))))
+}
+
+/// Over all unordered pairs of texts.
+fn within(said: &Said<'_>) -> Option<f64> {
+    let texts = said.vectors.iter().enumerate();
+    mean(texts.flat_map(|(at, a)| said.vectors[at + 1..].iter().map(move |b| cosine(a, b))))
+}
+
+/// Each item against items of other paths, drawn with replacement.
+fn at_random<'a>(items: &[(&str, &'a Said<'_>)], seed: u64) -> Vec<(&'a str, f64)> {
+    let mut paths: BTreeMap<&str, Vec<&Said<'_>>> = BTreeMap::new();
+    for (_, said) in items {
+        paths.entry(&said.cluster).or_default().push(said);
+    }
+    // In the order of their paths, an item of another path is one before its own path's first or after their last.
+    let mut first = BTreeMap::new();
+    let mut ordered: Vec<&Said<'_>> = Vec::with_capacity(items.len());
+    for (path, of_path) in &paths {
+        first.insert(*path, ordered.len());
+        ordered.extend(of_path);
+    }
+    let of_item = |(id, said): &(&str, &'a Said<'_>)| {
+        let (first, count) = (first[&*said.cluster], paths[&*said.cluster].len());
+        let others = ordered.len() - count;
+        let mut rng = rng(seed, &["random pairs", id]);
+        let drawn = (0..if others == 0 { 0 } else { OTHERS }).filter_map(|_| {
+            let at = rng.random_range(0..others);
+            across(said, ordered[if at < first { at } else { at + count }])
+        });
+        Some((said.cluster.as_str(), mean(drawn)?))
+    };
+    items.iter().filter_map(of_item).collect()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (total, count) = values.fold((0.0, 0usize), |(total, count), value| (total + value, count + 1));
+    (count > 0).then(|| total / count as f64)
+}
+
+/// Cosine of the angle between two vectors; 0 where one has no direction.
+fn cosine(a: &[f32], b: &[f32]) -> f64 {
+    let dot = |a: &[f32], b: &[f32]| -> f64 { a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum() };
+    let lengths = (dot(a, a) * dot(b, b)).sqrt();
+    if lengths > 0.0 { (dot(a, b) / lengths).clamp(-1.0, 1.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,58 @@
+//! Which words two texts share: what is left of similarity where there is no model.
+
+use wayword_core::{ModelError, TextEncoder, seed};
+
+/// How many places words are hashed to.
+const PLACES: u64 = 4096;
+
+/// Counts of words, hashed: no model. Texts that say the same in other words are far apart for it, so its figures are not those
+/// of a sentence encoder and can only be held against each other.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Words;
+
+impl TextEncoder for Words {
+    fn name(&self) -> &str {
+        "words"
+    }
+
+    fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+        Ok(texts.iter().map(|text| vector(text)).collect())
+    }
+}
+
+fn vector(text: &str) -> Vec<f32> {
+    // A place of its own for texts without words: a vector has length 1.
+    let mut counts = vec![0.0f32; PLACES as usize + 1];
+    let lower = text.to_lowercase();
+    for word in lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()) {
+        counts[(seed::derive(0, &[word]) % PLACES) as usize] += 1.0;
+    }
+    let length = counts.iter().map(|count| count * count).sum::<f32>().sqrt();
+    if length == 0.0 {
+        counts[PLACES as usize] = 1.0;
+        return counts;
+    }
+    counts.into_iter().map(|count| count / length).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn alike(a: &str, b: &str) -> f32 {
+        vector(a).iter().zip(vector(b)).map(|(a, b)| a * b).sum()
+    }
+
+    #[test]
+    fn words_count_and_nothing_else_does() {
+        assert!((alike("Go to the sink.", "to the SINK go") - 1.0).abs() < 1e-6);
+        assert!((alike("open the door", "open a window") - 1.0 / 3.0).abs() < 1e-6);
+        assert_eq!(alike("open", "close"), 0.0);
+    }
+
+    #[test]
+    fn a_text_without_words_has_a_vector_too() {
+        assert_eq!(alike("", "?!"), 1.0);
+        assert_eq!(alike("", "word"), 0.0);
+    }
+}
