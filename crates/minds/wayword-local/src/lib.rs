@@ -7,6 +7,7 @@
 //! configuration demands, and nothing in it is executed.
 
 mod bert;
+mod clip;
 mod device;
 mod error;
 mod hub;
@@ -17,6 +18,7 @@ mod text;
 mod weights;
 
 pub use bert::SentenceEncoder;
+pub use clip::{Clip, ClipGrounder};
 pub use device::{Device, Precision};
 pub use error::LocalError;
 pub use hub::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs, Progress};

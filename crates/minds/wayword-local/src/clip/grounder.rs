@@ -1,0 +1,106 @@
+//! CLIP as a mind that says how well phrases fit views.
+
+use super::{
+    Clip,
+    cache::{Cache, Key, Vector, key_of_image, key_of_text},
+};
+use crate::LocalError;
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{Grounder, Image, ModelError, View};
+
+/// So many vectors of pictures are kept, and as many of texts: some 50 MB each at most.
+const KEPT: usize = 16 << 10;
+
+/// Scores a phrase on a view by the cosine of their vectors, between -1 and 1: not times CLIP's `logit_scale`, which only matters
+/// where scores are turned into shares. A phrase is taken as it is: "a photo of .." around it is the caller's choice. What a
+/// picture or a phrase came to is kept, by its content.
+pub struct ClipGrounder {
+    clip: Clip,
+    images: Mutex<Cache>,
+    texts: Mutex<Cache>,
+}
+
+impl ClipGrounder {
+    /// A grounder that asks a CLIP.
+    #[must_use]
+    pub fn new(clip: Clip) -> Self {
+        Self { clip, images: Mutex::new(Cache::new(KEPT)), texts: Mutex::new(Cache::new(KEPT)) }
+    }
+
+    fn failed(&self, error: &LocalError) -> ModelError {
+        ModelError::Failed { model: self.clip.name().to_owned(), reason: error.to_string() }
+    }
+
+    /// The picture of a view.
+    fn image<'a>(&self, view: &'a View) -> Result<&'a Image, ModelError> {
+        let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
+        image.ok_or_else(|| ModelError::NothingToSee {
+            mind: self.clip.name().to_owned(),
+            needs: "a picture",
+            hint: "use a platform or data folder with pictures",
+        })
+    }
+}
+
+impl Grounder for ClipGrounder {
+    fn name(&self) -> &str {
+        self.clip.name()
+    }
+
+    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        let images: Vec<Result<&Image, ModelError>> = views.iter().map(|view| self.image(view)).collect();
+        let seen: Vec<&Image> = images.iter().filter_map(|image| image.as_ref().ok().copied()).collect();
+        let vectors = vectors(&self.images, &seen, key_of_image, |images| self.clip.image_features(images))
+            .and_then(|seen| {
+                let texts = |texts: &[&str]| self.clip.text_features(texts);
+                Ok((seen, vectors(&self.texts, phrases, key_of_text, texts)?))
+            })
+            .map_err(|error| self.failed(&error));
+        let mut at = 0;
+        let scores = |image: Result<&Image, ModelError>| {
+            image?;
+            at += 1;
+            let (seen, texts) = vectors.as_ref().map_err(Clone::clone)?;
+            Ok(texts.iter().map(|text| dot(&seen[at - 1], text)).collect())
+        };
+        images.into_iter().map(scores).collect()
+    }
+}
+
+/// Vectors of things, in their order: those of the cache, and the others computed, each once.
+fn vectors<T: Copy>(
+    cache: &Mutex<Cache>,
+    things: &[T],
+    key: impl Fn(T) -> Key,
+    compute: impl Fn(&[T]) -> Result<Vec<Vec<f32>>, LocalError>,
+) -> Result<Vec<Vector>, LocalError> {
+    let keys: Vec<Key> = things.iter().map(|&thing| key(thing)).collect();
+    let mut known: BTreeMap<Key, Vector> = BTreeMap::new();
+    let mut missing: BTreeMap<Key, T> = BTreeMap::new();
+    {
+        let mut cache = cache.lock().unwrap_or_else(PoisonError::into_inner);
+        for (key, &thing) in keys.iter().zip(things) {
+            match cache.get(key) {
+                Some(vector) => drop(known.insert(*key, vector)),
+                None => drop(missing.insert(*key, thing)),
+            }
+        }
+    }
+    // Nobody waits for the cache while this is computed.
+    let of_missing: Vec<T> = missing.values().copied().collect();
+    let computed = compute(&of_missing)?.into_iter().map(Arc::from);
+    let computed: Vec<(Key, Vector)> = missing.into_keys().zip(computed).collect();
+    let mut cache = cache.lock().unwrap_or_else(PoisonError::into_inner);
+    for (key, vector) in computed {
+        cache.put(key, Arc::clone(&vector));
+        known.insert(key, vector);
+    }
+    Ok(keys.iter().filter_map(|key| known.get(key).cloned()).collect())
+}
+
+fn dot(a: &[f32], b: &[f32]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

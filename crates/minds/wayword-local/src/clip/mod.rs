@@ -1,0 +1,12 @@
+//! CLIP: pictures and texts as vectors that can be compared (ViT-B/32, B/16, L/14 and their like).
+
+mod cache;
+mod config;
+mod grounder;
+mod layers;
+mod model;
+mod text;
+mod vision;
+
+pub use grounder::ClipGrounder;
+pub use model::Clip;
