@@ -53,6 +53,10 @@ pub enum Error {
     #[cfg(feature = "remote")]
     #[error(transparent)]
     Service(#[from] wayword_remote::ConfigError),
+    /// A model cannot be had on this machine.
+    #[cfg(feature = "local")]
+    #[error(transparent)]
+    Local(#[from] wayword_local::LocalError),
     /// A walk could not be seen.
     #[error(transparent)]
     Observe(#[from] ObserveError),

@@ -5,6 +5,8 @@
 pub mod calls;
 pub mod cli;
 pub mod commands;
+#[cfg(feature = "local")]
+mod download_bar;
 pub mod error;
 mod in_order;
 pub mod item;

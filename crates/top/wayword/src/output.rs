@@ -63,14 +63,22 @@ impl Output {
     /// A progress bar; hidden where nobody looks.
     #[must_use]
     pub fn progress(&self, total: usize, what: &'static str) -> ProgressBar {
-        let bar = ProgressBar::new(total as u64);
+        self.bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}  {eta} left").with_prefix(what)
+    }
+
+    /// A progress bar for bytes, whose number is told later; hidden where nobody looks.
+    #[cfg(feature = "local")]
+    #[must_use]
+    pub fn bytes(&self) -> ProgressBar {
+        self.bar(0, "{prefix} {bar:32} {bytes}/{total_bytes}  {bytes_per_sec}  {eta} left")
+    }
+
+    fn bar(&self, total: u64, template: &str) -> ProgressBar {
+        let bar = ProgressBar::new(total);
         if self.quiet || !io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        let style = ProgressStyle::with_template("{prefix} {bar:32} {pos}/{len}  {msg}  {eta} left");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_prefix(what);
-        bar
+        bar.with_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()))
     }
 }
 

@@ -153,7 +153,7 @@ impl Hub {
         let folder = repo.snapshot(known.map_or(place.revision.as_str(), Commit::as_str));
         let hint = |file: &str| {
             format!(
-                "the network is off (WAYWORD_OFFLINE or HF_HUB_OFFLINE): put there what {} gives, or run `wayword models fetch` where there is a network",
+                "put there what {} gives, or run `wayword models fetch NAME` where there is a network, and without WAYWORD_OFFLINE and HF_HUB_OFFLINE",
                 self.client.address(place, &place.revision, file)
             )
         };

@@ -139,7 +139,10 @@ pub(crate) fn part_names(index: &Path) -> Result<BTreeSet<String>, LocalError> {
     let parsed: Index = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
     let names: BTreeSet<String> = parsed.weight_map.into_values().collect();
     // They come from outside, and must not lead out of the folder.
-    match names.iter().find(|name| Path::new(name).file_name().is_none_or(|file| file != name.as_str())) {
+    let is_file = |name: &str| {
+        Path::new(name).file_name().is_some_and(|file| file == name) && !name.chars().any(char::is_control)
+    };
+    match names.iter().find(|name| !is_file(name)) {
         Some(name) => Err(damaged(format!("{name:?} is no name of a file"))),
         None => Ok(names),
     }

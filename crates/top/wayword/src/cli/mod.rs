@@ -4,7 +4,9 @@
 mod doctor;
 #[cfg(feature = "remote")]
 mod ledger;
+mod models;
 mod perceive;
+mod similarity;
 
 use crate::settings::{Against, Asked, AskedRoles, Perception, Providers, Service, TargetMode};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -15,7 +17,9 @@ use wayword_synthesis::walk::FrameSelection;
 pub use doctor::Doctor;
 #[cfg(feature = "remote")]
 pub use ledger::{Ledger, LedgerCommand};
+pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
+pub use similarity::{By, Similarity};
 
 /// Writes the wayfinding instructions that a person would give a robot, for any simulator, and checks them.
 #[derive(Debug, Parser)]
@@ -70,12 +74,16 @@ pub enum Command {
     Report(Report),
     /// Measure how well captions fit the labels of their views: objects, ghosts, calls.
     Perceive(Box<Perceive>),
+    /// Measure how alike two sets of instructions are, beside what people and chance reach.
+    Similarity(Similarity),
     /// Check keys, endpoints, models and data, and say what to do.
     #[cfg(feature = "remote")]
     Doctor(Box<Doctor>),
     /// What was asked of models, what it cost, and what is kept.
     #[cfg(feature = "remote")]
     Ledger(Ledger),
+    /// Models that run in this program: what is on this machine, and how to get more.
+    Models(Models),
     /// Save a generated house as glTF with its navigation data.
     House(House),
     /// Print shell completions.

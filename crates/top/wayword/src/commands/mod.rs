@@ -11,8 +11,10 @@ mod generate;
 mod house;
 #[cfg(feature = "remote")]
 mod ledger;
+mod models;
 mod perceive;
 mod report;
+mod similarity;
 
 use crate::{
     cli::Command,
@@ -36,10 +38,12 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Export(args) => export::run(&args, output),
         Command::Report(args) => report::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
+        Command::Similarity(args) => similarity::run(&args, output),
         #[cfg(feature = "remote")]
         Command::Doctor(args) => doctor::run(&args, output),
         #[cfg(feature = "remote")]
         Command::Ledger(args) => ledger::run(&args, output),
+        Command::Models(args) => models::run(&args, output),
         Command::House(args) => house::run(&args, output),
         Command::Completions { shell } => completions::run(shell),
     }

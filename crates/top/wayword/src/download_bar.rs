@@ -1,0 +1,46 @@
+//! Shows how far a download is.
+
+use crate::output::Output;
+use indicatif::{HumanBytes, ProgressBar};
+use std::sync::{Mutex, PoisonError};
+use wayword_local::Progress;
+
+/// A bar for the file that comes right now, or a line for each where nobody looks at bars.
+pub(crate) struct DownloadBar {
+    output: Output,
+    bar: ProgressBar,
+    file: Mutex<String>,
+}
+
+impl DownloadBar {
+    pub(crate) fn new(output: &Output) -> Self {
+        Self { output: *output, bar: output.bytes(), file: Mutex::default() }
+    }
+}
+
+impl Progress for DownloadBar {
+    fn bytes(&self, file: &str, done: u64, total: Option<u64>) {
+        let mut shown = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        if *shown != file {
+            file.clone_into(&mut shown);
+            self.bar.reset();
+            self.bar.set_prefix(file.to_owned());
+            self.bar.set_length(total.unwrap_or(done));
+            if self.bar.is_hidden() {
+                let of = total.map(|total| format!(" of {}", HumanBytes(total))).unwrap_or_default();
+                self.output.say(format_args!("fetching {file}: {}{of} are here", HumanBytes(done)));
+            }
+        }
+        self.bar.set_position(done);
+    }
+
+    fn waiting(&self, file: &str) {
+        self.output.say(format_args!("another process fetches {file}; waiting for it"));
+    }
+}
+
+impl Drop for DownloadBar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
