@@ -23,7 +23,7 @@ pub struct Filter {
     pub run: Option<String>,
     /// Only those whose answer is older, seconds.
     pub older_than_s: Option<u64>,
-    /// Only the latest so many.
+    /// Only the latest so many; for [`Ledger::list`] alone.
     pub limit: Option<usize>,
 }
 
@@ -161,9 +161,10 @@ impl Ledger {
             By::Run => "run",
             By::Day => "date(at, 'unixepoch')",
         };
-        let sql = format!(
-            "SELECT {of}, COUNT(*), SUM(tokens_in), SUM(tokens_out), TOTAL(usd), SUM(usd IS NULL) FROM calls GROUP BY 1 ORDER BY 1"
-        );
+        // SUM is an error where the whole numbers end; TOTAL and CAST go no further than there.
+        let tokens = "CAST(TOTAL(tokens_in) AS INTEGER), CAST(TOTAL(tokens_out) AS INTEGER)";
+        let sql =
+            format!("SELECT {of}, COUNT(*), {tokens}, TOTAL(usd), SUM(usd IS NULL) FROM calls GROUP BY 1 ORDER BY 1");
         let reader = self.store().reader();
         let mut statement = reader.prepare(&sql).map_err(&failed)?;
         let lines = statement.query_map([], |row| {

@@ -305,8 +305,8 @@ impl Attempts<'_> {
         let is_first = store.writer.keep(Write::Answered { sent, row: Box::new(row) })? != 0;
         self.run.count(|totals| {
             totals.answered += 1;
-            totals.tokens_in += answer.tokens_in;
-            totals.tokens_out += answer.tokens_out;
+            totals.tokens_in = totals.tokens_in.saturating_add(answer.tokens_in);
+            totals.tokens_out = totals.tokens_out.saturating_add(answer.tokens_out);
             totals.usd += answer.usd.unwrap_or(0.0);
         });
         let stands = if is_first { None } else { store.answer(self.key)? };

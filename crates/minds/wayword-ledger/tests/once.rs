@@ -249,3 +249,20 @@ fn files_that_are_no_ledgers_are_refused_and_left_alone() {
     rusqlite::Connection::open(&path).unwrap().pragma_update(None, "user_version", 99).unwrap();
     assert!(matches!(Ledger::open(&path), Err(LedgerError::Newer { format: 99, .. })));
 }
+
+/// An answer may say that it took any number of tokens.
+#[test]
+fn counts_without_measure_are_summed_up_all_the_same() {
+    let ledger = Ledger::in_memory().unwrap();
+    let run = ledger.run("a", Limits::default()).unwrap();
+    for number in 0..2 {
+        let answered = run.once(&call(number), |attempts| -> Result<Answer, Refused> {
+            attempts.begin(None)?;
+            Ok(Answer { tokens_in: u64::MAX, tokens_out: u64::MAX, ..answer("yes", 0.0) })
+        });
+        answered.unwrap();
+    }
+    assert_eq!((run.totals().tokens_in, run.totals().tokens_out), (u64::MAX, u64::MAX));
+    let costs = ledger.costs(By::Model).unwrap();
+    assert_eq!((costs[0].calls, costs[0].tokens_in), (2, i64::MAX.cast_unsigned()));
+}
