@@ -21,6 +21,10 @@ const LOOK_UP: Duration = Duration::from_millis(100);
 /// How often an answer without words is asked for again.
 const EMPTY_AGAIN: u32 = 1;
 
+/// More tokens than any model takes or gives at once. A larger count is an error of the service's; believed, it would use up all
+/// money and hold everybody back for years.
+const MOST_TOKENS: u64 = 20_000_000;
+
 /// A call that is ready to be sent.
 pub(crate) struct Sending<'a> {
     pub(crate) endpoint: &'a Endpoint,
@@ -39,6 +43,8 @@ pub(crate) struct Sending<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Size {
     pub(crate) chars: u64,
+    /// Bytes of those characters that are not ASCII.
+    pub(crate) other_bytes: u64,
     pub(crate) pictures: u64,
     pub(crate) max_tokens: u64,
 }
@@ -66,9 +72,10 @@ enum Attempt {
 }
 
 impl Size {
-    /// More tokens than the request has in any tokenizer that is in use: two characters each, and a large picture's.
-    fn most_tokens_in(self, tokens_per_picture: u64) -> u64 {
-        self.chars / 2 + tokens_per_picture * self.pictures + 16
+    /// More tokens than the request has in any tokenizer that is in use: words have more than two characters each, but scripts
+    /// that a tokenizer does not know come to a token per byte; and a large picture's.
+    pub(crate) fn most_tokens_in(self, tokens_per_picture: u64) -> u64 {
+        (self.chars / 2 + self.other_bytes + 16).saturating_add(tokens_per_picture.saturating_mul(self.pictures))
     }
 
     /// About how many tokens it has.
@@ -213,10 +220,14 @@ impl Sending<'_> {
         })
     }
 
-    /// Tokens in and out; reckoned where the service does not tell.
+    /// Tokens in and out; reckoned where the service does not tell, or tells what cannot be.
     fn tokens(&self, heard: &Heard) -> (u64, u64) {
+        let told = |tokens: Option<u64>| tokens.filter(|tokens| *tokens <= MOST_TOKENS);
         let tokens_out = || heard.text.chars().count() as u64 / 4;
-        (heard.tokens_in.unwrap_or_else(|| self.size.tokens_in()), heard.tokens_out.unwrap_or_else(tokens_out))
+        (
+            told(heard.tokens_in).unwrap_or_else(|| self.size.tokens_in()),
+            told(heard.tokens_out).unwrap_or_else(tokens_out),
+        )
     }
 
     fn answer(&self, heard: &Heard, text: String, latency: Duration, attempts: u32) -> Answer {
@@ -237,8 +248,10 @@ impl Sending<'_> {
 fn judge(heard: &Heard, endpoint: &Endpoint) -> Result<(), Fault> {
     let lost = |reason: String| Fault::Final { reason, maybe_paid: true };
     match &heard.end {
-        End::Filtered(why) => Err(lost(format!("the service's filter kept the answer back ({})", faults::short(why)))),
-        End::Refused(why) => Err(lost(format!("the model refused: {}", endpoint.who().scrubbed(faults::short(why))))),
+        End::Filtered(why) => {
+            Err(lost(format!("the service's filter kept the answer back ({})", endpoint.who().told(why))))
+        }
+        End::Refused(why) => Err(lost(format!("the model refused: {}", endpoint.who().told(why)))),
         End::Stop | End::Length if !heard.text.is_empty() => Ok(()),
         End::Stop => Err(Fault::again("empty answer", true)),
         End::Length => Err(lost(format!(

@@ -1,7 +1,14 @@
 //! Whether a model can be used, in plain words, and what to do where it cannot.
 
-use crate::{Dialect, RemoteModel, Services, endpoint::Endpoint, faults};
-use std::{sync::Arc, time::SystemTime};
+use crate::{
+    Dialect, RemoteModel, Services,
+    endpoint::Endpoint,
+    faults::{self, Who},
+};
+use std::{
+    sync::Arc,
+    time::{SystemTime, UNIX_EPOCH},
+};
 use wayword_core::{Image, LanguageModel, Message, Request, Role, Sampling};
 
 /// Side of the picture that a model is shown, pixels: large enough for every service.
@@ -54,7 +61,7 @@ impl Finding {
 
 impl Services {
     /// Looks at everything that a model needs: its key, its service, its price; and asks it for a word and, where it is to
-    /// see, for the colour of a red square. Both are calls like any other: kept, counted and bounded.
+    /// see, for the colour of a red square. Both are calls like any other, counted and bounded; but they are made anew each time.
     #[must_use]
     pub fn check(&self, name: &str, is_to_see: bool) -> Vec<Finding> {
         let model = match self.model(name) {
@@ -138,7 +145,7 @@ fn reachable(model: &RemoteModel, findings: &mut Vec<Finding>) -> bool {
         Some(models) => {
             let to_do = match provider.dialect {
                 Dialect::Ollama => format!("ollama pull {}", model.model()),
-                _ => format!("name one of {}", some(&models)),
+                _ => format!("name one of {}", some(&models, endpoint.who())),
             };
             findings.push(Finding::warning(format!("{} does not list {}", provider.name, model.model()), to_do));
         }
@@ -155,9 +162,8 @@ fn is_same(listed: &str, named: &str) -> bool {
 }
 
 /// The first few of many names, each short: the list is the server's.
-fn some(models: &[&str]) -> String {
-    let names: Vec<String> =
-        models.iter().take(12).map(|name| faults::short(name).chars().take(80).collect()).collect();
+fn some(models: &[&str], who: Who<'_>) -> String {
+    let names: Vec<String> = models.iter().take(12).map(|name| who.told(name).chars().take(80).collect()).collect();
     if models.len() > names.len() {
         format!("{}, ... ({} in all)", names.join(", "), models.len())
     } else {
@@ -184,11 +190,17 @@ fn price(model: &RemoteModel, findings: &mut Vec<Finding>) {
 
 fn ask(model: &RemoteModel, message: Message) -> Result<String, String> {
     let sampling = Sampling { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
-    let request = Request { messages: vec![message], sampling, replicate: 0 };
+    let request = Request { messages: vec![message], sampling, replicate: by_the_clock() };
     let mut replies = model.complete(&[request]);
     replies
         .pop()
         .map_or_else(|| Err(String::new()), |reply| reply.map(|reply| reply.text).map_err(|error| error.to_string()))
+}
+
+/// Tells the calls of one check from those of any other: what is in the ledger says nothing about the service of today.
+fn by_the_clock() -> u32 {
+    let ms = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
+    u32::try_from(ms & u128::from(u32::MAX)).unwrap_or_default()
 }
 
 fn speaks(model: &RemoteModel, findings: &mut Vec<Finding>) -> bool {

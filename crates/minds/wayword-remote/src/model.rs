@@ -140,8 +140,10 @@ fn stopped(refused: &Refused) -> ModelError {
 
 fn size(request: &Request) -> Size {
     let chars = request.messages.iter().map(|message| message.text.chars().count() as u64 + 16).sum();
+    let other_bytes = |message: &Message| message.text.bytes().filter(|byte| !byte.is_ascii()).count() as u64;
+    let other_bytes = request.messages.iter().map(other_bytes).sum();
     let pictures = request.messages.iter().filter(|message| message.image.is_some()).count() as u64;
-    Size { chars, pictures, max_tokens: request.sampling.max_tokens.into() }
+    Size { chars, other_bytes, pictures, max_tokens: request.sampling.max_tokens.into() }
 }
 
 fn reply(answer: Answer) -> Reply {
@@ -189,5 +191,24 @@ impl fmt::Debug for RemoteModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let base_url = &self.endpoint.provider.base_url;
         f.debug_struct("RemoteModel").field("name", &self.name).field("base_url", base_url).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::Sampling;
+
+    /// A tokenizer that does not know a script makes a token of each byte.
+    #[test]
+    fn no_script_has_more_tokens_than_are_reckoned_with() {
+        let sampling = Sampling { temperature: 0.0, max_tokens: 20, seed: 0 };
+        for text in ["మెట్లు ఎక్కండి", "सीढ़ियाँ चढ़ो", "\u{1f6cb}\u{1f6aa}"]
+        {
+            let text = text.repeat(100);
+            let (bytes, messages) = (text.len() as u64, vec![Message::user(text)]);
+            let size = size(&Request { messages, sampling: sampling.clone(), replicate: 0 });
+            assert!(size.most_tokens_in(0) >= bytes, "{size:?}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What models cost.
 
-use crate::{PricesError, provider};
+use crate::PricesError;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -73,19 +73,10 @@ impl Prices {
         Ok(prices)
     }
 
-    /// What a model costs: by its name, or by the longest listed name of which it is a dated snapshot. What runs on a user's own
-    /// machine costs nothing.
-    #[must_use]
-    pub fn of(&self, name: &str) -> Option<Price> {
-        let exact = self
-            .0
-            .get(name)
-            .or_else(|| self.0.iter().rev().find(|(base, _)| is_snapshot(name, base)).map(|(_, price)| price));
-        exact.cloned().or_else(|| {
-            let (provider, _) = provider::split(name).ok()?;
-            let local = provider::built_in().get(provider).and_then(|known| known.local).unwrap_or(false);
-            local.then(Price::nothing)
-        })
+    /// What a model costs: by its name, or by the longest listed name of which it is a dated snapshot.
+    pub(crate) fn of(&self, name: &str) -> Option<Price> {
+        let snapshot = || self.0.iter().rev().find(|(base, _)| is_snapshot(name, base)).map(|(_, price)| price);
+        self.0.get(name).or_else(snapshot).cloned()
     }
 }
 
@@ -102,6 +93,7 @@ fn is_snapshot(name: &str, base: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::provider;
 
     #[test]
     fn the_built_in_table_is_read_and_dated() {
@@ -134,11 +126,5 @@ mod tests {
         assert!(prices.of("openai/gpt-4o").is_some());
         assert!(matches!(Prices::read(&row.replace("2.5", "-2.5")), Err(PricesError::Amount(_))));
         assert!(matches!(Prices::read("x = 1"), Err(PricesError::Toml(_))));
-    }
-
-    #[test]
-    fn what_runs_at_home_costs_nothing() {
-        assert_eq!(Prices::built_in().of("ollama/qwen3:8b").unwrap().usd(1000, 1000), 0.0);
-        assert_eq!(Prices::built_in().of("server/model"), None);
     }
 }

@@ -49,22 +49,29 @@ pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
     let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(Missing("choices"))?;
     let message = choice.get("message").ok_or(Missing("message"))?;
     let refusal = message.get("refusal").and_then(Value::as_str).filter(|why| !why.is_empty());
-    let end = refusal.map_or_else(|| end(choice), |why| End::Refused(why.to_owned()));
+    let end = refusal.map_or_else(|| end(choice), |why| Ok(End::Refused(why.to_owned())))?;
     let text = message.get("content").map(content).unwrap_or_default();
     Ok(with_usage(body, text, end))
 }
 
-/// Why a choice ended.
-pub(super) fn end(choice: &Value) -> End {
+/// Why a choice ended. One that an error ended, as OpenRouter tells it, has no end: what was said until then is no answer.
+pub(super) fn end(choice: &Value) -> Result<End, Missing> {
+    if choice.get("error").is_some_and(|error| !error.is_null()) {
+        return Err(Missing("end"));
+    }
     match choice.get("finish_reason").and_then(Value::as_str) {
-        Some("length") => End::Length,
-        Some("content_filter") => End::Filtered("content_filter".to_owned()),
-        _ => End::Stop,
+        Some("error") => Err(Missing("end")),
+        Some("length") => Ok(End::Length),
+        Some("content_filter") => Ok(End::Filtered("content_filter".to_owned())),
+        _ => Ok(End::Stop),
     }
 }
 
-/// A reply with the tokens that it says it took.
+/// A reply with the tokens that it says it took. Thinking, which is paid for, is in the tokens of the completion or, as xAI has
+/// it, in the total alone.
 pub(super) fn with_usage(body: &Value, text: String, end: End) -> Heard {
     let tokens = |field: &str| body.get("usage")?.get(field)?.as_u64();
-    Heard { text, end, tokens_in: tokens("prompt_tokens"), tokens_out: tokens("completion_tokens") }
+    let tokens_in = tokens("prompt_tokens");
+    let beside_the_prompt = tokens("total_tokens").zip(tokens_in).map(|(total, prompt)| total.saturating_sub(prompt));
+    Heard { text, end, tokens_in, tokens_out: tokens("completion_tokens").max(beside_the_prompt) }
 }

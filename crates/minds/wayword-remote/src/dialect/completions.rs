@@ -43,5 +43,5 @@ fn flattened(lines: &[Line]) -> String {
 pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
     let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(Missing("choices"))?;
     let text = choice.get("text").and_then(Value::as_str).ok_or(Missing("text"))?;
-    Ok(chat::with_usage(body, text.to_owned(), chat::end(choice)))
+    Ok(chat::with_usage(body, text.to_owned(), chat::end(choice)?))
 }

@@ -237,3 +237,34 @@ fn models_are_listed() {
     assert_eq!(Dialect::Gemini.models(&gemini), Some(vec!["gemini-2.5-flash"]));
     assert_eq!(Dialect::Ollama.models(&json!({})), None);
 }
+
+/// OpenRouter sends what a model had said until its provider broke, with the error in the choice.
+#[test]
+fn a_choice_that_broke_is_no_answer() {
+    let said = json!({ "content": "A so" });
+    let choices = [
+        (Dialect::OpenAi, json!({ "message": said, "finish_reason": "error", "error": { "code": 502 } })),
+        (Dialect::OpenAi, json!({ "message": said, "error": { "message": "died" } })),
+        (Dialect::OpenAi, json!({ "message": said, "finish_reason": "error" })),
+        (Dialect::Completions, json!({ "text": "A so", "finish_reason": "error" })),
+    ];
+    for (dialect, choice) in choices {
+        assert!(dialect.heard(&json!({ "choices": [choice] })).is_err(), "{choice}");
+    }
+    let whole = json!({ "message": said, "finish_reason": "stop", "error": null });
+    assert_eq!(heard(Dialect::OpenAi, &json!({ "choices": [whole] })).text, "A so");
+}
+
+/// xAI counts thinking in the total alone.
+#[test]
+fn thinking_that_only_the_total_counts_is_counted() {
+    let tokens_out = |usage: Value| {
+        let body = json!({ "choices": [{ "message": { "content": "A" } }], "usage": usage });
+        heard(Dialect::OpenAi, &body).tokens_out
+    };
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 1, "total_tokens": 399 })), Some(387));
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 3, "total_tokens": 15 })), Some(3));
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 3 })), Some(3));
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "total_tokens": 1 })), Some(0));
+    assert_eq!(tokens_out(json!({ "total_tokens": 9 })), None);
+}

@@ -93,7 +93,7 @@ pub(crate) fn of_response(status: u16, headers: &HeaderMap, body: &[u8], now: Sy
     let said = Said::read(body);
     // Some services send an error under status 200, with the status inside.
     let status = if (200..300).contains(&status) { said.status.unwrap_or(status) } else { status };
-    let message = who.scrubbed(said.short());
+    let message = who.told(&said.message);
     let reason = match message.as_str() {
         "" => format!("status {status}"),
         message => format!("status {status}: {message}"),
@@ -188,29 +188,23 @@ pub(crate) fn of_transport(error: &ureq::Error, answered: Option<u16>, url: &str
         }
         E::Io(_) | E::Protocol(_) | E::ConnectionFailed | E::BodyStalled => {
             let where_ = if answered.is_some() { "in mid-answer" } else { "before an answer" };
-            retry(
-                format!("the connection broke {where_}: {}", who.scrubbed(said::short(&error.to_string()))),
-                Load::Unknown,
-                true,
-            )
+            retry(format!("the connection broke {where_}: {}", who.told(&error.to_string())), Load::Unknown, true)
         }
         E::LargeResponseHeader(..) => retry("the answer's headers are too large".to_owned(), Load::Unknown, true),
-        E::Rustls(_) | E::Tls(_) | E::Pem(_) | E::TlsRequired | E::ConnectProxyFailed(_) | E::InvalidProxyUrl => retry(
-            format!("no secure connection to {url}: {}", who.scrubbed(said::short(&error.to_string()))),
-            Load::Unknown,
-            false,
-        ),
+        E::Rustls(_) | E::Tls(_) | E::Pem(_) | E::TlsRequired | E::ConnectProxyFailed(_) | E::InvalidProxyUrl => {
+            retry(format!("no secure connection to {url}: {}", who.told(&error.to_string())), Load::Unknown, false)
+        }
         // What is left is a request that cannot even be made; its words could hold what was to be sent.
         _ => Fault::Final { reason: "the request could not be made".to_owned(), maybe_paid: false },
     }
 }
 
 impl Who<'_> {
-    /// A text of the service's without the key.
-    pub(crate) fn scrubbed(&self, text: String) -> String {
+    /// A service's words, short and without the key. The key goes first: of one that is cut, a part would stay.
+    pub(crate) fn told(&self, words: &str) -> String {
         match self.secret {
-            Some(secret) => secret.scrub(text),
-            None => text,
+            Some(secret) => short(&secret.scrub(words.to_owned())),
+            None => short(words),
         }
     }
 

@@ -9,7 +9,8 @@ const LONGEST_MESSAGE: usize = 300;
 /// An error's words.
 #[derive(Debug, Default)]
 pub(super) struct Said {
-    message: String,
+    /// As the service wrote it: of any length, and perhaps with the key in it.
+    pub(super) message: String,
     /// Every code, type, status and quota name in it, in lower case.
     marks: Vec<String>,
     /// A status inside the body.
@@ -23,9 +24,7 @@ impl Said {
     pub(super) fn read(body: &[u8]) -> Self {
         match serde_json::from_slice::<Value>(body) {
             Ok(value) => Self::of_json(&value),
-            Err(_) => {
-                Self { message: String::from_utf8_lossy(&body[..body.len().min(4000)]).into_owned(), ..Self::default() }
-            }
+            Err(_) => Self { message: String::from_utf8_lossy(body).into_owned(), ..Self::default() },
         }
     }
 
@@ -63,11 +62,6 @@ impl Said {
     /// Whether there is anything in it.
     pub(super) fn is_error(&self) -> bool {
         !self.message.is_empty() || self.status.is_some()
-    }
-
-    /// Its words, short and on one line.
-    pub(super) fn short(&self) -> String {
-        short(&self.message)
     }
 
     /// The account is empty or its limit reached; waiting does not help.
@@ -150,9 +144,9 @@ mod tests {
             "too\n\tbad\u{0}",
         ];
         for form in forms {
-            assert_eq!(Said::read(form.as_bytes()).short(), "too bad", "{form}");
+            assert_eq!(short(&Said::read(form.as_bytes()).message), "too bad", "{form}");
         }
-        assert_eq!(Said::read(b"<html><body>502").short(), "(a page of HTML)");
+        assert_eq!(short("<html><body>502"), "(a page of HTML)");
     }
 
     proptest! {

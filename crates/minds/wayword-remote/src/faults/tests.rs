@@ -117,3 +117,18 @@ fn what_broke_before_or_after_sending_is_told_apart() {
     assert!(matches!(slow, Fault::Retry(Retry { load: Load::Slow, maybe_paid: true, .. })));
     assert_eq!(kind(&of(ureq::Error::BodyExceedsLimit(9))), "final");
 }
+
+/// A reason is cut where it is long. What is cut must not be the key, of which a part would stay.
+#[test]
+fn no_part_of_a_key_stays_where_a_reason_is_cut() {
+    let secret = Secret::new("sk-0123456789abcdef").unwrap();
+    for before in 280..300 {
+        let long = format!("{} sk-0123456789abcdef", "x".repeat(before));
+        let far = format!("{}sk-0123456789abcdef", " ".repeat(3700 + before));
+        for body in [format!(r#"{{"error":{{"message":"{long}"}}}}"#), long, far] {
+            let who = who(Some(&secret));
+            let fault = of_response(500, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who);
+            assert!(!fault.reason().contains("0123"), "{}", fault.reason());
+        }
+    }
+}

@@ -61,6 +61,9 @@ fn errors_under_a_status_of_success_are_asked_again() {
     is_asked_again(&at_first(|stream| reply(stream, 200, "", r#"{"error":{"message":"upstream died"}}"#)));
     is_asked_again(&at_first(|stream| reply(stream, 200, "", r#"{"choices":[]}"#)));
     is_asked_again(&at_first(|stream| reply(stream, 200, "", "null")));
+    let half =
+        r#"{"choices":[{"message":{"content":"A so"},"finish_reason":"error","error":{"code":502,"message":"died"}}]}"#;
+    is_asked_again(&at_first(move |stream| reply(stream, 200, "", half)));
 }
 
 #[test]

@@ -5,7 +5,14 @@ use crate::{
     server::{Server, answer, reply},
     services,
 };
-use std::sync::Arc;
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::Duration,
+};
 use wayword_core::{Finish, Image, LanguageModel, Message, Role};
 use wayword_ledger::{Ledger, Limits};
 use wayword_remote::{Config, Level, Prices, Services};
@@ -138,9 +145,34 @@ fn a_bound_on_money_needs_prices() {
     let config = Config { needs_prices: true, ..Config::default() };
     let services = Services::new(config, run()).unwrap();
     assert!(services.model("openai/gpt-4o-mini").unwrap().price().is_some());
-    assert!(services.model("ollama/qwen3").is_ok());
+    assert_eq!(services.model("ollama/qwen3").unwrap().price().unwrap().usd(1000, 1000), 0.0);
     let error = services.model("openrouter/who/knows").unwrap_err().to_string();
     assert!(error.contains("--prices FILE"), "{error}");
+}
+
+/// A provider that is free on one's own machine may be a service that is paid for.
+#[test]
+fn what_is_said_not_to_be_local_is_not_free() {
+    let mut config: Config = toml::from_str("[providers.ollama]\nlocal = false").unwrap();
+    config.needs_prices = true;
+    let services = Services::new(config, run()).unwrap();
+    assert!(services.model("ollama/qwen3").is_err());
+    assert!(services.model("vllm/qwen3").is_ok());
+}
+
+/// Else one such answer would keep everybody waiting for years.
+#[test]
+fn a_count_of_tokens_that_cannot_be_is_not_believed() {
+    let server = Server::start(|_, _, stream| {
+        let usage = r#""usage":{"prompt_tokens":18446744073709551615,"completion_tokens":18446744073709551615}"#;
+        reply(stream, 200, "", &format!(r#"{{"choices":[{{"message":{{"content":"fine"}}}}],{usage}}}"#))
+    });
+    let run = run();
+    let model = model(&server, "tokens_per_minute = 1000000", &run);
+    for text in ["One?", "Two?"] {
+        assert_eq!(asked(&model, text).unwrap().text, "fine");
+    }
+    assert!(run.totals().tokens_in < 100 && run.totals().tokens_out < 100, "{:?}", run.totals());
 }
 
 #[test]
@@ -194,4 +226,22 @@ fn a_model_that_is_blind_or_not_there_is_found_to_be() {
     assert!(found[5].0 == Level::Warning && found[5].1.contains("red square and said: Blue"), "{found:?}");
     let closed = Server::start(|_, _, stream| reply(stream, 401, "", "{}"));
     assert_eq!(findings(&closed).last().unwrap().0, Level::Problem);
+}
+
+/// What a model said last week says nothing about today.
+#[test]
+fn a_check_is_not_answered_by_an_earlier_one() {
+    let works = Arc::new(AtomicBool::new(true));
+    let seen = Arc::clone(&works);
+    let server = Server::start(move |_, request, stream| match request.starts_with("GET") {
+        true => reply(stream, 200, "", r#"{"data":[{"id":"m"}]}"#),
+        false if seen.load(Ordering::SeqCst) => reply(stream, 200, "", &answer("ready")),
+        false => reply(stream, 500, "", "{}"),
+    });
+    let services = services(&server, "attempts = 1", &run());
+    assert_eq!(services.check("server/m", false).last().unwrap().level, Level::Ok);
+    works.store(false, Ordering::SeqCst);
+    // Checks are told apart by the time.
+    thread::sleep(Duration::from_millis(5));
+    assert_eq!(services.check("server/m", false).last().unwrap().level, Level::Problem);
 }
