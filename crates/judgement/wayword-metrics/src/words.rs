@@ -3,7 +3,7 @@
 use wayword_core::{ModelError, TextEncoder, seed};
 
 /// How many places words are hashed to.
-const PLACES: u64 = 4096;
+const PLACES: u64 = 1024;
 
 /// Counts of words, hashed: no model. Texts that say the same in other words are far apart for it, so its figures are not those
 /// of a sentence encoder and can only be held against each other.

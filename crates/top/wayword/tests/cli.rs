@@ -8,7 +8,7 @@ use common::{Building, EPISODES, command, files, run};
 use serde_json::{Value, json};
 use std::fs;
 
-const COMMANDS: [&str; 7] = ["demo", "generate", "check", "export", "report", "models", "house"];
+const COMMANDS: [&str; 8] = ["demo", "generate", "check", "export", "report", "similarity", "models", "house"];
 
 #[test]
 fn the_help_of_every_command_has_examples_that_name_it() {

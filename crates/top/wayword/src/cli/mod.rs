@@ -6,6 +6,7 @@ mod doctor;
 mod ledger;
 mod models;
 mod perceive;
+mod similarity;
 
 use crate::settings::{Against, Asked, AskedRoles, Perception, Providers, Service, TargetMode};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -18,6 +19,7 @@ pub use doctor::Doctor;
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
+pub use similarity::{By, Similarity};
 
 /// Writes the wayfinding instructions that a person would give a robot, for any simulator, and checks them.
 #[derive(Debug, Parser)]
@@ -72,6 +74,8 @@ pub enum Command {
     Report(Report),
     /// Measure how well captions fit the labels of their views: objects, ghosts, calls.
     Perceive(Box<Perceive>),
+    /// Measure how alike two sets of instructions are, beside what people and chance reach.
+    Similarity(Similarity),
     /// Check keys, endpoints, models and data, and say what to do.
     #[cfg(feature = "remote")]
     Doctor(Box<Doctor>),

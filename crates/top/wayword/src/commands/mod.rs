@@ -14,6 +14,7 @@ mod ledger;
 mod models;
 mod perceive;
 mod report;
+mod similarity;
 
 use crate::{
     cli::Command,
@@ -37,6 +38,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Export(args) => export::run(&args, output),
         Command::Report(args) => report::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
+        Command::Similarity(args) => similarity::run(&args, output),
         #[cfg(feature = "remote")]
         Command::Doctor(args) => doctor::run(&args, output),
         #[cfg(feature = "remote")]

@@ -1,0 +1,96 @@
+//! Sentence encoders by their names, and texts as vectors.
+
+use crate::{error::Error, output::Output};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{ModelError, TextEncoder};
+use wayword_metrics::Words;
+
+/// So many texts go to the encoder at a time.
+const BATCH: usize = 128;
+
+/// An encoder by its name.
+pub(super) fn encoder(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
+    if name == "words" { Ok(Box::new(Words)) } else { in_process(name) }
+}
+
+#[cfg(feature = "local")]
+fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
+    use wayword_local::{Device, Hub, HubConfig, ModelName, Needs, Precision, SentenceEncoder};
+    let needs = Needs::default()
+        .weights()
+        .required(&["config.json", "tokenizer.json"])
+        .optional(&["1_Pooling/config.json", "sentence_bert_config.json"]);
+    let folder = Hub::new(HubConfig::from_env()?)?.folder(&ModelName::parse(name)?, &needs, &())?;
+    Ok(Box::new(SentenceEncoder::load(name, &folder.path, &Device::cpu(), Precision::F32)?))
+}
+
+#[cfg(not(feature = "local"))]
+fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
+    Err(Error::usage(
+        format!("--encoder {name}: this build runs no models in process"),
+        "build it with `cargo build --release --features full`, or count words with `--encoder words`",
+    ))
+}
+
+/// Each text's vector, each text encoded once.
+pub(super) fn vectors<'a>(
+    encoder: &dyn TextEncoder,
+    texts: impl Iterator<Item = &'a str>,
+    output: &Output,
+) -> Result<BTreeMap<&'a str, Vec<f32>>, Error> {
+    let texts: Vec<&str> = texts.collect::<BTreeSet<_>>().into_iter().collect();
+    let bar = output.progress(texts.len(), "texts");
+    let mut vectors = BTreeMap::new();
+    let mut numbers = None;
+    for batch in texts.chunks(BATCH) {
+        let found = encoder.encode(batch)?;
+        let expected = *numbers.get_or_insert_with(|| found.first().map_or(0, Vec::len));
+        let fits = |vector: &Vec<f32>| vector.len() == expected && vector.iter().all(|number| number.is_finite());
+        if found.len() != batch.len() || !found.iter().all(fits) {
+            let reason = "it did not give one vector of numbers for each text".to_owned();
+            return Err(ModelError::Failed { model: encoder.name().to_owned(), reason }.into());
+        }
+        vectors.extend(batch.iter().copied().zip(found));
+        bar.inc(batch.len() as u64);
+    }
+    bar.finish_and_clear();
+    Ok(vectors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    /// Gives what it is told to, and notes what it was asked.
+    struct Fixed(Vec<f32>, Mutex<Vec<String>>);
+
+    impl TextEncoder for Fixed {
+        fn name(&self) -> &str {
+            "fixed"
+        }
+
+        fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+            self.1.lock().unwrap().extend(texts.iter().map(|text| (*text).to_owned()));
+            Ok(texts.iter().skip(usize::from(self.0.is_empty())).map(|_| self.0.clone()).collect())
+        }
+    }
+
+    fn of(vector: Vec<f32>) -> Result<Vec<String>, Error> {
+        let encoder = Fixed(vector, Mutex::default());
+        vectors(&encoder, ["b", "a", "b", "a"].into_iter(), &Output::new(false, true))?;
+        Ok(encoder.1.into_inner().unwrap())
+    }
+
+    #[test]
+    fn a_text_is_encoded_once() {
+        assert_eq!(of(vec![1.0]).unwrap(), ["a", "b"]);
+    }
+
+    #[test]
+    fn an_encoder_that_gives_no_vectors_is_refused() {
+        for wrong in [vec![f32::NAN], Vec::new()] {
+            assert!(of(wrong).unwrap_err().to_string().contains("fixed"));
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! What each side says, by item.
+
+use crate::{cli::By, error::Error, run::file};
+use serde_json::Value;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+use wayword_formats::{
+    Format,
+    jsonl::{self, Record},
+};
+
+/// Items by their names.
+pub(super) type Items = BTreeMap<String, Texts>;
+
+/// The texts of one item.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Texts {
+    /// Scene and path.
+    pub(super) path: String,
+    pub(super) texts: Vec<String>,
+}
+
+/// Reads a side: a run folder, or a file of any format, with `#STYLE` at the end where one style is meant.
+pub(super) fn side(name: &str, style: Option<&str>, by: By) -> Result<Items, Error> {
+    let (path, own_style) = split(name);
+    let path = if path.is_dir() { path.join(file::INSTRUCTIONS) } else { path };
+    let texts = if wayword_formats::detect(&path)? == Format::Wayword {
+        of_records(&path, own_style.or(style))?
+    } else if let Some(style) = own_style {
+        let problem = format!("{}: items of this format have no style, so none is {style}", path.display());
+        return Err(Error::usage(problem, "leave the # and what follows out"));
+    } else {
+        of_episodes(&path)?
+    };
+    let mut items = Items::new();
+    for Said { item, path, text } in texts {
+        let key = if by == By::Path { path.clone() } else { item };
+        items.entry(key).or_insert_with(|| Texts { path, texts: Vec::new() }).texts.push(text);
+    }
+    Ok(items)
+}
+
+/// A name that is a file's or folder's is taken as it stands.
+fn split(name: &str) -> (PathBuf, Option<&str>) {
+    match name.rsplit_once('#') {
+        Some((path, style)) if !Path::new(name).exists() => (path.into(), Some(style)),
+        _ => (name.into(), None),
+    }
+}
+
+/// One text.
+struct Said {
+    item: String,
+    path: String,
+    text: String,
+}
+
+fn of_episodes(file: &Path) -> Result<Vec<Said>, Error> {
+    let mut all = Vec::new();
+    for episode in wayword_formats::read(file)? {
+        let path = format!("{}/{}", episode.scene, episode.path_id);
+        let said = |text| Said { item: episode.id.clone(), path: path.clone(), text };
+        all.extend(episode.instructions.into_iter().map(said));
+    }
+    Ok(all)
+}
+
+fn of_records(file: &Path, style: Option<&str>) -> Result<Vec<Said>, Error> {
+    let mut records = jsonl::read(file)?;
+    let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
+    let all = styles.iter().cloned().collect::<Vec<_>>().join(", ");
+    if style.is_none() && styles.len() > 1 {
+        let problem = format!("{}: it has several styles ({all}), which are not to be mixed", file.display());
+        return Err(Error::usage(problem, "name one with --style, or with #STYLE behind the folder"));
+    }
+    if let Some(style) = style.filter(|style| !styles.contains(*style)) {
+        let problem = format!("{}: it has no instruction of style {style}", file.display());
+        return Err(Error::usage(problem, format!("it has these styles: {all}")));
+    }
+    records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
+    Ok(records.into_iter().map(of_record).collect())
+}
+
+fn of_record(record: Record) -> Said {
+    let path_id = record.extra.get("path_id").and_then(Value::as_str).unwrap_or(&record.path.id);
+    let path = format!("{}/{path_id}", record.path.scene);
+    Said { item: record.path.id, path, text: record.instruction.text }
+}

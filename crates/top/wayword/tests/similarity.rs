@@ -1,0 +1,91 @@
+//! `wayword similarity` on a made-up building whose items two people described.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, Ran};
+use serde_json::Value;
+use std::fs;
+
+const REVERIE: &str = "data/reverie/REVERIE_val_seen.json";
+const R2R: &str = "data/r2r/R2R_val_seen.json";
+
+fn compare(building: &Building, a: &str, b: &str, args: &[&str]) -> Ran {
+    let mut all = vec!["similarity", a, b, "--encoder", "words", "--resamples", "200"];
+    all.extend(args);
+    building.wayword(&all)
+}
+
+fn figures(building: &Building, a: &str, b: &str, args: &[&str]) -> Value {
+    let ran = compare(building, a, b, &[args, &["--json"]].concat());
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    serde_json::from_str(&ran.out).unwrap()
+}
+
+fn mean(found: &Value, row: &str) -> f64 {
+    found[row]["mean"].as_f64().unwrap()
+}
+
+#[test]
+fn a_run_stands_between_chance_and_itself() {
+    let building = Building::new();
+    let records = building.run_over_episodes("run");
+    let of_style = records.iter().filter(|record| record.instruction.style == "reverie").count();
+    let found = figures(&building, "run#reverie", REVERIE, &[]);
+    assert_eq!(found["a"]["texts"], of_style);
+    assert_eq!(found["figure"]["values"], of_style);
+    assert_eq!(found["encoder"], "words");
+    assert!(mean(&found, "figure") > mean(&found, "random_pairs"), "{found}");
+    assert!(found["same_item"]["values"].as_u64() > Some(0));
+    let same = figures(&building, "run", "run", &["--style", "reverie"]);
+    assert!((mean(&same, "figure") - 1.0).abs() < 1e-6);
+    assert!(same["same_item"].is_null(), "the run has one text per item: {same}");
+    assert_eq!(same["single_in_b"], of_style);
+}
+
+#[test]
+fn items_of_different_datasets_meet_by_their_path() {
+    let building = Building::new();
+    let by_item = compare(&building, REVERIE, R2R, &[]);
+    assert_eq!(by_item.code, Some(1));
+    assert!(by_item.err.contains("no item in common") && by_item.err.contains("--by path"), "{by_item:?}");
+    let by_path = figures(&building, REVERIE, R2R, &["--by", "path"]);
+    assert_eq!(by_path["figure"]["values"], by_path["figure"]["clusters"]);
+}
+
+#[test]
+fn what_one_side_alone_has_is_told() {
+    let building = Building::new();
+    let mut items: Vec<Value> = serde_json::from_str(&fs::read_to_string(building.reverie()).unwrap()).unwrap();
+    items.truncate(3);
+    fs::write(building.path("three.json"), serde_json::to_string(&items).unwrap()).unwrap();
+    let ran = compare(&building, REVERIE, "three.json", &[]);
+    assert!(ran.out.contains("only in B: 0") && !ran.out.contains("only in A: 0"), "{ran:?}");
+    assert!(ran.out.contains("no model"), "{ran:?}");
+}
+
+#[test]
+fn styles_are_not_mixed_and_must_be_there() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    for (a, told) in [("run", "several styles (r2r, reverie)"), ("run#mine", "no instruction of style mine")] {
+        let ran = compare(&building, a, REVERIE, &[]);
+        assert_eq!(ran.code, Some(1));
+        assert!(ran.err.contains(told) && ran.err.contains("hint:"), "{ran:?}");
+    }
+    let of_dataset = compare(&building, REVERIE, &format!("{REVERIE}#r2r"), &[]);
+    assert!(of_dataset.err.contains("have no style"), "{of_dataset:?}");
+}
+
+#[test]
+fn an_encoder_that_is_not_here_is_told() {
+    let building = Building::new();
+    let mut command = building.command(&["similarity", REVERIE, REVERIE]);
+    command.env("WAYWORD_OFFLINE", "1").env("HF_HUB_CACHE", building.path("empty"));
+    let ran = common::run(&mut command);
+    assert_eq!(ran.code, Some(1));
+    // A build without models in process names the encoder that needs none; one with them says what is missing where.
+    let hints = ran.err.contains("--encoder words") || ran.err.contains("config.json");
+    assert!(hints && ran.err.contains("all-MiniLM-L6-v2"), "{ran:?}");
+}
