@@ -80,6 +80,12 @@ impl LocalError {
         Self::Io { file: file.into(), doing, source: Arc::new(source) }
     }
 
+    pub(crate) fn compute(model: &str, error: &candle_core::Error) -> Self {
+        // candle's errors may carry a backtrace.
+        let problem = error.to_string().lines().next().unwrap_or("the computation failed").to_owned();
+        Self::Compute { model: model.to_owned(), problem }
+    }
+
     pub(crate) fn tensor(file: impl Into<PathBuf>, tensor: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Tensor { file: file.into(), tensor: tensor.into(), problem: problem.into() }
     }

@@ -7,20 +7,30 @@
 //! configuration demands, and nothing in it is executed.
 
 mod bert;
+mod blip;
 mod clip;
 mod device;
+mod engine;
 mod error;
+mod eyes;
 mod gguf;
 mod hub;
 mod json;
+mod kept;
+mod memory;
+mod minds;
 mod ops;
 mod picture;
 mod text;
 mod weights;
 
 pub use bert::SentenceEncoder;
+pub use blip::{BlipCaptioner, BlipVqa};
 pub use clip::{Clip, ClipGrounder};
 pub use device::{Device, Precision};
+pub use engine::Kind;
 pub use error::LocalError;
 pub use gguf::{GgufModel, Spoken};
 pub use hub::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs, Progress};
+pub use kept::LocalModel;
+pub use minds::{Loading, Minds};

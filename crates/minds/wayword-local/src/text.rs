@@ -48,6 +48,12 @@ impl Tokenizer {
         Ok(ids)
     }
 
+    /// Ids of a part of a text, with nothing around it.
+    pub(crate) fn inner_ids(&self, text: &str) -> Result<Vec<u32>, LocalError> {
+        let encoding = self.inner.encode(text, false).map_err(|error| self.wrong(&error.to_string()))?;
+        Ok(encoding.get_ids().to_vec())
+    }
+
     /// The text of ids, without special ones.
     pub(crate) fn text(&self, ids: &[u32]) -> Result<String, LocalError> {
         let text = self.inner.decode(ids, true).map_err(|error| self.wrong(&error.to_string()))?;

@@ -40,7 +40,8 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn ok(what: impl Into<String>) -> Self {
+    /// It is as it should be.
+    pub fn ok(what: impl Into<String>) -> Self {
         Self { level: Level::Ok, what: what.into(), to_do: None }
     }
 
@@ -53,7 +54,8 @@ impl Finding {
     }
 
     /// An error that ends in a hint.
-    fn error(text: &str) -> Self {
+    #[must_use]
+    pub fn error(text: &str) -> Self {
         let (what, to_do) = text.split_once("\nhint: ").unwrap_or((text, "see above"));
         Self::problem(what, to_do)
     }
@@ -73,8 +75,11 @@ impl Services {
             return findings;
         }
         price(&model, &mut findings);
-        if speaks(&model, &mut findings) && is_to_see {
-            sees(&model, &mut findings);
+        let spoke = Finding::of_speaking(model.as_ref());
+        let speaks = spoke.level == Level::Ok;
+        findings.push(spoke);
+        if speaks && is_to_see {
+            findings.extend(Finding::of_seeing(model.as_ref()));
         }
         findings
     }
@@ -188,7 +193,7 @@ fn price(model: &RemoteModel, findings: &mut Vec<Finding>) {
     });
 }
 
-fn ask(model: &RemoteModel, message: Message) -> Result<String, String> {
+fn ask(model: &dyn LanguageModel, message: Message) -> Result<String, String> {
     let sampling = Sampling { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
     let request = Request { messages: vec![message], sampling, replicate: by_the_clock() };
     let mut replies = model.complete(&[request]);
@@ -203,31 +208,32 @@ fn by_the_clock() -> u32 {
     u32::try_from(ms & u128::from(u32::MAX)).unwrap_or_default()
 }
 
-fn speaks(model: &RemoteModel, findings: &mut Vec<Finding>) -> bool {
-    match ask(model, Message::user("Answer with the one word: ready")) {
-        Ok(_) => {
-            findings.push(Finding::ok(format!("{} answers", model.name())));
-            true
-        }
-        Err(error) => {
-            let (what, to_do) = error.split_once("\nhint: ").unwrap_or((&error, "see what the service says"));
-            findings.push(Finding::problem(format!("a question failed: {what}"), to_do));
-            false
+impl Finding {
+    /// Asks any model, wherever it runs, for a word.
+    #[must_use]
+    pub fn of_speaking(model: &dyn LanguageModel) -> Self {
+        match ask(model, Message::user("Answer with the one word: ready")) {
+            Ok(_) => Self::ok(format!("{} answers", model.name())),
+            Err(error) => {
+                let (what, to_do) = error.split_once("\nhint: ").unwrap_or((&error, "see what the service says"));
+                Self::problem(format!("a question failed: {what}"), to_do)
+            }
         }
     }
-}
 
-fn sees(model: &RemoteModel, findings: &mut Vec<Finding>) {
-    let pixels = [220, 20, 20].repeat((SQUARE_PX * SQUARE_PX) as usize);
-    let Ok(square) = Image::new(SQUARE_PX, SQUARE_PX, pixels) else { return };
-    let text = "Which colour is this picture? Answer with one word.".to_owned();
-    let to_do = "name another model to see (--see)";
-    findings.push(match ask(model, Message { role: Role::User, text, image: Some(Arc::new(square)) }) {
-        Ok(colour) if colour.to_lowercase().contains("red") => Finding::ok(format!("{} sees", model.name())),
-        Ok(said) => {
-            let what = format!("{} was shown a red square and said: {}", model.name(), faults::short(&said));
-            Finding::warning(what, to_do)
-        }
-        Err(error) => Finding::warning(format!("{} was shown a picture and failed: {error}", model.name()), to_do),
-    });
+    /// Asks any model, wherever it runs, for the colour of a red square.
+    pub fn of_seeing(model: &dyn LanguageModel) -> Option<Self> {
+        let pixels = [220, 20, 20].repeat((SQUARE_PX * SQUARE_PX) as usize);
+        let square = Image::new(SQUARE_PX, SQUARE_PX, pixels).ok()?;
+        let text = "Which colour is this picture? Answer with one word.".to_owned();
+        let to_do = "name another model to see (--see)";
+        Some(match ask(model, Message { role: Role::User, text, image: Some(Arc::new(square)) }) {
+            Ok(colour) if colour.to_lowercase().contains("red") => Self::ok(format!("{} sees", model.name())),
+            Ok(said) => {
+                let what = format!("{} was shown a red square and said: {}", model.name(), faults::short(&said));
+                Self::warning(what, to_do)
+            }
+            Err(error) => Self::warning(format!("{} was shown a picture and failed: {error}", model.name()), to_do),
+        })
+    }
 }

@@ -31,7 +31,8 @@ pub struct Prices(BTreeMap<String, Price>);
 
 impl Price {
     /// Of a model on a user's own machine.
-    pub(crate) fn nothing() -> Self {
+    #[must_use]
+    pub fn nothing() -> Self {
         Self { usd_per_million_in: 0.0, usd_per_million_out: 0.0, as_of: String::new(), tokens_per_picture: 0 }
     }
 

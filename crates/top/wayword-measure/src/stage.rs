@@ -99,7 +99,7 @@ impl Stage {
     pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
         let styles: Vec<Measured> = styles::find(&job.settings.style, job.settings.seed)?;
         let items = wayword::item::items(&job.settings, &self.world)?;
-        let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("measure"))?;
+        let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("measure"), output)?;
         let team = Team::new(&job.settings, calls.as_ref())?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let work = || items.par_iter().map(|item| make(item, &job.settings, &self.world, &team, &styles)).collect();

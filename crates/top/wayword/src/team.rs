@@ -62,7 +62,10 @@ impl Team {
                 None => Box::new(RulesSummariser),
             },
             answerer: match sees {
-                Some(model) => Box::new(ModelAnswerer::new(model, prompts(), Manner::Chat)),
+                Some(model) => {
+                    let manner = calls.map_or(Ok(Manner::Chat), |calls| calls.manner(&roles.see))?;
+                    Box::new(ModelAnswerer::new(model, prompts(), manner))
+                }
                 None => Box::new(Labels),
             },
             writer: match writes {

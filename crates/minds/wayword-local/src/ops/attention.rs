@@ -108,7 +108,9 @@ impl Heads<'_> {
             let bias = &bias[at * queries * keys..(at + 1) * queries * keys];
             scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
         }
-        scores.chunks_mut(keys).for_each(|row| drop(Softmax::new_mut(row).dispatch()));
+        for row in scores.chunks_mut(keys) {
+            Softmax::new_mut(row).dispatch();
+        }
         let mut mixed = vec![0.0; queries * v.width / self.heads];
         let a = GemmInputA::Unpacked(NdTensorView::from_data([queries, keys], &scores[..]));
         let b = GemmInputB::Unpacked(v.head(batch, head, self.heads)?);

@@ -78,6 +78,16 @@ impl Weights {
         Scope::new(self, prefix)
     }
 
+    /// What all tensors take in the weights' numbers, bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let elements = |name: &String| {
+            let shape = self.shape(name).unwrap_or_default();
+            shape.iter().fold(1_u64, |product, &length| product.saturating_mul(length as u64))
+        };
+        let all = self.at.keys().fold(0_u64, |sum, name| sum.saturating_add(elements(name)));
+        all.saturating_mul(self.dtype.size_in_bytes() as u64)
+    }
+
     fn has(&self, name: &str) -> bool {
         self.at.contains_key(name)
     }

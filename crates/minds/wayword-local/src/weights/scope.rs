@@ -5,7 +5,7 @@ use crate::{
     LocalError,
     ops::{Embedding, LayerNorm, Linear, RmsNorm},
 };
-use candle_core::Tensor;
+use candle_core::{DType, Tensor};
 
 /// Tensors whose names begin alike.
 #[derive(Clone)]
@@ -41,6 +41,16 @@ impl<'a> Scope<'a> {
     /// A tensor of a shape.
     pub(crate) fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         self.weights.tensor(&self.name(name), shape)
+    }
+
+    /// A tensor of a shape that is added to what flows through the model: on the processor that has 32 bits, whatever the
+    /// weights have.
+    pub(crate) fn state(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let tensor = self.tensor(name, shape)?;
+        if !tensor.device().is_cpu() {
+            return Ok(tensor);
+        }
+        tensor.to_dtype(DType::F32).map_err(|error| self.wrong(name, &error))
     }
 
     /// `weight` [outputs, inputs] and, where there is one, `bias` [outputs] of a layer.

@@ -3,10 +3,12 @@
 use super::{Price, Spent};
 use crate::{
     error::Error,
+    output::Output,
     settings::{Providers, Service, Settings},
 };
 use std::{collections::BTreeMap, sync::Arc};
 use wayword_core::{LanguageModel, ModelError};
+use wayword_synthesis::prompts::Manner;
 
 /// No build without the feature `remote` holds one.
 pub enum Calls {}
@@ -16,21 +18,21 @@ impl Calls {
     ///
     /// # Errors
     /// Where the settings name one.
-    pub fn rehearse(
-        settings: &Settings,
-        service: &Service,
-        providers: &Providers,
-    ) -> Result<BTreeMap<String, Option<Price>>, Error> {
-        Self::open(settings, service, providers, "").map(|_| BTreeMap::new())
+    pub fn rehearse(settings: &Settings, _: &Service, _: &Providers) -> Result<BTreeMap<String, Option<Price>>, Error> {
+        Self::refuse(settings).map(|()| BTreeMap::new())
     }
 
     /// `None` where the settings name no model.
     ///
     /// # Errors
     /// Where they name one.
-    pub fn open(settings: &Settings, _: &Service, _: &Providers, _: &str) -> Result<Option<Self>, Error> {
+    pub fn open(settings: &Settings, _: &Service, _: &Providers, _: &str, _: &Output) -> Result<Option<Self>, Error> {
+        Self::refuse(settings).map(|()| None)
+    }
+
+    fn refuse(settings: &Settings) -> Result<(), Error> {
         match settings.roles.models().first() {
-            None => Ok(None),
+            None => Ok(()),
             Some(model) => Err(Error::usage(
                 format!("{model} cannot be asked: this build reaches no models"),
                 "build it with `cargo build --release --features full`",
@@ -43,6 +45,14 @@ impl Calls {
     /// # Errors
     /// None.
     pub fn model(&self, _: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+        match *self {}
+    }
+
+    /// Never called.
+    ///
+    /// # Errors
+    /// None.
+    pub fn manner(&self, _: &str) -> Result<Manner, Error> {
         match *self {}
     }
 

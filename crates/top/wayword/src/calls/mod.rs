@@ -4,6 +4,11 @@
 
 #[cfg(not(feature = "remote"))]
 mod absent;
+#[cfg(all(feature = "remote", feature = "local"))]
+mod local;
+#[cfg(all(feature = "remote", not(feature = "local")))]
+#[path = "no_local.rs"]
+mod local;
 #[cfg(feature = "remote")]
 mod place;
 #[cfg(feature = "remote")]

@@ -1,9 +1,11 @@
-//! A build that reaches models over HTTP.
+//! A build that reaches models over HTTP, and may run some in process.
 
-use super::{Price, Spent, ledger_path};
+use super::{Price, Spent, ledger_path, local::Local};
 use crate::{
     error::Error,
-    settings::{Providers, Service, Settings},
+    output::Output,
+    settings::{Providers, Service, Settings, is_in_process},
+    team::cores,
     text_file,
 };
 use std::{
@@ -15,10 +17,13 @@ use std::{
 use wayword_core::{LanguageModel, ModelError};
 use wayword_ledger::{Ledger, Limits, Run};
 use wayword_remote::{Concurrency, Config, Finding, Prices, ProviderConfig, Services};
+use wayword_synthesis::prompts::Manner;
 
 /// The way to models for one command.
 pub struct Calls {
     services: Services,
+    /// Where a model in process is named.
+    local: Option<Local>,
     run: Run,
     record: Option<PathBuf>,
     workers: usize,
@@ -41,8 +46,15 @@ impl Calls {
     ) -> Result<BTreeMap<String, Option<Price>>, Error> {
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
         let services = Services::new(config(settings, service, providers)?, nowhere)?;
-        let price = |name: &str| Ok((name.to_owned(), services.model(name)?.price().map(price)));
-        let prices = settings.roles.models().into_iter().map(price).collect::<Result<_, Error>>()?;
+        let price = |name: &str| -> Result<Option<Price>, Error> {
+            if is_in_process(name) {
+                Local::rehearse(settings, service, name)?;
+                return Ok(Some(Price::nothing()));
+            }
+            Ok(services.model(name)?.price().map(price))
+        };
+        let priced = |name: &str| Ok((name.to_owned(), price(name)?));
+        let prices = settings.roles.models().into_iter().map(priced).collect::<Result<_, Error>>()?;
         if let Some(recording) = &service.replay {
             File::open(recording).map_err(Error::io(recording, "read the recording"))?;
         }
@@ -57,7 +69,7 @@ impl Calls {
     }
 
     /// Opens ledger and services for the models that the settings name; `None` where they name none. `run` names what the
-    /// calls are made for: its spending, earlier commands' included, is what the limits bound.
+    /// calls are made for: its spending, earlier commands' included, is what the limits bound. Shows what is fetched on `output`.
     ///
     /// # Errors
     /// When the ledger cannot be opened, a provider is not known, or a price is needed and not known.
@@ -66,6 +78,7 @@ impl Calls {
         service: &Service,
         providers: &Providers,
         run: &str,
+        output: &Output,
     ) -> Result<Option<Self>, Error> {
         if settings.roles.models().is_empty() {
             return Ok(None);
@@ -76,8 +89,13 @@ impl Calls {
         };
         let run = ledger.run(run, Limits { max_usd: service.max_usd, max_calls: service.max_calls })?;
         let services = Services::new(config(settings, service, providers)?, run.clone())?;
-        let workers = concurrency(service).threads();
-        Ok(Some(Self { services, run, record: service.record.clone(), workers }))
+        let models = settings.roles.models();
+        let in_process = models.iter().any(|name| is_in_process(name));
+        let local = if in_process { Some(Local::open(settings, service, run.clone(), output)?) } else { None };
+        // Who waits for nobody over a network has no use for more items than cores.
+        let waits = models.iter().any(|name| !is_in_process(name));
+        let workers = if waits { concurrency(service).threads() } else { cores() };
+        Ok(Some(Self { services, local, run, record: service.record.clone(), workers }))
     }
 
     /// A model by its name.
@@ -85,13 +103,30 @@ impl Calls {
     /// # Errors
     /// When its provider is not known, or it has no price and one is needed.
     pub fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
-        Ok(self.services.model(name)?)
+        match self.local.as_ref().filter(|_| is_in_process(name)) {
+            Some(local) => local.model(name),
+            None => Ok(self.services.model(name)?),
+        }
+    }
+
+    /// In which manner a model that sees is spoken to.
+    ///
+    /// # Errors
+    /// As for [`Calls::model`].
+    pub fn manner(&self, name: &str) -> Result<Manner, Error> {
+        match self.local.as_ref().filter(|_| is_in_process(name)) {
+            Some(local) => local.manner(name),
+            None => Ok(Manner::Chat),
+        }
     }
 
     /// What `doctor` finds out about a model; one that is to see is shown a picture.
     #[must_use]
     pub fn check(&self, name: &str, sees: bool) -> Vec<Finding> {
-        self.services.check(name, sees)
+        match self.local.as_ref().filter(|_| is_in_process(name)) {
+            Some(local) => local.check(name, sees),
+            None => self.services.check(name, sees),
+        }
     }
 
     /// What was spent so far.

@@ -12,6 +12,12 @@ pub struct Price {
 }
 
 impl Price {
+    /// Of what runs in process.
+    #[cfg(feature = "remote")]
+    pub(super) fn nothing() -> Self {
+        Self { usd_per_million_in: 0.0, usd_per_million_out: 0.0, as_of: String::new() }
+    }
+
     /// What so many tokens cost, US dollars.
     #[must_use]
     pub fn usd(&self, tokens_in: u64, tokens_out: u64) -> f64 {

@@ -54,7 +54,7 @@ pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
             Err(error) => problem("prompts", &error),
         });
     }
-    match Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("doctor")) {
+    match Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("doctor"), output) {
         Err(error) => findings.push(problem("models", &error)),
         Ok(None) => {
             let none = "no model is named: labels answer, rules ask and write. Name some with --llm and --see";

@@ -12,7 +12,7 @@ use wayword_synthesis::{
     walk::FrameSelection,
 };
 
-pub use roles::{AskedRoles, Finish, LABELS, RULES, Roles, is_model};
+pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, is_in_process, is_model};
 pub use service::{Providers, Service};
 
 /// What a run is asked to do. Everything is optional here: what a flag leaves out comes from the file, then from a default.

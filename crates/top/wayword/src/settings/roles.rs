@@ -44,9 +44,24 @@ pub struct AskedRoles {
     /// Longer side of the pictures that models are sent; smaller ones stay as they are. [default: 512]
     #[arg(long, value_name = "PX")]
     pub picture_px: Option<u32>,
+    /// The numbers that hold the weights of a model in process: f32, bf16 or f16. [default: f32, and bf16 for BLIP-2]
+    #[arg(long, value_name = "NUMBERS")]
+    pub precision: Option<Precision>,
     /// Folder of prompt templates of your own: question.j2, answer.j2, summary.j2, condense.j2, write.j2.
     #[arg(long, value_name = "DIR")]
     pub prompts: Option<PathBuf>,
+}
+
+/// The numbers that hold a model's weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// 32 bits.
+    F32,
+    /// 16 bits with the range of 32.
+    Bf16,
+    /// 16 bits.
+    F16,
 }
 
 /// Who writes where a model's texts all failed.
@@ -79,6 +94,9 @@ pub struct Roles {
     pub base_url: Option<String>,
     /// Longer side of the pictures that models are sent.
     pub picture_px: u32,
+    /// The numbers that hold the weights of models in process, where not the usual ones.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub precision: Option<Precision>,
     /// Folder of prompt templates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prompts: Option<PathBuf>,
@@ -94,6 +112,7 @@ impl Default for Roles {
             finish: Finish::default(),
             base_url: None,
             picture_px: PICTURE_PX,
+            precision: None,
             prompts: None,
         }
     }
@@ -113,6 +132,7 @@ impl AskedRoles {
             finish: self.finish.or(file.finish),
             base_url: self.base_url.or(file.base_url),
             picture_px: self.picture_px.or(file.picture_px),
+            precision: self.precision.or(file.precision),
             prompts: self.prompts.or(file.prompts),
         }
     }
@@ -143,6 +163,7 @@ impl AskedRoles {
             finish: self.finish.unwrap_or_default(),
             base_url: self.base_url,
             picture_px,
+            precision: self.precision,
             prompts: self.prompts,
         })
     }
@@ -172,6 +193,12 @@ impl Roles {
         }
         models
     }
+}
+
+/// Whether a model runs in process: its name begins with the place that it comes from.
+#[must_use]
+pub fn is_in_process(name: &str) -> bool {
+    name.starts_with("hf/")
 }
 
 /// Whether a role is played by a model.

@@ -31,6 +31,12 @@ pub struct Service {
     /// Environment variable that holds the key, where exactly one provider is named.
     #[arg(long, value_name = "NAME")]
     pub key_env: Option<String>,
+    /// Where models in process compute: cpu, cuda, cuda:1 or metal (builds with those features). [default: cpu]
+    #[arg(long, value_name = "DEVICE")]
+    pub device: Option<String>,
+    /// Most memory that models in process may take together, GiB. [default: what the machine has free]
+    #[arg(long, value_name = "GIB")]
+    pub memory_gib: Option<f64>,
     /// Prices of your own, TOML (see docs/MODELS.md).
     #[arg(long, value_name = "FILE")]
     pub prices: Option<PathBuf>,
@@ -63,6 +69,8 @@ impl Service {
             tokens_per_minute: self.tokens_per_minute.or(file.tokens_per_minute),
             timeout_s: self.timeout_s.or(file.timeout_s),
             key_env: self.key_env.or(file.key_env),
+            device: self.device.or(file.device),
+            memory_gib: self.memory_gib.or(file.memory_gib),
             prices: self.prices.or(file.prices),
             ledger: self.ledger.or(file.ledger.filter(|_| !replays)),
             record: self.record.or(file.record.filter(|_| !replays)),
@@ -84,6 +92,9 @@ impl Service {
         }
         if self.timeout_s.is_some_and(|timeout_s| !(0.1..=3600.0).contains(&timeout_s)) {
             return refuse("--timeout-s", "give seconds, from 0.1 to 3600");
+        }
+        if self.memory_gib.is_some_and(|gib| !(gib.is_finite() && gib > 0.0)) {
+            return refuse("--memory-gib", "give a number above 0, as in --memory-gib 8");
         }
         let no_rate = |rate: Option<f64>| rate.is_some_and(|rate| !(rate.is_finite() && rate > 0.0));
         if no_rate(self.requests_per_minute) || no_rate(self.tokens_per_minute) {
@@ -109,9 +120,14 @@ mod tests {
     #[test]
     fn numbers_out_of_their_range_are_refused() {
         let refused = |text: &str| toml::from_str::<Service>(text).unwrap().checked().is_err();
-        for bad in
-            ["max_usd = -1.0", "max_usd = nan", "concurrency = 0", "timeout_s = 0.0", "requests_per_minute = 0.0"]
-        {
+        for bad in [
+            "max_usd = -1.0",
+            "max_usd = nan",
+            "concurrency = 0",
+            "timeout_s = 0.0",
+            "requests_per_minute = 0.0",
+            "memory_gib = 0",
+        ] {
             assert!(refused(bad), "{bad}");
         }
         assert!(!refused("max_usd = 0.0\nmax_calls = 0\nconcurrency = 32"));

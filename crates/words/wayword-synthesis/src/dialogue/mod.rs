@@ -110,6 +110,11 @@ struct Pending {
     trouble: Option<Trouble>,
 }
 
+/// Whether a question is the one that asks for a description, first or once more.
+pub(crate) fn is_opening(question: &str) -> bool {
+    question == OPENING || question == trouble::rephrased(OPENING)
+}
+
 /// After so many rounds in a row that bring nothing new the asking ends.
 const STALE_ROUNDS: usize = 2;
 

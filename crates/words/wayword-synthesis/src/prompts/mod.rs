@@ -10,7 +10,7 @@ use minijinja::{Environment, UndefinedBehavior, context};
 use sha2::{Digest, Sha256};
 use wayword_core::{Exchange, ModelError, Sighting, Witness};
 
-use crate::{dialogue::OPENING, writer::Brief};
+use crate::{dialogue::is_opening, writer::Brief};
 
 /// The templates: name and source.
 const BUILT_IN: [(&str, &str); 7] = [
@@ -132,7 +132,7 @@ impl Prompts {
             Manner::Question => "answer_question",
             Manner::Completion => "answer_completion",
         };
-        self.fill(name, context! { question, history, is_opening => question == OPENING })
+        self.fill(name, context! { question, history, is_opening => is_opening(question) })
     }
 
     /// Asks a language model to sum a dialogue up; what was denied is named, so that it stays out, and so is what was wrong

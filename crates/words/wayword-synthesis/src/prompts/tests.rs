@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    dialogue::OPENING,
     style::{Profile, built_in},
     walk::{Observation, Walk},
     writer::Complaint,

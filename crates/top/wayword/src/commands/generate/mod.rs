@@ -59,7 +59,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let mut run = RunFolder::open(folder, settings)?;
     // Without models nothing is spent, and the same run gives the same folder byte for byte.
     let id = if settings.roles.models().is_empty() { String::new() } else { run.id()? };
-    let calls = Calls::open(settings, &job.service, &job.providers, &id)?;
+    let calls = Calls::open(settings, &job.service, &job.providers, &id, output)?;
     let team = Team::new(settings, calls.as_ref())?;
 
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();

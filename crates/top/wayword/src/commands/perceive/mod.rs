@@ -94,7 +94,7 @@ pub fn perceive(
     output: &Output,
 ) -> Result<Measured, Error> {
     let views = labelled_views(&job.settings, platform, extent.views)?;
-    let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("perceive"))?;
+    let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("perceive"), output)?;
     if let Some(calls) = &calls {
         let talk = *output;
         calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));

@@ -1,0 +1,161 @@
+//! BLIP's text model: BERT with attention to a picture, or to a question, in each layer.
+
+use super::config::TextConfig;
+use crate::{
+    LocalError,
+    ops::{Activation, Attention, Embedding, LayerNorm, Linear, causal},
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+
+/// Tokens to states.
+pub(super) struct TextModel {
+    words: Embedding,
+    positions: Embedding,
+    norm: LayerNorm,
+    layers: Vec<Layer>,
+}
+
+/// Keys and values of each layer for what is attended to, computed once.
+pub(super) type Attended = Vec<(Tensor, Tensor)>;
+
+/// Keys and values of each layer for the tokens so far.
+pub(super) struct Past(Vec<Slot>);
+
+/// One layer's.
+type Slot = Option<(Tensor, Tensor)>;
+
+struct Layer {
+    own: Own,
+    cross_query: Linear,
+    cross_keys_values: Linear,
+    cross: Output,
+    wide: Linear,
+    narrow: Output,
+    heads: usize,
+    activation: Activation,
+}
+
+/// Attention among the tokens themselves.
+struct Own {
+    qkv: Linear,
+    output: Output,
+}
+
+/// A layer whose output is added to what went in, and then normed.
+struct Output {
+    dense: Linear,
+    norm: LayerNorm,
+}
+
+impl TextModel {
+    pub(super) fn load(weights: &Scope<'_>, config: &TextConfig) -> std::result::Result<Self, LocalError> {
+        let size = config.hidden_size;
+        let embeddings = weights.sub("embeddings");
+        let layers =
+            (0..config.num_hidden_layers).map(|layer| Layer::load(&weights.sub("encoder.layer").sub(layer), config));
+        Ok(Self {
+            words: embeddings.embedding("word_embeddings", config.vocab_size, size)?,
+            positions: embeddings.embedding("position_embeddings", config.max_position_embeddings, size)?,
+            norm: embeddings.layer_norm("LayerNorm", size, config.layer_norm_eps)?,
+            layers: layers.collect::<std::result::Result<_, _>>()?,
+        })
+    }
+
+    /// Keys and values for states [1, count, size] that tokens will attend to.
+    pub(super) fn attended(&self, states: &Tensor) -> Result<Attended> {
+        let keys_values = |layer: &Layer| {
+            let both = layer.cross_keys_values.of(states)?;
+            let size = both.dim(2)? / 2;
+            Ok((both.narrow(2, 0, size)?, both.narrow(2, size, size)?))
+        };
+        self.layers.iter().map(keys_values).collect()
+    }
+
+    /// Of a whole text [1, length], each token of which sees all: [1, length, size].
+    pub(super) fn read(&self, ids: &Tensor, attended: &Attended) -> Result<Tensor> {
+        let x = self.embedded(ids, 0)?;
+        self.layers.iter().zip(attended).try_fold(x, |x, (layer, attended)| layer.of(&x, attended, None, None))
+    }
+
+    /// Before the first token.
+    pub(super) fn past(&self) -> Past {
+        Past(vec![None; self.layers.len()])
+    }
+
+    /// Of the next tokens [1, length] after those of `past`, each of which sees those before it: [1, length, size].
+    pub(super) fn go_on(&self, ids: &Tensor, attended: &Attended, past: &mut Past) -> Result<Tensor> {
+        let before = past.0.first().and_then(Option::as_ref).map_or(Ok(0), |(keys, _)| keys.dim(1))?;
+        let length = ids.dim(1)?;
+        let mask = if length > 1 { Some(causal(length, before + length, ids.device())?) } else { None };
+        let mut x = self.embedded(ids, before)?;
+        for ((layer, attended), slot) in self.layers.iter().zip(attended).zip(&mut past.0) {
+            x = layer.of(&x, attended, mask.as_ref(), Some(slot))?;
+        }
+        Ok(x)
+    }
+
+    fn embedded(&self, ids: &Tensor, before: usize) -> Result<Tensor> {
+        let (from, to) = (before as u32, (before + ids.dim(1)?) as u32);
+        let positions = self.positions.of(&Tensor::arange(from, to, ids.device())?)?;
+        self.norm.of(&self.words.of(ids)?.broadcast_add(&positions)?)
+    }
+}
+
+impl Layer {
+    fn load(weights: &Scope<'_>, config: &TextConfig) -> std::result::Result<Self, LocalError> {
+        let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
+        let output = |name: &str, inputs: usize| -> std::result::Result<Output, LocalError> {
+            let layer = weights.sub(name);
+            Ok(Output {
+                dense: layer.linear("dense", inputs, size)?,
+                norm: layer.layer_norm("LayerNorm", size, epsilon)?,
+            })
+        };
+        let cross = weights.sub("crossattention.self");
+        Ok(Self {
+            own: Own {
+                qkv: weights.sub("attention.self").linears(&["query", "key", "value"], size, size)?,
+                output: output("attention.output", size)?,
+            },
+            cross_query: cross.linear("query", size, size)?,
+            cross_keys_values: cross.linears(&["key", "value"], config.encoder_hidden_size, size)?,
+            cross: output("crossattention.output", size)?,
+            wide: weights.linear("intermediate.dense", size, inner)?,
+            narrow: output("output", inner)?,
+            heads: config.num_attention_heads,
+            activation: config.hidden_act,
+        })
+    }
+
+    fn of(
+        &self,
+        x: &Tensor,
+        attended: &(Tensor, Tensor),
+        mask: Option<&Tensor>,
+        past: Option<&mut Slot>,
+    ) -> Result<Tensor> {
+        let size = x.dim(2)?;
+        let scale = 1.0 / ((size / self.heads) as f32).sqrt();
+        let qkv = self.own.qkv.of(x)?;
+        let part = |at: usize| qkv.narrow(2, at * size, size);
+        let (mut keys, mut values) = (part(1)?, part(2)?);
+        if let Some(slot) = past {
+            if let Some((old_keys, old_values)) = slot.take() {
+                (keys, values) = (Tensor::cat(&[old_keys, keys], 1)?, Tensor::cat(&[old_values, values], 1)?);
+            }
+            *slot = Some((keys.clone(), values.clone()));
+        }
+        let mixed = Attention { heads: self.heads, scale, bias: mask }.of(&part(0)?, &keys, &values)?;
+        let x = self.own.output.of(&mixed, x)?;
+        let seen = Attention { heads: self.heads, scale, bias: None };
+        let x = self.cross.of(&seen.of(&self.cross_query.of(&x)?, &attended.0, &attended.1)?, &x)?;
+        self.narrow.of(&self.wide.of_then(&x, self.activation)?, &x)
+    }
+}
+
+impl Output {
+    fn of(&self, x: &Tensor, before: &Tensor) -> Result<Tensor> {
+        self.norm.of(&(self.dense.of(x)? + before)?)
+    }
+}

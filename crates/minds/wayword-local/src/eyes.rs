@@ -1,0 +1,61 @@
+//! BLIP as minds that answer requests with a picture.
+
+use crate::{
+    LocalError, Spoken,
+    blip::{BlipCaptioner, BlipVqa},
+    engine::{Engine, Kind},
+};
+use wayword_core::{Finish, Image, Reply, Request};
+
+/// Most tokens of an answer: these models were trained on short ones, and repeat themselves after.
+const MOST_TOKENS: u32 = 40;
+
+/// What one that only answers is asked where a description is wanted.
+const DESCRIBE: &str = "what is in the picture?";
+
+/// BLIP: one checkpoint answers, another one describes.
+pub(crate) struct BlipEye {
+    pub(crate) name: String,
+    pub(crate) answers: Option<BlipVqa>,
+    pub(crate) describes: Option<BlipCaptioner>,
+}
+
+impl Engine for BlipEye {
+    fn kind(&self) -> Kind {
+        Kind::SeesQuestions
+    }
+
+    fn reply(&self, request: &Request) -> Result<Spoken, LocalError> {
+        let (picture, words) = shown(&self.name, request)?;
+        let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        let text = match (&self.answers, &self.describes, words.is_empty()) {
+            (_, Some(describes), true) => describes.caption(picture, "", most)?,
+            (Some(answers), _, false) => answers.answer(picture, words, most)?,
+            (Some(answers), None, true) => answers.answer(picture, DESCRIBE, most)?,
+            (None, _, _) => return Err(self.cannot_answer()),
+        };
+        Ok(spoken(text))
+    }
+}
+
+impl BlipEye {
+    fn cannot_answer(&self) -> LocalError {
+        let problem = "it describes pictures and answers no questions; use --perception single, or name one that answers before \
+                       it, as in --see hf/Salesforce/blip-vqa-base+Salesforce/blip-image-captioning-base";
+        LocalError::Compute { model: self.name.clone(), problem: problem.to_owned() }
+    }
+}
+
+/// The picture and the words of the one message that these models take.
+fn shown<'a>(name: &str, request: &'a Request) -> Result<(&'a Image, &'a str), LocalError> {
+    let wrong = |problem: &str| LocalError::Compute { model: name.to_owned(), problem: problem.to_owned() };
+    let [message] = &request.messages[..] else { return Err(wrong("it takes one message, and no conversation")) };
+    let picture = message.image.as_deref();
+    let picture = picture.ok_or_else(|| wrong("it answers about pictures and writes no texts; use it with --see"))?;
+    Ok((picture, message.text.trim()))
+}
+
+/// Nobody is charged by the token here, so they are not counted.
+fn spoken(text: String) -> Spoken {
+    Spoken { reply: Reply { text, finish: Finish::Stop }, tokens_in: 0, tokens_out: 0 }
+}

@@ -1,0 +1,134 @@
+//! Calls of a model in process, each made once and kept in the ledger: they cost no money, but minutes.
+
+use crate::{LocalError, Spoken, engine::Engine};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use std::{
+    sync::{Arc, Mutex, PoisonError},
+    time::Instant,
+};
+use wayword_core::{Finish, Image, LanguageModel, Message, ModelError, Reply, Request};
+use wayword_ledger::{Answer, Call, OnceError, Refused, Run};
+
+/// A model in process behind the ledger.
+pub struct LocalModel {
+    /// `hf/ORG/NAME`.
+    name: String,
+    /// Which weights these are, and in which numbers: what else could change an answer.
+    origin: String,
+    engine: Arc<dyn Engine>,
+    /// One call at a time: each uses all threads, and two would need twice the memory.
+    turn: Mutex<()>,
+    run: Run,
+}
+
+/// Why a call was not answered.
+#[derive(Debug, thiserror::Error)]
+enum Unanswered {
+    #[error(transparent)]
+    Failed(LocalError),
+    #[error(transparent)]
+    Refused(Refused),
+}
+
+impl LocalModel {
+    pub(crate) fn new(name: &str, origin: String, engine: Arc<dyn Engine>, run: Run) -> Self {
+        Self { name: name.to_owned(), origin, engine, turn: Mutex::new(()), run }
+    }
+
+    /// How it wants to be spoken to.
+    #[must_use]
+    pub fn kind(&self) -> crate::Kind {
+        self.engine.kind()
+    }
+
+    /// Which weights it has, and in which numbers.
+    #[must_use]
+    pub fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    fn one(&self, request: &Request) -> Result<Reply, ModelError> {
+        let asked = self.run.once(&self.call(request), |attempts| {
+            let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+            attempts.begin(Some(0.0)).map_err(Unanswered::Refused)?;
+            let begun = Instant::now();
+            let spoken = self.engine.reply(request).map_err(Unanswered::Failed)?;
+            Ok(answer(spoken, begun))
+        });
+        asked.map(reply).map_err(|error| self.error(error))
+    }
+
+    /// The call as the ledger knows it.
+    fn call(&self, request: &Request) -> Call {
+        let message = |message: &Message| {
+            let picture = message.image.as_deref().map(hash);
+            json!({ "role": message.role, "text": message.text, "image_sha256": picture })
+        };
+        let messages: Vec<Value> = request.messages.iter().map(message).collect();
+        let sampling = &request.sampling;
+        let request_json = json!({
+            "messages": messages,
+            "temperature": sampling.temperature,
+            "max_tokens": sampling.max_tokens,
+            "seed": sampling.seed,
+        });
+        Call {
+            model: self.name.clone(),
+            base_url: self.origin.clone(),
+            request: request_json,
+            replicate: request.replicate,
+        }
+    }
+
+    fn error(&self, error: OnceError<Unanswered>) -> ModelError {
+        let failed = |reason: String| ModelError::Failed { model: self.name.clone(), reason };
+        let refused = match error {
+            OnceError::Call(Unanswered::Failed(error)) => return failed(error.to_string()),
+            OnceError::Call(Unanswered::Refused(refused)) | OnceError::Refused(refused) => refused,
+            OnceError::Ledger(error) => Refused::Ledger(error),
+            // The item failed when the recording was made, too.
+            missing @ OnceError::NotRecorded { .. } => {
+                return failed(missing.to_string().lines().next().unwrap_or("not recorded").to_owned());
+            }
+        };
+        let (reason, hint) = refused.told();
+        ModelError::Stopped { reason, hint }
+    }
+}
+
+impl LanguageModel for LocalModel {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
+        requests.iter().map(|request| self.one(request)).collect()
+    }
+}
+
+fn answer(spoken: Spoken, begun: Instant) -> Answer {
+    Answer {
+        text: spoken.reply.text,
+        finish: if spoken.reply.finish == Finish::Length { "length" } else { "stop" }.to_owned(),
+        tokens_in: spoken.tokens_in,
+        tokens_out: spoken.tokens_out,
+        usd: Some(0.0),
+        latency_ms: u64::try_from(begun.elapsed().as_millis()).unwrap_or(u64::MAX),
+        attempts: 1,
+    }
+}
+
+fn reply(answer: Answer) -> Reply {
+    let finish = if answer.finish == "length" { Finish::Length } else { Finish::Stop };
+    Reply { text: answer.text, finish }
+}
+
+/// Tells pictures apart by what they show.
+pub(crate) fn hash(image: &Image) -> String {
+    let mut hash = Sha256::new();
+    hash.update(image.width_px().to_le_bytes());
+    hash.update(image.height_px().to_le_bytes());
+    hash.update(image.rgb());
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,179 @@
+//! Models in process by their names, each loaded once.
+
+use crate::{
+    Device, LocalError, Precision,
+    blip::{BlipCaptioner, BlipVqa},
+    engine::Engine,
+    eyes::BlipEye,
+    gguf::GgufModel,
+    hub::{Hub, ModelFolder, ModelName, Needs, Progress},
+    json,
+    kept::LocalModel,
+    memory::{self, Budget},
+};
+use serde::Deserialize;
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_ledger::Run;
+
+/// The way to models in process.
+pub struct Minds {
+    hub: Hub,
+    device: Device,
+    precision: Option<Precision>,
+    progress: Box<dyn Progress + Send + Sync>,
+    run: Run,
+    loaded: Mutex<Loaded>,
+}
+
+/// What takes memory.
+#[derive(Default)]
+struct Loaded {
+    models: BTreeMap<String, Arc<LocalModel>>,
+    budget: Budget,
+}
+
+/// How models are loaded.
+#[derive(Debug, Clone)]
+pub struct Loading {
+    /// Where they compute.
+    pub device: Device,
+    /// The numbers that hold their weights; else 32 bits, and 16 for BLIP-2.
+    pub precision: Option<Precision>,
+    /// Most memory that all of them may take, bytes; else what the machine has free.
+    pub memory_bytes: Option<u64>,
+}
+
+/// What a checkpoint is made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Architecture {
+    BlipAnswers,
+    BlipDescribes,
+}
+
+/// The part of `config.json` that says it.
+#[derive(Deserialize)]
+struct Config {
+    model_type: Option<String>,
+    architectures: Option<Vec<String>>,
+}
+
+impl Minds {
+    /// Models from a hub. Their calls are made once and kept by the run.
+    #[must_use]
+    pub fn new(hub: Hub, loading: Loading, progress: Box<dyn Progress + Send + Sync>, run: Run) -> Self {
+        let Loading { device, precision, memory_bytes } = loading;
+        let loaded = Loaded { models: BTreeMap::new(), budget: Budget::new(memory_bytes) };
+        Self { hub, device, precision, progress, run, loaded: Mutex::new(loaded) }
+    }
+
+    /// Whether a name is one of a model that could talk or see in process.
+    ///
+    /// # Errors
+    /// When it is none.
+    pub fn check_name(name: &str) -> Result<(), LocalError> {
+        parts(name).map(drop)
+    }
+
+    /// A model by its name: `hf/ORG/NAME`, two of BLIP as `hf/ORG/ANSWERS+ORG/DESCRIBES`, or `hf/ORG/NAME:FILE.gguf`. It is
+    /// fetched where it is not at hand, and loaded at the first call of this.
+    ///
+    /// # Errors
+    /// When it cannot be had, is damaged, or neither talks nor sees.
+    pub fn model(&self, name: &str) -> Result<Arc<LocalModel>, LocalError> {
+        let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(model) = loaded.models.get(name) {
+            return Ok(Arc::clone(model));
+        }
+        let (engine, origin) = self.load(name, &mut loaded.budget)?;
+        let model = Arc::new(LocalModel::new(name, origin, engine, self.run.clone()));
+        loaded.models.insert(name.to_owned(), Arc::clone(&model));
+        Ok(model)
+    }
+
+    fn load(&self, name: &str, budget: &mut Budget) -> Result<(Arc<dyn Engine>, String), LocalError> {
+        let parts = parts(name)?;
+        let get = |part| self.hub.folder(part, &Needs::of_any(part), &*self.progress);
+        let folders: Vec<ModelFolder> = parts.iter().map(get).collect::<Result<_, _>>()?;
+        if let [ModelFolder { file: Some(file), .. }] = &folders[..] {
+            let length = std::fs::metadata(file).map_err(|error| LocalError::io(file, "read", error))?.len();
+            budget.take(name, length)?;
+            return Ok((Arc::new(GgufModel::load(file, &self.device)?), origin(&folders, None)));
+        }
+        let roles = folders.iter().map(|folder| Architecture::read(&folder.path));
+        let roles: Vec<Architecture> = roles.collect::<Result<_, _>>()?;
+        let precision = self.precision.unwrap_or_default();
+        for folder in &folders {
+            budget.take(name, memory::of_checkpoint(&folder.path, precision)?)?;
+        }
+        let paths: Vec<&Path> = folders.iter().map(|folder| folder.path.as_path()).collect();
+        Ok((self.eye(name, &paths, &roles, precision)?, origin(&folders, Some(precision))))
+    }
+
+    fn eye(
+        &self,
+        name: &str,
+        paths: &[&Path],
+        roles: &[Architecture],
+        precision: Precision,
+    ) -> Result<Arc<dyn Engine>, LocalError> {
+        use Architecture::{BlipAnswers as Answers, BlipDescribes as Describes};
+        let answers = |path: &Path| BlipVqa::load(name, path, &self.device, precision).map(Some);
+        let describes = |path: &Path| BlipCaptioner::load(name, path, &self.device, precision).map(Some);
+        let (answers, describes) = match (roles, paths) {
+            ([Answers], [path]) => (answers(path)?, None),
+            ([Describes], [path]) => (None, describes(path)?),
+            ([Answers, Describes], [first, second]) => (answers(first)?, describes(second)?),
+            ([Describes, Answers], [first, second]) => (answers(second)?, describes(first)?),
+            _ => return Err(no_name(name, "two parts are one BLIP that answers and one that describes")),
+        };
+        Ok(Arc::new(BlipEye { name: name.to_owned(), answers, describes }))
+    }
+}
+
+impl Architecture {
+    fn read(folder: &Path) -> Result<Self, LocalError> {
+        let config: Config = json::read(folder, "config.json", "the configuration")?;
+        let architectures = config.architectures.unwrap_or_default();
+        let has = |name: &str| architectures.iter().any(|architecture| architecture == name);
+        match config.model_type.as_deref() {
+            Some("blip") if has("BlipForQuestionAnswering") => Ok(Self::BlipAnswers),
+            Some("blip") if has("BlipForConditionalGeneration") => Ok(Self::BlipDescribes),
+            other => Err(LocalError::File {
+                file: folder.join("config.json"),
+                problem: format!(
+                    "model_type {}, architectures {:?}: this neither talks nor sees in process",
+                    other.unwrap_or("(none)"),
+                    architectures
+                ),
+                hint: "BLIP and BLIP-2 see; to talk, name a GGUF file of Qwen2.5, Qwen3 or Llama as hf/ORG/NAME:FILE.gguf",
+            }),
+        }
+    }
+}
+
+/// The models of a name.
+fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
+    let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
+    let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));
+    let parts: Vec<ModelName> = parts.collect::<Result<_, _>>()?;
+    if parts.len() > 2 || parts.len() == 2 && parts.iter().any(ModelName::is_gguf) {
+        return Err(no_name(name, "two parts are one BLIP that answers and one that describes"));
+    }
+    Ok(parts)
+}
+
+fn no_name(name: &str, problem: &str) -> LocalError {
+    LocalError::Name { name: name.to_owned(), problem: problem.to_owned() }
+}
+
+/// What could change a model's answers: its weights, and the numbers that hold them.
+fn origin(folders: &[ModelFolder], precision: Option<Precision>) -> String {
+    let identities: Vec<&str> = folders.iter().map(|folder| folder.identity.as_str()).collect();
+    let precision =
+        precision.map_or("as the file has them".to_owned(), |precision| format!("{precision:?}").to_lowercase());
+    format!("in process: {} ({precision})", identities.join("+"))
+}

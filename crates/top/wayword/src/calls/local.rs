@@ -1,0 +1,74 @@
+//! Models in process.
+
+use crate::{
+    download_bar::DownloadBar,
+    error::Error,
+    output::Output,
+    settings::{self, Service, Settings},
+};
+use std::sync::Arc;
+use wayword_core::LanguageModel;
+use wayword_ledger::Run;
+use wayword_local::{Device, Hub, HubConfig, Kind, Loading, Minds, Precision};
+use wayword_remote::Finding;
+use wayword_synthesis::prompts::Manner;
+
+/// The way to models in process for one command.
+pub(super) struct Local {
+    minds: Minds,
+}
+
+impl Local {
+    /// Refuses a name that no model in process can have, and numbers that there are not.
+    pub(super) fn rehearse(settings: &Settings, service: &Service, name: &str) -> Result<(), Error> {
+        loading(settings, service)?;
+        Ok(Minds::check_name(name)?)
+    }
+
+    /// The hub, its cache and the device by the environment and the settings.
+    pub(super) fn open(settings: &Settings, service: &Service, run: Run, output: &Output) -> Result<Self, Error> {
+        let hub = Hub::new(HubConfig::from_env()?)?;
+        Ok(Self { minds: Minds::new(hub, loading(settings, service)?, Box::new(DownloadBar::new(output)), run) })
+    }
+
+    /// Loads a model, once.
+    pub(super) fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+        Ok(self.minds.model(name)?)
+    }
+
+    /// How a model is spoken to.
+    pub(super) fn manner(&self, name: &str) -> Result<Manner, Error> {
+        Ok(match self.minds.model(name)?.kind() {
+            Kind::Talks => Manner::Chat,
+            Kind::SeesQuestions => Manner::Question,
+            Kind::SeesTexts => Manner::Completion,
+        })
+    }
+
+    /// Loads a model and tries it out.
+    pub(super) fn check(&self, name: &str, is_to_see: bool) -> Vec<Finding> {
+        let model = match self.minds.model(name) {
+            Ok(model) => model,
+            Err(error) => return vec![Finding::error(&error.to_string())],
+        };
+        let mut findings = vec![Finding::ok(format!("{name} is loaded, {}", model.origin()))];
+        if model.kind() == Kind::Talks {
+            findings.push(Finding::of_speaking(model.as_ref()));
+        }
+        if model.kind() != Kind::Talks || is_to_see {
+            findings.extend(Finding::of_seeing(model.as_ref()));
+        }
+        findings
+    }
+}
+
+fn loading(settings: &Settings, service: &Service) -> Result<Loading, Error> {
+    let precision = settings.roles.precision.map(|precision| match precision {
+        settings::Precision::F32 => Precision::F32,
+        settings::Precision::Bf16 => Precision::Bf16,
+        settings::Precision::F16 => Precision::F16,
+    });
+    let device = Device::named(service.device.as_deref().unwrap_or("cpu"))?;
+    let memory_bytes = service.memory_gib.map(|gib| (gib * f64::from(1 << 30)) as u64);
+    Ok(Loading { device, precision, memory_bytes })
+}

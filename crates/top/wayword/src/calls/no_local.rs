@@ -1,0 +1,44 @@
+//! A build that runs no model in process.
+
+use crate::{
+    error::Error,
+    output::Output,
+    settings::{Service, Settings},
+};
+use std::sync::Arc;
+use wayword_core::LanguageModel;
+use wayword_ledger::Run;
+use wayword_remote::Finding;
+use wayword_synthesis::prompts::Manner;
+
+/// No build without the feature `local` holds one.
+pub(super) enum Local {}
+
+impl Local {
+    pub(super) fn rehearse(_: &Settings, _: &Service, name: &str) -> Result<(), Error> {
+        Err(refused(name))
+    }
+
+    pub(super) fn open(_: &Settings, _: &Service, _: Run, _: &Output) -> Result<Self, Error> {
+        Err(refused("a model in process"))
+    }
+
+    pub(super) fn model(&self, _: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+        match *self {}
+    }
+
+    pub(super) fn manner(&self, _: &str) -> Result<Manner, Error> {
+        match *self {}
+    }
+
+    pub(super) fn check(&self, _: &str, _: bool) -> Vec<Finding> {
+        match *self {}
+    }
+}
+
+fn refused(name: &str) -> Error {
+    Error::usage(
+        format!("{name} cannot be asked: this build runs no models in process"),
+        "build it with `cargo build --release --features full`",
+    )
+}

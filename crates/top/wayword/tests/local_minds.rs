@@ -1,0 +1,96 @@
+//! Whole runs with models in process: tiny random ones, whose words mean nothing, but take the way that real ones take.
+
+#![cfg(feature = "local")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, Ran, run};
+use std::path::Path;
+
+/// A fixture of the crate that runs models, as a part of a name.
+fn fixture(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../minds/wayword-local/fixtures");
+    folder.join(name).canonicalize().unwrap().display().to_string()
+}
+
+/// Two of BLIP: one that answers, one that describes.
+fn eye() -> String {
+    format!("hf/{}+{}", fixture("blip_vqa"), fixture("blip_caption"))
+}
+
+fn building() -> Building {
+    let building = Building::new();
+    wayword_testkit::write_distinct_skyboxes(&building.data()).unwrap();
+    building
+}
+
+/// `wayword generate` over two paths, offline, with an eye in process.
+fn generate(building: &Building, see: &str, out: &str, args: &[&str]) -> Ran {
+    let all =
+        ["generate", "--platform", "matterport", "--data", "data", "--paths", "2", "--style", "r2r", "--hops", "3..7"];
+    let more = ["--evidence", "captions", "--ledger", "ledger.db", "--json", "--see", see, "--out", out];
+    run(building.command(&[&all[..], &more, args].concat()).env("WAYWORD_OFFLINE", "1"))
+}
+
+#[test]
+fn blip_sees_in_process_and_each_question_is_answered_once() {
+    let building = building();
+    let eye = eye();
+    let first = generate(&building, &eye, "first", &[]);
+    let summary = first.json();
+    assert_eq!(summary["errors"], 0, "{first:?}");
+    assert!(summary["spent"]["answered"].as_u64().unwrap() > 10, "{summary}");
+    let walk = &building.lines("first/walks.jsonl")[0]["observations"][0]["looks"][0]["caption"];
+    assert!(walk["transcript"].as_array().unwrap().len() > 2, "{walk}");
+    assert_eq!(walk["by"]["answerer"].as_str().or(walk["answerer"].as_str()).unwrap_or(&eye), eye);
+
+    let second = generate(&building, &eye, "second", &[]).json();
+    assert_eq!((&second["spent"]["requests"], &second["spent"]["answered"]), (&0.into(), &0.into()), "{second}");
+    // Other numbers may answer otherwise, so they are other calls.
+    let half = generate(&building, &eye, "half", &["--precision", "bf16"]).json();
+    assert!(half["spent"]["answered"].as_u64().unwrap() > 10, "{half}");
+}
+
+#[test]
+fn what_does_not_fit_or_is_none_is_refused_before_anything_is_asked() {
+    let building = building();
+    let eye = eye();
+    let tight = generate(&building, &eye, "tight", &["--memory-gib", "0.1"]);
+    assert!(tight.refused().contains("GiB are left"), "{tight:?}");
+    let cuda = generate(&building, &eye, "cuda", &["--device", "cuda"]);
+    assert!(cuda.refused().contains("--features cuda"), "{cuda:?}");
+    for (at, (name, told)) in [
+        ("hf/blip".to_owned(), "no organisation"),
+        (format!("hf/{}", fixture("bert")), "neither talks nor sees"),
+        (format!("hf/{0}+{0}", fixture("blip_vqa")), "one that describes"),
+        ("hf/org/name".to_owned(), "config.json"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let ran = generate(&building, &name, &format!("none{at}"), &[]);
+        assert!(ran.refused().contains(told), "{name}: {ran:?}");
+    }
+}
+
+#[test]
+fn one_that_only_describes_says_how_to_use_it() {
+    let building = building();
+    let describes = format!("hf/{}", fixture("blip_caption"));
+    assert_eq!(generate(&building, &describes, "single", &["--perception", "single"]).json()["errors"], 0);
+    let asked = generate(&building, &describes, "dialogue", &[]);
+    assert_eq!(asked.json()["errors"], 2, "{asked:?}");
+    let errors = building.lines("dialogue/errors.jsonl");
+    assert!(errors[0]["reason"].as_str().unwrap().contains("--perception single"), "{errors:?}");
+}
+
+#[test]
+fn a_model_that_cannot_read_so_much_is_an_error_of_the_item() {
+    let building = building();
+    let talks = format!("hf/{}", fixture("gguf/qwen3.gguf"));
+    let ran = generate(&building, "labels", "talks", &["--write", &talks]);
+    assert_eq!(ran.json()["errors"], 2, "{ran:?}");
+    let errors = building.lines("talks/errors.jsonl");
+    assert!(errors[0]["reason"].as_str().unwrap().contains("tokens"), "{errors:?}");
+}
