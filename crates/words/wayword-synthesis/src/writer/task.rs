@@ -10,74 +10,93 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Distinction, Side, Verdict};
 
-/// Things to do with a class of things; `{o}` is the thing with its article.
+/// Things to do with a class of things; `{o}` is the thing with its article. They are what people ask for most in REVERIE's train
+/// split, where a class comes up often enough there, the commonest first: a picture is brought, taken down or removed far more
+/// often than admired.
 fn affordances(class: Class) -> &'static [&'static str] {
     match class {
         Class::Seat => &[
-            "push in {o}",
-            "sit on {o}",
-            "wipe down {o}",
-            "move {o}",
+            "pull out {o}",
             "bring me {o}",
-            "dust {o}",
+            "sit on {o}",
+            "move {o}",
             "clean {o}",
-            "vacuum {o}",
+            "sit down on {o}",
+            "push in {o}",
+            "dust off {o}",
         ],
-        Class::Surface => {
-            &["wipe down {o}", "clean {o}", "dust {o}", "clear off {o}", "polish {o}", "tidy {o}", "wipe off {o}"]
-        }
+        Class::Surface => &[
+            "clean {o}",
+            "wipe down {o}",
+            "clean off {o}",
+            "wipe off {o}",
+            "dust off {o}",
+            "clear off {o}",
+            "dust {o}",
+        ],
         Class::Container => &[
             "open {o}",
-            "close {o}",
+            "clean {o}",
             "look inside {o}",
             "dust {o}",
             "wipe down {o}",
-            "clean {o}",
+            "clean off {o}",
             "empty {o}",
-            "organize {o}",
+            "dust off {o}",
         ],
         Class::Bed => {
             &["make {o}", "lie down on {o}", "change the sheets of {o}", "sit on {o}", "look under {o}", "tidy {o}"]
         }
-        Class::Textile => {
-            &["bring me {o}", "fold {o}", "pick up {o}", "straighten {o}", "grab {o}", "wash {o}", "shake out {o}"]
-        }
-        Class::Drape => &["open {o}", "close {o}", "straighten {o}", "pull back {o}", "wash {o}", "draw {o}"],
+        Class::Textile => &["bring me {o}", "pick up {o}", "fold {o}", "grab {o}", "fetch {o}", "straighten {o}"],
+        Class::Drape => &["close {o}", "open {o}", "pull down {o}", "pull back {o}", "wash {o}", "take down {o}"],
         Class::Floor => &["vacuum {o}", "straighten {o}", "roll up {o}", "clean {o}", "shake out {o}"],
         Class::Light => &[
-            "turn on {o}",
             "turn off {o}",
+            "turn on {o}",
+            "change the bulb in {o}",
             "switch off {o}",
             "dust {o}",
-            "change the bulb in {o}",
             "clean {o}",
             "switch on {o}",
         ],
         Class::Switch => &["check {o}", "press {o}", "inspect {o}", "wipe {o}", "test {o}"],
-        Class::WallArt => {
-            &["straighten {o}", "dust {o}", "take down {o}", "look at {o}", "dust off {o}", "clean {o}", "admire {o}"]
-        }
+        Class::WallArt => &[
+            "bring me {o}",
+            "take down {o}",
+            "remove {o}",
+            "clean {o}",
+            "dust off {o}",
+            "straighten {o}",
+            "dust {o}",
+            "look at {o}",
+        ],
         Class::Glass => {
-            &["clean {o}", "wipe {o}", "wash {o}", "polish {o}", "look into {o}", "wipe down {o}", "look through {o}"]
+            &["clean {o}", "polish {o}", "wipe {o}", "wash {o}", "wipe down {o}", "look into {o}", "wipe off {o}"]
         }
         Class::Door => &["open {o}", "close {o}", "knock on {o}", "lock {o}", "clean {o}"],
         Class::Structure | Class::Fabric | Class::Stairs => {
             &["dust {o}", "inspect {o}", "wipe down {o}", "clean {o}", "check {o}", "touch {o}"]
         }
         Class::Water => &["clean {o}", "check {o}", "look into {o}"],
-        Class::Plant => &["water {o}", "trim {o}", "dust {o}", "bring me {o}", "move {o}", "check {o}"],
-        Class::Ornament => &["dust {o}", "bring me {o}", "pick up {o}", "clean {o}", "move {o}", "admire {o}"],
-        Class::Hearth => &["clean out {o}", "light {o}", "sweep {o}", "dust {o}", "check {o}"],
+        Class::Plant => &["water {o}", "bring me {o}", "move {o}", "pick up {o}", "trim {o}", "look at {o}"],
+        Class::Ornament => &["bring me {o}", "pick up {o}", "move {o}", "dust {o}", "clean {o}", "fetch {o}"],
+        Class::Hearth => &["light {o}", "turn on {o}", "clean out {o}", "sweep out {o}", "turn off {o}"],
         Class::Fan => &["turn on {o}", "turn off {o}", "dust {o}", "clean {o}", "switch off {o}"],
-        Class::Appliance => &["turn on {o}", "turn off {o}", "check {o}", "clean {o}", "wipe down {o}", "inspect {o}"],
-        Class::Cooker => &["turn off {o}", "clean {o}", "wipe down {o}", "check {o}", "preheat {o}"],
+        Class::Appliance => &["turn on {o}", "turn off {o}", "check {o}", "clean {o}", "wipe down {o}", "open {o}"],
+        Class::Cooker => &["turn off {o}", "clean {o}", "wipe down {o}", "check {o}", "turn on {o}"],
         Class::Fridge => &["open {o}", "clean {o}", "close {o}", "look inside {o}", "check {o}"],
-        Class::Basin => {
-            &["clean {o}", "wash your hands in {o}", "scrub {o}", "rinse out {o}", "wipe down {o}", "unclog {o}"]
-        }
+        Class::Basin => &[
+            "clean {o}",
+            "fill {o}",
+            "clean out {o}",
+            "rinse out {o}",
+            "wipe out {o}",
+            "drain {o}",
+            "wash your hands in {o}",
+        ],
         Class::Tap => &["turn on {o}", "turn off {o}", "check {o}", "clean {o}", "fix {o}"],
-        Class::Toilet => &["clean {o}", "flush {o}", "scrub {o}", "wipe down {o}", "close {o}"],
-        Class::Tub => &["clean {o}", "scrub {o}", "rinse out {o}", "wipe down {o}", "wash {o}"],
+        Class::Toilet => &["flush {o}", "clean {o}", "scrub {o}", "sit down on {o}", "open the lid of {o}"],
+        Class::Tub => &["clean {o}", "fill {o}", "clean out {o}", "scrub {o}", "rinse out {o}"],
         Class::Screen => &["turn on {o}", "turn off {o}", "dust {o}", "wipe {o}", "watch {o}", "switch off {o}"],
         Class::Music => &["play {o}", "dust {o}", "tune {o}", "polish {o}"],
         Class::Exercise => &["wipe down {o}", "try {o}", "clean {o}", "inspect {o}"],
