@@ -1,5 +1,7 @@
 //! Sentences per second of a sentence encoder of MiniLM's size: random weights, or those of the folder `WAYWORD_MINILM`.
 
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark fails by panicking")]
+
 use candle_core::{Device as On, Tensor};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::{collections::HashMap, hint::black_box, path::Path};

@@ -1,8 +1,9 @@
-//! BLIP as minds that answer requests with a picture.
+//! BLIP and BLIP-2 as minds that answer requests with a picture.
 
 use crate::{
     LocalError, Spoken,
     blip::{BlipCaptioner, BlipVqa},
+    blip2::Blip2,
     engine::{Engine, Kind},
 };
 use wayword_core::{Finish, Image, Reply, Request};
@@ -43,6 +44,24 @@ impl BlipEye {
         let problem = "it describes pictures and answers no questions; use --perception single, or name one that answers before \
                        it, as in --see hf/Salesforce/blip-vqa-base+Salesforce/blip-image-captioning-base";
         LocalError::Compute { model: self.name.clone(), problem: problem.to_owned() }
+    }
+}
+
+/// BLIP-2.
+pub(crate) struct Blip2Eye {
+    pub(crate) name: String,
+    pub(crate) model: Blip2,
+}
+
+impl Engine for Blip2Eye {
+    fn kind(&self) -> Kind {
+        Kind::SeesTexts
+    }
+
+    fn reply(&self, request: &Request) -> Result<Spoken, LocalError> {
+        let (picture, words) = shown(&self.name, request)?;
+        let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        Ok(spoken(self.model.answer(picture, words, most)?))
     }
 }
 

@@ -28,3 +28,12 @@ pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> R
     let text = std::fs::read_to_string(&file).map_err(|error| LocalError::io(&file, "read", error))?;
     serde_json::from_str(&text).map(Some).map_err(|error| wrong(error.to_string()))
 }
+
+/// Sizes that no model has would overflow what is reckoned with them.
+const LARGEST_SIZE: usize = 1 << 20;
+
+/// What is wrong with a configuration's sizes, where one is none.
+pub(crate) fn size_problem(sizes: &[(&str, usize)]) -> Option<String> {
+    let (name, size) = sizes.iter().find(|(_, size)| !(1..=LARGEST_SIZE).contains(size))?;
+    Some(format!("{name}: {size} is not from 1 to {LARGEST_SIZE}"))
+}

@@ -8,12 +8,14 @@
 
 mod bert;
 mod blip;
+mod blip2;
 mod clip;
 mod device;
 mod engine;
 mod error;
 mod eyes;
 mod gguf;
+mod greedy;
 mod hub;
 mod json;
 mod kept;
@@ -21,11 +23,13 @@ mod memory;
 mod minds;
 mod ops;
 mod picture;
+mod picture_cache;
 mod text;
 mod weights;
 
 pub use bert::SentenceEncoder;
 pub use blip::{BlipCaptioner, BlipVqa};
+pub use blip2::Blip2;
 pub use clip::{Clip, ClipGrounder};
 pub use device::{Device, Precision};
 pub use engine::Kind;

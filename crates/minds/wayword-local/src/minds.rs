@@ -3,8 +3,9 @@
 use crate::{
     Device, LocalError, Precision,
     blip::{BlipCaptioner, BlipVqa},
+    blip2::Blip2,
     engine::Engine,
-    eyes::BlipEye,
+    eyes::{Blip2Eye, BlipEye},
     gguf::GgufModel,
     hub::{Hub, ModelFolder, ModelName, Needs, Progress},
     json,
@@ -52,6 +53,7 @@ pub struct Loading {
 enum Architecture {
     BlipAnswers,
     BlipDescribes,
+    Blip2,
 }
 
 /// The part of `config.json` that says it.
@@ -105,7 +107,8 @@ impl Minds {
         }
         let roles = folders.iter().map(|folder| Architecture::read(&folder.path));
         let roles: Vec<Architecture> = roles.collect::<Result<_, _>>()?;
-        let precision = self.precision.unwrap_or_default();
+        let usual = if roles.contains(&Architecture::Blip2) { Precision::Bf16 } else { Precision::F32 };
+        let precision = self.precision.unwrap_or(usual);
         for folder in &folders {
             budget.take(name, memory::of_checkpoint(&folder.path, precision)?)?;
         }
@@ -120,10 +123,14 @@ impl Minds {
         roles: &[Architecture],
         precision: Precision,
     ) -> Result<Arc<dyn Engine>, LocalError> {
-        use Architecture::{BlipAnswers as Answers, BlipDescribes as Describes};
+        use Architecture::{Blip2 as Both, BlipAnswers as Answers, BlipDescribes as Describes};
         let answers = |path: &Path| BlipVqa::load(name, path, &self.device, precision).map(Some);
         let describes = |path: &Path| BlipCaptioner::load(name, path, &self.device, precision).map(Some);
         let (answers, describes) = match (roles, paths) {
+            ([Both], [path]) => {
+                let model = Blip2::load(name, path, &self.device, precision)?;
+                return Ok(Arc::new(Blip2Eye { name: name.to_owned(), model }));
+            }
             ([Answers], [path]) => (answers(path)?, None),
             ([Describes], [path]) => (None, describes(path)?),
             ([Answers, Describes], [first, second]) => (answers(first)?, describes(second)?),
@@ -142,6 +149,7 @@ impl Architecture {
         match config.model_type.as_deref() {
             Some("blip") if has("BlipForQuestionAnswering") => Ok(Self::BlipAnswers),
             Some("blip") if has("BlipForConditionalGeneration") => Ok(Self::BlipDescribes),
+            Some("blip-2") => Ok(Self::Blip2),
             other => Err(LocalError::File {
                 file: folder.join("config.json"),
                 problem: format!(

@@ -60,11 +60,6 @@ impl Tokenizer {
         Ok(text.trim().to_owned())
     }
 
-    /// The id of a token, where there is one.
-    pub(crate) fn id(&self, token: &str) -> Option<u32> {
-        self.inner.token_to_id(token)
-    }
-
     fn wrong(&self, problem: &str) -> LocalError {
         LocalError::File { file: self.file.clone(), problem: problem.to_owned(), hint: "fetch it again" }
     }

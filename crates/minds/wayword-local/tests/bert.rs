@@ -1,5 +1,13 @@
 //! Sentence encoders against PyTorch: `fixtures/make_bert.py` says how the numbers were made.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test fails by panicking"
+)]
+
 use std::path::{Path, PathBuf};
 use wayword_local::{Device, Precision, SentenceEncoder};
 

@@ -1,5 +1,13 @@
 //! BLIP against PyTorch: `fixtures/make_blip.py` says how the numbers were made.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test fails by panicking"
+)]
+
 use std::path::{Path, PathBuf};
 use wayword_core::Image;
 use wayword_local::{BlipCaptioner, BlipVqa, Device, LocalError, Precision};

@@ -1,5 +1,13 @@
 //! Small instruct models against transformers: `fixtures/make_gguf.py` says how the replies were made.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test fails by panicking"
+)]
+
 use serde::Deserialize;
 use std::{path::PathBuf, sync::Arc};
 use wayword_core::{Finish, Image, Message, Role, Sampling};

@@ -6,6 +6,7 @@ use tempfile::TempDir;
 use wayword::{
     calls::{Calls, Spent},
     error::Error,
+    output::Output,
     pipeline::{Made, make},
     run::fresh_id,
     settings::{Against, Asked, AskedRoles, Job, Service},
@@ -99,7 +100,8 @@ impl Stage {
     pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
         let styles: Vec<Measured> = styles::find(&job.settings.style, job.settings.seed)?;
         let items = wayword::item::items(&job.settings, &self.world)?;
-        let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("measure"), output)?;
+        let calls =
+            Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("measure"), &Output::new(false, true))?;
         let team = Team::new(&job.settings, calls.as_ref())?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let work = || items.par_iter().map(|item| make(item, &job.settings, &self.world, &team, &styles)).collect();

@@ -65,7 +65,7 @@ impl Config {
             return Err(wrong(format!("model_type: {kind} is not bert")));
         }
         let heads = config.num_attention_heads;
-        if heads == 0 || config.hidden_size % heads != 0 {
+        if heads == 0 || !config.hidden_size.is_multiple_of(heads) {
             return Err(wrong(format!("num_attention_heads: {heads} do not divide {}", config.hidden_size)));
         }
         Ok(config)

@@ -17,15 +17,15 @@ pub(super) struct Config {
 /// `vision_config`.
 #[derive(Debug, Deserialize)]
 #[serde(default)]
-pub(super) struct VisionConfig {
-    pub(super) hidden_size: usize,
-    pub(super) intermediate_size: usize,
-    pub(super) num_hidden_layers: usize,
-    pub(super) num_attention_heads: usize,
-    pub(super) image_size: usize,
-    pub(super) patch_size: usize,
-    pub(super) hidden_act: Activation,
-    pub(super) layer_norm_eps: f64,
+pub(crate) struct VisionConfig {
+    pub(crate) hidden_size: usize,
+    pub(crate) intermediate_size: usize,
+    pub(crate) num_hidden_layers: usize,
+    pub(crate) num_attention_heads: usize,
+    pub(crate) image_size: usize,
+    pub(crate) patch_size: usize,
+    pub(crate) hidden_act: Activation,
+    pub(crate) layer_norm_eps: f64,
 }
 
 /// `text_config`.
@@ -81,23 +81,55 @@ impl Default for TextConfig {
 impl Config {
     pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
         let config: Self = json::read(folder, "config.json", "the configuration")?;
-        let (text, vision) = (&config.text_config, &config.vision_config);
-        let divides = |part: usize, whole: usize| part > 0 && whole % part == 0;
-        let problem = if config.model_type.as_deref() != Some("blip") {
-            "model_type: it is not blip"
-        } else if !divides(vision.num_attention_heads, vision.hidden_size) {
-            "vision_config.num_attention_heads: they do not divide hidden_size"
-        } else if !divides(text.num_attention_heads, text.hidden_size) {
-            "text_config.num_attention_heads: they do not divide hidden_size"
-        } else if !divides(vision.patch_size, vision.image_size) {
-            "vision_config.patch_size: it does not divide image_size"
-        } else {
-            return Ok(config);
-        };
-        Err(LocalError::File {
-            file: folder.join("config.json"),
-            problem: problem.to_owned(),
-            hint: "name a BLIP checkpoint, as Salesforce/blip-vqa-base",
-        })
+        let problem = config.problem();
+        match problem {
+            None => Ok(config),
+            Some(problem) => Err(LocalError::File {
+                file: folder.join("config.json"),
+                problem,
+                hint: "name a BLIP checkpoint, as Salesforce/blip-vqa-base",
+            }),
+        }
+    }
+
+    fn problem(&self) -> Option<String> {
+        if self.model_type.as_deref() != Some("blip") {
+            return Some("model_type: it is not blip".to_owned());
+        }
+        let text = &self.text_config;
+        let sizes = [
+            ("text_config.vocab_size", text.vocab_size),
+            ("text_config.hidden_size", text.hidden_size),
+            ("text_config.encoder_hidden_size", text.encoder_hidden_size),
+            ("text_config.intermediate_size", text.intermediate_size),
+            ("text_config.max_position_embeddings", text.max_position_embeddings),
+        ];
+        if let Some(problem) = self.vision_config.problem().or_else(|| json::size_problem(&sizes)) {
+            return Some(problem);
+        }
+        let heads = text.num_attention_heads;
+        (heads == 0 || !text.hidden_size.is_multiple_of(heads))
+            .then(|| "text_config.num_attention_heads: they do not divide hidden_size".to_owned())
+    }
+}
+
+impl VisionConfig {
+    /// What is wrong with it, where something is.
+    pub(crate) fn problem(&self) -> Option<String> {
+        let sizes = [
+            ("vision_config.hidden_size", self.hidden_size),
+            ("vision_config.intermediate_size", self.intermediate_size),
+            ("vision_config.num_attention_heads", self.num_attention_heads),
+            ("vision_config.image_size", self.image_size),
+            ("vision_config.patch_size", self.patch_size),
+        ];
+        if let Some(problem) = json::size_problem(&sizes) {
+            return Some(problem);
+        }
+        if !self.hidden_size.is_multiple_of(self.num_attention_heads) {
+            return Some("vision_config.num_attention_heads: they do not divide hidden_size".to_owned());
+        }
+        (!self.image_size.is_multiple_of(self.patch_size))
+            .then(|| "vision_config.patch_size: it does not divide image_size".to_owned())
     }
 }

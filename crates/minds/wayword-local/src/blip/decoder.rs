@@ -6,10 +6,11 @@ use super::{
 };
 use crate::{
     LocalError,
+    greedy::greedy,
     ops::{Activation, LayerNorm, Linear},
     weights::Scope,
 };
-use candle_core::{D, DType, Device, Result, Tensor};
+use candle_core::{Device, Result, Tensor};
 
 /// A text model with a head that names the next token.
 pub(super) struct Decoder {
@@ -54,21 +55,12 @@ impl Decoder {
 
     /// What follows a beginning: at most `most` tokens, without the one that ends them. The first token of all is not given.
     pub(super) fn speak(&self, prompt: &[u32], attended: &Attended, most: usize, device: &Device) -> Result<Vec<u32>> {
-        let mut next: Vec<u32> = std::iter::once(self.begin).chain(prompt.iter().copied()).collect();
-        let (mut past, mut said) = (self.text.past(), Vec::new());
-        let most = most.min(self.longest.saturating_sub(next.len()));
-        while said.len() < most {
-            let states = self.text.go_on(&Tensor::new(&next[..], device)?.unsqueeze(0)?, attended, &mut past)?;
-            let last = states.narrow(1, states.dim(1)? - 1, 1)?;
-            let token = self.logits(&last)?.to_dtype(DType::F32)?.argmax(D::Minus1)?.flatten_all()?.to_vec1::<u32>()?;
-            match token.first() {
-                Some(&token) if token != self.end => {
-                    said.push(token);
-                    next = vec![token];
-                }
-                _ => break,
-            }
-        }
-        Ok(said)
+        let begun: Vec<u32> = std::iter::once(self.begin).chain(prompt.iter().copied()).collect();
+        let mut past = self.text.past();
+        greedy(most.min(self.longest.saturating_sub(begun.len())), self.end, |token| {
+            let next = token.map_or_else(|| begun.clone(), |token| vec![token]);
+            let states = self.text.go_on(&Tensor::new(next, device)?.unsqueeze(0)?, attended, &mut past)?;
+            self.logits(&states.narrow(1, states.dim(1)? - 1, 1)?)
+        })
     }
 }

@@ -3,10 +3,11 @@
 mod caption;
 mod config;
 mod decoder;
-mod picture_cache;
 mod text;
 mod vision;
 mod vqa;
 
 pub use caption::BlipCaptioner;
+pub(crate) use config::VisionConfig;
+pub(crate) use vision::Vision;
 pub use vqa::BlipVqa;

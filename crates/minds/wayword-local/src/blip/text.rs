@@ -3,7 +3,7 @@
 use super::config::TextConfig;
 use crate::{
     LocalError,
-    ops::{Activation, Attention, Embedding, LayerNorm, Linear, causal},
+    ops::{Activation, Attention, Embedding, LayerNorm, Linear, Past, causal},
     weights::Scope,
 };
 use candle_core::{Result, Tensor};
@@ -18,12 +18,6 @@ pub(super) struct TextModel {
 
 /// Keys and values of each layer for what is attended to, computed once.
 pub(super) type Attended = Vec<(Tensor, Tensor)>;
-
-/// Keys and values of each layer for the tokens so far.
-pub(super) struct Past(Vec<Slot>);
-
-/// One layer's.
-type Slot = Option<(Tensor, Tensor)>;
 
 struct Layer {
     own: Own,
@@ -75,22 +69,25 @@ impl TextModel {
     /// Of a whole text [1, length], each token of which sees all: [1, length, size].
     pub(super) fn read(&self, ids: &Tensor, attended: &Attended) -> Result<Tensor> {
         let x = self.embedded(ids, 0)?;
-        self.layers.iter().zip(attended).try_fold(x, |x, (layer, attended)| layer.of(&x, attended, None, None))
+        self.layers
+            .iter()
+            .zip(attended)
+            .try_fold(x, |x, (layer, attended)| layer.of(&x, attended, None, &mut Past::default()))
     }
 
-    /// Before the first token.
-    pub(super) fn past(&self) -> Past {
-        Past(vec![None; self.layers.len()])
+    /// Before the first token, layer by layer.
+    pub(super) fn past(&self) -> Vec<Past> {
+        vec![Past::default(); self.layers.len()]
     }
 
     /// Of the next tokens [1, length] after those of `past`, each of which sees those before it: [1, length, size].
-    pub(super) fn go_on(&self, ids: &Tensor, attended: &Attended, past: &mut Past) -> Result<Tensor> {
-        let before = past.0.first().and_then(Option::as_ref).map_or(Ok(0), |(keys, _)| keys.dim(1))?;
+    pub(super) fn go_on(&self, ids: &Tensor, attended: &Attended, past: &mut [Past]) -> Result<Tensor> {
+        let before = past.first().map_or(Ok(0), Past::len)?;
         let length = ids.dim(1)?;
         let mask = if length > 1 { Some(causal(length, before + length, ids.device())?) } else { None };
         let mut x = self.embedded(ids, before)?;
-        for ((layer, attended), slot) in self.layers.iter().zip(attended).zip(&mut past.0) {
-            x = layer.of(&x, attended, mask.as_ref(), Some(slot))?;
+        for ((layer, attended), past) in self.layers.iter().zip(attended).zip(past) {
+            x = layer.of(&x, attended, mask.as_ref(), past)?;
         }
         Ok(x)
     }
@@ -128,24 +125,12 @@ impl Layer {
         })
     }
 
-    fn of(
-        &self,
-        x: &Tensor,
-        attended: &(Tensor, Tensor),
-        mask: Option<&Tensor>,
-        past: Option<&mut Slot>,
-    ) -> Result<Tensor> {
+    fn of(&self, x: &Tensor, attended: &(Tensor, Tensor), mask: Option<&Tensor>, past: &mut Past) -> Result<Tensor> {
         let size = x.dim(2)?;
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
         let qkv = self.own.qkv.of(x)?;
         let part = |at: usize| qkv.narrow(2, at * size, size);
-        let (mut keys, mut values) = (part(1)?, part(2)?);
-        if let Some(slot) = past {
-            if let Some((old_keys, old_values)) = slot.take() {
-                (keys, values) = (Tensor::cat(&[old_keys, keys], 1)?, Tensor::cat(&[old_values, values], 1)?);
-            }
-            *slot = Some((keys.clone(), values.clone()));
-        }
+        let (keys, values) = past.grow(part(1)?, part(2)?)?;
         let mixed = Attention { heads: self.heads, scale, bias: mask }.of(&part(0)?, &keys, &values)?;
         let x = self.own.output.of(&mixed, x)?;
         let seen = Attention { heads: self.heads, scale, bias: None };

@@ -1,4 +1,4 @@
-//! BLIP's vision transformer.
+//! BLIP's vision transformer; BLIP-2's has the same shape.
 
 use super::config::VisionConfig;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 use candle_core::{Result, Tensor};
 
 /// Pictures to states.
-pub(super) struct Vision {
+pub(crate) struct Vision {
     patch: Linear,
     patch_px: usize,
     class: Tensor,
@@ -30,7 +30,7 @@ struct Layer {
 }
 
 impl Vision {
-    pub(super) fn load(weights: &Scope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
+    pub(crate) fn load(weights: &Scope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
         let (size, patch_px) = (config.hidden_size, config.patch_size);
         let embeddings = weights.sub("embeddings");
         let count = (config.image_size / patch_px).pow(2) + 1;
@@ -50,8 +50,9 @@ impl Vision {
     }
 
     /// Of pictures [batch, 3, height, width]: [batch, patches + 1, size].
-    pub(super) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
-        let x = self.patch.of(&patches(pictures, self.patch_px)?)?;
+    pub(crate) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
+        let pictures = pictures.to_dtype(self.class.dtype())?;
+        let x = self.patch.of(&patches(&pictures, self.patch_px)?)?;
         let (batch, _, size) = x.dims3()?;
         let x = Tensor::cat(&[&self.class.expand((batch, 1, size))?.contiguous()?, &x], 1)?;
         let x = x.broadcast_add(&self.positions)?;

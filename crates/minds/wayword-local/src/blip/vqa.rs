@@ -3,11 +3,12 @@
 use super::{
     config::Config,
     decoder::Decoder,
-    picture_cache::PictureCache,
     text::{Attended, TextModel},
     vision::Vision,
 };
-use crate::{Device, LocalError, Precision, picture::Processor, text::Tokenizer, weights::Weights};
+use crate::{
+    Device, LocalError, Precision, picture::Processor, picture_cache::PictureCache, text::Tokenizer, weights::Weights,
+};
 use candle_core::{DType, Tensor};
 use std::path::Path;
 use wayword_core::Image;

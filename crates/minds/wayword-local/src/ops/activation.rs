@@ -49,12 +49,12 @@ impl Activation {
     /// Of each number, on all threads.
     pub(super) fn map(self, numbers: &mut [f32]) {
         numbers.par_chunks_mut(PIECE).for_each(|piece| match self {
-            Self::Gelu => drop(Gelu {}.map_mut(piece)),
-            Self::GeluTanh => drop(ApproxGelu {}.map_mut(piece)),
-            Self::QuickGelu => drop(Swish { alpha: 1.702 }.map_mut(piece)),
+            Self::Gelu => Gelu {}.map_mut(piece),
+            Self::GeluTanh => ApproxGelu {}.map_mut(piece),
+            Self::QuickGelu => Swish { alpha: 1.702 }.map_mut(piece),
             Self::Relu => piece.iter_mut().for_each(|number| *number = number.max(0.0)),
-            Self::Silu => drop(Silu {}.map_mut(piece)),
-            Self::Sigmoid => drop(Sigmoid {}.map_mut(piece)),
+            Self::Silu => Silu {}.map_mut(piece),
+            Self::Sigmoid => Sigmoid {}.map_mut(piece),
         });
     }
 }

@@ -10,6 +10,7 @@ mod embedding;
 mod half;
 mod linear;
 mod norm;
+mod past;
 mod patches;
 mod slices;
 
@@ -18,6 +19,7 @@ pub(crate) use attention::{Attention, causal};
 pub(crate) use embedding::Embedding;
 pub(crate) use linear::Linear;
 pub(crate) use norm::{LayerNorm, RmsNorm};
+pub(crate) use past::Past;
 pub(crate) use patches::patches;
 
 #[cfg(test)]

@@ -33,11 +33,6 @@ impl<'a> Scope<'a> {
         self.weights.has(&self.name(name))
     }
 
-    /// The shape of a tensor, where there is one: for what a configuration does not say.
-    pub(crate) fn shape(&self, name: &str) -> Option<Vec<usize>> {
-        self.weights.shape(&self.name(name))
-    }
-
     /// A tensor of a shape.
     pub(crate) fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         self.weights.tensor(&self.name(name), shape)

@@ -20,7 +20,7 @@ fn a_tensor_is_read_by_name_and_shape() {
     let weights = open(folder.path()).unwrap();
     let tensor = weights.scope("layer").tensor("weight", &[2, 3]).unwrap();
     assert_eq!(tensor.to_vec2::<f32>().unwrap(), [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]);
-    assert_eq!(weights.scope("").shape("layer.weight"), Some(vec![2, 3]));
+    assert_eq!(weights.bytes(), 6 * 4);
 }
 
 #[test]

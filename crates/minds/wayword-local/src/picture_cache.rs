@@ -24,10 +24,11 @@ impl<T> PictureCache<T> {
     pub(crate) fn get<E>(&self, picture: &Image, make: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
         let name = hash(picture);
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(at) = kept.iter().position(|(known, _)| *known == name) {
-            let found = Arc::clone(&kept[at].1);
-            kept.swap(0, at);
-            return Ok(found);
+        let at = kept.iter().position(|(known, _)| *known == name);
+        if let Some(found) = at.and_then(|at| kept.remove(at)) {
+            let value = Arc::clone(&found.1);
+            kept.push_front(found);
+            return Ok(value);
         }
         let made = Arc::new(make()?);
         kept.push_front((name, Arc::clone(&made)));
