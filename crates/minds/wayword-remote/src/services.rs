@@ -4,7 +4,7 @@ use crate::{
     Concurrency, Config, ConfigError, Price, RemoteModel,
     endpoint::Endpoint,
     picture::Pictures,
-    provider::{self, Table},
+    provider::{self, Provider, Table},
 };
 use std::{
     collections::BTreeMap,
@@ -66,9 +66,17 @@ impl Services {
     pub fn model(&self, name: &str) -> Result<Arc<RemoteModel>, ConfigError> {
         let (provider, _) = provider::split(name)?;
         let endpoint = self.endpoint(provider)?;
-        let price = if endpoint.provider.local { Some(Price::nothing()) } else { self.config.prices.of(name) };
-        if self.config.needs_prices && price.is_none() {
-            return Err(ConfigError::NoPrice(name.to_owned()));
+        let price = self.price(name, &endpoint.provider);
+        if self.config.needs_prices {
+            if price.is_none() {
+                return Err(ConfigError::NoPrice(name.to_owned()));
+            }
+            if changes_the_limit(&endpoint.provider) {
+                return Err(ConfigError::Setting {
+                    setting: format!("omit or extra of [providers.{provider}]"),
+                    problem: "must leave the limit of tokens as it is where money is bounded: the bound rests on it",
+                });
+            }
         }
         Ok(Arc::new(RemoteModel {
             name: name.to_owned(),
@@ -79,6 +87,12 @@ impl Services {
             attempts: self.config.attempts,
             threads: self.config.concurrency.threads(),
         }))
+    }
+
+    /// What a model costs. One that runs at home costs nothing; at another address, only as long as no money is bounded.
+    fn price(&self, name: &str, provider: &Provider) -> Option<Price> {
+        let at_home = provider.local && (provider.base_url.loopback || !self.config.needs_prices);
+        self.config.prices.of(name).or_else(|| at_home.then(Price::nothing))
     }
 
     /// The providers that can be named.
@@ -107,5 +121,60 @@ impl fmt::Debug for Services {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Settings are as a user typed them: a key may stand in the wrong place.
         f.debug_struct("Services").field("providers", &self.names()).finish_non_exhaustive()
+    }
+}
+
+/// Whether settings take the limit of tokens out of a request, put another one in, or ask for several answers at once.
+fn changes_the_limit(provider: &Provider) -> bool {
+    const IN_BODY: [&str; 8] = [
+        "max_tokens",
+        "max_completion_tokens",
+        "max_output_tokens",
+        "n",
+        "best_of",
+        "num_predict",
+        "options",
+        "generationConfig",
+    ];
+    let omits = provider.omit.iter().any(|field| field == "max_tokens");
+    omits || IN_BODY.iter().any(|field| provider.extra.contains_key(*field))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ProviderConfig;
+    use wayword_ledger::{Ledger, Limits};
+
+    /// Why a model is refused where money is bounded.
+    fn refused(base_url: Option<&str>, provider: &str, config: ProviderConfig) -> Option<String> {
+        let config = Config {
+            providers: [(provider.to_owned(), config)].into(),
+            base_url: base_url.map(str::to_owned),
+            needs_prices: true,
+            ..Config::default()
+        };
+        let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();
+        let services = Services::new(config, run).unwrap();
+        services.model(&format!("{provider}/gpt-4.1-mini")).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_runs_at_home_is_free_and_the_same_software_elsewhere_is_not() {
+        assert_eq!(refused(None, "vllm", ProviderConfig::default()), None);
+        let told = refused(Some("https://models.example.com/v1"), "vllm", ProviderConfig::default()).unwrap();
+        assert!(told.contains("price"), "{told}");
+    }
+
+    #[test]
+    fn money_is_not_bounded_where_the_limit_of_tokens_is_not() {
+        assert_eq!(refused(None, "openai", ProviderConfig::default()), None);
+        let omits = ProviderConfig { omit: Some(vec!["max_tokens".to_owned()]), ..ProviderConfig::default() };
+        let extra = [("n".to_owned(), 3.into())].into_iter().collect();
+        let several = ProviderConfig { extra: Some(extra), ..ProviderConfig::default() };
+        for config in [omits, several] {
+            let told = refused(None, "openai", config).unwrap();
+            assert!(told.contains("[providers.openai]"), "{told}");
+        }
     }
 }

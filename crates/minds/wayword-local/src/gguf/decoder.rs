@@ -2,27 +2,25 @@
 //!
 //! candle-transformers has all three, each with a fault that thousands of calls meet: they keep a mask for every length of prompt
 //! that ever was, Qwen3's turns positions in 16 bits where the file does not say otherwise, and Llama's leaves out the stretched
-//! positions of Llama 3. Products with quantised weights are candle's: on the processor they round what they multiply to 8 bits, as
-//! llama.cpp does.
+//! positions of Llama 3. Products of a few tokens with quantised weights are candle's: on the processor they round what they multiply to
+//! 8 bits, as llama.cpp does.
 
 use super::{
     file::GgufFile,
     positions::{Positions, Turn},
+    product::Product,
     sizes::{Architecture, Sizes},
 };
 use crate::{
     LocalError,
     ops::{Activation, Attention, RmsNorm, causal},
 };
-use candle_core::{
-    Device, Module, Tensor,
-    quantized::{QMatMul, QTensor},
-};
+use candle_core::{Device, Tensor, quantized::QTensor};
 use candle_nn::kv_cache::KvCache;
 use std::sync::Arc;
 
 /// So many tokens of a prompt are read at once: their scores would else take memory with the square of its length.
-const AT_ONCE: usize = 128;
+const AT_ONCE: usize = 512;
 /// By so many tokens the memory of a conversation grows.
 const GROWS_BY: usize = 256;
 
@@ -31,7 +29,7 @@ pub(super) struct Decoder {
     embedding: Arc<QTensor>,
     blocks: Vec<Block>,
     norm: RmsNorm,
-    head: QMatMul,
+    head: Product,
     positions: Positions,
     device: Device,
 }
@@ -48,13 +46,13 @@ struct Block {
     query: Projection,
     key: Projection,
     value: Projection,
-    out: QMatMul,
+    out: Product,
     /// Of queries and of keys, head by head.
     norms: Option<(RmsNorm, RmsNorm)>,
     before_inner: RmsNorm,
-    gate: QMatMul,
-    up: QMatMul,
-    down: QMatMul,
+    gate: Product,
+    up: Product,
+    down: Product,
     heads: usize,
     key_heads: usize,
     head: usize,
@@ -62,7 +60,7 @@ struct Block {
 
 /// A product, and a bias where the model has one.
 struct Projection {
-    weight: QMatMul,
+    weight: Product,
     bias: Option<Tensor>,
 }
 
@@ -74,11 +72,10 @@ impl Decoder {
     pub(super) fn load(file: &GgufFile, sizes: &Sizes, device: &Device) -> Result<Self, LocalError> {
         let shape = [sizes.vocabulary, sizes.width];
         let embedding = Arc::new(file.tensor("token_embd.weight", &shape, device)?);
-        let computes = |error: candle_core::Error| file.wrong(format!("token_embd.weight: {error}"));
         let head = if file.shape("output.weight").is_some() {
-            product(file, "output.weight", &shape, device)?
+            Product::load(file, "output.weight", &shape, device)?
         } else {
-            QMatMul::from_arc(Arc::clone(&embedding)).map_err(computes)?
+            Product::of(file, "token_embd.weight", Arc::clone(&embedding))?
         };
         let blocks = (0..sizes.blocks).map(|at| Block::load(file, at, sizes, device));
         Ok(Self {
@@ -103,7 +100,7 @@ impl Decoder {
             last = Some(self.read_some(ids, conversation)?);
         }
         let Some(last) = last else { candle_core::bail!("there is nothing to read") };
-        self.head.forward(&self.norm.of(&last)?)?.flatten_all()?.to_vec1()
+        self.head.times(&self.norm.of(&last)?)?.flatten_all()?.to_vec1()
     }
 
     /// What the blocks make of the last of some tokens, [1, width].
@@ -123,7 +120,7 @@ impl Block {
     fn load(file: &GgufFile, at: usize, sizes: &Sizes, device: &Device) -> Result<Self, LocalError> {
         let &Sizes { width, inner, heads, key_heads, head, architecture, .. } = sizes;
         let name = |rest: &str| format!("blk.{at}.{rest}");
-        let product = |rest: &str, rows, columns| product(file, &name(rest), &[rows, columns], device);
+        let product = |rest: &str, rows, columns| Product::load(file, &name(rest), &[rows, columns], device);
         let norm = |rest: &str, size| norm(file, &name(rest), size, sizes, device);
         let projection = |rest: &str, rows: usize| {
             let bias = name(&format!("{rest}.bias"));
@@ -157,8 +154,8 @@ impl Block {
     fn of(&self, x: &Tensor, mask: Option<&Tensor>, kept: &mut KvCache, turn: &Turn) -> candle_core::Result<Tensor> {
         let x = (x + self.attention(&self.before_attention.of(x)?, mask, kept, turn)?)?;
         let inner = self.before_inner.of(&x)?;
-        let inner = (Activation::Silu.of(&self.gate.forward(&inner)?)? * self.up.forward(&inner)?)?;
-        x + self.down.forward(&inner)?
+        let inner = (Activation::Silu.of(&self.gate.times(&inner)?)? * self.up.times(&inner)?)?;
+        x + self.down.times(&inner)?
     }
 
     fn attention(
@@ -185,23 +182,18 @@ impl Block {
         let scale = 1.0 / (self.head as f32).sqrt();
         let mixed = Attention { heads: self.key_heads, scale, bias: bias.as_ref() }.of(&query, &keys, &values)?;
         let mixed = mixed.reshape((shared, count, self.key_heads, self.head))?.permute((1, 2, 0, 3))?;
-        self.out.forward(&mixed.reshape((1, count, self.heads * self.head))?)
+        self.out.times(&mixed.reshape((1, count, self.heads * self.head))?)
     }
 }
 
 impl Projection {
     fn of(&self, x: &Tensor) -> candle_core::Result<Tensor> {
-        let y = self.weight.forward(x)?;
+        let y = self.weight.times(x)?;
         match &self.bias {
             None => Ok(y),
             Some(bias) => y.broadcast_add(bias),
         }
     }
-}
-
-fn product(file: &GgufFile, name: &str, shape: &[usize], device: &Device) -> Result<QMatMul, LocalError> {
-    let weight = file.tensor(name, shape, device)?;
-    QMatMul::from_qtensor(weight).map_err(|error| file.wrong(format!("{name}: {error}")))
 }
 
 fn norm(file: &GgufFile, name: &str, size: usize, sizes: &Sizes, device: &Device) -> Result<RmsNorm, LocalError> {

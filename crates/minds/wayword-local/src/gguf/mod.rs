@@ -5,6 +5,7 @@ mod draw;
 mod file;
 mod header;
 mod positions;
+mod product;
 mod sieve;
 mod sizes;
 mod template;

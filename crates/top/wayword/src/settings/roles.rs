@@ -47,7 +47,8 @@ pub struct AskedRoles {
     /// The numbers that hold the weights of a model in process: f32, bf16 or f16. [default: f32, and bf16 for BLIP-2]
     #[arg(long, value_name = "NUMBERS")]
     pub precision: Option<Precision>,
-    /// Folder of prompt templates of your own: question.j2, answer.j2, summary.j2, condense.j2, write.j2.
+    /// Folder of prompt templates of your own: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
+    /// summary.j2, condense.j2, write.j2.
     #[arg(long, value_name = "DIR")]
     pub prompts: Option<PathBuf>,
 }
