@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_beside_the_others_is_refused() {
-        let mut budget = Budget::new(Some(3 << 30));
+        let mut budget = Budget::new(Some(4 << 30));
         budget.take("hf/a/b", 1 << 30).unwrap();
         let error = budget.take("hf/c/d", 2 << 30).unwrap_err().to_string();
         assert!(error.contains("hf/c/d") && error.contains("2.9 GiB") && error.contains("bf16"), "{error}");

@@ -6,6 +6,7 @@ use std::{
     fs::{self, File, OpenOptions, TryLockError},
     io::{self, Read},
     path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
 };
 
 /// One model's part of the cache.
@@ -49,7 +50,7 @@ impl RepoFolder {
         let path = self.root.join("refs").join(revision);
         make_parent(&path)?;
         // Written whole or not at all: somebody may read it right now.
-        let fresh = beside(&path, &format!(".{}.tmp", std::process::id()));
+        let fresh = fresh_beside(&path);
         fs::write(&fresh, commit.as_str()).map_err(|error| LocalError::io(&fresh, "write", error))?;
         fs::rename(&fresh, &path).map_err(|error| LocalError::io(&path, "write", error))
     }
@@ -105,19 +106,25 @@ impl RepoFolder {
         }
         make_parent(&path)?;
         let io = |error| LocalError::io(&path, "write", error);
-        match fs::remove_file(&path) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(io(error)),
-            _ => {}
-        }
+        // Made beside it and moved there: somebody else may make the same link right now.
+        let fresh = fresh_beside(&path);
         // From snapshots/COMMIT/FILE it is two folders up, and one more for each folder in FILE.
         let up = "../".repeat(2 + file.matches('/').count());
-        let linked = symlinks && symlink(Path::new(&format!("{up}blobs/{}", hash.as_str())), &path).is_ok();
-        if !linked && !path.is_file() {
-            let fresh = beside(&path, &format!(".{}.tmp", std::process::id()));
-            fs::copy(&blob, &fresh).and_then(|_| fs::rename(&fresh, &path)).map_err(io)?;
+        let links = || symlink(Path::new(&format!("{up}blobs/{}", hash.as_str())), &fresh).is_ok() && fresh.is_file();
+        if !(symlinks && links()) {
+            // What is left of a link that leads nowhere would be copied through.
+            let _ = fs::remove_file(&fresh);
+            fs::copy(&blob, &fresh).map_err(io)?;
         }
+        fs::rename(&fresh, &path).map_err(io)?;
         Ok(path)
     }
+}
+
+/// A name for a file that nobody else makes, in this process or another, beside the path that it is for.
+fn fresh_beside(path: &Path) -> PathBuf {
+    static MADE: AtomicU64 = AtomicU64::new(0);
+    beside(path, &format!(".{}-{}.tmp", std::process::id(), MADE.fetch_add(1, Ordering::Relaxed)))
 }
 
 /// The same path with something behind its name.
