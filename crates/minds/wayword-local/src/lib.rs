@@ -1,6 +1,6 @@
 //! Models in process, from the public checkpoints as they are: MiniLM, CLIP, BLIP, BLIP-2 and small instruct models.
 //!
-//! candle holds tensors and devices; the models are files of our own on operators of our own ([`ops`]), because candle's stock
+//! candle holds tensors and devices; the models are files of our own on operators of our own (`ops`), because candle's stock
 //! code is several times slower on a processor and lacks half of them.
 //!
 //! Architecture invariant: a checkpoint is untrusted. It is read tensor by tensor, each held against the shape that the
