@@ -1,8 +1,7 @@
 //! Calls of a model in process, each made once and kept in the ledger: they cost no money, but minutes.
 
-use crate::{LocalError, Spoken, engine::Engine};
+use crate::{LocalError, Spoken, engine::Engine, picture_cache::digest};
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 use std::{
     sync::{Arc, Mutex, PoisonError},
     time::Instant,
@@ -124,11 +123,7 @@ fn reply(answer: Answer) -> Reply {
     Reply { text: answer.text, finish }
 }
 
-/// Tells pictures apart by what they show.
-pub(crate) fn hash(image: &Image) -> String {
-    let mut hash = Sha256::new();
-    hash.update(image.width_px().to_le_bytes());
-    hash.update(image.height_px().to_le_bytes());
-    hash.update(image.rgb());
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+/// A picture's name in the ledger.
+fn hash(image: &Image) -> String {
+    digest(image).iter().map(|byte| format!("{byte:02x}")).collect()
 }

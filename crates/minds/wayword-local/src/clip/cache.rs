@@ -2,7 +2,6 @@
 
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, sync::Arc};
-use wayword_core::Image;
 
 /// A vector, shared with who asked for it.
 pub(super) type Vector = Arc<[f32]>;
@@ -17,15 +16,6 @@ pub(super) struct Cache {
     vectors: BTreeMap<Key, (u64, Vector)>,
     by_use: BTreeMap<u64, Key>,
     uses: u64,
-}
-
-/// Of a picture's size and pixels.
-pub(super) fn key_of_image(image: &Image) -> Key {
-    let mut hash = Sha256::new();
-    hash.update(image.width_px().to_le_bytes());
-    hash.update(image.height_px().to_le_bytes());
-    hash.update(image.rgb());
-    hash.finalize().into()
 }
 
 /// Of a text.
@@ -92,12 +82,5 @@ mod tests {
         cache.put(b, of(4.0));
         assert_eq!([a, b].map(|key| cache.get(&key)), [Some(of(3.0)), Some(of(4.0))]);
         assert_eq!(cache.by_use.len(), 2);
-    }
-
-    #[test]
-    fn the_same_pixels_in_another_shape_are_another_picture() {
-        let shaped = |width, height| key_of_image(&Image::new(width, height, vec![7; 36]).unwrap());
-        assert_ne!(shaped(3, 4), shaped(4, 3));
-        assert_eq!(shaped(3, 4), shaped(3, 4));
     }
 }

@@ -2,9 +2,9 @@
 
 use super::{
     Clip,
-    cache::{Cache, Key, Vector, key_of_image, key_of_text},
+    cache::{Cache, Key, Vector, key_of_text},
 };
-use crate::LocalError;
+use crate::{LocalError, picture_cache::digest};
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
@@ -53,7 +53,7 @@ impl Grounder for ClipGrounder {
     fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
         let images: Vec<Result<&Image, ModelError>> = views.iter().map(|view| self.image(view)).collect();
         let seen: Vec<&Image> = images.iter().filter_map(|image| image.as_ref().ok().copied()).collect();
-        let vectors = vectors(&self.images, &seen, key_of_image, |images| self.clip.image_features(images))
+        let vectors = vectors(&self.images, &seen, digest, |images| self.clip.image_features(images))
             .and_then(|seen| {
                 let texts = |texts: &[&str]| self.clip.text_features(texts);
                 Ok((seen, vectors(&self.texts, phrases, key_of_text, texts)?))
