@@ -9,11 +9,11 @@ use wayword_core::Image;
 /// A BLIP that describes pictures.
 pub struct BlipCaptioner {
     name: String,
-    processor: Processor,
+    pub(super) processor: Processor,
     tokenizer: Tokenizer,
-    vision: Vision,
-    decoder: Decoder,
-    device: Device,
+    pub(super) vision: Vision,
+    pub(super) decoder: Decoder,
+    pub(super) device: Device,
 }
 
 impl BlipCaptioner {

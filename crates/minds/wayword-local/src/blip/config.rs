@@ -34,6 +34,8 @@ pub(crate) struct VisionConfig {
 pub(super) struct TextConfig {
     pub(super) vocab_size: usize,
     pub(super) hidden_size: usize,
+    /// The vision model's `hidden_size`: transformers puts it here whatever the file says.
+    #[serde(skip)]
     pub(super) encoder_hidden_size: usize,
     pub(super) intermediate_size: usize,
     pub(super) num_hidden_layers: usize,
@@ -80,9 +82,9 @@ impl Default for TextConfig {
 
 impl Config {
     pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        let config: Self = json::read(folder, "config.json", "the configuration")?;
-        let problem = config.problem();
-        match problem {
+        let mut config: Self = json::read(folder, "config.json", "the configuration")?;
+        config.text_config.encoder_hidden_size = config.vision_config.hidden_size;
+        match config.problem() {
             None => Ok(config),
             Some(problem) => Err(LocalError::File {
                 file: folder.join("config.json"),
@@ -100,7 +102,6 @@ impl Config {
         let sizes = [
             ("text_config.vocab_size", text.vocab_size),
             ("text_config.hidden_size", text.hidden_size),
-            ("text_config.encoder_hidden_size", text.encoder_hidden_size),
             ("text_config.intermediate_size", text.intermediate_size),
             ("text_config.max_position_embeddings", text.max_position_embeddings),
         ];

@@ -3,6 +3,8 @@
 mod caption;
 mod config;
 mod decoder;
+#[cfg(test)]
+mod tests;
 mod text;
 mod vision;
 mod vqa;

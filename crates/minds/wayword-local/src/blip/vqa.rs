@@ -21,7 +21,7 @@ pub struct BlipVqa {
     tokenizer: Tokenizer,
     vision: Vision,
     encoder: TextModel,
-    decoder: Decoder,
+    pub(super) decoder: Decoder,
     longest: usize,
     seen: PictureCache<Attended>,
     device: Device,
@@ -73,7 +73,7 @@ impl BlipVqa {
         states.map_err(|error| LocalError::compute(&self.name, &error))
     }
 
-    fn read(&self, picture: &Image, question: &str) -> Result<Tensor, LocalError> {
+    pub(super) fn read(&self, picture: &Image, question: &str) -> Result<Tensor, LocalError> {
         let compute = |error: candle_core::Error| LocalError::compute(&self.name, &error);
         let seen = self.seen.get(picture, || {
             let pixels = self.processor.tensor(&[picture], &self.device)?;
