@@ -98,9 +98,10 @@ pub(crate) fn plain(raw: &str) -> Option<String> {
     let spaced: String = raw.chars().take(4 * MAX_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
     let lower = one_of_two(&spaced).to_lowercase();
     let kept: String = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '\'')).collect();
-    let words: Vec<&str> = kept.split_whitespace().map(|word| word.trim_matches(['-', '\''])).map(mended).collect();
+    let bare = kept.split_whitespace().map(|word| word.trim_matches(['-', '\'']));
+    let words: Vec<&str> = bare.filter(|word| !word.is_empty()).map(mended).collect();
     let mut words: &[&str] = &words;
-    while let [rest @ .., "etc" | ""] = words {
+    while let [rest @ .., "etc"] = words {
         words = rest;
     }
     if let [rest @ .., "other", "room"] = words
@@ -155,6 +156,7 @@ mod tests {
             ("kitchen#countertop#object'", "kitchen countertop object"),
             ("a-frame#sign", "a-frame sign"),
             ("lightswitch", "light switch"),
+            ("lamp#'#shade", "lamp shade"),
         ] {
             assert_eq!(plain(raw).as_deref(), Some(expected), "{raw}");
         }
