@@ -1,7 +1,7 @@
 //! How far a mean can be trusted when values come in groups.
 
 use rand::Rng;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_core::rng;
 
@@ -9,7 +9,7 @@ use wayword_core::rng;
 const MOST_RESAMPLES: usize = 100_000;
 
 /// A mean with its interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The mean over all values.
     pub mean: f64,

@@ -84,6 +84,7 @@ fn no_crate_is_built_on_one_above_it() {
         ("wayword-platforms", &["wayword-core", "wayword-formats", "wayword-render"]),
         ("wayword-synthesis", &["wayword-core"]),
         ("wayword-metrics", &["wayword-core"]),
+        ("wayword-navigation", &["wayword-core", "wayword-metrics", "wayword-synthesis"]),
         (
             "wayword",
             &[
@@ -92,6 +93,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-ledger",
                 "wayword-local",
                 "wayword-metrics",
+                "wayword-navigation",
                 "wayword-platforms",
                 "wayword-remote",
                 "wayword-synthesis",
@@ -104,6 +106,8 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-core",
                 "wayword-formats",
                 "wayword-ledger",
+                "wayword-metrics",
+                "wayword-navigation",
                 "wayword-remote",
                 "wayword-synthesis",
                 "wayword-testkit",

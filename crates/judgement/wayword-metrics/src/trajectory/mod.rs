@@ -1,0 +1,163 @@
+//! How well a trajectory over a viewpoint graph did what its episode demands.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use wayword_core::{ObjectId, ViewpointId};
+
+/// What counts as success. Named wherever a figure is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// The last viewpoint lies under 3 m (graph distance, strictly) from the goal (R2R, `tasks/R2R/eval.py`). On a REVERIE item this is
+    /// the lenient rule.
+    Distance,
+    /// The target object is visible from the last viewpoint (REVERIE, `tasks/REVERIE/eval_release.py`).
+    Visible,
+}
+
+/// What an episode demands of a trajectory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Demand {
+    /// The annotated path, from start to goal; never empty.
+    pub reference: Vec<ViewpointId>,
+    /// The target object, where one is named.
+    pub object: Option<ObjectId>,
+    /// The viewpoints from which it can be seen; `None` where no object is named, or where that is not known.
+    pub visible_from: Option<BTreeSet<ViewpointId>>,
+}
+
+/// What somebody handed in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    /// Every viewpoint, from the start; a stay is the same one again. Never empty.
+    pub viewpoints: Vec<ViewpointId>,
+    /// The object that is taken for the target.
+    pub object: Option<ObjectId>,
+}
+
+/// All figures of one trajectory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// Length over the graph, metres.
+    pub length_m: f64,
+    /// Distance from the last viewpoint to the goal, metres; `None` where there is no way.
+    pub navigation_error_m: Option<f64>,
+    /// The same from the viewpoint of the trajectory that is nearest to the goal.
+    pub oracle_error_m: Option<f64>,
+    /// By the distance rule.
+    pub distance: Outcome,
+    /// By the rule of visibility, where the episode names an object and it is known from where it is visible.
+    pub visible: Option<Outcome>,
+    /// Whether the object is the target's; `None` where the episode names none.
+    pub grounding: Option<Grounding>,
+    /// Normalised dynamic time warping, in [0, 1].
+    pub ndtw: f64,
+    /// Coverage weighted by length score, in [0, 1].
+    pub cls: f64,
+}
+
+/// What a rule of success says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// At the last viewpoint.
+    pub success: bool,
+    /// At any viewpoint, the start included.
+    pub oracle_success: bool,
+    /// Success weighted by path length, at most 1, and 0 without success.
+    pub spl: f64,
+    /// nDTW where it is a success, else 0.
+    pub sdtw: f64,
+}
+
+/// Whether the right object was named.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Grounding {
+    /// Remote grounding success, whatever the navigation.
+    pub rgs: bool,
+    /// The same weighted by path length.
+    pub rgspl: f64,
+}
+
+/// A figure of a trajectory, by its usual name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Metric {
+    /// SR, success rate.
+    SuccessRate,
+    /// OSR, oracle success rate.
+    OracleSuccessRate,
+    /// SPL, success weighted by path length.
+    Spl,
+    /// NE, navigation error, metres.
+    NavigationErrorM,
+    /// TL, trajectory length, metres.
+    TrajectoryLengthM,
+    /// nDTW, normalised dynamic time warping.
+    Ndtw,
+    /// SDTW, success weighted by normalised dynamic time warping.
+    Sdtw,
+    /// CLS, coverage weighted by length score.
+    Cls,
+    /// RGS, remote grounding success.
+    Rgs,
+    /// RGSPL, remote grounding success weighted by path length.
+    Rgspl,
+}
+
+impl Metric {
+    /// All of them, in the order of tables.
+    pub const ALL: [Self; 10] = [
+        Self::SuccessRate,
+        Self::OracleSuccessRate,
+        Self::Spl,
+        Self::NavigationErrorM,
+        Self::TrajectoryLengthM,
+        Self::Ndtw,
+        Self::Sdtw,
+        Self::Cls,
+        Self::Rgs,
+        Self::Rgspl,
+    ];
+
+    /// What tables call it.
+    #[must_use]
+    pub fn short(self) -> &'static str {
+        match self {
+            Self::SuccessRate => "SR",
+            Self::OracleSuccessRate => "OSR",
+            Self::Spl => "SPL",
+            Self::NavigationErrorM => "NE (m)",
+            Self::TrajectoryLengthM => "TL (m)",
+            Self::Ndtw => "nDTW",
+            Self::Sdtw => "SDTW",
+            Self::Cls => "CLS",
+            Self::Rgs => "RGS",
+            Self::Rgspl => "RGSPL",
+        }
+    }
+}
+
+impl Score {
+    /// A figure by its name; what needs a success goes by `rule`. `None` where the trajectory has none: a goal that cannot be
+    /// reached, an episode without an object, a rule that cannot be applied.
+    #[must_use]
+    pub fn get(&self, metric: Metric, rule: Rule) -> Option<f64> {
+        let outcome = match rule {
+            Rule::Distance => Some(self.distance),
+            Rule::Visible => self.visible,
+        };
+        let share = |is: bool| f64::from(u8::from(is));
+        match metric {
+            Metric::SuccessRate => outcome.map(|outcome| share(outcome.success)),
+            Metric::OracleSuccessRate => outcome.map(|outcome| share(outcome.oracle_success)),
+            Metric::Spl => outcome.map(|outcome| outcome.spl),
+            Metric::Sdtw => outcome.map(|outcome| outcome.sdtw),
+            Metric::NavigationErrorM => self.navigation_error_m,
+            Metric::TrajectoryLengthM => Some(self.length_m),
+            Metric::Ndtw => Some(self.ndtw),
+            Metric::Cls => Some(self.cls),
+            Metric::Rgs => self.grounding.map(|grounding| share(grounding.rgs)),
+            Metric::Rgspl => self.grounding.map(|grounding| grounding.rgspl),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Sets of instructions held against each other by how well agents walk by them: the paper's table, with what has to stand
+//! beside it.
+
+use crate::swap::Swap;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use wayword_metrics::{Estimate, McNemar, Metric, Rule};
+
+/// Everything that a comparison found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// What it is about and how it was made.
+    pub about: About,
+    /// The sets, in the order in which they were asked for.
+    pub sets: Vec<Set>,
+    /// One per agent and set, agents in their order; an agent that does not read has one row, whose set is `None`.
+    pub rows: Vec<Row>,
+    /// One per agent that reads and swap of the first set.
+    pub swaps: Vec<Swapped>,
+}
+
+/// What a comparison is about.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct About {
+    /// The platform.
+    pub platform: String,
+    /// Name of the episodes' file.
+    pub episodes: String,
+    /// Who says how well phrases fit views; `labels` is ground truth, not perception.
+    pub grounder: String,
+    /// The same for agents that walk by a detector.
+    pub detector: String,
+    /// Who takes instructions apart.
+    pub splitter: String,
+    /// The rule that the table's figures go by.
+    pub rule: Rule,
+    /// What intervals cover, as 0.95.
+    pub level: f64,
+    /// Resamples of the intervals.
+    pub resamples: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Items that every set has, to which all rows are confined.
+    pub items: usize,
+    /// Paths on which those items lie: items on one path are not independent.
+    pub paths: usize,
+    /// The agents' parameters, by agent and name.
+    pub parameters: BTreeMap<String, BTreeMap<String, String>>,
+    /// Version of Wayword.
+    pub wayword: String,
+}
+
+/// A set of instructions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Set {
+    /// Its name.
+    pub name: String,
+    /// Where it is from, without folders.
+    pub source: String,
+    /// Its texts on the common items.
+    pub texts: usize,
+    /// Its items that another set lacks, and that are left out.
+    pub left_out: usize,
+    /// Its mean length, words.
+    pub words: f64,
+}
+
+/// What kind of agent a row is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// It knows nothing and reads nothing.
+    Floor,
+    /// It reads.
+    Agent,
+    /// It knows what no agent is told.
+    Ceiling,
+}
+
+/// An agent's figures on one set. A text's figure is its walk's, an item's the mean over its texts, the row's the mean over
+/// items.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The agent.
+    pub agent: String,
+    /// What kind it is.
+    pub kind: Kind,
+    /// The set that it walked by; `None` where it does not read.
+    pub set: Option<String>,
+    /// Each figure with its interval, clustered by path.
+    pub figures: BTreeMap<Metric, Estimate>,
+    /// This row less the first set's of the same agent; `None` for the first set and for those that do not read.
+    pub against_first: Option<Difference>,
+}
+
+/// One row less another of the same agent, item by item.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Difference {
+    /// Each figure's difference with its interval, clustered by path.
+    pub figures: BTreeMap<Metric, Estimate>,
+    /// On the success of each item's first text. It takes items for independent, which they are not: a description.
+    pub mcnemar: McNemar,
+}
+
+/// What a swap of the first set does to an agent.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Swapped {
+    /// The agent.
+    pub agent: String,
+    /// The swap.
+    pub swap: Swap,
+    /// Texts that the swap changed; where it changes nothing a text is left out, on both sides.
+    pub changed: usize,
+    /// Texts of the first set on the common items.
+    pub texts: usize,
+    /// The agent's figures by the swapped texts.
+    pub figures: BTreeMap<Metric, Estimate>,
+    /// By the original texts less by the swapped ones, on the same items and texts: positive where the agent listens to what was
+    /// swapped.
+    pub lost: Difference,
+    /// Whether the whole interval of the lost success rate is above 0.
+    pub listens: bool,
+}
