@@ -2,7 +2,7 @@
 
 use crate::{Frame, Gaze, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, graph::GraphError};
 use serde::{Deserialize, Serialize};
-use std::{ops::RangeInclusive, path::PathBuf, sync::Arc};
+use std::{collections::BTreeSet, ops::RangeInclusive, path::PathBuf, sync::Arc};
 
 /// A world: scenes with a viewpoint graph, paths through them, and views along these.
 ///
@@ -49,6 +49,12 @@ pub trait Platform: Send + Sync {
     /// # Errors
     /// When the data cannot be read.
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError>;
+
+    /// The viewpoints from which an object can be seen; `None` where the platform knows no objects.
+    ///
+    /// # Errors
+    /// When the data cannot be read.
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError>;
 }
 
 impl<P: Platform + ?Sized> Platform for Box<P> {
@@ -78,6 +84,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         (**self).object_name(scene, near, object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        (**self).visible_from(scene, object)
     }
 }
 

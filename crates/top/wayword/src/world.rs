@@ -2,10 +2,10 @@
 
 use crate::{error::Error, settings::Settings};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_core::{Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph};
+use wayword_core::{Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId};
 use wayword_platforms::{house::HousePlatform, matterport::Matterport};
 
 /// The platforms that this build knows.
@@ -99,5 +99,9 @@ impl Platform for Remembering<'_> {
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         self.platform.object_name(scene, near, object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        self.platform.visible_from(scene, object)
     }
 }

@@ -138,6 +138,29 @@ fn an_episode_names_its_target_and_says_whether_it_has_a_namesake() {
     assert_eq!(platform.object_name(&scene(), &path.frames[0], &nothing).unwrap(), None);
 }
 
+/// By the boxes, and without them by the `.house` file: an object is visible from where a look around shows it.
+#[test]
+fn an_object_is_visible_from_where_it_is_seen() {
+    let (folder, platform) = building();
+    let agree = |platform: &Matterport| {
+        let desk = ObjectId::new("38").unwrap();
+        let from = platform.visible_from(&scene(), &desk).unwrap().unwrap();
+        let graph = platform.graph(&scene()).unwrap();
+        for (number, viewpoint) in graph.viewpoints().enumerate() {
+            let labels = labels_around(platform, &scene(), &frame(platform, number)).unwrap();
+            assert_eq!(from.contains(viewpoint), labels.iter().any(|label| label.object == desk), "{viewpoint}");
+        }
+        assert!(!from.is_empty() && from.len() < graph.len());
+    };
+    agree(&platform);
+    let nothing = ObjectId::new("999").unwrap();
+    assert!(platform.visible_from(&scene(), &nothing).unwrap().unwrap().is_empty());
+    std::fs::remove_dir_all(folder.path().join("reverie")).unwrap();
+    agree(&Matterport::open(folder.path()).unwrap());
+    std::fs::remove_dir_all(folder.path().join("matterport/v1")).unwrap();
+    assert_eq!(Matterport::open(folder.path()).unwrap().visible_from(&scene(), &nothing).unwrap(), None);
+}
+
 #[test]
 fn errors_name_what_is_not_there() {
     let (_folder, platform) = building();

@@ -2,9 +2,10 @@
 
 use super::{Gallery, Scenery, Thing, barcode};
 use sha2::{Digest, Sha256};
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, Where,
+    Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
+    Where,
 };
 
 /// A platform whose views show a number instead of the world.
@@ -63,6 +64,10 @@ impl<P: Platform> Platform for Pictured<P> {
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         self.platform.object_name(scene, near, object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        self.platform.visible_from(scene, object)
     }
 }
 
@@ -127,6 +132,10 @@ mod tests {
         }
 
         fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
+            Ok(None)
+        }
+
+        fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
             Ok(None)
         }
     }

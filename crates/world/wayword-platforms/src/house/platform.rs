@@ -10,8 +10,8 @@ use super::{
     scene::HouseScene,
 };
 use std::{
-    collections::VecDeque,
-    sync::{Arc, Mutex, PoisonError},
+    collections::{BTreeMap, BTreeSet, VecDeque},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 use wayword_core::{
     DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
@@ -59,6 +59,8 @@ pub(super) struct Home {
     pub(super) scene: HouseScene,
     pub(super) ground: Ground,
     graph: Arc<ViewpointGraph>,
+    /// The viewpoints from which each object is seen; looked for when first asked for.
+    seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
 }
 
 impl HousePlatform {
@@ -122,7 +124,7 @@ impl Home {
             hint: error.to_string(),
         };
         let drawn = HouseScene::new(house).map_err(scene_of)?;
-        Ok(Self { id: scene.clone(), scene: drawn, ground, graph: Arc::new(graph) })
+        Ok(Self { id: scene.clone(), scene: drawn, ground, graph: Arc::new(graph), seen_from: OnceLock::new() })
     }
 
     /// Its viewpoint graph.
@@ -181,6 +183,21 @@ impl Home {
         Ok(all)
     }
 
+    /// The viewpoints from which each object is seen.
+    fn seen_from(&self) -> Result<&BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
+        if let Some(seen_from) = self.seen_from.get() {
+            return Ok(seen_from);
+        }
+        let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
+        for viewpoint in self.graph.viewpoints() {
+            let eye = self.graph.position(viewpoint).unwrap_or_default();
+            for label in self.labels_around(Pose::level(eye, Heading::NORTH))? {
+                seen_from.entry(label.object).or_default().insert(viewpoint.clone());
+            }
+        }
+        Ok(self.seen_from.get_or_init(|| seen_from))
+    }
+
     /// Refuses poses outside the house.
     fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
@@ -226,6 +243,11 @@ impl Platform for HousePlatform {
         let home = self.home(scene)?;
         let number: Option<u32> = object.as_str().parse().ok();
         Ok(number.and_then(|id| home.scene.objects.get(&id)).map(|object| object.name.clone()))
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        let home = self.home(scene)?;
+        Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
     }
 }
 

@@ -9,10 +9,10 @@ use super::{
     photographs::Photographs,
     recent::Recent,
     sample,
-    scene::Scene,
+    scene::{Everywhere, Scene},
 };
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
     sync::{Arc, Mutex, PoisonError},
 };
@@ -99,21 +99,23 @@ impl Matterport {
         Ok(photographs.as_ref().as_ref().and_then(|photographs| photographs.view(gaze)).map(Arc::new))
     }
 
-    /// Names of all objects listed anywhere in a building. Viewpoints are read one after another and not kept.
-    fn names<'a>(&self, id: &SceneId, scene: &'a Scene) -> Result<&'a BTreeMap<ObjectId, String>, PlatformError> {
-        if let Some(names) = scene.names.get() {
-            return Ok(names);
+    /// All objects listed anywhere in a building. Viewpoints are read one after another and not kept.
+    fn objects<'a>(&self, id: &SceneId, scene: &'a Scene) -> Result<&'a BTreeMap<ObjectId, Everywhere>, PlatformError> {
+        if let Some(objects) = scene.objects.get() {
+            return Ok(objects);
         }
-        let mut names = BTreeMap::new();
+        let mut objects: BTreeMap<ObjectId, Everywhere> = BTreeMap::new();
         for viewpoint in scene.viewpoints.keys() {
             let Some(file) = self.layout.boxes(id, viewpoint) else { break };
             for entry in boxes::read(&file, viewpoint)?.into_iter().flatten() {
-                if let Some(name) = entry.name {
-                    names.entry(entry.object).or_insert(name);
+                let object = objects.entry(entry.object).or_default();
+                object.name = object.name.take().or(entry.name);
+                if !entry.boxes.is_empty() {
+                    object.visible_from.insert(viewpoint.clone());
                 }
             }
         }
-        Ok(scene.names.get_or_init(|| names))
+        Ok(scene.objects.get_or_init(|| objects))
     }
 }
 
@@ -180,6 +182,20 @@ impl Platform for Matterport {
         if let Some(name) = in_house.and_then(|found| found.name.clone()) {
             return Ok(Some(name));
         }
-        Ok(self.names(id, &scene)?.get(object).cloned())
+        Ok(self.objects(id, &scene)?.get(object).and_then(|object| object.name.clone()))
+    }
+
+    /// Where REVERIE's boxes show it, as its evaluator has it; without them, where the `.house` file's labels do.
+    fn visible_from(&self, id: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        let scene = self.scene(id)?;
+        let objects = self.objects(id, &scene)?;
+        if !objects.is_empty() {
+            return Ok(Some(objects.get(object).map(|object| object.visible_from.clone()).unwrap_or_default()));
+        }
+        let Some(house) = scene.house.as_ref().filter(|house| !house.objects.is_empty()) else { return Ok(None) };
+        let sees = |(name, viewpoint): &(&ViewpointId, &Viewpoint)| {
+            labels::from_house(house, name, viewpoint.position).iter().any(|label| label.object == *object)
+        };
+        Ok(Some(scene.viewpoints.iter().filter(sees).map(|(name, _)| name.clone()).collect()))
     }
 }

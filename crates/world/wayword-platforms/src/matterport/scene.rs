@@ -7,7 +7,7 @@ use super::{
     levels, read, rooms,
 };
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     sync::{Arc, OnceLock},
 };
 use wayword_core::{ObjectId, PlatformError, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
@@ -18,8 +18,17 @@ pub(crate) struct Scene {
     pub(crate) viewpoints: BTreeMap<ViewpointId, Viewpoint>,
     pub(crate) house: Option<House>,
     rooms: Option<rooms::RoomLetters>,
-    /// Names of all objects that REVERIE lists anywhere in the building; read when first asked for.
-    pub(crate) names: OnceLock<BTreeMap<ObjectId, String>>,
+    /// All objects that REVERIE lists anywhere in the building; read when first asked for.
+    pub(crate) objects: OnceLock<BTreeMap<ObjectId, Everywhere>>,
+}
+
+/// An object, over all viewpoints of a building.
+#[derive(Debug, Default)]
+pub(crate) struct Everywhere {
+    /// In plain words; `None` where the annotators' name has none.
+    pub(crate) name: Option<String>,
+    /// Where it is listed with a box.
+    pub(crate) visible_from: BTreeSet<ViewpointId>,
 }
 
 impl Scene {
@@ -43,7 +52,7 @@ impl Scene {
             )
         })?;
         let viewpoints = read.viewpoints.into_iter().map(|viewpoint| (viewpoint.id.clone(), viewpoint)).collect();
-        Ok(Self { graph: Arc::new(graph), viewpoints, house, rooms, names: OnceLock::new() })
+        Ok(Self { graph: Arc::new(graph), viewpoints, house, rooms, objects: OnceLock::new() })
     }
 
     /// Whether rooms are known here at all.
