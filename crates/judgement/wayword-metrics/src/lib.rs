@@ -12,5 +12,7 @@ mod words;
 pub use bootstrap::{Estimate, clustered_interval};
 pub use mcnemar::McNemar;
 pub use similarity::{Drawing, Said, Similarity, similarity};
-pub use trajectory::{Demand, Grounding, Metric, Outcome, Rule, Score, Trajectory};
+pub use trajectory::{
+    Atlas, Demand, Distances, Grounding, Invalid, Metric, Outcome, Rule, Score, Trajectory, problems, score,
+};
 pub use words::Words;

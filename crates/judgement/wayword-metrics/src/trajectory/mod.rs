@@ -1,5 +1,16 @@
 //! How well a trajectory over a viewpoint graph did what its episode demands.
 
+mod atlas;
+mod distances;
+mod fidelity;
+mod invalid;
+mod score;
+
+pub use atlas::Atlas;
+pub use distances::Distances;
+pub use invalid::{Invalid, problems};
+pub use score::score;
+
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
