@@ -1,7 +1,14 @@
 //! An instruction as an agent follows it: key phrases in their order, and what is to be done at the end.
 
+mod pieces;
+pub mod places;
+mod rules;
+
 use serde::{Deserialize, Serialize};
 use wayword_core::ModelError;
+
+pub use places::{Place, places};
+pub use rules::ByRules;
 
 /// An instruction taken apart (arXiv 2211.16649, section 3: navigation component and activity component).
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,4 +28,26 @@ pub trait Splitter: Send + Sync {
 
     /// One result per instruction, in their order. One that fails does not fail the others.
     fn split(&self, instructions: &[&str]) -> Vec<Result<Directions, ModelError>>;
+}
+
+/// Most key phrases of an instruction; people's have up to about ten.
+const MOST_PHRASES: usize = 12;
+/// Most words of a phrase or an activity: CLIP reads no more than 77 tokens.
+const MOST_WORDS: usize = 50;
+/// Most bytes of a phrase or an activity: a text without spaces is one word.
+const MOST_BYTES: usize = 400;
+/// Most bytes of an instruction that are read; people's have up to about 2,500.
+const MOST_BYTES_READ: usize = 8_000;
+
+/// The beginning of a text, up to a number of bytes.
+fn beginning(text: &str, most_bytes: usize) -> &str {
+    &text[..text.floor_char_boundary(most_bytes)]
+}
+
+/// The beginning of a phrase that is not too long for those who look for it.
+fn short(text: &str) -> String {
+    let text = beginning(text.trim(), MOST_BYTES);
+    let end = |word: &str| word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
+    let end = text.split_whitespace().take(MOST_WORDS).last().map_or(0, end);
+    text[..end].to_owned()
 }

@@ -147,7 +147,8 @@ impl Reading {
 
 /// The number of the clause that each token stands in. Commas, full stops and "then" begin new ones, and so does an "and"
 /// that a verb follows: "the lounge and the bedroom" are in one clause.
-fn clauses(tokens: &[Token]) -> Vec<usize> {
+#[must_use]
+pub fn clauses(tokens: &[Token]) -> Vec<usize> {
     let mut clause = 0;
     let begins = |at: usize, token: &Token| match token.word.as_str() {
         "and" => task::verb_of(tokens, at + 1).is_some(),

@@ -1,0 +1,51 @@
+//! The things and rooms that a phrase names, for those who look for labels and boxes.
+
+use super::{MOST_BYTES_READ, beginning};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use wayword_synthesis::reading::{What, read};
+
+/// A thing or a room that a phrase names.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Place {
+    /// Its name: lower case, singular.
+    pub name: String,
+    /// It names a room and can be no thing: "kitchen", but not "stairs".
+    pub is_room: bool,
+}
+
+/// The things and rooms of a phrase, each once, in the order of the text. What the phrase says not to be there is left out.
+#[must_use]
+pub fn places(phrase: &str) -> Vec<Place> {
+    let reading = read(beginning(phrase, MOST_BYTES_READ), &BTreeSet::new()).claims();
+    let mut named = BTreeSet::new();
+    let place = |what: What| match what {
+        What::Place(place) => Some(Place { name: place.name, is_room: place.is_room && !place.is_thing }),
+        _ => None,
+    };
+    let all = reading.events.into_iter().filter_map(|event| place(event.what));
+    all.filter(|place| named.insert(place.name.clone())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn things_and_rooms_are_named_once_and_in_order() {
+        let told: Vec<(String, bool)> =
+            places("Past the old sofas in the kitchen to the stairs, not the lamp, by a gizmo and the sofa")
+                .into_iter()
+                .map(|place| (place.name, place.is_room))
+                .collect();
+        let wanted = [("sofa", false), ("kitchen", true), ("stair", false), ("gizmo", false)];
+        assert_eq!(told, wanted.map(|(name, is_room)| (name.to_owned(), is_room)));
+    }
+
+    #[test]
+    fn a_room_before_a_thing_is_no_room_to_look_for() {
+        let table = Place { name: "kitchen table".to_owned(), is_room: false };
+        assert_eq!(places("wipe the kitchen table"), [table]);
+        assert_eq!(places("turn left"), []);
+    }
+}

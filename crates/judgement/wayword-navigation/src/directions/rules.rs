@@ -1,0 +1,165 @@
+//! Instructions taken apart offline, by the reader that the checks use.
+
+use super::{Directions, MOST_BYTES_READ, MOST_PHRASES, Splitter, beginning, pieces::Pieces, short};
+use wayword_core::ModelError;
+
+/// Takes instructions apart by rules.
+///
+/// A key phrase is a clause that names a thing or a room, or a part of one where the clause goes through one place on to another;
+/// clauses that only turn carry no picture and are left out. The activity is the closing task, else the last piece with a
+/// place, else the whole text. A task that names the room in which it is done has that as a phrase; a walk with one place has
+/// it as phrase and as activity.
+/// Everything is a run of the text's own words.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ByRules;
+
+impl Splitter for ByRules {
+    fn name(&self) -> &'static str {
+        "rules"
+    }
+
+    fn split(&self, instructions: &[&str]) -> Vec<Result<Directions, ModelError>> {
+        instructions.iter().map(|text| split(text)).collect()
+    }
+}
+
+fn split(text: &str) -> Result<Directions, ModelError> {
+    let text = beginning(text, MOST_BYTES_READ);
+    if !text.contains(char::is_alphanumeric) {
+        let reason = "the instruction has no words".to_owned();
+        return Err(ModelError::Failed { model: "rules".to_owned(), reason });
+    }
+    let pieces = Pieces::of(text);
+    let task = pieces.task();
+    let mut phrases = pieces.leading(task);
+    let activity = match task {
+        Some(task) => {
+            phrases.extend(pieces.rooms_of_task(task));
+            pieces.rest(task)
+        }
+        None if phrases.len() > 1 => phrases.pop().unwrap_or(text),
+        None => phrases.first().copied().unwrap_or(text),
+    };
+    let phrases = phrases.into_iter().take(MOST_PHRASES).map(short).collect();
+    Ok(Directions { phrases, activity: short(activity) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn told(text: &str) -> (Vec<String>, String) {
+        let directions = ByRules.split(&[text]).remove(0).unwrap();
+        (directions.phrases, directions.activity)
+    }
+
+    #[track_caller]
+    fn is(text: &str, phrases: &[&str], activity: &str) {
+        let phrases = phrases.iter().map(|phrase| (*phrase).to_owned()).collect();
+        assert_eq!(told(text), (phrases, activity.to_owned()), "{text}");
+    }
+
+    #[test]
+    fn a_walk_and_a_task_are_told_apart() {
+        is("Go to the bathroom on level 2 and wipe the sink", &["Go to the bathroom on level 2"], "wipe the sink");
+        is(
+            "Walk through the lounge, then go up the stairs to the office and switch off the lamp next to the globe.",
+            &["Walk through the lounge", "go up the stairs", "to the office"],
+            "switch off the lamp next to the globe",
+        );
+        is(
+            "Go to the pantry, empty the bin and bring me the kettle",
+            &["Go to the pantry"],
+            "empty the bin and bring me the kettle",
+        );
+        is(
+            "In the bathroom on the second level, clean the mirror",
+            &["In the bathroom on the second level"],
+            "clean the mirror",
+        );
+    }
+
+    #[test]
+    fn a_task_alone_still_tells_its_room() {
+        is(
+            "Bring me the pillow from the bedroom with the blue bed",
+            &["the bedroom with the blue bed"],
+            "Bring me the pillow from the bedroom with the blue bed",
+        );
+        is(
+            "clean the mirror in the bathroom on the second level",
+            &["the bathroom on the second level"],
+            "clean the mirror in the bathroom on the second level",
+        );
+        is(
+            "Check in the kitchen if the window is shut",
+            &["the kitchen"],
+            "Check in the kitchen if the window is shut",
+        );
+        is(
+            "Go to the kitchen and wipe the counter in the kitchen",
+            &["Go to the kitchen"],
+            "wipe the counter in the kitchen",
+        );
+        is("Dust the lamp", &[], "Dust the lamp");
+    }
+
+    #[test]
+    fn a_walk_without_a_task_ends_at_its_last_place() {
+        is("Walk past the couch, turn left and stop at the sink.", &["Walk past the couch"], "stop at the sink");
+        is(
+            "Leave the bedroom. Turn right. Go down the hall all the way to the piano. Wait there.",
+            &["Leave the bedroom", "Go down the hall"],
+            "all the way to the piano",
+        );
+        is("Walk to the kitchen and stop.", &["Walk to the kitchen"], "Walk to the kitchen");
+        is("Turn left, then walk straight on.", &[], "Turn left, then walk straight on.");
+    }
+
+    #[test]
+    fn climbing_is_joined_to_the_place_behind_it() {
+        is(
+            "Go upstairs, turn left and enter the bedroom. Wait by the bed.",
+            &["Go upstairs, turn left and enter the bedroom"],
+            "Wait by the bed",
+        );
+    }
+
+    #[test]
+    fn what_is_not_to_be_done_is_no_phrase() {
+        is(
+            "Don't enter the kitchen. Go past the sofa and stop at the door.",
+            &["Go past the sofa"],
+            "stop at the door",
+        );
+    }
+
+    #[test]
+    fn a_text_without_words_is_refused() {
+        for text in ["", "  ", "?!,"] {
+            assert!(ByRules.split(&[text]).remove(0).is_err());
+        }
+    }
+
+    #[test]
+    fn hostile_texts_stay_small() {
+        for text in ["x".repeat(20_000), "é,".repeat(10_000), "go to the bed and wipe the sink, ".repeat(10_000)] {
+            let (phrases, activity) = told(&text);
+            assert!(
+                phrases.len() <= MOST_PHRASES && activity.len() <= super::super::MOST_BYTES && !activity.is_empty()
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_word_is_invented(text in "((go to|clean|turn left|in|and|then|the|bed|kitchen|up|stairs|into|past|level 2|not|ß|[,.?’é(]) ?){1,30}|\\PC{0,80}") {
+            let Ok(directions) = ByRules.split(&[&text]).remove(0) else { return Ok(()) };
+            prop_assert!(!directions.activity.is_empty());
+            for phrase in directions.phrases.iter().chain([&directions.activity]) {
+                prop_assert!(!phrase.is_empty() && text.contains(phrase.as_str()), "{phrase:?} in {text:?}");
+            }
+        }
+    }
+}
