@@ -1,6 +1,6 @@
 //! Texts and views as numbers that can be compared.
 
-use crate::{ModelError, View};
+use crate::{ModelError, ObjectId, View};
 
 /// Turns texts into vectors whose dot product is their similarity.
 ///
@@ -26,4 +26,13 @@ pub trait Grounder: Send + Sync {
     /// One result per view, in their order: a score for each phrase, in their order. A higher one fits better; scores of the
     /// same grounder can be compared between views and phrases. A view that fails does not fail the others.
     fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>>;
+
+    /// The object in these views that a phrase fits best; `None` for a grounder that cannot tell objects apart, and where there is
+    /// none.
+    ///
+    /// # Errors
+    /// When the model fails.
+    fn point(&self, _views: &[&View], _phrase: &str) -> Result<Option<ObjectId>, ModelError> {
+        Ok(None)
+    }
 }

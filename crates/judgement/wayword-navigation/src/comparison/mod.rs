@@ -1,6 +1,12 @@
 //! Sets of instructions held against each other by how well agents walk by them: the paper's table, with what has to stand
 //! beside it.
 
+mod results;
+mod table;
+
+pub use results::Results;
+pub use table::{UNREAD, Walker, compare, swapped_set};
+
 use crate::swap::Swap;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -121,3 +127,6 @@ pub struct Swapped {
     /// Whether the whole interval of the lost success rate is above 0.
     pub listens: bool,
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! What the papers leave open, each with a name.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// How an agent that walks by phrases decides. Neither paper publishes these (arXiv 2211.16649; arXiv 2403.11487, section 4).
+///
+/// The defaults were swept on REVERIE's train split: `wayword-measure sweep` does it again.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameters {
+    /// A key phrase that fits the best view so well is done; the next one is in hand from the next step on.
+    pub phrase_threshold: f32,
+    /// An activity that fits any view so well ends the walk.
+    pub stop_threshold: f32,
+    /// The activity is only listened to when at most so many key phrases are left.
+    pub stop_with_phrases_left: usize,
+    /// Most hops, those back included.
+    pub max_hops: usize,
+    /// Of the neighbours only those are taken that were stood at least often.
+    pub shun_visited: bool,
+    /// Going back; `None` for an agent that never does.
+    pub back: Option<Back>,
+}
+
+/// When and how far an agent goes back.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Back {
+    /// The sequence score is the mean over so many looks of how well the phrase in hand fits the best view.
+    pub window: usize,
+    /// Below this sequence score it goes back.
+    pub threshold: f32,
+    /// So many nodes.
+    pub nodes: usize,
+}
+
+/// The grounders whose scores mean the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Scale {
+    /// Cosines of a sentence encoder between a phrase and a name.
+    Sentences,
+    /// Shares of places found, in [0, 1].
+    Shares,
+    /// Cosines of a CLIP between a phrase and a picture: all close to each other.
+    Pictures,
+}
+
+impl Parameters {
+    /// What an agent decides by with a grounder, unless told otherwise: `clip-nav` never goes back.
+    #[must_use]
+    pub fn default_of(agent: &str, grounder: &str) -> Self {
+        let scale = match grounder {
+            "labels" => Scale::Sentences,
+            "labels/lexical" => Scale::Shares,
+            _ => Scale::Pictures,
+        };
+        let (phrase_threshold, stop_threshold, back_threshold) = match scale {
+            Scale::Sentences => (0.5, 0.6, 0.3),
+            Scale::Shares => (0.5, 0.75, 0.2),
+            // Not swept: there were no photographs to sweep it on.
+            Scale::Pictures => (0.26, 0.28, 0.2),
+        };
+        let back = Back { window: 3, threshold: back_threshold, nodes: 2 };
+        Self {
+            phrase_threshold,
+            stop_threshold,
+            stop_with_phrases_left: 0,
+            max_hops: 20,
+            shun_visited: true,
+            back: (agent != "clip-nav").then_some(back),
+        }
+    }
+
+    /// All of them by their names, for those who read a result.
+    #[must_use]
+    pub fn named(&self) -> BTreeMap<String, String> {
+        let mut named = BTreeMap::from([
+            ("phrase_threshold", self.phrase_threshold.to_string()),
+            ("stop_threshold", self.stop_threshold.to_string()),
+            ("stop_with_phrases_left", self.stop_with_phrases_left.to_string()),
+            ("max_hops", self.max_hops.to_string()),
+            ("shun_visited", self.shun_visited.to_string()),
+        ]);
+        if let Some(back) = self.back {
+            named.insert("back.window", back.window.to_string());
+            named.insert("back.threshold", back.threshold.to_string());
+            named.insert("back.nodes", back.nodes.to_string());
+        }
+        named.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+}

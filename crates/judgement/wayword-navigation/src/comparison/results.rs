@@ -1,0 +1,81 @@
+//! Scores of walks, by agent, set, item and text.
+
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_metrics::{Metric, Rule, Score};
+
+/// The scores of one agent on one set: by item, then by the text's place in its set.
+type Scores = BTreeMap<String, BTreeMap<usize, Score>>;
+
+/// All scores of a comparison.
+#[derive(Debug, Clone, Default)]
+pub struct Results {
+    scores: BTreeMap<(String, String), Scores>,
+    /// The path of each item.
+    clusters: BTreeMap<String, String>,
+}
+
+/// Places of texts, by item.
+pub(super) type Texts = BTreeMap<String, BTreeSet<usize>>;
+
+impl Results {
+    /// Adds what a walk came to. `cluster` is the item's path.
+    pub fn add(&mut self, walk: &crate::walk::Walk, cluster: &str, score: Score) {
+        let scores = self.scores.entry((walk.agent.clone(), walk.set.clone())).or_default();
+        scores.entry(walk.item.clone()).or_default().insert(walk.text_index, score);
+        self.clusters.entry(walk.item.clone()).or_insert_with(|| cluster.to_owned());
+    }
+
+    /// The texts by which an agent walked.
+    pub(super) fn texts(&self, agent: &str, set: &str) -> Texts {
+        let scores = self.of(agent, set).into_iter().flatten();
+        scores.map(|(item, texts)| (item.clone(), texts.keys().copied().collect())).collect()
+    }
+
+    /// An agent's figure of each item: the mean over its texts. With `only`, over those texts alone.
+    pub(super) fn by_item(
+        &self,
+        agent: &str,
+        set: &str,
+        metric: Metric,
+        rule: Rule,
+        only: Option<&Texts>,
+    ) -> BTreeMap<&str, f64> {
+        let scores = self.of(agent, set).into_iter().flatten();
+        let wanted =
+            |item: &str, text: &usize| only.is_none_or(|only| only.get(item).is_some_and(|texts| texts.contains(text)));
+        let of_item = |(item, texts): (&'_ String, &BTreeMap<usize, Score>)| {
+            let texts = texts.iter().filter(|(text, _)| wanted(item, text));
+            let figures: Vec<f64> = texts.filter_map(|(_, score)| score.get(metric, rule)).collect();
+            (!figures.is_empty()).then(|| figures.iter().sum::<f64>() / figures.len() as f64)
+        };
+        scores.filter_map(|entry| Some((entry.0.as_str(), of_item(entry)?))).collect()
+    }
+
+    /// Whether an agent succeeds by the first text of each item. With `only`, the first of those.
+    pub(super) fn first_successes(
+        &self,
+        agent: &str,
+        set: &str,
+        rule: Rule,
+        only: Option<&Texts>,
+    ) -> BTreeMap<&str, bool> {
+        let scores = self.of(agent, set).into_iter().flatten();
+        let first = |(item, texts): (&'_ String, &BTreeMap<usize, Score>)| {
+            let at = match only {
+                Some(only) => *only.get(item)?.first()?,
+                None => *texts.first_key_value()?.0,
+            };
+            texts.get(&at)?.get(Metric::SuccessRate, rule).map(|success| success > 0.5)
+        };
+        scores.filter_map(|entry| Some((entry.0.as_str(), first(entry)?))).collect()
+    }
+
+    /// The path of an item.
+    pub(super) fn cluster(&self, item: &str) -> &str {
+        self.clusters.get(item).map_or("", String::as_str)
+    }
+
+    fn of(&self, agent: &str, set: &str) -> Option<&Scores> {
+        self.scores.get(&(agent.to_owned(), set.to_owned()))
+    }
+}

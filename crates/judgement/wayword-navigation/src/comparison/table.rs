@@ -1,0 +1,123 @@
+//! From scores to the table: means over items, intervals clustered by path, differences item by item.
+
+use super::{About, Comparison, Difference, Kind, Results, Row, Set, Swapped, results::Texts};
+use crate::swap::Swap;
+use std::collections::BTreeMap;
+use wayword_metrics::{Estimate, McNemar, Metric, clustered_interval};
+
+/// The set of walks by swapped texts of a set.
+#[must_use]
+pub fn swapped_set(set: &str, swap: Swap) -> String {
+    format!("{set}~{}", swap.name())
+}
+
+/// The set under which walks of agents that do not read are kept.
+pub const UNREAD: &str = "none";
+
+/// An agent of a comparison.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Walker {
+    /// Its name.
+    pub name: String,
+    /// What kind it is.
+    pub kind: Kind,
+    /// Whether it reads instructions.
+    pub reads: bool,
+}
+
+/// Puts the table together. Swaps are of the first set, and only of agents that are told nothing else.
+#[must_use]
+pub fn compare(about: About, sets: Vec<Set>, walkers: &[Walker], swaps: &[Swap], results: &Results) -> Comparison {
+    let table = Table { about: &about, results };
+    let mut rows = Vec::new();
+    for walker in walkers {
+        if walker.reads {
+            rows.extend(sets.iter().enumerate().map(|(at, set)| {
+                let first = sets.first().filter(|_| at > 0);
+                table.row(walker, Some(&set.name), first.map(|first| first.name.as_str()))
+            }));
+        } else {
+            rows.push(table.row(walker, None, None));
+        }
+    }
+    let mut swapped = Vec::new();
+    if let Some(first) = sets.first() {
+        for walker in walkers.iter().filter(|walker| walker.kind == Kind::Agent) {
+            swapped.extend(swaps.iter().map(|swap| table.swapped(walker, &first.name, *swap)));
+        }
+    }
+    Comparison { about, sets, rows, swaps: swapped }
+}
+
+struct Table<'a> {
+    about: &'a About,
+    results: &'a Results,
+}
+
+impl Table<'_> {
+    fn row(&self, walker: &Walker, set: Option<&str>, first: Option<&str>) -> Row {
+        let kept = set.unwrap_or(UNREAD);
+        let against = |first: &str| self.difference(&walker.name, (kept, None), (first, None));
+        Row {
+            agent: walker.name.clone(),
+            kind: walker.kind,
+            set: set.map(str::to_owned),
+            figures: self.figures(&walker.name, kept, None),
+            against_first: first.map(against),
+        }
+    }
+
+    fn swapped(&self, walker: &Walker, first: &str, swap: Swap) -> Swapped {
+        let set = swapped_set(first, swap);
+        let texts = self.results.texts(&walker.name, &set);
+        let lost = self.difference(&walker.name, (first, Some(&texts)), (&set, None));
+        let listens = lost.figures.get(&Metric::SuccessRate).is_some_and(|lost| lost.low > 0.0);
+        let count = |texts: &Texts| texts.values().map(|texts| texts.len()).sum();
+        Swapped {
+            agent: walker.name.clone(),
+            swap,
+            changed: count(&texts),
+            texts: count(&self.results.texts(&walker.name, first)),
+            figures: self.figures(&walker.name, &set, None),
+            lost,
+            listens,
+        }
+    }
+
+    fn figures(&self, agent: &str, set: &str, only: Option<&Texts>) -> BTreeMap<Metric, Estimate> {
+        self.estimates(|metric| self.results.by_item(agent, set, metric, self.about.rule, only))
+    }
+
+    /// The first less the second, on the items that have a figure in both.
+    fn difference(
+        &self,
+        agent: &str,
+        (first, only_first): (&str, Option<&Texts>),
+        (second, only_second): (&str, Option<&Texts>),
+    ) -> Difference {
+        let rule = self.about.rule;
+        let figures = self.estimates(|metric| {
+            let second = self.results.by_item(agent, second, metric, rule, only_second);
+            let first = self.results.by_item(agent, first, metric, rule, only_first);
+            first.into_iter().filter_map(|(item, figure)| Some((item, figure - second.get(item)?))).collect()
+        });
+        let second = self.results.first_successes(agent, second, rule, only_second);
+        let first = self.results.first_successes(agent, first, rule, only_first);
+        let pairs = first.iter().filter_map(|(item, first)| Some((*first, *second.get(item)?)));
+        Difference { figures, mcnemar: McNemar::of(pairs) }
+    }
+
+    fn estimates<'r>(&self, of: impl Fn(Metric) -> BTreeMap<&'r str, f64>) -> BTreeMap<Metric, Estimate>
+    where
+        Self: 'r,
+    {
+        let estimate = |metric| {
+            let by_item = of(metric);
+            let values: Vec<(&str, f64)> =
+                by_item.into_iter().map(|(item, figure)| (self.results.cluster(item), figure)).collect();
+            let About { resamples, level, seed, .. } = *self.about;
+            Some((metric, clustered_interval(&values, resamples, level, seed)?))
+        };
+        Metric::ALL.into_iter().filter_map(estimate).collect()
+    }
+}

@@ -1,0 +1,126 @@
+use super::*;
+use crate::walk::{End, Walk};
+use std::collections::BTreeMap;
+use wayword_core::SceneId;
+use wayword_metrics::{Outcome, Score};
+
+fn walk(agent: &str, set: &str, item: &str, text_index: usize) -> Walk {
+    Walk {
+        agent: agent.into(),
+        set: set.into(),
+        item: item.into(),
+        text_index,
+        text: "Go.".into(),
+        scene: SceneId::new("s").unwrap(),
+        directions: None,
+        steps: Vec::new(),
+        end: End::Stopped,
+        object: None,
+    }
+}
+
+fn score(success: bool) -> Score {
+    let outcome = Outcome { success, oracle_success: true, spl: f64::from(u8::from(success)), sdtw: 0.0 };
+    Score {
+        length_m: 2.0,
+        navigation_error_m: None,
+        oracle_error_m: None,
+        distance: outcome,
+        visible: None,
+        grounding: None,
+        ndtw: 0.5,
+        cls: 0.5,
+    }
+}
+
+fn about() -> About {
+    About {
+        platform: "p".into(),
+        episodes: "e.json".into(),
+        grounder: "labels".into(),
+        detector: "labels/detector".into(),
+        splitter: "rules".into(),
+        rule: Rule::Distance,
+        level: 0.95,
+        resamples: 200,
+        seed: 0,
+        items: 4,
+        paths: 2,
+        parameters: BTreeMap::new(),
+        wayword: "0".into(),
+    }
+}
+
+fn set(name: &str) -> Set {
+    Set { name: name.into(), source: name.into(), texts: 4, left_out: 0, words: 3.0 }
+}
+
+fn compared(results: &Results, swaps: &[Swap]) -> Comparison {
+    let walker = |name: &str, kind, reads| Walker { name: name.into(), kind, reads };
+    let walkers = [walker("reader", Kind::Agent, true), walker("blind", Kind::Floor, false)];
+    compare(about(), vec![set("original"), set("ours")], &walkers, swaps, results)
+}
+
+/// Four items on two paths; the first has two texts, one of which leads there.
+fn results() -> Results {
+    let mut results = Results::default();
+    let mut add = |set: &str, item: &str, text, success| {
+        let path = if item < "c" { "p1" } else { "p2" };
+        results.add(&walk("reader", set, item, text), path, score(success));
+    };
+    add("original", "a", 0, true);
+    add("original", "a", 1, false);
+    for item in ["b", "c", "d"] {
+        add("original", item, 0, true);
+    }
+    for item in ["a", "b", "c", "d"] {
+        add("ours", item, 0, item == "b");
+    }
+    results
+}
+
+#[test]
+fn an_items_figure_is_the_mean_over_its_texts_and_a_rows_over_items() {
+    let comparison = compared(&results(), &[]);
+    let [original, ours, blind] = &comparison.rows[..] else { panic!("{:?}", comparison.rows) };
+    let rate = |row: &Row| row.figures[&Metric::SuccessRate];
+    assert_eq!((rate(original).mean, rate(original).values, rate(original).clusters), (3.5 / 4.0, 4, 2));
+    assert_eq!(rate(ours).mean, 0.25);
+    assert!(blind.set.is_none() && blind.figures.is_empty() && blind.against_first.is_none());
+    assert!(original.against_first.is_none());
+    // No goal could be reached: there is no error to take a mean of.
+    assert!(!original.figures.contains_key(&Metric::NavigationErrorM));
+}
+
+#[test]
+fn differences_pair_items_and_mcnemar_their_first_texts() {
+    let comparison = compared(&results(), &[]);
+    let against = comparison.rows[1].against_first.as_ref().unwrap();
+    assert_eq!(against.figures[&Metric::SuccessRate].mean, 0.25 - 3.5 / 4.0);
+    assert_eq!((against.mcnemar.only_first, against.mcnemar.only_second), (0, 3));
+}
+
+#[test]
+fn a_swap_is_held_against_the_very_texts_that_it_changed() {
+    let mut results = results();
+    let swapped = swapped_set("original", Swap::Landmarks);
+    // Of item a only the text that fails was changed; it still fails, so nothing is lost there.
+    results.add(&walk("reader", &swapped, "a", 1), "p1", score(false));
+    results.add(&walk("reader", &swapped, "c", 0), "p2", score(false));
+    let comparison = compared(&results, &[Swap::Landmarks]);
+    let [swapped] = &comparison.swaps[..] else { panic!("{:?}", comparison.swaps) };
+    assert_eq!((swapped.changed, swapped.texts), (2, 5));
+    let lost = swapped.lost.figures[&Metric::SuccessRate];
+    assert_eq!((lost.mean, lost.values), (0.5, 2));
+    assert_eq!((swapped.lost.mcnemar.only_first, swapped.lost.mcnemar.only_second), (1, 0));
+    assert!(!swapped.listens, "two paths, one of which loses nothing, show nothing");
+}
+
+#[test]
+fn who_always_loses_by_a_swap_listens() {
+    let mut results = results();
+    for item in ["b", "c", "d"] {
+        results.add(&walk("reader", &swapped_set("original", Swap::OtherPath), item, 0), "", score(false));
+    }
+    assert!(compared(&results, &[Swap::OtherPath]).swaps[0].listens);
+}

@@ -1,0 +1,36 @@
+//! Why an agent could not walk.
+
+use wayword_core::{ModelError, PlatformError, SceneId, ViewpointId};
+
+/// An agent could not walk.
+#[derive(Debug, thiserror::Error)]
+pub enum WalkError {
+    /// The world could not be looked at.
+    #[error(transparent)]
+    Platform(#[from] PlatformError),
+    /// A model failed.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// An episode begins or ends where there is nothing.
+    #[error("scene {scene} has no viewpoint {viewpoint}: the episodes are of another release of the scene")]
+    Unknown {
+        /// The scene.
+        scene: SceneId,
+        /// The viewpoint.
+        viewpoint: ViewpointId,
+    },
+    /// A grounder gave what cannot be compared.
+    #[error("{grounder} did not give one finite score per view and phrase")]
+    Unusable {
+        /// Its name.
+        grounder: String,
+    },
+}
+
+impl WalkError {
+    /// Whether every further walk would fail in the same way.
+    #[must_use]
+    pub fn ends_run(&self) -> bool {
+        matches!(self, Self::Model(error) if error.ends_run())
+    }
+}

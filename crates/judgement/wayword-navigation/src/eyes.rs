@@ -1,0 +1,158 @@
+//! What an agent is told at a node: how well its phrases fit four views, and which neighbours lie in each.
+
+use crate::WalkError;
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    Frame, Gaze, Grounder, Heading, ObjectId, Platform, Pose, SceneId, View, ViewpointGraph, ViewpointId,
+};
+
+/// The eyes of an agent in one scene: a world to look at, and a grounder that says how well phrases fit what is seen.
+///
+/// The four views are those of the compass: a node looks the same wherever it is entered from. What was seen and scored is
+/// remembered, so that every agent that walks by one instruction shares it.
+pub struct Eyes<'a> {
+    platform: &'a dyn Platform,
+    grounder: &'a dyn Grounder,
+    scene: SceneId,
+    graph: Arc<ViewpointGraph>,
+    needs_pictures: bool,
+    around: Mutex<BTreeMap<ViewpointId, Arc<Around>>>,
+    scores: Mutex<BTreeMap<(ViewpointId, Vec<String>), Arc<[Vec<f32>; 4]>>>,
+}
+
+/// What surrounds a node.
+struct Around {
+    views: [View; 4],
+    /// Neighbours in each view, nearest first.
+    onward: [Vec<ViewpointId>; 4],
+}
+
+/// What an agent is told at a node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sight {
+    /// North, east, south, west.
+    pub views: [Seen; 4],
+}
+
+/// One view, as an agent is told of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    /// How well each phrase fits, in the order in which they were given.
+    pub scores: Vec<f32>,
+    /// The neighbours in it, nearest first.
+    pub onward: Vec<ViewpointId>,
+}
+
+impl<'a> Eyes<'a> {
+    /// Eyes in a scene. A grounder that looks at no picture spares a world the drawing of it.
+    ///
+    /// # Errors
+    /// When there is no such scene.
+    pub fn new(
+        platform: &'a dyn Platform,
+        grounder: &'a dyn Grounder,
+        needs_pictures: bool,
+        scene: &SceneId,
+    ) -> Result<Self, WalkError> {
+        Ok(Self {
+            platform,
+            grounder,
+            scene: scene.clone(),
+            graph: platform.graph(scene)?,
+            needs_pictures,
+            around: Mutex::default(),
+            scores: Mutex::default(),
+        })
+    }
+
+    /// What is seen from a node.
+    ///
+    /// # Errors
+    /// When the world cannot be looked at, or the grounder fails.
+    pub fn look(&self, viewpoint: &ViewpointId, phrases: &[String]) -> Result<Sight, WalkError> {
+        let around = self.around(viewpoint)?;
+        let scores = self.scores(viewpoint, &around, phrases)?;
+        let seen = |view: usize| Seen { scores: scores[view].clone(), onward: around.onward[view].clone() };
+        Ok(Sight { views: std::array::from_fn(seen) })
+    }
+
+    /// The object around a node that a phrase fits best, where the grounder can tell.
+    ///
+    /// # Errors
+    /// When the world cannot be looked at, or the grounder fails.
+    pub fn point(&self, viewpoint: &ViewpointId, phrase: &str) -> Result<Option<ObjectId>, WalkError> {
+        let around = self.around(viewpoint)?;
+        Ok(self.grounder.point(&around.views.each_ref(), phrase)?)
+    }
+
+    /// The direction from one node to another; none where one stands above the other.
+    pub(crate) fn heading_to(&self, from: &ViewpointId, to: &ViewpointId) -> Option<Heading> {
+        heading_to(&self.graph, from, to)
+    }
+
+    fn around(&self, viewpoint: &ViewpointId) -> Result<Arc<Around>, WalkError> {
+        if let Some(around) = self.around.lock().unwrap_or_else(PoisonError::into_inner).get(viewpoint) {
+            return Ok(Arc::clone(around));
+        }
+        let around = Arc::new(self.look_around(viewpoint)?);
+        let mut all = self.around.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Arc::clone(all.entry(viewpoint.clone()).or_insert(around)))
+    }
+
+    fn look_around(&self, viewpoint: &ViewpointId) -> Result<Around, WalkError> {
+        let frame = frame_at(&self.graph, &self.scene, viewpoint)?;
+        let look = |gaze: Gaze| match self.needs_pictures {
+            true => self.platform.look(&self.scene, &frame, gaze),
+            false => self.platform.look_without_picture(&self.scene, &frame, gaze),
+        };
+        let [north, east, south, west] = Gaze::compass();
+        let views = [look(north)?, look(east)?, look(south)?, look(west)?];
+        Ok(Around { views, onward: Gaze::compass().map(|gaze| onward(&self.graph, viewpoint, gaze)) })
+    }
+
+    fn scores(
+        &self,
+        viewpoint: &ViewpointId,
+        around: &Around,
+        phrases: &[String],
+    ) -> Result<Arc<[Vec<f32>; 4]>, WalkError> {
+        let key = (viewpoint.clone(), phrases.to_vec());
+        if let Some(scores) = self.scores.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Ok(Arc::clone(scores));
+        }
+        let phrases: Vec<&str> = phrases.iter().map(String::as_str).collect();
+        let told = self.grounder.ground(&around.views.each_ref(), &phrases);
+        let told = told.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let whole = told.iter().all(|scores| scores.len() == phrases.len() && scores.iter().all(|one| one.is_finite()));
+        let scores = <[Vec<f32>; 4]>::try_from(told).ok().filter(|_| whole);
+        let scores = Arc::new(scores.ok_or_else(|| WalkError::Unusable { grounder: self.grounder.name().to_owned() })?);
+        self.scores.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Arc::clone(&scores));
+        Ok(scores)
+    }
+}
+
+/// A stand at a node, looking north.
+pub(crate) fn frame_at(graph: &ViewpointGraph, scene: &SceneId, viewpoint: &ViewpointId) -> Result<Frame, WalkError> {
+    let unknown = || WalkError::Unknown { scene: scene.clone(), viewpoint: viewpoint.clone() };
+    let position = graph.position(viewpoint).ok_or_else(unknown)?;
+    let pose = Pose::level(position, Heading::NORTH);
+    Ok(Frame { pose, viewpoint: Some(viewpoint.clone()), level: graph.level(viewpoint) })
+}
+
+/// The direction from one node to another; none where one stands above the other.
+pub(crate) fn heading_to(graph: &ViewpointGraph, from: &ViewpointId, to: &ViewpointId) -> Option<Heading> {
+    Heading::towards(graph.position(from)?, graph.position(to)?)
+}
+
+/// The neighbours that lie in a view, nearest first. One straight above or below lies to the north, for it has to lie somewhere.
+fn onward(graph: &ViewpointGraph, from: &ViewpointId, gaze: Gaze) -> Vec<ViewpointId> {
+    let position = |id: &ViewpointId| graph.position(id).unwrap_or_default();
+    let here = position(from);
+    let lies_in = |to: &&ViewpointId| gaze.holds(heading_to(graph, from, to).unwrap_or(Heading::NORTH));
+    let mut in_view: Vec<&ViewpointId> = graph.neighbours(from).into_iter().filter(lies_in).collect();
+    in_view.sort_by(|a, b| here.distance(position(a)).total_cmp(&here.distance(position(b))));
+    in_view.into_iter().cloned().collect()
+}
