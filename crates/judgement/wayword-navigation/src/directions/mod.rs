@@ -1,5 +1,6 @@
 //! An instruction as an agent follows it: key phrases in their order, and what is to be done at the end.
 
+mod clauses;
 mod pieces;
 pub mod places;
 mod rules;

@@ -1,9 +1,9 @@
 //! A text in pieces: stretches of its words that lead to a place, and its closing task.
 
+use super::clauses::{Clause, ends_in_task, has_object, mended, without_joints};
 use std::{collections::BTreeSet, ops::Range};
 use wayword_synthesis::{
-    lexicon::same_room,
-    reading::{Event, Link, Place, Reading, What, clauses, read},
+    reading::{Event, Link, Place, Reading, What, read},
     text::{Token, tokens},
 };
 
@@ -14,39 +14,50 @@ const MOST_WORDS_OF_CLIMB: usize = 16;
 /// How far before a place its preposition may stand, words.
 const REACH: usize = 7;
 
-/// Words that join a clause to the one before.
-const JOINING: [&str; 8] = ["and", "then", "please", "also", "now", "finally", "afterwards", "but"];
 /// Words that end what is said about a room.
 const AFTER_ROOM: [&str; 9] = ["and", "if", "when", "while", "whether", "so", "until", "for", "to"];
+/// Words behind an "and" that go on with the walk: "past the sofa and into the hall".
+const GOING_ON: [&str; 17] = [
+    "into", "onto", "to", "out", "past", "passed", "through", "down", "up", "across", "toward", "towards", "along",
+    "around", "when", "once", "after",
+];
 
 /// A text in pieces.
 pub(super) struct Pieces<'a> {
     text: &'a str,
     tokens: Vec<Token>,
     reading: Reading,
-    /// Ranges of tokens, without the words that join them and the marks at their ends.
-    clauses: Vec<Range<usize>>,
+    clauses: Vec<Clause>,
 }
 
 impl<'a> Pieces<'a> {
     pub(super) fn of(text: &'a str) -> Self {
         let tokens = tokens(text);
-        let clauses = clause_ranges(&tokens);
+        let clauses = mended(text, &tokens);
         Self { text, reading: read(text, &BTreeSet::new()), tokens, clauses }
     }
 
     /// The first clause of the closing task. Where several tasks end a text, all of them are the closing task.
     pub(super) fn task(&self) -> Option<usize> {
-        self.reading.task.as_ref()?;
-        let is_task = |clause: &usize| read(self.words(&self.clauses[*clause]), &BTreeSet::new()).task.is_some();
+        let last = self.clauses.last()?;
+        let is_task = |clause: &usize| ends_in_task(self.words(&self.clauses[*clause].head));
+        if !ends_in_task(&self.text[..self.span(&last.head)[1]]) {
+            return None;
+        }
         let last = (0..self.clauses.len()).rev().find(is_task)?;
-        (0..=last).rev().take(MOST_TASKS).take_while(is_task).last()
+        // "Got to the kitchen" is no task, but a mistake in writing.
+        let is_one_of_several = |clause: &usize| {
+            let head = &self.clauses[*clause].head;
+            let gets_there = self.places(head).next().is_some_and(|(_, place)| place.link == Link::Goal);
+            !gets_there && has_object(&self.tokens, head) && is_task(clause)
+        };
+        (0..last).rev().take(MOST_TASKS - 1).take_while(is_one_of_several).last().or(Some(last))
     }
 
     /// The text from a clause on.
     pub(super) fn rest(&self, clause: usize) -> &'a str {
-        let end = self.clauses.last().map_or(0, |last| last.end);
-        self.words(&(self.clauses[clause].start..end))
+        let end = self.clauses.last().map_or(0, |last| last.all.end);
+        self.words(&(self.clauses[clause].all.start..end))
     }
 
     /// The pieces of the clauses before `end` that lead to a place, in their order.
@@ -56,8 +67,8 @@ impl<'a> Pieces<'a> {
     pub(super) fn leading(&self, end: Option<usize>) -> Vec<&'a str> {
         let mut pieces = Vec::new();
         let mut climb = None;
-        for clause in &self.clauses[..end.unwrap_or(self.clauses.len())] {
-            for piece in self.cut(clause) {
+        for clause in self.before(end) {
+            for piece in self.cut(&clause.all) {
                 if self.places(&piece).next().is_some() {
                     let start = climb.take().filter(|start| piece.end - start <= MOST_WORDS_OF_CLIMB);
                     pieces.push(self.words(&(start.unwrap_or(piece.start)..piece.end)));
@@ -69,73 +80,116 @@ impl<'a> Pieces<'a> {
         pieces
     }
 
-    /// The rooms in which the closing task is done, as it tells them, without those that are named before.
-    pub(super) fn rooms_of_task(&self, task: usize) -> Vec<&'a str> {
-        let mut named: Vec<&str> = Vec::new();
-        let mut rooms = Vec::new();
-        for (at, clause) in self.clauses.iter().enumerate() {
-            for (event, place) in self.places(clause).filter(|(_, place)| place.is_room) {
-                if at >= task && place.link == Link::Within && !named.iter().any(|name| same_room(name, &place.name)) {
-                    rooms.push(self.words(&self.about_room(clause, event)));
-                }
-                named.push(&place.name);
-            }
-        }
-        rooms
+    /// The longest clause before the task that does more than turn: it may name a place in words that nobody knows.
+    pub(super) fn unread(&self, task: usize) -> Option<&'a str> {
+        let only_moves = |what: &What| matches!(what, What::Turn(_) | What::Onward);
+        let may_lead = |clause: &&Clause| {
+            clause.all.len() > 1 && !self.events(&clause.all).any(|event| event.denied || only_moves(&event.what))
+        };
+        let longest = self.before(Some(task)).iter().filter(may_lead).max_by_key(|clause| clause.all.len())?;
+        Some(self.words(&longest.all))
     }
 
-    /// A clause in two where it goes through one place and on to another: "down the hallway" and "to the kitchen".
+    /// The room in which the closing task is done, as it tells it.
+    pub(super) fn room_of_task(&self, task: usize) -> Option<&'a str> {
+        let rooms = self.clauses[task..].iter().flat_map(|clause| {
+            let rooms = self
+                .places(&clause.all)
+                .filter(|(_, place)| place.is_room && matches!(place.link, Link::Within | Link::Beside));
+            rooms.filter_map(|(event, _)| self.about_room(&clause.all, event))
+        });
+        rooms.map(|room| self.words(&room)).next()
+    }
+
+    fn before(&self, end: Option<usize>) -> &[Clause] {
+        &self.clauses[..end.unwrap_or(self.clauses.len())]
+    }
+
+    /// A clause in parts where it goes through one place and on to another: "down the hallway" and "to the kitchen".
     fn cut(&self, clause: &Range<usize>) -> Vec<Range<usize>> {
-        let mut pieces = Vec::new();
-        let mut start = clause.start;
-        let mut leads_on = false;
+        let mut cuts = vec![clause.start];
+        let mut before: Option<(usize, &Place)> = None;
         for (event, place) in self.places(clause) {
-            if place.link == Link::Goal && leads_on {
-                let cut = self.before_goal(start, self.first_token(event));
-                pieces.push(start..cut);
-                (start, leads_on) = (cut, false);
+            let (start, at) = (cuts.last().map_or(0, |cut| cut + 1), self.first_token(event));
+            if let Some((end, from)) = before {
+                let is_goal = place.link == Link::Goal && self.leads_on(end, from);
+                let cut =
+                    self.going_on(end..at).or_else(|| is_goal.then(|| self.before_goal(end.max(start)..at)).flatten());
+                cuts.extend(cut);
             }
-            leads_on |= matches!(place.link, Link::Along | Link::Plain);
+            before = Some((self.tokens.partition_point(|token| token.span[0] < event.span[1]), place));
         }
-        pieces.push(start..clause.end);
-        pieces
+        cuts.push(clause.end);
+        cuts.windows(2).map(|ends| without_joints(&self.tokens, ends[0]..ends[1])).collect()
+    }
+
+    /// Whether a place, whose last token is before `end`, is one that the walk passes or leaves on its way to the next.
+    fn leads_on(&self, end: usize, place: &Place) -> bool {
+        let mut before = (0..end).rev().take(REACH).map(|at| self.word(at));
+        let mut leaves = || before.any(|word| matches!(word, "out" | "from"));
+        let is_only_room = place.is_room && !place.is_thing;
+        match place.link {
+            Link::Along | Link::Plain => true,
+            Link::Goal => is_only_room,
+            Link::Within => leaves(),
+            Link::Beside => false,
+        }
+    }
+
+    /// Where the walk goes on behind an "and".
+    fn going_on(&self, between: Range<usize>) -> Option<usize> {
+        let goes_on = |at: &usize| self.word(*at - 1) == "and" && GOING_ON.contains(&self.word(*at));
+        (between.start + 1..between.end).find(goes_on)
     }
 
     /// Where the words that lead to a place begin: its preposition, with the adverbs before that ("all the way to the sofa").
-    fn before_goal(&self, from: usize, place: usize) -> usize {
-        let is_goal = |at: &usize| {
-            matches!(
-                self.word(*at),
-                "to" | "into" | "onto" | "toward" | "towards" | "until" | "till" | "enter" | "reach"
-            )
+    fn before_goal(&self, between: Range<usize>) -> Option<usize> {
+        let is_goal =
+            |at: &usize| matches!(self.word(*at), "to" | "into" | "onto" | "toward" | "towards" | "until" | "till");
+        let mut at = between.clone().rev().take(REACH).find(is_goal)?;
+        let is_adverb = |at: usize| {
+            matches!(self.word(at), "up" | "down" | "over" | "back" | "straight" | "way" | "all")
+                || (self.word(at) == "the" && self.word(at + 1) == "way")
         };
-        let Some(mut at) = (from + 1..place).rev().take(REACH).find(is_goal) else { return place };
-        while at > from + 1
-            && (matches!(
-                self.word(at - 1),
-                "up" | "down" | "over" | "back" | "straight" | "way" | "all" | "and" | "right"
-            ) || (self.word(at - 1) == "the" && self.word(at) == "way"))
-        {
+        while at > between.start && is_adverb(at - 1) {
             at -= 1;
         }
-        // "And" joins; it belongs to neither.
-        if self.word(at) == "and" { at + 1 } else { at }
+        Some(at)
     }
 
-    /// What is said about a room in a clause: from behind its preposition to where something else begins.
-    fn about_room(&self, clause: &Range<usize>, event: &Event) -> Range<usize> {
+    /// What is said about a room in a clause: from behind its preposition to where something else begins. `None` where its
+    /// preposition says that the task is elsewhere.
+    fn about_room(&self, clause: &Range<usize>, event: &Event) -> Option<Range<usize>> {
         let room = self.first_token(event);
         let is_in = |at: &usize| matches!(self.word(*at), "in" | "inside" | "within" | "at" | "on" | "from" | "of");
-        let start = (clause.start..room).rev().take(REACH).find(is_in).map_or(room, |at| at + 1);
+        let preposition = (clause.start..room).rev().take(REACH).find(is_in)?;
+        let far = |at: usize| matches!(self.word(at), "far" | "farthest" | "furthest" | "farther" | "further" | "away");
+        let aside = |at: &usize| matches!(self.word(*at), "near" | "by" | "to" | "closest" | "nearest");
+        if (preposition > clause.start && far(preposition - 1)) || (preposition..room).any(|at| aside(&at)) {
+            return None;
+        }
         let end = (room + 1..clause.end).find(|at| AFTER_ROOM.contains(&self.word(*at))).unwrap_or(clause.end);
-        start..end
+        Some(preposition + 1..end)
     }
 
+    /// The places of a stretch that a walker may see there.
     fn places(&self, piece: &Range<usize>) -> impl Iterator<Item = (&Event, &Place)> {
-        self.events(piece).filter(|event| !event.denied).filter_map(|event| match &event.what {
+        self.events(piece).filter(|event| !event.denied && !self.is_pace(event)).filter_map(|event| match &event.what {
             What::Place(place) => Some((event, place)),
             _ => None,
         })
+    }
+
+    /// "Take two steps into the room": these steps are none to see.
+    fn is_pace(&self, event: &Event) -> bool {
+        let at = self.first_token(event);
+        let before = |back: usize| at.checked_sub(back).map_or("", |at| self.word(at));
+        matches!(self.word(at), "step" | "steps")
+            && matches!(
+                before(1),
+                "a" | "one" | "two" | "three" | "four" | "five" | "six" | "few" | "couple" | "2" | "3"
+            )
+            && !(2..=4).any(|back| matches!(before(back), "up" | "down" | "climb" | "the" | "those" | "these"))
     }
 
     fn events(&self, piece: &Range<usize>) -> impl Iterator<Item = &Event> {
@@ -164,26 +218,4 @@ impl<'a> Pieces<'a> {
 
 fn climbs(what: &What) -> bool {
     matches!(what, What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_))
-}
-
-/// The clauses that have words, without what joins them.
-fn clause_ranges(tokens: &[Token]) -> Vec<Range<usize>> {
-    let numbers = clauses(tokens);
-    let mut ranges = Vec::new();
-    let mut from = 0;
-    for clause in numbers.chunk_by(|a, b| a == b) {
-        let mut range = from..from + clause.len();
-        from = range.end;
-        let joins = |token: &Token| !token.is_word() || JOINING.contains(&token.word.as_str());
-        while !range.is_empty() && joins(&tokens[range.start]) {
-            range.start += 1;
-        }
-        while !range.is_empty() && joins(&tokens[range.end - 1]) {
-            range.end -= 1;
-        }
-        if !range.is_empty() {
-            ranges.push(range);
-        }
-    }
-    ranges
 }

@@ -7,8 +7,8 @@ use wayword_core::ModelError;
 ///
 /// A key phrase is a clause that names a thing or a room, or a part of one where the clause goes through one place on to another;
 /// clauses that only turn carry no picture and are left out. The activity is the closing task, else the last piece with a
-/// place, else the whole text. A task that names the room in which it is done has that as a phrase; a walk with one place has
-/// it as phrase and as activity.
+/// place, else the whole text. A task alone that names the room in which it is done has that as a phrase; a walk with one place
+/// has it as phrase and as activity.
 /// Everything is a run of the text's own words.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ByRules;
@@ -34,7 +34,9 @@ fn split(text: &str) -> Result<Directions, ModelError> {
     let mut phrases = pieces.leading(task);
     let activity = match task {
         Some(task) => {
-            phrases.extend(pieces.rooms_of_task(task));
+            if phrases.is_empty() {
+                phrases.extend(pieces.unread(task).or_else(|| pieces.room_of_task(task)));
+            }
             pieces.rest(task)
         }
         None if phrases.len() > 1 => phrases.pop().unwrap_or(text),
@@ -124,6 +126,44 @@ mod tests {
             &["Go upstairs, turn left and enter the bedroom"],
             "Wait by the bed",
         );
+    }
+
+    #[test]
+    fn what_only_tells_of_a_place_makes_no_clause() {
+        is(
+            "Go to the lounge with a red sofa and stripey chairs and is next to the foyer and dust the globe that is by the door and is on a shelf",
+            &["Go to the lounge with a red sofa and stripey chairs and is next to the foyer"],
+            "dust the globe that is by the door and is on a shelf",
+        );
+        is(
+            "Go to the bedroom with a sign \"Home Sweet Home\" above the bed and clean the window",
+            &["Go to the bedroom with a sign \"Home Sweet Home\" above the bed"],
+            "clean the window",
+        );
+    }
+
+    #[test]
+    fn a_clause_is_cut_where_the_walk_goes_on() {
+        is(
+            "Go out of the bathroom into the hall and past the piano, take two steps and wait by the door.",
+            &["Go out of the bathroom", "into the hall", "past the piano"],
+            "wait by the door",
+        );
+        is(
+            "Walk past the sofa and the table to the left of the door. Stop at the bed",
+            &["Walk past the sofa and the table to the left of the door"],
+            "Stop at the bed",
+        );
+    }
+
+    #[test]
+    fn words_that_nobody_knows_are_kept() {
+        is(
+            "Go to the dinnning room on level 2 and move the chair",
+            &["Go to the dinnning room on level 2"],
+            "move the chair",
+        );
+        is("Got to the pantry near the door and empty the bin", &["Got to the pantry near the door"], "empty the bin");
     }
 
     #[test]

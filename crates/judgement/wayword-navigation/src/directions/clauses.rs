@@ -1,0 +1,96 @@
+//! Clauses as people mean them: the reader's, mended where an "and" or a mark belongs to a noun phrase.
+
+use std::{collections::BTreeSet, ops::Range};
+use wayword_synthesis::{
+    reading::{clauses, read},
+    text::Token,
+};
+
+/// Words that join a clause to the one before.
+const JOINING: [&str; 8] = ["and", "then", "please", "also", "now", "finally", "afterwards", "but"];
+/// Words that go on telling of the place before: "the lamp by the window and is on the shelf".
+const TELLING: [&str; 9] = ["is", "are", "has", "have", "that", "which", "closest", "nearest", "with"];
+/// Words that follow a verb and no adjective: "clean the lamp", "turn on", but not "stripey chairs".
+const AFTER_VERB: [&str; 22] = [
+    "the", "a", "an", "this", "that", "these", "those", "my", "your", "its", "me", "it", "on", "off", "up", "down",
+    "out", "in", "to", "all", "any", "if",
+];
+
+/// A clause, as ranges of tokens without the words and marks that join it to others.
+#[derive(Debug, Clone)]
+pub(super) struct Clause {
+    pub(super) all: Range<usize>,
+    /// Without what only goes on telling of a place.
+    pub(super) head: Range<usize>,
+}
+
+/// The clauses of a text that have words.
+pub(super) fn mended(text: &str, tokens: &[Token]) -> Vec<Clause> {
+    let ranges = ranges(tokens);
+    let mut mended: Vec<Clause> = Vec::new();
+    for (at, range) in ranges.iter().enumerate() {
+        let goes_on = || {
+            let from = at.checked_sub(1).map_or(0, |before| ranges[before].end);
+            goes_on(tokens, from..range.start, range)
+                || (at + 1 < ranges.len() && is_adjective(text, tokens, from, range))
+        };
+        match mended.last_mut() {
+            Some(before) if goes_on() => before.all.end = range.end,
+            _ => mended.push(Clause { all: range.clone(), head: range.clone() }),
+        }
+    }
+    mended
+}
+
+/// Whether a text by itself ends in a task.
+pub(super) fn ends_in_task(text: &str) -> bool {
+    read(text, &BTreeSet::new()).task.is_some()
+}
+
+/// Whether the second word of a clause is one that follows a verb.
+pub(super) fn has_object(tokens: &[Token], clause: &Range<usize>) -> bool {
+    clause.len() > 1 && AFTER_VERB.contains(&tokens[clause.start + 1].word.as_str())
+}
+
+/// Whether a clause goes on with the one before: what stands between them is no end, or it begins by telling of a place.
+fn goes_on(tokens: &[Token], between: Range<usize>, clause: &Range<usize>) -> bool {
+    let between = &tokens[between];
+    let ends = |token: &Token| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");
+    let joined = between.iter().any(Token::is_word);
+    let telling = TELLING.contains(&tokens[clause.start].word.as_str());
+    !between.iter().any(ends) && (telling || !joined)
+}
+
+/// "With a white couch and stripey chairs": what the reader takes for a verb is an adjective.
+fn is_adjective(text: &str, tokens: &[Token], from: usize, clause: &Range<usize>) -> bool {
+    tokens[from..clause.start].iter().all(|token| token.word == "and")
+        && !has_object(tokens, clause)
+        && ends_in_task(&text[tokens[clause.start].span[0]..tokens[clause.end - 1].span[1]])
+}
+
+/// The reader's clauses that have words, without what joins them.
+fn ranges(tokens: &[Token]) -> Vec<Range<usize>> {
+    let mut ranges = Vec::new();
+    let mut from = 0;
+    for clause in clauses(tokens).chunk_by(|a, b| a == b) {
+        let mut range = from..from + clause.len();
+        from = range.end;
+        range.start += tokens[range.clone()].iter().take_while(|token| joins(token)).count();
+        if !range.is_empty() {
+            ranges.push(without_joints(tokens, range));
+        }
+    }
+    ranges
+}
+
+/// A range without the words and marks at its end that join it to what follows.
+pub(super) fn without_joints(tokens: &[Token], mut range: Range<usize>) -> Range<usize> {
+    while range.len() > 1 && joins(&tokens[range.end - 1]) {
+        range.end -= 1;
+    }
+    range
+}
+
+fn joins(token: &Token) -> bool {
+    !token.is_word() || JOINING.contains(&token.word.as_str())
+}
