@@ -1,13 +1,16 @@
 //! An instruction as an agent follows it: key phrases in their order, and what is to be done at the end.
 
 mod clauses;
+mod model;
 mod pieces;
 pub mod places;
+mod reply;
 mod rules;
 
 use serde::{Deserialize, Serialize};
 use wayword_core::ModelError;
 
+pub use model::ByModel;
 pub use places::{Place, places};
 pub use rules::ByRules;
 
@@ -51,4 +54,16 @@ fn short(text: &str) -> String {
     let end = |word: &str| word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
     let end = text.split_whitespace().take(MOST_WORDS).last().map_or(0, end);
     text[..end].to_owned()
+}
+
+/// The part of an instruction that is read.
+///
+/// # Errors
+/// Where it has no words to take apart.
+fn readable<'a>(text: &'a str, splitter: &str) -> Result<&'a str, ModelError> {
+    let text = beginning(text, MOST_BYTES_READ);
+    if text.contains(char::is_alphanumeric) {
+        return Ok(text);
+    }
+    Err(ModelError::Failed { model: splitter.to_owned(), reason: "the instruction has no words".to_owned() })
 }

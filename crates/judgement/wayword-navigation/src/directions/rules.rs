@@ -1,6 +1,6 @@
 //! Instructions taken apart offline, by the reader that the checks use.
 
-use super::{Directions, MOST_BYTES_READ, MOST_PHRASES, Splitter, beginning, pieces::Pieces, short};
+use super::{Directions, MOST_PHRASES, Splitter, pieces::Pieces, readable, short};
 use wayword_core::ModelError;
 
 /// Takes instructions apart by rules.
@@ -24,11 +24,7 @@ impl Splitter for ByRules {
 }
 
 fn split(text: &str) -> Result<Directions, ModelError> {
-    let text = beginning(text, MOST_BYTES_READ);
-    if !text.contains(char::is_alphanumeric) {
-        let reason = "the instruction has no words".to_owned();
-        return Err(ModelError::Failed { model: "rules".to_owned(), reason });
-    }
+    let text = readable(text, ByRules.name())?;
     let pieces = Pieces::of(text);
     let task = pieces.task();
     let mut phrases = pieces.leading(task);

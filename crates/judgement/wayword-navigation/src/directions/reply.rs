@@ -1,0 +1,110 @@
+//! What a model says when it takes an instruction apart.
+
+use super::{Directions, MOST_BYTES_READ, MOST_PHRASES, beginning, short};
+
+/// Names of the closing line.
+const CLOSING: [&str; 3] = ["task", "activity", "action"];
+/// What models write where there is nothing to write.
+const NOTHING: [&str; 5] = ["none", "(none)", "n/a", "nothing", "-"];
+
+/// Reads a reply: numbered or bulleted lines, then "TASK: ...". Code fences, quotes, emphasis and chatter around are passed over.
+///
+/// # Errors
+/// What is missing, in words.
+pub(super) fn directions(reply: &str) -> Result<Directions, &'static str> {
+    let mut phrases: Vec<String> = Vec::new();
+    let mut awaits_task = false;
+    for line in beginning(reply, MOST_BYTES_READ).lines() {
+        let (listed, text) = item(line);
+        let (is_closing, text) = closing(text).map_or((false, text), |task| (true, task));
+        let text = plain(text);
+        let says_nothing = !text.contains(char::is_alphanumeric) || NOTHING.contains(&text.to_lowercase().as_str());
+        if is_closing || awaits_task {
+            if !says_nothing {
+                return Ok(Directions { phrases, activity: short(text) });
+            }
+            awaits_task = true;
+        } else if listed && !says_nothing && phrases.len() < MOST_PHRASES {
+            phrases.push(short(text));
+        }
+    }
+    Err(if awaits_task { "its line of the task is empty" } else { "it wrote no line that begins with \"TASK:\"" })
+}
+
+/// A line without its number or bullet, and whether it had one.
+fn item(line: &str) -> (bool, &str) {
+    let line = line.trim();
+    let numbered = || {
+        let line = line.trim_start_matches(['(', '*', '_']);
+        let rest = line.trim_start_matches(|c: char| c.is_ascii_digit());
+        (rest.len() < line.len()).then(|| rest.strip_prefix(['.', ')', ':', '-'])).flatten()
+    };
+    // A star with a space behind it is a bullet, two are emphasis.
+    let bulleted = || ["- ", "* ", "• ", "– ", "+ "].iter().find_map(|bullet| line.strip_prefix(bullet));
+    numbered().or_else(bulleted).map_or((false, line), |rest| (true, rest))
+}
+
+/// What stands behind the name of the closing line.
+fn closing(text: &str) -> Option<&str> {
+    let text = text.trim_start_matches(['*', '_', '"', '#', ' ']);
+    let name =
+        CLOSING.iter().find(|name| text.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name)))?;
+    let rest = text[name.len()..].trim_start_matches(['*', '_', '"', ' ']);
+    rest.strip_prefix([':', '-', '–', '—', '='])
+}
+
+/// A phrase without quotes and emphasis around it.
+fn plain(text: &str) -> &str {
+    text.trim_matches(|c: char| c.is_whitespace() || matches!(c, '"' | '“' | '”' | '\'' | '*' | '_' | '`'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn read(reply: &str) -> (Vec<String>, String) {
+        let directions = directions(reply).unwrap();
+        (directions.phrases, directions.activity)
+    }
+
+    #[test]
+    fn replies_are_read_however_they_are_dressed() {
+        let wanted = (vec!["past the sofa".to_owned(), "up the stairs".to_owned()], "wipe the sink".to_owned());
+        for reply in [
+            "1. past the sofa\n2. up the stairs\nTASK: wipe the sink",
+            "Here you are:\n```\n1) \"past the sofa\"\n2) “up the stairs”\nTask - 'wipe the sink'\n```\nAnything else?",
+            "- past the sofa\n- up the stairs\n\n**TASK:** wipe the sink",
+            "* past the sofa\n* up the stairs\n* **Task**: wipe the sink",
+            "**1.** past the sofa\n**2.** up the stairs\n3. TASK: wipe the sink",
+            "PHRASES:\r\n(1) past the sofa\r\n(2) up the stairs\r\nTASK:\r\nwipe the sink\r\n",
+            "• past the sofa\n• up the stairs\n• none\nActivity: wipe the sink",
+        ] {
+            assert_eq!(read(reply), wanted, "{reply}");
+        }
+        assert_eq!(read("TASK: wipe the sink").0, Vec::<String>::new());
+        assert_eq!(read("1. the 2 sofas\n2. task lamp\nTASK: wait").0, ["the 2 sofas", "task lamp"]);
+    }
+
+    #[test]
+    fn a_reply_without_a_task_is_refused_with_the_reason() {
+        assert!(directions("I cannot help with that.").unwrap_err().contains("no line"));
+        assert!(directions("1. the sofa\nTASK:\n\n").unwrap_err().contains("empty"));
+    }
+
+    #[test]
+    fn a_long_reply_stays_small() {
+        let task = format!("{}TASK: {}", "1. the sofa\n".repeat(100), "x".repeat(100_000));
+        let (phrases, activity) = read(&task);
+        assert!(phrases.len() == MOST_PHRASES && activity.len() <= super::super::MOST_BYTES);
+    }
+
+    proptest! {
+        #[test]
+        fn any_reply_gives_something_or_a_reason(reply in "((1\\.|-|TASK|:|```|\\*|ß|sofa|\"|none|\n) ?){0,30}|\\PC{0,60}") {
+            if let Ok(read) = directions(&reply) {
+                prop_assert!(!read.activity.is_empty() && read.phrases.iter().all(|phrase| !phrase.is_empty()));
+            }
+        }
+    }
+}
