@@ -4,7 +4,7 @@ use super::palette::{Colour, colour};
 use crate::run::Map;
 use serde::Serialize;
 use std::fmt::Write;
-use wayword_core::{Climb, DVec3, Path};
+use wayword_core::{Climb, DVec3, Heading, Path};
 
 /// A map, ready to be drawn.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,6 +25,15 @@ pub(super) struct MapView {
     pub(super) bar: f64,
     /// What that is in the world.
     pub(super) bar_m: u32,
+    /// Where the walk should have gone, where it is held against that.
+    pub(super) annotated: Option<Annotated>,
+}
+
+/// The path that people annotated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Annotated {
+    pub(super) data: String,
+    pub(super) goal: [f64; 2],
 }
 
 /// A straight line between two frames.
@@ -34,6 +43,8 @@ pub(super) struct Hop {
     pub(super) fill: String,
     /// Whether it goes up or down stairs.
     pub(super) climbs: bool,
+    /// Whether it goes back to where the walk came from.
+    pub(super) is_back: bool,
 }
 
 /// A frame on the map.
@@ -61,6 +72,8 @@ const MOST_SCALE: f64 = 42.0;
 pub(super) const RADIUS: f64 = 9.5;
 /// How near two numbers may come: they may touch, but each has to be read.
 const LEAST_APART: f64 = 1.5 * RADIUS;
+/// How far a way back bends away from the way there, at its control point.
+const BEND: f64 = 22.0;
 /// Widest stretch of the world that is drawn, metres.
 const MOST_SPAN_M: f64 = 2_000.0;
 /// Most nodes and edges of the graph that are drawn.
@@ -70,16 +83,22 @@ impl MapView {
     /// The map of the first `frames` frames, or `None` where their positions make no map.
     pub(super) fn new(path: &Path, map: &Map, frames: usize) -> Option<Self> {
         let stops: Vec<DVec3> = path.frames.iter().take(frames).map(|frame| frame.pose.position).collect();
-        let first = *stops.first()?;
+        Self::draw(map, &Trail { stops: &stops, start: path.frames.first()?.pose.heading, backs: &[], annotated: &[] })
+    }
+
+    /// The map of a trail, or `None` where its positions make no map.
+    pub(super) fn draw(map: &Map, trail: &Trail<'_>) -> Option<Self> {
+        let first = *trail.stops.first()?;
         let is_near = |x: f64, y: f64| (x - first.x).abs() <= MOST_SPAN_M && (y - first.y).abs() <= MOST_SPAN_M;
-        if !stops.iter().all(|stop| is_near(stop.x, stop.y) && stop.z.is_finite()) {
+        let on_it = || trail.stops.iter().chain(trail.annotated);
+        if !on_it().all(|stop| is_near(stop.x, stop.y) && stop.z.is_finite()) {
             return None;
         }
         let nodes: Vec<Option<[f64; 2]>> =
             map.nodes.iter().take(MOST_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
-        let sheet = Sheet::around(stops.iter().map(|stop| [stop.x, stop.y]))?;
+        let sheet = Sheet::around(on_it().map(|stop| [stop.x, stop.y]))?;
         let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place(node))).collect();
-        let at: Vec<[f64; 2]> = stops.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
+        let at: Vec<[f64; 2]> = trail.stops.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
         let bar_m = [1, 2, 5, 10, 20, 50, 100, 200, 500]
             .into_iter()
             .rfind(|m| f64::from(*m) * sheet.scale <= 90.0)
@@ -89,13 +108,25 @@ impl MapView {
             height: sheet.size[1],
             edges: edges(&places, &map.edges),
             nodes: dots(&places),
-            hops: hops(&stops, &at),
+            hops: hops(trail, &at),
             spots: spots(&at, sheet.size),
-            start_deg: tenth(path.frames.first()?.pose.heading.deg()),
+            start_deg: tenth(trail.start.deg()),
             bar: tenth(f64::from(bar_m) * sheet.scale),
             bar_m,
+            annotated: annotated(trail.annotated, &sheet),
         })
     }
+}
+
+/// What is drawn on a map: positions in metres, world frame.
+pub(super) struct Trail<'a> {
+    pub(super) stops: &'a [DVec3],
+    /// Which way the walker looks at first.
+    pub(super) start: Heading,
+    /// Of each hop whether it goes back; none does where nothing is said.
+    pub(super) backs: &'a [bool],
+    /// The path that people annotated; its last is the goal.
+    pub(super) annotated: &'a [DVec3],
 }
 
 /// How the world lies on the sheet.
@@ -161,13 +192,31 @@ fn line(from: [f64; 2], to: [f64; 2]) -> String {
     format!("M{} {}L{} {}", from[0], from[1], to[0], to[1])
 }
 
-fn hops(stops: &[DVec3], at: &[[f64; 2]]) -> Vec<Hop> {
-    let hop = |from: usize| Hop {
-        data: line(at[from], at[from + 1]),
-        fill: colour(from, at.len()).fill,
-        climbs: Climb::from_rise(stops[from + 1].z - stops[from].z) != Climb::Level,
+fn hops(trail: &Trail<'_>, at: &[[f64; 2]]) -> Vec<Hop> {
+    let hop = |from: usize| {
+        let is_back = trail.backs.get(from).is_some_and(|is_back| *is_back);
+        Hop {
+            data: if is_back { bow(at[from], at[from + 1]) } else { line(at[from], at[from + 1]) },
+            fill: colour(from, at.len()).fill,
+            climbs: Climb::from_rise(trail.stops[from + 1].z - trail.stops[from].z) != Climb::Level,
+            is_back,
+        }
     };
     (0..at.len().saturating_sub(1)).map(hop).collect()
+}
+
+/// A bent line: the way back is beside the way there.
+fn bow(from: [f64; 2], to: [f64; 2]) -> String {
+    let [x, y] = [0, 1].map(|axis| to[axis] - from[axis]);
+    let length = x.hypot(y).max(1.0);
+    let over = [(from[0] + to[0]) / 2.0 - y / length * BEND, (from[1] + to[1]) / 2.0 + x / length * BEND].map(tenth);
+    format!("M{} {}Q{} {} {} {}", from[0], from[1], over[0], over[1], to[0], to[1])
+}
+
+fn annotated(path: &[DVec3], sheet: &Sheet) -> Option<Annotated> {
+    let at: Vec<[f64; 2]> = path.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
+    let data = at.iter().zip("M".chars().chain(std::iter::repeat('L'))).map(|([x, y], verb)| format!("{verb}{x} {y}"));
+    Some(Annotated { data: data.collect(), goal: *at.last()? })
 }
 
 /// The eight ways out of a crowd, nearest to the reader's habit first.
@@ -199,7 +248,7 @@ fn spots(at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{Frame, Heading, Pose, SceneId};
+    use wayword_core::{Frame, Pose, SceneId};
 
     fn path(stops: &[[f64; 3]]) -> Path {
         let frame = |[x, y, z]: &[f64; 3]| Frame {
@@ -255,6 +304,20 @@ mod tests {
         }
         assert_eq!(map.spots.iter().map(|spot| spot.is_aside).collect::<Vec<_>>(), [false, true, true]);
         assert!(map.hops.iter().all(|hop| hop.climbs));
+    }
+
+    #[test]
+    fn a_way_back_is_bent_and_the_annotated_path_is_on_the_sheet() {
+        let stops = [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let annotated = [stops[0], DVec3::new(30.0, 0.0, 0.0)];
+        let trail = Trail { stops: &stops, start: Heading::NORTH, backs: &[false, true], annotated: &annotated };
+        let map = MapView::draw(&Map::default(), &trail).unwrap();
+        assert_eq!(map.hops.iter().map(|hop| hop.is_back).collect::<Vec<_>>(), [false, true]);
+        assert!(map.hops[0].data.contains('L') && map.hops[1].data.contains('Q'));
+        let annotated = map.annotated.unwrap();
+        assert!((0.0..=map.width).contains(&annotated.goal[0]) && annotated.goal[0] > map.spots[0].at[0] + 100.0);
+        let far = [DVec3::new(1e300, 0.0, 0.0)];
+        assert_eq!(MapView::draw(&Map::default(), &Trail { annotated: &far, ..trail }), None);
     }
 
     #[test]

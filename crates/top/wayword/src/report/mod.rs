@@ -3,6 +3,7 @@
 //! The page is made item by item, so that its size is not bound by memory, and the same run gives the same bytes. All that
 //! comes from files or models is untrusted: the templates escape it, and the page forbids itself scripts and addresses.
 
+pub mod comparison;
 mod data_uri;
 mod frames;
 mod map;
@@ -11,6 +12,7 @@ mod page;
 mod palette;
 mod pictures;
 mod records;
+pub mod replay;
 mod spans;
 mod texts;
 
@@ -62,14 +64,7 @@ impl fmt::Display for Written {
 /// When `run` is no run folder, a line of it is not of its kind, or the page cannot be written.
 pub fn write(run: &Path, out: &Path, most_items: usize) -> Result<Written, Error> {
     let records = Records::read(run, most_items)?;
-    let mut name = out.file_name().unwrap_or_default().to_owned();
-    name.push(".new");
-    let unfinished = out.with_file_name(name);
-    let mut page = BufWriter::new(File::create(&unfinished).map_err(Error::io(&unfinished, "write"))?);
-    let pictures =
-        render(&records, run, |part| page.write_all(part.as_bytes()).map_err(Error::io(&unfinished, "write")))?;
-    page.into_inner().map_err(io::IntoInnerError::into_error).map_err(Error::io(&unfinished, "write"))?;
-    fs::rename(&unfinished, out).map_err(Error::io(out, "write"))?;
+    let pictures = replace(out, |take| render(&records, run, take))?;
     Ok(Written {
         page: out.display().to_string(),
         items: records.items.len(),
@@ -79,8 +74,23 @@ pub fn write(run: &Path, out: &Path, most_items: usize) -> Result<Written, Error
     })
 }
 
+/// Takes a page part by part.
+type Take<'a> = dyn FnMut(&str) -> Result<(), Error> + 'a;
+
+/// Writes a page; what was there before is replaced once the page is whole.
+fn replace<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<T, Error> {
+    let mut name = out.file_name().unwrap_or_default().to_owned();
+    name.push(".new");
+    let unfinished = out.with_file_name(name);
+    let mut page = BufWriter::new(File::create(&unfinished).map_err(Error::io(&unfinished, "write"))?);
+    let told = render(&mut |part| page.write_all(part.as_bytes()).map_err(Error::io(&unfinished, "write")))?;
+    page.into_inner().map_err(io::IntoInnerError::into_error).map_err(Error::io(&unfinished, "write"))?;
+    fs::rename(&unfinished, out).map_err(Error::io(out, "write"))?;
+    Ok(told)
+}
+
 /// Hands the page to `take`, part by part.
-fn render(records: &Records, run: &Path, mut take: impl FnMut(&str) -> Result<(), Error>) -> Result<Pictures, Error> {
+fn render(records: &Records, run: &Path, take: &mut Take<'_>) -> Result<Pictures, Error> {
     let templates = templates().map_err(broken)?;
     let draw = |name: &str, view: minijinja::Value| templates.get_template(name)?.render(view);
     let mut pictures = Pictures::of(run);
@@ -96,16 +106,22 @@ fn render(records: &Records, run: &Path, mut take: impl FnMut(&str) -> Result<()
 fn templates() -> Result<Environment<'static>, minijinja::Error> {
     let mut templates = Environment::new();
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
-    templates.set_auto_escape_callback(|name| if name == "style.css" { AutoEscape::None } else { AutoEscape::Html });
+    templates.set_auto_escape_callback(|name| if name.ends_with(".css") { AutoEscape::None } else { AutoEscape::Html });
     templates.set_trim_blocks(true);
     templates.set_lstrip_blocks(true);
     templates.set_keep_trailing_newline(true);
     templates.add_template("style.css", include_str!("style.css"))?;
     templates.add_template("signs.html", include_str!("signs.html"))?;
+    templates.add_template("open.html", include_str!("open.html"))?;
     templates.add_template("head.html", include_str!("head.html"))?;
     templates.add_template("map.html", include_str!("map.html"))?;
     templates.add_template("text.html", include_str!("text.html"))?;
     templates.add_template("item.html", include_str!("item.html"))?;
+    templates.add_template("comparison.css", include_str!("comparison/style.css"))?;
+    templates.add_template("comparison.html", include_str!("comparison/page.html"))?;
+    templates.add_template("table.html", include_str!("comparison/table.html"))?;
+    templates.add_template("forest.html", include_str!("comparison/forest.html"))?;
+    templates.add_template("replay.html", include_str!("replay/replay.html"))?;
     Ok(templates)
 }
 

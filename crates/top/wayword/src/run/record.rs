@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map as JsonMap, Value, json};
-use wayword_core::{Instruction, Path, Platform, PlatformError};
+use wayword_core::{DVec3, Instruction, Path, Platform, PlatformError, ViewpointGraph};
 use wayword_synthesis::walk::Observation;
 
 /// A path and what was seen along it: a line of `walks.jsonl`.
@@ -86,10 +86,16 @@ impl Map {
     /// # Errors
     /// When the platform cannot give it.
     pub fn around(path: &Path, platform: &dyn Platform) -> Result<Self, PlatformError> {
-        let graph = platform.graph(&path.scene)?;
-        let near = |position: wayword_core::DVec3| {
-            path.frames.iter().any(|frame| {
-                let off = frame.pose.position - position;
+        let stops: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position).collect();
+        Ok(Self::near(&stops, &*platform.graph(&path.scene)?))
+    }
+
+    /// A graph around some places, on their floors.
+    #[must_use]
+    pub fn near(stops: &[DVec3], graph: &ViewpointGraph) -> Self {
+        let near = |position: DVec3| {
+            stops.iter().any(|stop| {
+                let off = *stop - position;
                 off.truncate().length() <= MAP_MARGIN_M && off.z.abs() <= MAP_HEIGHT_M
             })
         };
@@ -102,7 +108,7 @@ impl Map {
             map.nodes.push([centimetres(position.x), centimetres(position.y)]);
         }
         map.edges = graph.edges().filter_map(|(a, b, _)| Some([*places.get(a)?, *places.get(b)?])).collect();
-        Ok(map)
+        map
     }
 }
 

@@ -1,0 +1,221 @@
+//! Figures as tables have them, and the lines that hold them: the same for every format.
+
+use std::{collections::BTreeMap, fmt};
+use wayword_metrics::{Estimate, Metric};
+use wayword_navigation::{
+    comparison::{Comparison, Kind, Row, Swapped},
+    swap::Swap,
+};
+
+/// The figures of the table; all others are in the full one.
+pub(super) const SHOWN: [Metric; 3] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl];
+/// Longest name, characters: names come from files.
+const MOST_NAME_CHARS: usize = 80;
+
+/// A figure with its interval, rounded: shares in per cent, lengths in metres.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Figure {
+    pub(super) mean: String,
+    pub(super) low: String,
+    pub(super) high: String,
+}
+
+impl Figure {
+    pub(super) fn of(metric: Metric, estimate: &Estimate) -> Self {
+        let rounded = |value| rounded(metric, value);
+        Self { mean: rounded(estimate.mean), low: rounded(estimate.low), high: rounded(estimate.high) }
+    }
+
+    /// From where to where.
+    pub(super) fn interval(&self) -> String {
+        format!("[{}, {}]", self.low, self.high)
+    }
+}
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.mean, self.interval())
+    }
+}
+
+/// What a column is called: shares are in per cent.
+pub(super) fn heading(metric: Metric) -> String {
+    if is_share(metric) { format!("{} %", metric.short()) } else { metric.short().to_owned() }
+}
+
+fn is_share(metric: Metric) -> bool {
+    !matches!(metric, Metric::NavigationErrorM | Metric::TrajectoryLengthM)
+}
+
+fn rounded(metric: Metric, value: f64) -> String {
+    let value = if is_share(metric) { 100.0 * value } else { value };
+    // A comparison's file may hold any number.
+    if value.abs() >= 1e6 {
+        return format!("{value:.1e}");
+    }
+    let text = format!("{value:.1}");
+    if text == "-0.0" { "0.0".to_owned() } else { text }
+}
+
+/// A p as people write it.
+fn p(p: f64) -> String {
+    if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") }
+}
+
+/// A line of a table.
+#[derive(Debug, Clone)]
+pub(super) struct Line<'a> {
+    pub(super) agent: String,
+    pub(super) kind: Kind,
+    /// Whether it is the agent's first line.
+    pub(super) opens: bool,
+    /// Whether the agent is as good with another path's instruction.
+    pub(super) is_deaf: bool,
+    /// The set, or the swap.
+    pub(super) label: String,
+    figures: &'a BTreeMap<Metric, Estimate>,
+    /// What stands to the right of the figures.
+    pub(super) beside: Vec<String>,
+}
+
+impl Line<'_> {
+    pub(super) fn estimate(&self, metric: Metric) -> Option<&Estimate> {
+        self.figures.get(&metric)
+    }
+
+    pub(super) fn figure(&self, metric: Metric) -> Option<Figure> {
+        Some(Figure::of(metric, self.estimate(metric)?))
+    }
+
+    /// The agent, with what has to be known of it wherever it is named.
+    pub(super) fn who(&self) -> String {
+        let kind = match self.kind {
+            Kind::Floor => ", floor",
+            Kind::Agent => "",
+            Kind::Ceiling => ", ceiling",
+        };
+        format!("{}{}{kind}", self.agent, if self.is_deaf { DEAF } else { "" })
+    }
+}
+
+/// Stands beside an agent that is as good with another path's instruction.
+pub(super) const DEAF: &str = "†";
+/// The label of an agent that reads no set.
+pub(super) const READS_NOTHING: &str = "reads nothing";
+/// Columns to the right of the differences.
+pub(super) const BESIDE_DIFFERENCES: [&str; 3] = ["it alone", "first alone", "p"];
+/// Columns to the right of the swaps.
+pub(super) const BESIDE_SWAPS: [&str; 3] = ["changed", "p", "listens"];
+
+/// The table itself.
+pub(super) fn rows(comparison: &Comparison) -> Vec<Line<'_>> {
+    opened(comparison.rows.iter().map(|row| of_row(comparison, row, &row.figures, vec![])))
+}
+
+/// Each set less the first, with the items on which only one of the two leads to success.
+pub(super) fn differences(comparison: &Comparison) -> Vec<Line<'_>> {
+    opened(comparison.rows.iter().filter_map(|row| {
+        let difference = row.against_first.as_ref()?;
+        let mcnemar = difference.mcnemar;
+        let beside = vec![mcnemar.only_first.to_string(), mcnemar.only_second.to_string(), p(mcnemar.p)];
+        Some(of_row(comparison, row, &difference.figures, beside))
+    }))
+}
+
+/// What each swap of the first set costs.
+pub(super) fn swaps(comparison: &Comparison) -> Vec<Line<'_>> {
+    opened(comparison.swaps.iter().map(|swapped| Line {
+        agent: name(&swapped.agent),
+        kind: Kind::Agent,
+        opens: false,
+        is_deaf: is_deaf(comparison, &swapped.agent),
+        label: swap_words(swapped.swap).to_owned(),
+        figures: &swapped.lost.figures,
+        beside: vec![
+            format!("{} of {}", swapped.changed, swapped.texts),
+            p(swapped.lost.mcnemar.p),
+            if swapped.listens { "yes" } else { "not shown" }.to_owned(),
+        ],
+    }))
+}
+
+fn of_row<'a>(
+    comparison: &Comparison,
+    row: &Row,
+    figures: &'a BTreeMap<Metric, Estimate>,
+    beside: Vec<String>,
+) -> Line<'a> {
+    Line {
+        agent: name(&row.agent),
+        kind: row.kind,
+        opens: false,
+        is_deaf: row.set.is_some() && is_deaf(comparison, &row.agent),
+        label: row.set.as_deref().map_or_else(|| READS_NOTHING.to_owned(), name),
+        figures,
+        beside,
+    }
+}
+
+fn opened<'a>(lines: impl Iterator<Item = Line<'a>>) -> Vec<Line<'a>> {
+    let mut before = None;
+    let open = |mut line: Line<'a>| {
+        line.opens = before.as_ref() != Some(&line.agent);
+        before = Some(line.agent.clone());
+        line
+    };
+    lines.map(open).collect()
+}
+
+/// The agents that are not shown to do worse with another path's instruction.
+pub(super) fn deaf(comparison: &Comparison) -> impl Iterator<Item = &Swapped> {
+    other_path(comparison).filter(|swapped| !swapped.listens)
+}
+
+/// What another path's instruction does to each agent.
+pub(super) fn other_path(comparison: &Comparison) -> impl Iterator<Item = &Swapped> {
+    comparison.swaps.iter().filter(|swapped| swapped.swap == Swap::OtherPath)
+}
+
+fn is_deaf(comparison: &Comparison, agent: &str) -> bool {
+    deaf(comparison).any(|swapped| swapped.agent == agent)
+}
+
+/// What a swap did, in words.
+fn swap_words(swap: Swap) -> &'static str {
+    match swap {
+        Swap::Directions => "directions swapped",
+        Swap::Landmarks => "landmarks replaced",
+        Swap::Sentences => "sentences shuffled",
+        Swap::OtherPath => "another path's instruction",
+    }
+}
+
+/// A name as it may be shown: names come from files, and a terminal obeys control characters.
+pub(super) fn name(name: &str) -> String {
+    let mut shown: String =
+        name.chars().take(MOST_NAME_CHARS).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if name.chars().nth(MOST_NAME_CHARS).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_in_per_cent_and_lengths_in_metres() {
+        let estimate = Estimate { mean: -0.0001, low: -0.123, high: 0.456, values: 1, clusters: 1 };
+        assert_eq!(Figure::of(Metric::Spl, &estimate).to_string(), "0.0 [-12.3, 45.6]");
+        assert_eq!(Figure::of(Metric::NavigationErrorM, &estimate).to_string(), "0.0 [-0.1, 0.5]");
+        let wild = Estimate { mean: f64::MAX, ..estimate };
+        assert!(Figure::of(Metric::TrajectoryLengthM, &wild).mean.len() < 10);
+    }
+
+    #[test]
+    fn names_cannot_speak_to_a_terminal_and_have_an_end() {
+        assert_eq!(name("a\u{1b}[31m\nb"), "a\u{fffd}[31m\u{fffd}b");
+        assert_eq!(name(&"x".repeat(500)).chars().count(), MOST_NAME_CHARS + 1);
+    }
+}

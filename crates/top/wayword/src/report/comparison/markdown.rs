@@ -1,0 +1,80 @@
+//! The comparison as Markdown.
+
+use super::{
+    figures::{BESIDE_DIFFERENCES, BESIDE_SWAPS, Line, SHOWN, differences, heading, name, rows, swaps},
+    told,
+};
+use std::fmt::Write;
+use wayword_metrics::Metric;
+use wayword_navigation::comparison::Comparison;
+
+/// The comparison as Markdown: tables, and what has to be known to read them.
+#[must_use]
+pub fn markdown(comparison: &Comparison) -> String {
+    let mut page = format!("# {}\n\n", escaped(&told::subject(&comparison.about)));
+    for warning in told::warnings(comparison) {
+        add(&mut page, format_args!("> **{}**\n>\n", escaped(&warning)));
+    }
+    add(&mut page, format_args!("\n{}\n\n", told::success(comparison.about.rule)));
+    table(&mut page, "Instructions", &rows(comparison), &SHOWN, &[]);
+    let first = comparison.sets.first().map_or_else(String::new, |set| escaped(&name(&set.name)));
+    let less = differences(comparison);
+    if !less.is_empty() {
+        add(&mut page, format_args!("\n## Less {first}\n\n"));
+        table(&mut page, "Instructions", &less, &SHOWN, &BESIDE_DIFFERENCES);
+    }
+    let lost = swaps(comparison);
+    if !lost.is_empty() {
+        add(&mut page, format_args!("\n## Lost by swaps of {first}\n\n"));
+        table(&mut page, "Swap", &lost, &SHOWN, &BESIDE_SWAPS);
+    }
+    list(&mut page, "Sets", comparison.sets.iter().map(told::set));
+    list(&mut page, "How to read it", told::listeners(comparison).into_iter().chain(told::notes(comparison)));
+    let has = |metric: &Metric| comparison.rows.iter().any(|row| row.figures.contains_key(metric));
+    let others: Vec<Metric> = Metric::ALL.into_iter().filter(|metric| !SHOWN.contains(metric) && has(metric)).collect();
+    if !others.is_empty() {
+        page.push_str("\n## Other figures\n\n");
+        table(&mut page, "Instructions", &rows(comparison), &others, &[]);
+    }
+    page
+}
+
+fn table(page: &mut String, label: &str, lines: &[Line<'_>], metrics: &[Metric], beside: &[&str]) {
+    let columns = metrics.len() + beside.len();
+    let headings = metrics.iter().map(|metric| heading(*metric)).chain(beside.iter().map(|name| (*name).to_owned()));
+    let headings: Vec<String> = headings.collect();
+    add(page, format_args!("| Agent | {label} | {} |\n|---|---|{}\n", headings.join(" | "), "---:|".repeat(columns)));
+    for line in lines {
+        let figure = |metric: &Metric| line.figure(*metric).map_or_else(|| "–".to_owned(), |figure| figure.to_string());
+        let cells: Vec<String> =
+            metrics.iter().map(figure).chain(line.beside.iter().map(|text| escaped(text))).collect();
+        let agent = if line.opens { escaped(&line.who()) } else { String::new() };
+        add(page, format_args!("| {agent} | {} | {} |\n", escaped(&line.label), cells.join(" | ")));
+    }
+}
+
+fn list(page: &mut String, title: &str, lines: impl Iterator<Item = String>) {
+    add(page, format_args!("\n## {title}\n\n"));
+    for line in lines {
+        add(page, format_args!("- {}\n", escaped(&line)));
+    }
+}
+
+fn add(page: &mut String, text: std::fmt::Arguments<'_>) {
+    // Writing to a text cannot fail.
+    let _ = page.write_fmt(text);
+}
+
+/// Text that Markdown takes for nothing but text.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '<' => escaped.push_str("&lt;"),
+            '&' => escaped.push_str("&amp;"),
+            '\\' | '`' | '*' | '_' | '|' | '~' | '$' | '[' | ']' => escaped.extend(['\\', c]),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

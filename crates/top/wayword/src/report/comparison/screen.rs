@@ -1,0 +1,56 @@
+//! The comparison for a terminal.
+
+use super::{
+    figures::{BESIDE_DIFFERENCES, BESIDE_SWAPS, Line, SHOWN, differences, heading, name, rows, swaps},
+    told,
+};
+use std::fmt::Write;
+use wayword_navigation::comparison::Comparison;
+
+/// The comparison as plain text.
+#[must_use]
+pub fn screen(comparison: &Comparison) -> String {
+    let mut text = format!("{}\n{}\n\n", told::subject(&comparison.about), told::success(comparison.about.rule));
+    table(&mut text, "instructions", &rows(comparison), &[]);
+    let first = comparison.sets.first().map_or_else(String::new, |set| name(&set.name));
+    let less = differences(comparison);
+    if !less.is_empty() {
+        table(&mut text, &format!("less {first}"), &less, &BESIDE_DIFFERENCES);
+    }
+    let lost = swaps(comparison);
+    if !lost.is_empty() {
+        table(&mut text, &format!("lost by swaps of {first}"), &lost, &BESIDE_SWAPS);
+    }
+    let sets = comparison.sets.iter().map(told::set);
+    let told = told::notes(comparison).into_iter().chain(told::listeners(comparison)).chain(told::warnings(comparison));
+    for line in sets.chain(told) {
+        text.push_str(&line);
+        text.push('\n');
+    }
+    text
+}
+
+/// Columns as wide as what stands in them; words to the left, figures to the right.
+fn table(text: &mut String, label: &str, lines: &[Line<'_>], beside: &[&str]) {
+    let mut grid: Vec<Vec<String>> = Vec::with_capacity(lines.len() + 1);
+    let words = ["agent".to_owned(), label.to_owned()].into_iter();
+    let headings = SHOWN.map(heading).into_iter().chain(beside.iter().map(|name| (*name).to_owned()));
+    grid.push(words.chain(headings).collect());
+    for line in lines {
+        let figure = |metric| line.figure(metric).map_or_else(|| "-".to_owned(), |figure| figure.to_string());
+        let words = [if line.opens { line.who() } else { String::new() }, line.label.clone()].into_iter();
+        grid.push(words.chain(SHOWN.map(figure)).chain(line.beside.iter().cloned()).collect());
+    }
+    let width = |column: usize| grid.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+    let widths: Vec<usize> = (0..grid[0].len()).filter_map(width).collect();
+    for row in &grid {
+        let mut shown = String::new();
+        for (at, (cell, width)) in row.iter().zip(&widths).enumerate() {
+            // Writing to a text cannot fail.
+            let _ = if at < 2 { write!(shown, "{cell:<width$}  ") } else { write!(shown, "{cell:>width$}  ") };
+        }
+        text.push_str(shown.trim_end());
+        text.push('\n');
+    }
+    text.push('\n');
+}

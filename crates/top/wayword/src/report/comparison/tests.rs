@@ -1,0 +1,263 @@
+//! A small comparison that was made up here, in every form.
+
+use super::*;
+use crate::report::replay::tests::{Town, replay};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_metrics::{Estimate, McNemar, Metric, Rule};
+use wayword_navigation::{
+    comparison::{About, Difference, Kind, Row, Set, Swapped},
+    swap::Swap,
+};
+
+const SCRIPT: &str = "<script>alert('x')</script>";
+/// What each format takes for its own.
+const SPECIALS: &str = "a_b|c*d`e$f&g#h%i{j}k~l^m\\n\"o[p](q)\u{1b}[31m";
+
+fn estimate(mean: f64, half: f64) -> Estimate {
+    Estimate { mean, low: mean - half, high: mean + half, values: 501, clusters: 126 }
+}
+
+fn figures(sr: f64, half: f64) -> BTreeMap<Metric, Estimate> {
+    let of = [
+        (Metric::SuccessRate, sr),
+        (Metric::OracleSuccessRate, (2.0 * sr).min(1.0)),
+        (Metric::Spl, 0.8 * sr),
+        (Metric::NavigationErrorM, 9.0 * (1.0 - sr)),
+        (Metric::Ndtw, 0.3 + 0.7 * sr),
+    ];
+    of.into_iter().map(|(metric, mean)| (metric, estimate(mean, half))).collect()
+}
+
+fn difference(sr: f64, half: f64) -> Difference {
+    Difference { figures: figures(sr, half), mcnemar: McNemar { only_first: 12, only_second: 30, p: 0.0079 } }
+}
+
+fn row(agent: &str, kind: Kind, set: Option<&str>, sr: f64, less: Option<f64>) -> Row {
+    let against_first = less.map(|less| difference(less, 0.02));
+    Row { agent: agent.into(), kind, set: set.map(str::to_owned), figures: figures(sr, 0.021), against_first }
+}
+
+fn swapped(agent: &str, swap: Swap, lost: f64, listens: bool) -> Swapped {
+    Swapped {
+        agent: agent.into(),
+        swap,
+        changed: 1_320,
+        texts: 1_504,
+        figures: figures(0.05, 0.02),
+        lost: difference(lost, 0.015),
+        listens,
+    }
+}
+
+fn set(name: &str, source: &str, left_out: usize) -> Set {
+    Set { name: name.into(), source: source.into(), texts: 1_504, left_out, words: 18.25 }
+}
+
+fn comparison() -> Comparison {
+    let agent = Kind::Agent;
+    let parameters = BTreeMap::from([("stop_threshold".to_owned(), "0.7".to_owned())]);
+    Comparison {
+        about: About {
+            platform: "matterport".into(),
+            episodes: "episodes_val.json".into(),
+            grounder: "labels (hf/encoder)".into(),
+            detector: "labels (hf/encoder), boxes".into(),
+            splitter: "rules".into(),
+            rule: Rule::Visible,
+            level: 0.95,
+            resamples: 10_000,
+            seed: 0,
+            items: 501,
+            paths: 126,
+            parameters: BTreeMap::from([("clip-nav".to_owned(), parameters)]),
+            wayword: "0.0.0".into(),
+        },
+        sets: vec![set("original", "episodes_val.json", 0), set("central", "central#reverie", 3)],
+        rows: vec![
+            row("clip-nav", agent, Some("original"), 0.07, None),
+            row("clip-nav", agent, Some("central"), 0.062, Some(-0.008)),
+            row("glip-nav", agent, Some("original"), 0.17, None),
+            row("glip-nav", agent, Some("central"), 0.12, Some(-0.05)),
+            row("random/5", Kind::Floor, None, 0.012, None),
+            row("oracle", Kind::Ceiling, None, 0.97, None),
+        ],
+        swaps: vec![
+            swapped("clip-nav", Swap::Directions, 0.0, false),
+            swapped("clip-nav", Swap::OtherPath, 0.004, false),
+            swapped("glip-nav", Swap::Directions, -0.003, false),
+            swapped("glip-nav", Swap::OtherPath, 0.1, true),
+        ],
+    }
+}
+
+/// Everything that comes from files is `name`.
+fn named(name: &str) -> Comparison {
+    let mut comparison = comparison();
+    let about = &mut comparison.about;
+    for text in
+        [&mut about.platform, &mut about.episodes, &mut about.grounder, &mut about.detector, &mut about.splitter]
+    {
+        *text = name.to_owned();
+    }
+    about.wayword = name.to_owned();
+    about.parameters = BTreeMap::from([(name.to_owned(), BTreeMap::from([(name.to_owned(), name.to_owned())]))]);
+    comparison.sets = vec![set(name, &format!("{name} "), 0)];
+    for row in &mut comparison.rows {
+        row.agent = name.to_owned();
+        row.set = row.set.as_ref().map(|_| name.to_owned());
+    }
+    for swapped in &mut comparison.swaps {
+        swapped.agent = name.to_owned();
+    }
+    comparison
+}
+
+/// That every element that is opened is closed, innermost first, and every attribute quoted.
+pub(crate) fn assert_well_formed(page: &str) {
+    const VOID: [&str; 3] = ["meta", "!doctype", "img"];
+    let (head, rest) = page.split_once("<style>").unwrap();
+    let (_, body) = rest.split_once("</style>").unwrap();
+    let text = format!("{head}{body}");
+    let mut open: Vec<&str> = Vec::new();
+    for tag in text.split('<').skip(1) {
+        let (tag, _) = tag.split_once('>').unwrap_or_else(|| panic!("no end: {tag}"));
+        assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
+        let name = tag.split([' ', '/', '\n']).find(|part| !part.is_empty()).unwrap();
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "{tag} closes what is not open");
+        } else if !tag.ends_with('/') && !VOID.contains(&name) {
+            open.push(name);
+        }
+    }
+    assert_eq!(open, Vec::<&str>::new());
+}
+
+fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
+    let opening = format!(" {attribute}=\"");
+    page.split(opening.as_str()).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+#[test]
+fn the_text_is_as_before() {
+    insta::assert_snapshot!("markdown", markdown(&comparison()));
+    insta::assert_snapshot!("latex", latex(&comparison()));
+    insta::assert_snapshot!("screen", screen(&comparison()));
+}
+
+#[test]
+fn every_form_says_what_has_to_be_known() {
+    let comparison = comparison();
+    for text in [markdown(&comparison), latex(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+        for told in [
+            "target visible at the stopping viewpoint",
+            "501 items on 126 paths",
+            "clustered by path",
+            "mean over its texts",
+            "ground truth, not perception",
+            "the GLIP network is not in this program",
+            "as good with another path",
+            "its rows say nothing about the instructions",
+        ] {
+            assert!(text.contains(told), "{told} is not in {text}");
+        }
+    }
+    for text in [markdown(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+        assert!(text.contains("1504 texts") && text.contains("descriptive"), "{text}");
+    }
+}
+
+#[test]
+fn an_agent_that_listens_is_not_called_deaf_and_one_that_was_not_tried_is_named() {
+    let mut comparison = comparison();
+    let warnings = told::warnings(&comparison);
+    assert!(warnings.len() == 1 && warnings[0].starts_with("† clip-nav: as good"), "{warnings:?}");
+    assert!(told::listeners(&comparison)[0].starts_with("glip-nav listens"));
+    comparison.swaps.clear();
+    let warnings = told::warnings(&comparison);
+    assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav, glip-nav: not tried"), "{warnings:?}");
+}
+
+#[test]
+fn another_rule_is_named() {
+    let mut comparison = comparison();
+    comparison.about.rule = Rule::Distance;
+    assert!(screen(&comparison).contains("under 3 m of the goal"));
+    assert!(!screen(&comparison).contains("target visible"));
+}
+
+#[test]
+fn names_stay_text_in_markdown_and_latex_and_on_the_screen() {
+    let [script, special] = [named(SCRIPT), named(SPECIALS)];
+    assert!(!markdown(&script).contains("<script") && markdown(&script).contains("&lt;script"));
+    assert!(markdown(&special).contains("a\\_b\\|c\\*d\\`e\\$f&amp;g"));
+    let expected =
+        "a\\_b\\textbar{}c*d`e\\$f\\&g\\#h\\%i\\{j\\}k\\textasciitilde{}l\\textasciicircum{}m\\textbackslash{}n";
+    assert!(latex(&special).contains(expected), "{}", latex(&special));
+    assert!(!latex(&special).contains("a_b") && !latex(&special).contains("\n["));
+    for text in [screen(&special), markdown(&special), latex(&special), html(&special).unwrap()] {
+        assert!(!text.contains('\u{1b}'));
+    }
+}
+
+#[test]
+fn names_stay_text_on_the_page() {
+    let page = html(&named(&format!("{SCRIPT}\" onload=\"alert(1)"))).unwrap();
+    assert!(!page.contains("<script") && !page.contains("\" onload") && page.contains("default-src 'none'"));
+    assert!(page.matches("&lt;script&gt;").count() > 20);
+    assert_well_formed(&page);
+}
+
+#[test]
+fn the_page_is_whole_and_loads_nothing() {
+    let town = Town::new();
+    let walks = [town.walk("a"), town.walk("b")];
+    let score = town.score();
+    let replays: Vec<_> = walks.iter().map(|walk| replay(&town, walk, &score)).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("report.html");
+    let written = write(&out, &comparison(), &replays, 5).unwrap();
+    assert_eq!((written.replays, written.left_out), (2, 5));
+    let page = std::fs::read_to_string(&out).unwrap();
+    assert_well_formed(&page);
+    assert!(page.contains("shows 2 of 7 walks"));
+    let places: BTreeSet<&str> = values(&page, "id").into_iter().collect();
+    assert_eq!(places.len(), values(&page, "id").len(), "two places of one name");
+    for link in values(&page, "href") {
+        assert!(link.strip_prefix('#').is_some_and(|place| places.contains(place)), "{link} leads nowhere");
+    }
+    assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("url(") && !page.contains("@import"));
+    assert_eq!(page.matches("<article ").count(), 2);
+}
+
+#[test]
+fn plots_show_agents_lines_and_what_lies_beyond() {
+    let page = html(&comparison()).unwrap();
+    assert_eq!(page.matches("<section class=\"panel forest\">").count(), 3);
+    assert!(page.contains("class=\"line floor\"") && page.contains("Beyond the axis: <bdi>oracle 97.0</bdi>"));
+    // One row of the differences and one of the swaps lie beside zero.
+    assert_eq!(page.matches("class=\"dot\"").count(), 4 + 1 + 1);
+    assert_eq!(page.matches("class=\"dot hollow\"").count(), 1 + 3);
+}
+
+#[test]
+fn nothing_walked_is_no_error() {
+    let mut comparison = comparison();
+    comparison.rows.clear();
+    comparison.swaps.clear();
+    comparison.sets.clear();
+    for text in [markdown(&comparison), latex(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+        assert!(text.contains("501 items"));
+    }
+}
+
+#[test]
+fn wild_numbers_stay_on_the_page() {
+    let mut comparison = comparison();
+    for row in &mut comparison.rows {
+        for estimate in row.figures.values_mut() {
+            (estimate.low, estimate.high) = (f64::MIN, f64::MAX);
+        }
+    }
+    assert_well_formed(&html(&comparison).unwrap());
+    assert!(screen(&comparison).lines().all(|line| line.len() < 400));
+}

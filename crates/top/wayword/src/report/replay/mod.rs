@@ -1,0 +1,193 @@
+//! Walks of agents, shown again step by step: what each saw, how it scored it, where it went, and where it turned back.
+
+mod choose;
+mod steps;
+
+pub use choose::Sample;
+
+use super::{
+    map::{MapView, RADIUS, Trail},
+    model::frame_anchor,
+};
+use crate::run::Map;
+use serde::Serialize;
+use steps::{StepView, steps};
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
+use wayword_metrics::{Outcome, Rule, Score};
+use wayword_navigation::walk::{Choice, End, Walk};
+
+/// Most steps of a walk that are shown.
+const MOST_STEPS: usize = 100;
+/// Most key phrases of an instruction that are shown.
+const MOST_PHRASES: usize = 50;
+/// Longest text, characters.
+const MOST_TEXT_CHARS: usize = 2_000;
+
+/// A walk, with what it is held against.
+#[derive(Debug, Clone, Copy)]
+pub struct Replay<'a> {
+    /// The walk.
+    pub walk: &'a Walk,
+    /// The scene's graph.
+    pub graph: &'a ViewpointGraph,
+    /// The annotated path, from start to goal.
+    pub reference: &'a [ViewpointId],
+    /// How well the walk did.
+    pub score: &'a Score,
+    /// What counts as success.
+    pub rule: Rule,
+}
+
+/// A line of the list of walks.
+#[derive(Debug, Serialize)]
+pub(super) struct Entry {
+    anchor: String,
+    title: String,
+    /// What came of it: class and words of its mark.
+    class: &'static str,
+    sign: &'static str,
+}
+
+impl Entry {
+    /// Of a walk; `number` from 1.
+    pub(super) fn new(number: usize, replay: &Replay<'_>) -> Self {
+        let walk = replay.walk;
+        let (class, sign) = mark(replay.outcome());
+        let names = [&walk.agent, &walk.set, &walk.item].map(|name| short(name)).join(", ");
+        // Numbered and not named, for names come from anywhere.
+        Self { anchor: format!("r{number}"), title: format!("{names} (text {})", walk.text_index + 1), class, sign }
+    }
+}
+
+/// A walk, ready for its template.
+#[derive(Debug, Serialize)]
+pub(super) struct ReplayView {
+    /// From 1.
+    number: usize,
+    #[serde(flatten)]
+    entry: Entry,
+    meta: Vec<String>,
+    text: String,
+    phrases: Vec<String>,
+    phrases_left_out: usize,
+    /// `None` where the agent does not read.
+    activity: Option<String>,
+    map: Option<MapView>,
+    map_radius: f64,
+    map_stop: &'static str,
+    map_words: String,
+    steps: Vec<StepView>,
+    steps_left_out: usize,
+    /// From where to where bars go, where anything was scored.
+    score_range: Option<(String, String)>,
+}
+
+impl ReplayView {
+    /// A walk; `number` from 1.
+    pub(super) fn new(number: usize, replay: &Replay<'_>) -> Self {
+        let walk = replay.walk;
+        let entry = Entry::new(number, replay);
+        let shown = walk.steps.len().min(MOST_STEPS);
+        let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
+        let (steps, score_range) = steps(walk, shown, |step| frame_anchor(&entry.anchor, step));
+        Self {
+            number,
+            entry,
+            meta: replay.meta(),
+            text: bounded(&walk.text),
+            phrases: phrases.iter().take(MOST_PHRASES).map(|phrase| bounded(phrase)).collect(),
+            phrases_left_out: phrases.len().saturating_sub(MOST_PHRASES),
+            activity: walk.directions.as_ref().map(|directions| bounded(&directions.activity)),
+            map: replay.map(shown),
+            map_radius: RADIUS,
+            map_stop: "Step",
+            map_words: format!("Map of the walk from step 1 to step {shown}, north up, with the annotated path"),
+            steps,
+            steps_left_out: walk.steps.len() - shown,
+            score_range,
+        }
+    }
+}
+
+impl Replay<'_> {
+    fn outcome(&self) -> Option<Outcome> {
+        match self.rule {
+            Rule::Distance => Some(self.score.distance),
+            Rule::Visible => self.score.visible,
+        }
+    }
+
+    /// What came of the walk, in words.
+    fn meta(&self) -> Vec<String> {
+        let (walk, score) = (self.walk, self.score);
+        let end = match walk.end {
+            End::Stopped => "the agent stopped",
+            End::Cap => "it had made as many steps as it may",
+            End::DeadEnd => "there was nowhere to go",
+        };
+        let off = score.navigation_error_m.map_or_else(
+            || "no way leads from its end to the goal".to_owned(),
+            |error_m| format!("ends {error_m:.1} m from the goal"),
+        );
+        let mut meta = vec![
+            format!("Scene {}", walk.scene),
+            format!("{} steps", walk.steps.len()),
+            format!("{:.1} m", score.length_m),
+            off,
+            end.to_owned(),
+        ];
+        match self.outcome() {
+            Some(outcome) if outcome.success => meta.push(format!("SPL {:.0} %", 100.0 * outcome.spl)),
+            Some(outcome) if outcome.oracle_success => {
+                meta.push("it came past a place that would have counted".to_owned());
+            }
+            _ => {}
+        }
+        if let Some(object) = &walk.object {
+            let judged = match score.grounding {
+                Some(grounding) if grounding.rgs => ", the target",
+                Some(_) => ", not the target",
+                None => "",
+            };
+            meta.push(format!("takes object {object} for the target{judged}"));
+        }
+        meta
+    }
+
+    fn map(&self, shown: usize) -> Option<MapView> {
+        let places = |ids: &mut dyn Iterator<Item = &ViewpointId>| -> Option<Vec<DVec3>> {
+            ids.map(|id| self.graph.position(id)).collect()
+        };
+        let steps = &self.walk.steps[..shown];
+        let stops = places(&mut steps.iter().map(|step| &step.viewpoint))?;
+        let annotated = places(&mut self.reference.iter().take(MOST_STEPS))?;
+        let backs: Vec<bool> = steps.iter().map(|step| step.choice == Choice::Back).collect();
+        let around: Vec<DVec3> = stops.iter().chain(&annotated).copied().collect();
+        let start = steps.first()?.heading_rad;
+        MapView::draw(
+            &Map::near(&around, self.graph),
+            &Trail { stops: &stops, start, backs: &backs, annotated: &annotated },
+        )
+    }
+}
+
+fn mark(outcome: Option<Outcome>) -> (&'static str, &'static str) {
+    match outcome {
+        Some(outcome) if outcome.success => ("good", "✓ success"),
+        Some(_) => ("bad", "✗ no success"),
+        None => ("open", "? not judged"),
+    }
+}
+
+/// A text, for a page has to open on a phone.
+fn bounded(text: &str) -> String {
+    text.chars().take(MOST_TEXT_CHARS).collect()
+}
+
+/// A name, for headings.
+fn short(name: &str) -> String {
+    name.chars().take(80).collect()
+}
+
+#[cfg(test)]
+pub(super) mod tests;

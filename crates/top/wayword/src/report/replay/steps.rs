@@ -1,0 +1,126 @@
+//! The steps of a walk: where the agent stood, what it scored, and what it did then.
+
+use crate::report::palette::{Colour, colour};
+use serde::Serialize;
+use wayword_core::Compass;
+use wayword_navigation::walk::{Choice, Scored, Step, Walk};
+
+/// Longest phrase in a cell, characters.
+const MOST_PHRASE_CHARS: usize = 120;
+
+/// A step.
+#[derive(Debug, Serialize)]
+pub(super) struct StepView {
+    /// From 1.
+    number: usize,
+    anchor: String,
+    colour: Colour,
+    heading: String,
+    /// The phrase in hand; none where the agent does not look.
+    phrase: Option<String>,
+    /// Empty where it does not look.
+    views: Vec<ViewView>,
+    class: &'static str,
+    then: String,
+}
+
+/// A view with its scores.
+#[derive(Debug, Serialize)]
+struct ViewView {
+    direction: &'static str,
+    is_chosen: bool,
+    ways: usize,
+    phrase: Bar,
+    activity: Bar,
+}
+
+/// A score.
+#[derive(Debug, Serialize)]
+struct Bar {
+    score: String,
+    /// How long its bar is, in per cent.
+    long: u32,
+}
+
+/// The lowest and the highest score of a walk: what bars are drawn between.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    low: f32,
+    high: f32,
+}
+
+/// The first `shown` steps of a walk, and between which scores bars are drawn.
+pub(super) fn steps(
+    walk: &Walk,
+    shown: usize,
+    anchor: impl Fn(usize) -> String,
+) -> (Vec<StepView>, Option<(String, String)>) {
+    let range = Range::of(walk);
+    let step = |(at, step): (usize, &Step)| StepView {
+        number: at + 1,
+        anchor: anchor(at),
+        colour: colour(at, shown),
+        heading: format!("{:.0}°", step.heading_rad.deg()),
+        phrase: (!step.views.is_empty()).then(|| phrase(walk, step)),
+        views: step.views.iter().zip(Compass::ALL).enumerate().map(|(at, view)| look(step, at, view, range)).collect(),
+        class: match step.choice {
+            Choice::Onward(_) | Choice::Unseeing => "onward",
+            Choice::Back => "backward",
+            Choice::Stop => "stopped",
+        },
+        then: then(step.choice),
+    };
+    let views = walk.steps.iter().take(shown).enumerate().map(step).collect();
+    (views, range.map(|range| (number(range.low), number(range.high))))
+}
+
+fn look(step: &Step, at: usize, (view, direction): (&Scored, Compass), range: Option<Range>) -> ViewView {
+    let bar = |score: f32| Bar { score: number(score), long: range.map_or(0, |range| range.long(score)) };
+    ViewView {
+        direction: direction.word(),
+        is_chosen: step.choice == Choice::Onward(at),
+        ways: view.onward.len(),
+        phrase: bar(view.phrase),
+        activity: bar(view.activity),
+    }
+}
+
+fn phrase(walk: &Walk, step: &Step) -> String {
+    let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
+    phrases.get(step.phrase).map_or_else(
+        || "the activity alone".to_owned(),
+        |phrase| format!("{}. {}", step.phrase + 1, phrase.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
+    )
+}
+
+fn then(choice: Choice) -> String {
+    match choice {
+        Choice::Onward(view) => {
+            format!("goes on {}", Compass::ALL.get(view).map_or("through no view", |direction| direction.word()))
+        }
+        Choice::Unseeing => "goes on".to_owned(),
+        Choice::Back => "goes back".to_owned(),
+        Choice::Stop => "stays here".to_owned(),
+    }
+}
+
+impl Range {
+    fn of(walk: &Walk) -> Option<Self> {
+        let scores = walk.steps.iter().flat_map(|step| &step.views).flat_map(|view| [view.phrase, view.activity]);
+        let with = |range: Option<Self>, score: f32| {
+            let Self { low, high } = range.unwrap_or(Self { low: score, high: score });
+            Some(Self { low: low.min(score), high: high.max(score) })
+        };
+        scores.filter(|score| score.is_finite()).fold(None, with)
+    }
+
+    fn long(self, score: f32) -> u32 {
+        let (low, high) = (f64::from(self.low), f64::from(self.high));
+        let share = if high > low { (f64::from(score) - low) / (high - low) } else { 1.0 };
+        (100.0 * share).clamp(0.0, 100.0).round() as u32
+    }
+}
+
+fn number(score: f32) -> String {
+    if score.abs() < 1e4 { format!("{score:.2}") } else { format!("{score:.1e}") }
+}

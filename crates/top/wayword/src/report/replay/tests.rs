@@ -1,0 +1,174 @@
+//! Walks through a small town that was made up here.
+
+use super::*;
+use crate::report::templates;
+use wayword_core::{Heading, SceneId};
+use wayword_metrics::Grounding;
+use wayword_navigation::{
+    directions::Directions,
+    walk::{Scored, Step},
+};
+
+const SCRIPT: &str = "<script>alert('x')</script>";
+
+/// Six places in two rows, and the way that should have been gone.
+pub(in crate::report) struct Town {
+    graph: ViewpointGraph,
+    reference: Vec<ViewpointId>,
+}
+
+fn id(name: &str) -> ViewpointId {
+    ViewpointId::new(name).unwrap()
+}
+
+fn step(viewpoint: &str, deg: f64, best: Option<usize>, choice: Choice) -> Step {
+    let view = |at| Scored {
+        phrase: if best == Some(at) { 0.9 } else { 0.2 },
+        activity: 0.1 * at as f32,
+        onward: if at < 2 { vec![id("b")] } else { vec![] },
+    };
+    Step {
+        viewpoint: id(viewpoint),
+        heading_rad: Heading::new(deg.to_radians()).unwrap(),
+        views: if best.is_some() { (0..4).map(view).collect() } else { vec![] },
+        phrase: usize::from(choice == Choice::Stop),
+        choice,
+    }
+}
+
+impl Town {
+    pub(in crate::report) fn new() -> Self {
+        let mut graph = ViewpointGraph::default();
+        let names = ["a", "b", "c", "d", "e", "f"];
+        for (at, name) in names.into_iter().enumerate() {
+            let place = DVec3::new(2.5 * (at % 3) as f64, 3.0 * (at / 3) as f64, 1.5);
+            graph.add(id(name), place, Some(1)).unwrap();
+        }
+        for (one, other) in [("a", "b"), ("b", "c"), ("a", "d"), ("d", "e"), ("e", "f"), ("b", "e")] {
+            graph.join(&id(one), &id(other)).unwrap();
+        }
+        Self { graph, reference: ["a", "b", "e", "f"].map(id).into() }
+    }
+
+    /// On to a dead end, back again, and on.
+    pub(in crate::report) fn walk(&self, agent: &str) -> Walk {
+        Walk {
+            agent: agent.into(),
+            set: "original".into(),
+            item: "7_1".into(),
+            text_index: 2,
+            text: "Go past the sofa to the kitchen and wipe the sink.".into(),
+            scene: SceneId::new("town").unwrap(),
+            directions: Some(Directions { phrases: vec!["go past the sofa".into()], activity: "wipe the sink".into() }),
+            steps: vec![
+                step("a", 0.0, Some(1), Choice::Onward(1)),
+                step("b", 90.0, Some(1), Choice::Onward(1)),
+                step("c", 90.0, Some(3), Choice::Back),
+                step("b", 270.0, None, Choice::Onward(0)),
+                step("e", 0.0, Some(2), Choice::Stop),
+            ],
+            end: End::Stopped,
+            object: None,
+        }
+    }
+
+    pub(in crate::report) fn score(&self) -> Score {
+        let outcome = Outcome { success: false, oracle_success: true, spl: 0.0, sdtw: 0.0 };
+        Score {
+            length_m: 10.5,
+            navigation_error_m: Some(2.5),
+            oracle_error_m: Some(2.5),
+            distance: Outcome { success: true, spl: 0.5, ..outcome },
+            visible: Some(outcome),
+            grounding: Some(Grounding { rgs: false, rgspl: 0.0 }),
+            ndtw: 0.6,
+            cls: 0.5,
+        }
+    }
+}
+
+pub(in crate::report) fn replay<'a>(town: &'a Town, walk: &'a Walk, score: &'a Score) -> Replay<'a> {
+    Replay { walk, graph: &town.graph, reference: &town.reference, score, rule: Rule::Visible }
+}
+
+fn card(replay: &Replay<'_>) -> String {
+    let templates = templates().unwrap();
+    let view = minijinja::Value::from_serialize(ReplayView::new(1, replay));
+    templates.get_template("replay.html").unwrap().render(view).unwrap()
+}
+
+#[test]
+fn a_walk_is_as_before() {
+    let town = Town::new();
+    let (walk, score) = (town.walk("seq-clip-nav"), town.score());
+    insta::assert_snapshot!(card(&replay(&town, &walk, &score)));
+}
+
+#[test]
+fn going_back_is_told_and_drawn() {
+    let town = Town::new();
+    let (walk, score) = (town.walk("seq-clip-nav"), town.score());
+    let card = card(&replay(&town, &walk, &score));
+    assert_eq!((card.matches("class=\"retreat\"").count(), card.matches("↩ goes back").count()), (1, 1));
+    assert_eq!((card.matches("class=\"hop").count(), card.matches("class=\"annotated\"").count()), (3, 1));
+    assert_eq!(card.matches("class=\"view chosen\"").count(), 2);
+}
+
+#[test]
+fn success_goes_by_the_rule() {
+    let town = Town::new();
+    let (walk, score) = (town.walk("a"), town.score());
+    let by_sight = replay(&town, &walk, &score);
+    let by_distance = Replay { rule: Rule::Distance, ..by_sight };
+    assert!(card(&by_sight).contains("✗ no success") && card(&by_distance).contains("✓ success"));
+    let unknown = Score { visible: None, ..score };
+    assert!(card(&Replay { score: &unknown, ..by_sight }).contains("? not judged"));
+}
+
+#[test]
+fn what_comes_from_files_stays_text() {
+    let town = Town::new();
+    let mut walk = town.walk(SCRIPT);
+    for text in [&mut walk.set, &mut walk.item, &mut walk.text] {
+        *text = format!("{SCRIPT}\" onload=\"alert(1)");
+    }
+    walk.directions = Some(Directions { phrases: vec![SCRIPT.into()], activity: SCRIPT.into() });
+    let score = town.score();
+    let card = card(&replay(&town, &walk, &score));
+    assert!(!card.contains("<script") && !card.contains("\" onload"));
+    assert!(card.matches("&lt;script&gt;").count() > 5);
+}
+
+#[test]
+fn hostile_walks_do_no_harm() {
+    let town = Town::new();
+    let score = town.score();
+    let mut walk = town.walk("a");
+    walk.steps[0].choice = Choice::Onward(usize::MAX);
+    walk.steps[0].phrase = usize::MAX;
+    walk.steps[1].views[0].phrase = f32::INFINITY;
+    walk.steps[1].views[1].phrase = f32::NAN;
+    let extra = walk.steps[2].views[0].clone();
+    walk.steps[2].views = vec![extra; 90];
+    walk.steps[3].viewpoint = id("nowhere");
+    walk.steps.extend(vec![walk.steps[4].clone(); 500]);
+    let card_of = |walk: &Walk| card(&replay(&town, walk, &score));
+    let card = card_of(&walk);
+    assert!(card.contains("make no map") && card.contains("405 more steps are left out"));
+    walk.steps.clear();
+    assert!(card_of(&walk).contains("make no map"));
+}
+
+#[test]
+fn a_walk_of_an_agent_that_reads_nothing_is_shown() {
+    let town = Town::new();
+    let score = town.score();
+    let walk = Walk {
+        text: String::new(),
+        directions: None,
+        steps: vec![step("a", 0.0, None, Choice::Unseeing), step("b", 90.0, None, Choice::Stop)],
+        ..town.walk("random/5")
+    };
+    let card = card(&replay(&town, &walk, &score));
+    assert!(card.contains("this agent reads nothing") && card.matches("does not look").count() == 2);
+}
