@@ -3,7 +3,7 @@
 use std::{collections::BTreeSet, ops::Range};
 use wayword_synthesis::{
     reading::{clauses, read},
-    text::Token,
+    text::{Token, tokens},
 };
 
 /// Words that join a clause to the one before.
@@ -40,6 +40,13 @@ pub(super) fn mended(text: &str, tokens: &[Token]) -> Vec<Clause> {
         }
     }
     mended
+}
+
+/// The clauses of a text in its own words, without what joins them.
+pub(crate) fn clause_texts(text: &str) -> Vec<&str> {
+    let tokens = tokens(text);
+    let words = |clause: Clause| &text[tokens[clause.all.start].span[0]..tokens[clause.all.end - 1].span[1]];
+    mended(text, &tokens).into_iter().map(words).collect()
 }
 
 /// Whether a text by itself ends in a task.

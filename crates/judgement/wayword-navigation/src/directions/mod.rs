@@ -10,6 +10,7 @@ mod rules;
 use serde::{Deserialize, Serialize};
 use wayword_core::ModelError;
 
+pub(crate) use clauses::clause_texts;
 pub use model::ByModel;
 pub use places::{Place, places};
 pub use rules::ByRules;

@@ -1,7 +1,15 @@
 //! Instructions made wrong in one way: an agent that does as well by them does not listen to that.
 
+mod casing;
+mod elsewhere;
+mod landmarks;
+mod sentences;
+mod sides;
+
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
+
+pub use elsewhere::{Candidate, other_path};
 
 /// A way to make instructions wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -56,6 +64,26 @@ impl FromStr for Swap {
     }
 }
 
+/// Longest text that is swapped, bytes; people's have up to about 2,500.
+const MOST_BYTES: usize = 8_000;
+
+/// A text made wrong in one way. `None` where that would change nothing, where the text is too long to be an instruction, and for
+/// [`Swap::OtherPath`], whose text the caller takes from the item that [`other_path`] chooses.
+///
+/// What is random hangs on the seed and the item's id alone.
+#[must_use]
+pub fn swapped(swap: Swap, text: &str, seed: u64, item: &str) -> Option<String> {
+    if text.len() > MOST_BYTES {
+        return None;
+    }
+    match swap {
+        Swap::Directions => sides::swapped(text),
+        Swap::Landmarks => landmarks::swapped(text, seed, item),
+        Swap::Sentences => sentences::swapped(text, seed, item),
+        Swap::OtherPath => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,5 +97,17 @@ mod tests {
         assert!(
             "left".parse::<Swap>().unwrap_err().to_string().ends_with("directions, landmarks, sentences, other-path")
         );
+    }
+
+    #[test]
+    fn each_swap_changes_what_it_names_and_long_texts_stay() {
+        let text = "Turn left at the sofa. Wait.";
+        assert_eq!(swapped(Swap::Directions, text, 1, "item").as_deref(), Some("Turn right at the sofa. Wait."));
+        assert!(swapped(Swap::Landmarks, text, 1, "item").unwrap().starts_with("Turn left at the "));
+        assert_eq!(swapped(Swap::Sentences, text, 1, "item").as_deref(), Some("Wait. Turn left at the sofa."));
+        assert_eq!(swapped(Swap::OtherPath, text, 1, "item"), None);
+        for swap in Swap::ALL {
+            assert_eq!(swapped(swap, &text.repeat(300), 1, "item"), None);
+        }
     }
 }

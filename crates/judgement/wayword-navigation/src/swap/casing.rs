@@ -1,0 +1,58 @@
+//! The case of a word, carried over to another.
+
+/// How a word is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Case {
+    Lower,
+    Title,
+    Upper,
+}
+
+impl Case {
+    /// That of a text, by its first letters.
+    pub(super) fn of(text: &str) -> Self {
+        let mut letters = text.chars().filter(|c| c.is_alphabetic());
+        match (letters.next(), letters.next()) {
+            (Some(first), Some(second)) if first.is_uppercase() && second.is_uppercase() => Self::Upper,
+            (Some(first), _) if first.is_uppercase() => Self::Title,
+            _ => Self::Lower,
+        }
+    }
+
+    /// A text in lower case, written so.
+    pub(super) fn applied(self, text: &str) -> String {
+        match self {
+            Self::Lower => text.to_owned(),
+            Self::Title => capitalised(text),
+            Self::Upper => text.to_uppercase(),
+        }
+    }
+}
+
+/// A text with its first letter in upper case.
+pub(super) fn capitalised(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
+}
+
+/// A text with its first letter in lower case, where it is a word in title case.
+pub(super) fn uncapitalised(text: &str) -> String {
+    let mut chars = text.chars();
+    match (Case::of(text.split_whitespace().next().unwrap_or_default()), chars.next()) {
+        (Case::Title, Some(first)) => first.to_lowercase().chain(chars).collect(),
+        _ => text.to_owned(),
+    }
+}
+
+/// A text with some spans replaced; the spans are in order and apart.
+pub(super) fn replaced(text: &str, edits: &[([usize; 2], String)]) -> String {
+    let mut new = String::with_capacity(text.len());
+    let mut from = 0;
+    for ([start, end], with) in edits {
+        new.push_str(&text[from..*start]);
+        new.push_str(with);
+        from = *end;
+    }
+    new.push_str(&text[from..]);
+    new
+}

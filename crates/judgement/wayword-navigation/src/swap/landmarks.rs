@@ -1,0 +1,297 @@
+//! Things and rooms for others.
+
+use super::casing::{Case, replaced};
+use rand::seq::SliceRandom;
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::rng;
+use wayword_synthesis::{
+    lexicon::{Class, agree, normal_word, room_name, same_room, thing},
+    reading::{Place, What, read},
+};
+
+/// Things that stand in for others: of homes, told apart at a glance, and no rooms.
+const THINGS: [&str; 36] = [
+    "sofa",
+    "bed",
+    "dining table",
+    "piano",
+    "fireplace",
+    "refrigerator",
+    "bathtub",
+    "toilet",
+    "sink",
+    "desk",
+    "bookshelf",
+    "television",
+    "chandelier",
+    "mirror",
+    "rug",
+    "plant",
+    "vase",
+    "statue",
+    "clock",
+    "lamp",
+    "curtain",
+    "window",
+    "washing machine",
+    "stove",
+    "wardrobe",
+    "bench",
+    "ottoman",
+    "armchair",
+    "pool table",
+    "microwave",
+    "pillow",
+    "towel",
+    "basket",
+    "picture",
+    "door",
+    "column",
+];
+/// Rooms that stand in for others.
+const ROOMS: [&str; 14] = [
+    "kitchen",
+    "bedroom",
+    "bathroom",
+    "living room",
+    "dining room",
+    "office",
+    "garage",
+    "laundry room",
+    "gym",
+    "closet",
+    "balcony",
+    "classroom",
+    "entryway",
+    "attic",
+];
+/// How often a text is read again for names that only show once others are gone.
+const ROUNDS: usize = 3;
+/// How far before a place its own names are looked for ("bathroom" of "bathroom door"), bytes.
+const REACH_BYTES: usize = 60;
+
+/// Most different names of a text; people's have up to about 30.
+const MOST_NAMES: usize = 60;
+
+/// The text with each of its things and rooms replaced by another of the kind that it does not name, equal names by equal ones.
+/// `None` where it names none, or where no name is left to stand in.
+pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
+    let mut others = Others::new(seed, item);
+    let mut new = text.to_owned();
+    for _ in 0..ROUNDS {
+        let named = named(&new);
+        others.avoid(&named);
+        let old: Vec<&Named> = named.iter().filter(|named| others.is_old(named)).collect();
+        let edits: Option<Vec<_>> = old.into_iter().map(|named| others.edits(&new, named)).collect();
+        let edits = edits?.concat();
+        if edits.is_empty() {
+            break;
+        }
+        new = replaced(&new, &edits);
+    }
+    let stays = named(&new).iter().any(|named| others.is_old(named));
+    (new != text && !stays).then_some(new)
+}
+
+/// A name in a text.
+#[derive(Debug, Clone)]
+struct Named {
+    name: String,
+    is_room: bool,
+    /// With the names that tell which one it is: "bathroom door".
+    span: [usize; 2],
+    /// Those names.
+    tells_which: Vec<String>,
+}
+
+/// The names of a text in their order, whether the text says or denies them.
+fn named(text: &str) -> Vec<Named> {
+    let mut all: Vec<Named> = Vec::new();
+    for event in read(text, &BTreeSet::new()).events {
+        let What::Place(Place { name, is_room, is_thing, .. }) = event.what else { continue };
+        if !is_known(&name) && ends_in_joint(&name) {
+            continue;
+        }
+        let mut named = Named { name, is_room: is_room && !is_thing, span: event.span, tells_which: Vec::new() };
+        let end = all.last().map_or(0, |before| before.span[1]);
+        while let Some((start, name)) = right_before(&text[end..named.span[0]]) {
+            named.span[0] = end + start;
+            named.tells_which.push(name);
+        }
+        all.push(named);
+    }
+    all
+}
+
+fn is_known(name: &str) -> bool {
+    thing(name).is_some() || room_name(name).is_some()
+}
+
+/// "Exit the building via the door", "exit the room using the door": what the reader takes for a name runs into the next one.
+fn ends_in_joint(name: &str) -> bool {
+    let last = name.rsplit(' ').next().unwrap_or_default();
+    matches!(last, "via" | "thru" | "passed") || (last.ends_with("ing") && last.len() > 5)
+}
+
+/// The name of the lexicon that ends a text, and where it begins.
+fn right_before(text: &str) -> Option<(usize, String)> {
+    let from = text.ceil_char_boundary(text.len().saturating_sub(REACH_BYTES));
+    let last = read(&text[from..], &BTreeSet::new()).events.pop()?;
+    let What::Place(place) = last.what else { return None };
+    let gap = &text[from + last.span[1]..];
+    (is_known(&place.name) && !gap.is_empty() && gap.trim().is_empty()).then_some((from + last.span[0], place.name))
+}
+
+/// The names that stand in for others.
+struct Others {
+    things: Vec<&'static str>,
+    rooms: Vec<&'static str>,
+    old: BTreeSet<String>,
+    given: BTreeMap<String, &'static str>,
+}
+
+impl Others {
+    fn new(seed: u64, item: &str) -> Self {
+        let mut rng = rng(seed, &["swap", "landmarks", item]);
+        let (mut things, mut rooms) = (THINGS.to_vec(), ROOMS.to_vec());
+        things.shuffle(&mut rng);
+        rooms.shuffle(&mut rng);
+        Self { things, rooms, old: BTreeSet::new(), given: BTreeMap::new() }
+    }
+
+    /// Keeps in mind that the text names these, but for those that stand in.
+    fn avoid(&mut self, named: &[Named]) {
+        let names = named.iter().flat_map(|named| named.tells_which.iter().chain([&named.name]));
+        let given: Vec<&str> = self.given.values().copied().collect();
+        self.old.extend(names.filter(|name| !given.contains(&name.as_str())).cloned());
+    }
+
+    fn is_old(&self, named: &Named) -> bool {
+        named.tells_which.iter().chain([&named.name]).any(|name| self.conflicts(name))
+    }
+
+    /// Whether a name may mean what the text named.
+    fn conflicts(&self, name: &str) -> bool {
+        self.old.iter().any(|old| agree(old, name) || same_room(old, name))
+    }
+
+    /// The name that stands in for another: one that stands in for nothing else, while there are any.
+    fn instead_of(&mut self, named: &Named) -> Option<&'static str> {
+        if let Some(given) = self.given.get(&named.name) {
+            return Some(given);
+        }
+        if self.old.len() > MOST_NAMES {
+            return None;
+        }
+        let kind = if named.is_room { &self.rooms } else { &self.things };
+        let free: Vec<&'static str> = kind.iter().copied().filter(|name| !self.conflicts(name)).collect();
+        let is_new = |name: &&&'static str| !self.given.values().any(|given| *given == **name);
+        let other = *free.iter().find(is_new).or(free.first())?;
+        self.given.insert(named.name.clone(), other);
+        Some(other)
+    }
+
+    /// The edits that write another name for one: its article, if that stands right before it, and the name itself.
+    fn edits(&mut self, text: &str, named: &Named) -> Option<Vec<([usize; 2], String)>> {
+        let [from, to] = named.span;
+        let other = self.instead_of(named)?;
+        let before = &text[..from];
+        let word = before.trim_end().rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
+        let number = if is_plural(word, &text[from..to], &named.name) { plural(other) } else { other.to_owned() };
+        let name = ([from, to], Case::of(&text[from..to]).applied(&number));
+        let start = before.trim_end().len() - word.len();
+        if !word.eq_ignore_ascii_case("a") && !word.eq_ignore_ascii_case("an") {
+            return Some(vec![name]);
+        }
+        let article = if other.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        Some(vec![([start, start + word.len()], Case::of(word).applied(article)), name])
+    }
+}
+
+/// Whether a name is written in the plural. "The stairs" are one flight, "three stairs" are not.
+fn is_plural(before: &str, written: &str, name: &str) -> bool {
+    let last = written.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_lowercase();
+    let is_flight = thing(name).is_some_and(|thing| thing.class == Class::Stairs);
+    let is_counted = matches!(before.to_lowercase().as_str(), "two" | "three" | "four" | "five" | "few" | "several")
+        || before.bytes().all(|byte| byte.is_ascii_digit()) && !before.is_empty();
+    normal_word(&last) != last && last.ends_with('s') && !last.ends_with("'s") && (!is_flight || is_counted)
+}
+
+/// The plural of a name that stands in for others.
+fn plural(name: &str) -> String {
+    let end = name.chars().next_back();
+    match name.strip_suffix('y') {
+        Some(stem) if !stem.ends_with(['a', 'e', 'o', 'u']) => format!("{stem}ies"),
+        _ if name.ends_with("shelf") => format!("{}ves", &name[..name.len() - 1]),
+        _ if matches!(end, Some('s' | 'x')) || name.ends_with("ch") || name.ends_with("sh") => format!("{name}es"),
+        _ => format!("{name}s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn names(text: &str) -> Vec<String> {
+        named(text).into_iter().map(|named| named.name).collect()
+    }
+
+    #[test]
+    fn every_name_that_stands_in_is_read_as_itself() {
+        for (names, is_room) in [(&THINGS[..], false), (&ROOMS[..], true)] {
+            for name in names {
+                for written in [(*name).to_owned(), plural(name)] {
+                    let read = named(&format!("go past the {written} and wait"));
+                    assert_eq!((read.len(), read[0].name.as_str(), read[0].is_room), (1, *name, is_room), "{written}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn things_stay_things_and_rooms_stay_rooms() {
+        let text = "Go to the kitchen, pass two sofas and the other sofa and wait by the Coffee Machine.";
+        let new = swapped(text, 1, "item").unwrap();
+        let kinds: Vec<bool> = named(&new).iter().map(|named| named.is_room).collect();
+        assert_eq!(kinds, [true, false, false, false]);
+        let names = names(&new);
+        assert!(names[1] == names[2] && names[1] != names[3], "{new}");
+        assert!(new.starts_with("Go to the ") && new.contains("s and the other "), "{new}");
+        assert_ne!(swapped(text, 2, "item"), swapped(text, 1, "item"));
+        assert_eq!(swapped(text, 1, "item"), swapped(text, 1, "item"));
+    }
+
+    #[test]
+    fn articles_follow_and_what_tells_which_goes() {
+        let of = |item: &str| swapped("Open an oven in a bathroom cabinet", 3, item).unwrap();
+        let texts: Vec<String> = (0..20).map(|item| of(&item.to_string())).collect();
+        for text in &texts {
+            assert!(!text.contains("bathroom"), "{text}");
+            for pair in text.split(' ').collect::<Vec<_>>().windows(2).filter(|pair| matches!(pair[0], "a" | "an")) {
+                assert_eq!(pair[0] == "an", pair[1].starts_with(['a', 'e', 'i', 'o', 'u']), "{text}");
+            }
+        }
+        assert!(texts.iter().any(|text| text.starts_with("Open a ")));
+    }
+
+    #[test]
+    fn a_text_without_names_has_nothing_to_swap() {
+        assert_eq!(swapped("Turn left and walk on.", 1, "item"), None);
+        assert!(
+            swapped("Exit the building via the door", 1, "item").unwrap().starts_with("Exit the building via the ")
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn no_old_name_is_read_any_more(text in "((go|to|the|a|an|two|shiny|light|blue|sofa|Sofas|kitchen|bathroom|door|stairs|table|coffee|study|gizmo|exit|of|in|with|and|ß|[,.'’-])  ?){0,20}|\\PC{0,60}", seed in 0..9u64) {
+            if let Some(new) = swapped(&text, seed, "item") {
+                let old = names(&text);
+                for name in names(&new) {
+                    prop_assert!(!old.iter().any(|old| agree(old, &name) || same_room(old, &name)), "{name:?} in {new:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Left for right and up for down.
+//!
+//! Whether a word is swapped depends on the words around it, never on which of its pair it is. So what was swapped twice is what
+//! it was.
+
+use super::casing::{Case, replaced};
+use std::collections::BTreeSet;
+use wayword_core::Side;
+use wayword_synthesis::{
+    reading::{What, read},
+    text::{Token, tokens},
+};
+
+/// Words that tell a direction, each with its opposite.
+const SIDES: [[&str; 2]; 3] = [["left", "right"], ["leftward", "rightward"], ["leftwards", "rightwards"]];
+const LEVELS: [[&str; 2]; 5] =
+    [["up", "down"], ["upstairs", "downstairs"], ["ascend", "descend"], ["ascending", "descending"], ["top", "bottom"]];
+
+/// Words before a side that is one for sure: "on the left", "the far right", "slight right".
+const BEFORE_SIDE: [&str; 14] = [
+    "slight",
+    "slightly",
+    "hard",
+    "sharp",
+    "the",
+    "your",
+    "my",
+    "its",
+    "far",
+    "on",
+    "upper",
+    "lower",
+    "immediate",
+    "hand",
+];
+/// Words behind one: "left of the sofa", "the left side".
+const AFTER_SIDE: [&str; 8] = ["of", "side", "sided", "hand", "most", "wall", "corner", "end"];
+/// Words between "up" and the stairs.
+const BEFORE_STAIRS: [&str; 34] = [
+    "the", "a", "an", "this", "that", "these", "those", "first", "second", "third", "next", "other", "few", "small",
+    "short", "long", "old", "set", "flight", "half", "of", "one", "two", "three", "four", "five", "six", "wooden",
+    "spiral", "carpeted", "curved", "main", "left", "right",
+];
+/// Verbs of going: "up" behind one needs no stairs where its clause ends.
+const GOING: [&str; 12] =
+    ["go", "going", "head", "heading", "walk", "walking", "climb", "climbing", "move", "proceed", "come", "leading"];
+
+/// The text with its directions swapped; `None` where it tells none.
+pub(super) fn swapped(text: &str) -> Option<String> {
+    let text_tokens = Text { text, tokens: tokens(text) };
+    let mut edits: Vec<([usize; 2], String)> = Vec::new();
+    let turns = text_tokens.turns();
+    for at in 0..text_tokens.tokens.len() {
+        if let Some(opposite) = text_tokens.opposite(at, &turns) {
+            edits.extend(text_tokens.edits(at, opposite));
+        }
+    }
+    (!edits.is_empty()).then(|| replaced(text, &edits))
+}
+
+struct Text<'a> {
+    text: &'a str,
+    tokens: Vec<Token>,
+}
+
+impl<'a> Text<'a> {
+    fn word(&self, at: usize) -> &str {
+        self.tokens.get(at).map_or("", |token| token.word.as_str())
+    }
+
+    fn before(&self, at: usize, back: usize) -> &str {
+        at.checked_sub(back).map_or("", |at| self.word(at))
+    }
+
+    fn written(&self, at: usize) -> &'a str {
+        let [from, to] = self.tokens[at].span;
+        &self.text[from..to]
+    }
+
+    /// The sides that are turns, as tokens. The reader takes "right past the sofa" for no turn and "left past the sofa" for one;
+    /// so it reads the text with one word of each pair throughout.
+    fn turns(&self) -> BTreeSet<usize> {
+        let one_of_pair = |at: usize| match self.word(at) {
+            word if other(&SIDES, word).is_some() => Some("right"),
+            word => LEVELS
+                .iter()
+                .find(|pair| pair.contains(&word))
+                .map(|[one, _]| *one)
+                .or_else(|| self.about(at).map(|_| if matches!(word, "turn" | "go") { "turn" } else { "around" })),
+        };
+        let edit = |at: usize| Some((self.tokens[at].span, one_of_pair(at)?.to_owned()));
+        let same = replaced(self.text, &(0..self.tokens.len()).filter_map(edit).collect::<Vec<_>>());
+        let tokens = tokens(&same);
+        let events = read(&same, &BTreeSet::new()).events.into_iter();
+        let turns = events.filter(|event| event.what == What::Turn(Side::Right));
+        turns.map(|event| tokens.partition_point(|token| token.span[0] < event.span[0])).collect()
+    }
+
+    /// The word to stand for the one at a token, where that tells a direction.
+    fn opposite(&self, at: usize, turns: &BTreeSet<usize>) -> Option<&'static str> {
+        let word = self.word(at);
+        if let Some(other) = other(&SIDES, word) {
+            return (turns.contains(&at) || self.tells_place(at)).then_some(other);
+        }
+        if let Some(other) = other(&LEVELS, word) {
+            let tells = match word {
+                "up" | "down" => self.climbs(at),
+                "top" | "bottom" if self.word(at + 1) == "of" => self.leads_to_stairs(at + 2),
+                "top" | "bottom" => (1..=4).any(|back| is_stairs(self.before(at, back))),
+                _ => true,
+            };
+            return tells.then_some(other);
+        }
+        self.about(at)
+    }
+
+    /// "Turn around" for "go straight" and the other way round, where they are all of their clause.
+    fn about(&self, at: usize) -> Option<&'static str> {
+        let alone = |from: usize| {
+            let begins = from == 0 || self.joins(from - 1);
+            begins && (from + 2 >= self.tokens.len() || self.joins(from + 2))
+        };
+        match (self.before(at, 1), self.word(at), self.word(at + 1)) {
+            (_, "turn", "around") if alone(at) => Some("go"),
+            (_, "go", "straight") if alone(at) => Some("turn"),
+            ("turn", "around", _) if alone(at - 1) => Some("straight"),
+            ("go", "straight", _) if alone(at - 1) => Some("around"),
+            _ => None,
+        }
+    }
+
+    fn joins(&self, at: usize) -> bool {
+        !self.tokens[at].is_word() || matches!(self.word(at), "and" | "then")
+    }
+
+    /// "On the left", "to the left of the sofa", "the left door", "left and right", but not "right before the sofa".
+    fn tells_place(&self, at: usize) -> bool {
+        let is_side = |word: &str| other(&SIDES, word).is_some();
+        let listed = matches!(self.before(at, 1), "and" | "or") && is_side(self.before(at, 2)) && at > 2;
+        BEFORE_SIDE.contains(&self.before(at, 1))
+            || (self.before(at, 1) == "to" && !self.word(at + 1).starts_with("the"))
+            || AFTER_SIDE.contains(&self.word(at + 1))
+            || (listed && self.tells_place(at - 2))
+    }
+
+    /// "Up the stairs", "up to the second floor", "the stairs up", "go up.", but not "down the hallway".
+    fn climbs(&self, at: usize) -> bool {
+        let behind_stairs = (1..=3).any(|back| is_stairs(self.before(at, back)));
+        let ends = at + 1 >= self.tokens.len() || self.joins(at + 1);
+        let to_floor = self.word(at + 1) == "to" && self.leads_to(at + 2, is_floor);
+        self.leads_to_stairs(at + 1)
+            || to_floor
+            || (behind_stairs && !matches!(self.word(at + 1), "the" | "a"))
+            || (ends && GOING.contains(&self.before(at, 1)))
+    }
+
+    fn leads_to_stairs(&self, from: usize) -> bool {
+        self.leads_to(from, |word| is_stairs(word) || is_floor(word))
+    }
+
+    /// Whether the noun phrase from a token on ends in such a word.
+    fn leads_to(&self, from: usize, is_end: impl Fn(&str) -> bool) -> bool {
+        let skips = |word: &str| BEFORE_STAIRS.contains(&word) || word.bytes().all(|byte| byte.is_ascii_digit());
+        let end = (from..from + 6).find(|at| is_end(self.word(*at)) || !skips(self.word(*at)));
+        end.is_some_and(|at| is_end(self.word(at)))
+    }
+
+    /// The edits that write another word at a token, in its case, with its article. None where the word is written in a way that
+    /// could not be got back.
+    fn edits(&self, at: usize, word: &str) -> Vec<([usize; 2], String)> {
+        let written = self.written(at);
+        let case = Case::of(written);
+        if case.applied(self.word(at)) != written {
+            return Vec::new();
+        }
+        let edit = (self.tokens[at].span, case.applied(word));
+        let before = at.checked_sub(1).filter(|before| matches!(self.word(*before), "a" | "an"));
+        let Some(before) = before.filter(|_| matches!(word, "upstairs" | "downstairs")) else { return vec![edit] };
+        let pair = match (self.written(before), case) {
+            ("a" | "an", Case::Lower | Case::Title) => ["an", "a"],
+            ("A" | "An", Case::Lower | Case::Title) => ["An", "A"],
+            ("A" | "AN", Case::Upper) => ["AN", "A"],
+            _ => return Vec::new(),
+        };
+        let [old, new] = if word == "upstairs" { [pair[1], pair[0]] } else { pair };
+        if self.written(before) == old { vec![(self.tokens[before].span, new.to_owned()), edit] } else { Vec::new() }
+    }
+}
+
+/// The other word of a pair.
+fn other(pairs: &[[&'static str; 2]], word: &str) -> Option<&'static str> {
+    pairs.iter().find_map(|[a, b]| match word {
+        word if word == *a => Some(*b),
+        word if word == *b => Some(*a),
+        _ => None,
+    })
+}
+
+fn is_stairs(word: &str) -> bool {
+    matches!(
+        word,
+        "stairs" | "stair" | "staircase" | "staircases" | "steps" | "stairway" | "flights" | "stairwell" | "landing"
+    )
+}
+
+fn is_floor(word: &str) -> bool {
+    matches!(word, "floor" | "floors" | "level" | "levels" | "story" | "storey" | "flight")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn directions_are_swapped_both_ways() {
+        for (text, wanted) in [
+            ("Turn left at the sofa.", "Turn right at the sofa."),
+            ("TAKE A RIGHT, then bear left.", "TAKE A LEFT, then bear right."),
+            ("Clean the lamp on your left", "Clean the lamp on your right"),
+            ("Wait to the left of the bed.", "Wait to the right of the bed."),
+            ("Open the right drawer on the far left", "Open the left drawer on the far right"),
+            (
+                "Go up the stairs. Wait at the top of the stairs.",
+                "Go down the stairs. Wait at the bottom of the stairs.",
+            ),
+            ("Take the stairs down to the hall", "Take the stairs up to the hall"),
+            ("Climb up the two steps", "Climb down the two steps"),
+            ("Go upstairs to an upstairs bathroom", "Go downstairs to a downstairs bathroom"),
+            ("Turn around and walk on, then go straight.", "Go straight and walk on, then turn around."),
+            ("Doors are on your left and right", "Doors are on your right and left"),
+            ("Go up to the second floor", "Go down to the second floor"),
+            ("Go down and wait", "Go up and wait"),
+            ("Enter the hall to the slight right past the sofa", "Enter the hall to the slight left past the sofa"),
+            ("Walk down the steps to the bottom.", "Walk up the steps to the top."),
+        ] {
+            assert_eq!(swapped(text).as_deref(), Some(wanted));
+            assert_eq!(swapped(wanted).as_deref(), Some(text));
+        }
+    }
+
+    #[test]
+    fn words_that_tell_no_direction_stay() {
+        for text in [
+            "Stop right before the bed",
+            "Walk right past the sofa",
+            "All right, wait",
+            "Wait in the room you left before",
+            "Walk down the hallway",
+            "Walk up to the table",
+            "Pick up the pillow and wipe down the sink",
+            "Clean the picture at the top of the bed",
+            "Go straight down the hallway",
+        ] {
+            assert_eq!(swapped(text), None, "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn swapped_twice_is_what_it_was(text in "((left|Left|LEFT|lEft|right|RIGHT|Right|up|down|Upstairs|upstairs|downstairs|a|A|AN|an|An|the|turn|Turn|go|take|around|straight|stairs|floor|of|to|top|bottom|and|then|on|your|past|sofa|wall|side|ß|[,.'’-])  ?){0,25}|\\PC{0,60}") {
+            if let Some(once) = swapped(&text) {
+                prop_assert_eq!(swapped(&once), Some(text));
+            }
+        }
+    }
+}
