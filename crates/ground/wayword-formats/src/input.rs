@@ -58,6 +58,14 @@ pub(crate) fn each_item(
     file: &Path,
     mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
+    each_value(file, |place, value| take(Item::new(file, place, value)?))
+}
+
+/// Reads a file that is one JSON list of anything, and hands on each with its place.
+pub(crate) fn each_value(
+    file: &Path,
+    mut take: impl FnMut(Place, Value) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
     let mut parser = serde_json::Deserializer::from_reader(open(file)?);
     let items = Items::new(file, &mut take);
     let read = (&items).deserialize(&mut parser).and_then(|()| parser.end());
@@ -72,6 +80,7 @@ pub(crate) fn each_item_in(
     mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
 ) -> Result<Map<String, Value>, FormatError> {
     let mut parser = serde_json::Deserializer::from_reader(open(file)?);
+    let mut take = |place, value| take(Item::new(file, place, value)?);
     let items = Items::new(file, &mut take);
     let read = Within { items: &items, field }.deserialize(&mut parser);
     let read = read.and_then(|rest| parser.end().map(|()| rest));
@@ -128,7 +137,7 @@ fn broken(file: &Path, place: Place, trail: &Trail, problem: String) -> FormatEr
     }
 }
 
-type Take<'a> = &'a mut dyn FnMut(Item<'_>) -> Result<(), FormatError>;
+type Take<'a> = &'a mut dyn FnMut(Place, Value) -> Result<(), FormatError>;
 
 /// Reads a JSON list without ever holding more than one of its items as JSON.
 pub(crate) struct Items<'a> {
@@ -169,7 +178,7 @@ impl<'a> Items<'a> {
         if state.index >= limits::ITEMS {
             return Err(FormatError::document(self.file, "it has more than 1,000,000 items", "split it into parts"));
         }
-        (state.take)(Item::new(self.file, Place::Item(state.index), value)?)?;
+        (state.take)(Place::Item(state.index), value)?;
         state.index += 1;
         Ok(())
     }

@@ -59,7 +59,7 @@ impl<'a> Item<'a> {
         .into()
     }
 
-    fn expected(&self, field: &str, what: &str, found: &Value, hint: &'static str) -> FormatError {
+    pub(crate) fn expected(&self, field: &str, what: &str, found: &Value, hint: &'static str) -> FormatError {
         self.wrong(field, format!("expected {what}, found {}", told(found)), hint)
     }
 

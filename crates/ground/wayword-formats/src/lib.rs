@@ -20,6 +20,7 @@ pub mod reverie;
 pub mod rxr;
 mod splits;
 mod strict;
+pub mod submission;
 mod tally;
 pub mod vlnce;
 mod vocabulary;

@@ -18,3 +18,9 @@ pub(crate) const INSTRUCTION_BYTES: usize = 20_000;
 pub(crate) const INSTRUCTIONS: usize = 1_000;
 /// Longest name (of a path, an item, a split), bytes.
 pub(crate) const NAME_BYTES: usize = 128;
+/// Most entries of one submitted trajectory; agents that look around hand in one per look.
+pub(crate) const TRAJECTORY_POSES: usize = 10_000;
+/// Most entries of a submission's trajectories together.
+pub(crate) const POSES_KEPT: usize = 4_000_000;
+/// Most problems of a submission that are told one by one.
+pub(crate) const PROBLEMS: usize = 1_000;

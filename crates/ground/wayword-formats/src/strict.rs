@@ -37,7 +37,8 @@ impl Trail {
             let dot = if field.is_empty() { "" } else { "." };
             // Writing to a String cannot fail.
             let _ = match step {
-                Step::Key(key) => write!(field, "{dot}{key}"),
+                // A hostile key may be as long as its file.
+                Step::Key(key) => write!(field, "{dot}{key:.40}"),
                 Step::Index(index) => write!(field, "[{index}]"),
             };
         }

@@ -1,0 +1,64 @@
+//! Trajectories as the evaluators of R2R and REVERIE take them.
+//!
+//! A JSON list of `{instr_id, trajectory: [[viewpoint, heading, elevation], ...], predObjId}`, as `tasks/R2R/eval.py` of
+//! Matterport3DSimulator and `tasks/REVERIE/eval_release.py` of REVERIE read it. `predObjId` is REVERIE's, and may be null or
+//! absent. Entries without directions are read too: a bare viewpoint, or a list of viewpoints that were walked one after
+//! another, as VLN-DUET keeps them.
+
+mod problems;
+mod reading;
+
+pub use problems::{Problems, Refused};
+pub use reading::read;
+
+use crate::{Episode, FormatError, item, output};
+use serde_json::{Value, json};
+use std::path::Path;
+use wayword_core::{Heading, ObjectId, ViewpointId};
+
+/// What was handed in for one instruction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Submitted {
+    /// The instruction's name, as [`instr_id`] makes it.
+    pub instr_id: String,
+    /// Where the agent stood and looked, from the start; never empty where it was read from a file.
+    pub trajectory: Vec<Posed>,
+    /// The object that is taken for the target (`predObjId`).
+    pub object: Option<ObjectId>,
+}
+
+/// A place, and where the agent looked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posed {
+    /// The place.
+    pub viewpoint: ViewpointId,
+    /// Direction in the plane; north where the file names none.
+    pub heading: Heading,
+    /// Radians, positive upwards; 0 where the file names none.
+    pub elevation_rad: f64,
+}
+
+/// The name by which submissions call the instruction at a place of an item: R2R's `{path_id}_{place}`, REVERIE's
+/// `{path_id}_{objId}_{place}`.
+#[must_use]
+pub fn instr_id(episode: &Episode, place: usize) -> String {
+    format!("{}_{place}", episode.id)
+}
+
+/// Writes a submission, gzip where the name ends in `.gz`. Each item has `predObjId`, which is null where no object was named:
+/// REVERIE's evaluator demands the field, and R2R's overlooks it.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write(file: &Path, submitted: &[Submitted]) -> Result<(), FormatError> {
+    output::write_file(file, |out| output::write_list(out, submitted.iter().map(fields)))
+}
+
+fn fields(submitted: &Submitted) -> Value {
+    let pose = |posed: &Posed| json!([posed.viewpoint.as_str(), posed.heading.rad(), posed.elevation_rad]);
+    json!({
+        "instr_id": submitted.instr_id,
+        "trajectory": submitted.trajectory.iter().map(pose).collect::<Vec<_>>(),
+        "predObjId": submitted.object.as_ref().map(|object| item::value_of(object.as_str())),
+    })
+}
