@@ -55,9 +55,8 @@ pub struct Scored {
     pub phrase: f32,
     /// How well the activity fits it.
     pub activity: f32,
-    /// The neighbours that lie in it, nearest first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub onward: Vec<ViewpointId>,
+    /// How many neighbours lie in it.
+    pub ways: usize,
 }
 
 /// What an agent did at a step.

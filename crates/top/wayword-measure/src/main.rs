@@ -12,6 +12,7 @@ mod sample;
 mod skeleton;
 mod stage;
 mod storm;
+mod sweep;
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
@@ -135,6 +136,8 @@ enum What {
         #[arg(long, default_value_t = 200)]
         paths: usize,
     },
+    /// What agents decide by, tried out on a train split.
+    Sweep(sweep::Flags),
 }
 
 fn main() -> ExitCode {
@@ -161,6 +164,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
         What::Eye { world, views, paths, ghosts } => eye::measure(&world, views, paths, ghosts, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
+        What::Sweep(flags) => sweep::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }
 }

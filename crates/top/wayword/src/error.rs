@@ -3,6 +3,7 @@
 use std::{path::PathBuf, process::ExitCode};
 use wayword_core::{ModelError, PlatformError};
 use wayword_formats::FormatError;
+use wayword_navigation::WalkError;
 use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::StyleError};
 
 /// How the program ends.
@@ -57,6 +58,9 @@ pub enum Error {
     #[cfg(feature = "local")]
     #[error(transparent)]
     Local(#[from] wayword_local::LocalError),
+    /// An agent could not walk.
+    #[error(transparent)]
+    Walk(#[from] WalkError),
     /// A walk could not be seen.
     #[error(transparent)]
     Observe(#[from] ObserveError),
@@ -112,6 +116,7 @@ impl Error {
         match self {
             Self::Busy(_) => Exit::Busy,
             Self::Model(error) | Self::Observe(ObserveError::Model(error)) if error.ends_run() => Exit::Stopped,
+            Self::Walk(error) if error.ends_run() => Exit::Stopped,
             _ => Exit::BadInput,
         }
     }

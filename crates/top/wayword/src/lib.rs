@@ -5,8 +5,11 @@
 pub mod calls;
 pub mod cli;
 pub mod commands;
+pub mod demands;
 #[cfg(feature = "local")]
 mod download_bar;
+pub mod encoder;
+pub mod episodes;
 pub mod error;
 mod in_order;
 pub mod item;
@@ -19,4 +22,5 @@ pub mod settings;
 pub mod styles;
 pub mod team;
 mod text_file;
+mod texts;
 pub mod world;

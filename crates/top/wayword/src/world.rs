@@ -3,9 +3,12 @@
 use crate::{error::Error, settings::Settings};
 use std::{
     collections::{BTreeMap, BTreeSet},
+    path::Path as FilePath,
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_core::{Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId};
+use wayword_core::{
+    Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
+};
 use wayword_platforms::{house::HousePlatform, matterport::Matterport};
 
 /// The platforms that this build knows.
@@ -16,10 +19,18 @@ pub const PLATFORMS: [&str; 2] = ["house", "matterport"];
 /// # Errors
 /// When there is none of that name, or its data cannot be opened.
 pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
-    match settings.platform.as_str() {
+    open_named(&settings.platform, settings.data.as_deref())
+}
+
+/// Opens a platform by its name, with the folder of its data.
+///
+/// # Errors
+/// When there is none of that name, or its data cannot be opened.
+pub fn open_named(name: &str, data: Option<&FilePath>) -> Result<Box<dyn Platform>, Error> {
+    match name {
         "house" => Ok(Box::new(HousePlatform::default())),
         "matterport" => {
-            let data = settings.data.as_deref().ok_or_else(|| {
+            let data = data.ok_or_else(|| {
                 Error::usage(
                     "platform matterport needs --data",
                     "name the folder that holds connectivity/, and what else you have of the dataset",

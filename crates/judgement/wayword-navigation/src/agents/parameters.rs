@@ -35,38 +35,30 @@ pub struct Back {
     pub nodes: usize,
 }
 
-/// The grounders whose scores mean the same.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Scale {
-    /// Cosines of a sentence encoder between a phrase and a name.
-    Sentences,
-    /// Shares of places found, in [0, 1].
-    Shares,
-    /// Cosines of a CLIP between a phrase and a picture: all close to each other.
-    Pictures,
-}
+/// As many phrases left as an instruction can have: the activity is always listened to.
+const ALWAYS: usize = 12;
 
 impl Parameters {
-    /// What an agent decides by with a grounder, unless told otherwise: `clip-nav` never goes back.
+    /// What an agent decides by with a grounder, unless told otherwise: `clip-nav` never goes back, `glip-nav` goes by boxes.
     #[must_use]
     pub fn default_of(agent: &str, grounder: &str) -> Self {
-        let scale = match grounder {
-            "labels" => Scale::Sentences,
-            "labels/lexical" => Scale::Shares,
-            _ => Scale::Pictures,
+        let by_boxes = agent == "glip-nav";
+        let (phrase_threshold, stop_threshold, stop_with_phrases_left, window) = match (grounder, by_boxes) {
+            // Cosines of a sentence encoder between a phrase and a name.
+            ("labels", false) => (0.3, 0.4, 0, 3),
+            ("labels", true) => (0.6, 0.55, ALWAYS, 8),
+            // Shares of places found.
+            ("labels/lexical", false) => (0.3, 0.4, 1, 8),
+            ("labels/lexical", true) => (0.4, 0.4, ALWAYS, 8),
+            // Cosines of CLIP between a phrase and a picture, all close to each other. Not swept: there were no photographs.
+            _ => (0.26, 0.28, 0, 3),
         };
-        let (phrase_threshold, stop_threshold, back_threshold) = match scale {
-            Scale::Sentences => (0.5, 0.6, 0.3),
-            Scale::Shares => (0.5, 0.75, 0.2),
-            // Not swept: there were no photographs to sweep it on.
-            Scale::Pictures => (0.26, 0.28, 0.2),
-        };
-        let back = Back { window: 3, threshold: back_threshold, nodes: 2 };
+        let back = Back { window, threshold: 0.05, nodes: 1 };
         Self {
             phrase_threshold,
             stop_threshold,
-            stop_with_phrases_left: 0,
-            max_hops: 20,
+            stop_with_phrases_left,
+            max_hops: 40,
             shun_visited: true,
             back: (agent != "clip-nav").then_some(back),
         }

@@ -84,7 +84,7 @@ fn scored(sight: &Sight, in_hand: usize, activity: usize) -> Vec<Scored> {
     let scored = |view: &crate::eyes::Seen| Scored {
         phrase: view.scores[in_hand],
         activity: view.scores[activity],
-        onward: view.onward.clone(),
+        ways: view.onward.len(),
     };
     sight.views.iter().map(scored).collect()
 }

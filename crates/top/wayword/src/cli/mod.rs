@@ -1,5 +1,6 @@
 //! The command line as it is typed.
 
+mod compare;
 #[cfg(feature = "remote")]
 mod doctor;
 #[cfg(feature = "remote")]
@@ -13,6 +14,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use wayword_synthesis::walk::FrameSelection;
 
+pub use compare::{Compare, SuccessRule, SwapName};
 #[cfg(feature = "remote")]
 pub use doctor::Doctor;
 #[cfg(feature = "remote")]
@@ -76,6 +78,8 @@ pub enum Command {
     Perceive(Box<Perceive>),
     /// Measure how alike two sets of instructions are, beside what people and chance reach.
     Similarity(Similarity),
+    /// Let agents walk by sets of instructions, and hold the sets against each other.
+    Compare(Box<Compare>),
     /// Check keys, endpoints, models and data, and say what to do.
     #[cfg(feature = "remote")]
     Doctor(Box<Doctor>),
@@ -285,10 +289,10 @@ pub struct Export {
     after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --out page.html"
 )]
 pub struct Report {
-    /// Run folder.
+    /// Run folder, or the folder of a comparison.
     #[arg(long, value_name = "DIR")]
     pub run: PathBuf,
-    /// At most so many items.
+    /// At most so many items; of a comparison, so many walks: of each agent and set some that succeed and some that do not.
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub items: usize,
     /// The page. [default: report.html in the run folder]

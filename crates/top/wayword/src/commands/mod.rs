@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod check;
+pub(crate) mod compare;
 mod completions;
 mod config;
 mod demo;
@@ -37,6 +38,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Check(args) => check::run(&args, output),
         Command::Export(args) => export::run(&args, output),
         Command::Report(args) => report::run(&args, output),
+        Command::Compare(args) => compare::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
         Command::Similarity(args) => similarity::run(&args, output),
         #[cfg(feature = "remote")]

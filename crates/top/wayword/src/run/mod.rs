@@ -9,6 +9,8 @@ pub(crate) mod lines;
 mod record;
 
 use crate::{error::Error, settings::Settings, text_file};
+use serde::{Serialize, de::DeserializeOwned};
+use sha2::{Digest, Sha256};
 use std::{
     collections::BTreeSet,
     fs::{self, File, TryLockError},
@@ -76,19 +78,12 @@ impl RunFolder {
         })
     }
 
-    /// The name under which the ledger keeps what the run has spent: made when it is first asked for, kept in the folder. A new
-    /// run in the place of a deleted one has spent nothing.
+    /// The name under which the ledger keeps what the run has spent.
     ///
     /// # Errors
     /// When it cannot be read or written.
     pub fn id(&self) -> Result<String, Error> {
-        let path = self.folder.join(file::ID);
-        if path.exists() {
-            return Ok(text_file::read(&path, "read the run's name")?.trim().to_owned());
-        }
-        let id = fresh_id("run");
-        write_whole(&path, &id)?;
-        Ok(id)
+        id_of(&self.folder, "run")
     }
 
     /// Where pictures of frames go.
@@ -119,7 +114,23 @@ impl RunFolder {
     }
 }
 
-fn lock(folder: &Path) -> Result<File, Error> {
+/// The name under which the ledger keeps what a folder's work has spent: made when it is first asked for, kept in the folder. New
+/// work in the place of what was deleted has spent nothing.
+///
+/// # Errors
+/// When it cannot be read or written.
+pub(crate) fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
+    let path = folder.join(file::ID);
+    if path.exists() {
+        return Ok(text_file::read(&path, "read the run's name")?.trim().to_owned());
+    }
+    let id = fresh_id(kind);
+    write_whole(&path, &id)?;
+    Ok(id)
+}
+
+/// Makes sure that no other process works in a folder, for as long as what is returned lives.
+pub(crate) fn lock(folder: &Path) -> Result<File, Error> {
     let path = folder.join(file::LOCK);
     let lock =
         File::options().create(true).truncate(false).write(true).open(&path).map_err(Error::io(&path, "open"))?;
@@ -138,14 +149,17 @@ pub fn fresh_id(kind: &str) -> String {
 }
 
 /// Writes the settings, or holds them against those that are there.
-fn keep_config(folder: &Path, settings: &Settings) -> Result<(), Error> {
+pub(crate) fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), Error>
+where
+    S: Serialize + DeserializeOwned + PartialEq,
+{
     let path = folder.join(file::CONFIG);
     if !path.exists() {
         let text = toml::to_string_pretty(settings)
             .map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
         return write_whole(&path, &text);
     }
-    let before = settings_of(folder)?;
+    let before: S = config_of(folder)?;
     if before == *settings {
         return Ok(());
     }
@@ -155,7 +169,7 @@ fn keep_config(folder: &Path, settings: &Settings) -> Result<(), Error> {
 }
 
 /// Writes a small file that is there whole or not at all, whenever the process is killed.
-fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
+pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".new");
     let temporary = PathBuf::from(temporary);
@@ -168,6 +182,11 @@ fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
 /// # Errors
 /// When the folder is no run folder.
 pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
+    config_of(folder)
+}
+
+/// What `config.toml` of a folder holds.
+pub(crate) fn config_of<S: DeserializeOwned>(folder: &Path) -> Result<S, Error> {
     let path = folder.join(file::CONFIG);
     let text = text_file::read(&path, "read the run's settings")?;
     toml::from_str(&text).map_err(|error| {
@@ -178,9 +197,22 @@ pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
     })
 }
 
-fn differing_keys(a: &Settings, b: &Settings) -> BTreeSet<String> {
-    let table = |settings: &Settings| toml::Table::try_from(settings).unwrap_or_default();
+fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
+    let table = |settings: &S| toml::Table::try_from(settings).unwrap_or_default();
     let (a, b) = (table(a), table(b));
     let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
     keys.into_iter().filter(|key| a.get(*key) != b.get(*key)).cloned().collect()
+}
+
+/// The beginning of a file's hash, for settings that only name it.
+pub(crate) fn hash_of_file(file: &Path) -> Result<String, Error> {
+    let mut hash = Sha256::new();
+    let copied = File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash));
+    copied.map_err(Error::io(file, "read"))?;
+    Ok(short_hex(hash))
+}
+
+/// The first eight bytes of a hash, as text.
+pub(crate) fn short_hex(hash: Sha256) -> String {
+    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
 }

@@ -2,22 +2,20 @@
 
 use crate::{
     error::Error,
+    run::{hash_of_file, short_hex},
     settings::{Job, Providers},
     styles::Measured,
     team::prompts,
 };
 use sha2::{Digest, Sha256};
-use std::{collections::BTreeMap, fs::File};
+use std::collections::BTreeMap;
 use wayword_synthesis::style;
 
 pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, String>, Error> {
     let mut inputs: BTreeMap<String, String> =
         styles.iter().map(|Measured { style, .. }| (format!("style {}", style.name), style::hash(style))).collect();
     if let Some(file) = &job.settings.episodes {
-        let mut hash = Sha256::new();
-        let copied = File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash));
-        copied.map_err(Error::io(file, "read the episodes"))?;
-        inputs.insert("episodes".into(), hex(hash));
+        inputs.insert("episodes".into(), hash_of_file(file)?);
     }
     let prompts = prompts(&job.settings)?;
     if !job.settings.roles.models().is_empty() {
@@ -38,9 +36,5 @@ fn providers(providers: &Providers) -> String {
         let telling = table.iter().filter(|(field, _)| !WITHOUT_EFFECT.contains(&field.as_str()));
         hash.update(format!("{name}: {:?}\n", telling.collect::<Vec<_>>()));
     }
-    hex(hash)
-}
-
-fn hex(hash: Sha256) -> String {
-    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+    short_hex(hash)
 }

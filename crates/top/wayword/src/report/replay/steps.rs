@@ -79,7 +79,7 @@ fn look(step: &Step, at: usize, (view, direction): (&Scored, Compass), range: Op
     ViewView {
         direction: direction.word(),
         is_chosen: step.choice == Choice::Onward(at),
-        ways: view.onward.len(),
+        ways: view.ways,
         phrase: bar(view.phrase),
         activity: bar(view.activity),
     }

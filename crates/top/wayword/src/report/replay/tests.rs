@@ -25,7 +25,7 @@ fn step(viewpoint: &str, deg: f64, best: Option<usize>, choice: Choice) -> Step 
     let view = |at| Scored {
         phrase: if best == Some(at) { 0.9 } else { 0.2 },
         activity: 0.1 * at as f32,
-        onward: if at < 2 { vec![id("b")] } else { vec![] },
+        ways: usize::from(at < 2),
     };
     Step {
         viewpoint: id(viewpoint),

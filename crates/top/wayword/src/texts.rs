@@ -1,4 +1,4 @@
-//! What each side says, by item.
+//! Sets of instructions by name: a run folder or a dataset file, by item.
 
 use crate::{cli::By, error::Error, run::file};
 use serde_json::Value;
@@ -12,20 +12,20 @@ use wayword_formats::{
 };
 
 /// Items by their names.
-pub(super) type Items = BTreeMap<String, Texts>;
+pub(crate) type Items = BTreeMap<String, Texts>;
 
 /// The texts of one item.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Texts {
+pub(crate) struct Texts {
     /// Scene and path.
-    pub(super) path: String,
-    pub(super) texts: Vec<String>,
+    pub(crate) path: String,
+    pub(crate) texts: Vec<String>,
 }
 
-/// Reads a side: a run folder, or a file of any format, with `#STYLE` at the end where one style is meant.
-pub(super) fn side(name: &str, style: Option<&str>, by: By) -> Result<Items, Error> {
-    let (path, own_style) = split(name);
-    let path = if path.is_dir() { path.join(file::INSTRUCTIONS) } else { path };
+/// Reads a set: a run folder, or a file of any format, with `#STYLE` at the end where one style is meant.
+pub(crate) fn set(name: &str, style: Option<&str>, by: By) -> Result<Items, Error> {
+    let (_, own_style) = split(name);
+    let path = file_of(name);
     let texts = if wayword_formats::detect(&path)? == Format::Wayword {
         of_records(&path, own_style.or(style))?
     } else if let Some(style) = own_style {
@@ -40,6 +40,12 @@ pub(super) fn side(name: &str, style: Option<&str>, by: By) -> Result<Items, Err
         items.entry(key).or_insert_with(|| Texts { path, texts: Vec::new() }).texts.push(text);
     }
     Ok(items)
+}
+
+/// The file that a set's name means.
+pub(crate) fn file_of(name: &str) -> PathBuf {
+    let (path, _) = split(name);
+    if path.is_dir() { path.join(file::INSTRUCTIONS) } else { path }
 }
 
 /// A name that is a file's or folder's is taken as it stands.

@@ -1,23 +1,21 @@
 //! `wayword similarity`.
 
-mod encoder;
-mod texts;
-
 use crate::{
     cli::Similarity as Args,
+    encoder,
     error::{Error, Exit},
     output::Output,
+    texts::{self, Items},
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
-use texts::{Items, side};
 use wayword_metrics::{Drawing, Estimate, Said, Similarity, similarity};
 
 /// What the intervals cover.
 const LEVEL: f64 = 0.95;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
-    let sides = [&args.a, &args.b].map(|name| side(name, args.style.as_deref(), args.by));
+    let sides = [&args.a, &args.b].map(|name| texts::set(name, args.style.as_deref(), args.by));
     let [a, b] = sides;
     let (a, b) = (a?, b?);
     if !a.keys().any(|item| b.contains_key(item)) {

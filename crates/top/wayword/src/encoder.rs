@@ -9,7 +9,7 @@ use wayword_metrics::Words;
 const BATCH: usize = 128;
 
 /// An encoder by its name.
-pub(super) fn encoder(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
+pub fn encoder(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
     if name == "words" { Ok(Box::new(Words)) } else { in_process(name) }
 }
 
@@ -27,13 +27,13 @@ fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
 #[cfg(not(feature = "local"))]
 fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
     Err(Error::usage(
-        format!("--encoder {name}: this build runs no models in process"),
+        format!("{name}: this build runs no models in process"),
         "build it with `cargo build --release --features full`, or count words with `--encoder words`",
     ))
 }
 
 /// Each text's vector, each text encoded once.
-pub(super) fn vectors<'a>(
+pub fn vectors<'a>(
     encoder: &dyn TextEncoder,
     texts: impl Iterator<Item = &'a str>,
     output: &Output,

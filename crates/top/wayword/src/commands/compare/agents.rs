@@ -1,0 +1,128 @@
+//! Agents by their names, and what they decide by.
+
+use crate::{error::Error, text_file};
+use std::{collections::BTreeMap, path::Path};
+use wayword_navigation::{
+    agents::{Back, Parameters},
+    comparison::{Kind, Walker},
+};
+
+/// Who can walk by an instruction.
+const READERS: [&str; 3] = ["clip-nav", "seq-clip-nav", "glip-nav"];
+
+/// The agent that walks by a detector.
+pub(super) const BY_DETECTOR: &str = "glip-nav";
+
+/// Hops of the random walks that stand beside the agents.
+pub(super) const RANDOM_HOPS: [usize; 2] = [5, 10];
+/// Hops of the walk straight ahead.
+pub(super) const STRAIGHT_HOPS: usize = 10;
+/// Random walks per item.
+pub(super) const RANDOM_WALKS: usize = 10;
+
+/// An agent.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Agent {
+    /// Walks by phrases; with a detector's grounder or that of whole views.
+    Phrases { name: String, parameters: Parameters, by_detector: bool },
+    /// So many random hops.
+    Random(usize),
+    /// So many hops straight ahead.
+    Straight(usize),
+    /// To the nearest room of the kind that the text names.
+    NearestRoom,
+    /// To the goal.
+    Oracle,
+}
+
+impl Agent {
+    /// The agents that were asked for, with the floors and ceilings that stand beside any.
+    pub(super) fn all(parameters: &BTreeMap<String, Parameters>, asked: &[String]) -> Vec<Self> {
+        let reader = |name: &String| {
+            let parameters = *parameters.get(name)?;
+            Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
+        };
+        let mut all: Vec<Self> = asked.iter().filter_map(reader).collect();
+        all.extend(RANDOM_HOPS.map(Self::Random));
+        all.extend([Self::Straight(STRAIGHT_HOPS), Self::NearestRoom, Self::Oracle]);
+        all
+    }
+
+    /// Its name.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Phrases { name, .. } => name.clone(),
+            Self::Random(hops) => format!("random/{hops}"),
+            Self::Straight(hops) => format!("straight/{hops}"),
+            Self::NearestRoom => "nearest-room".to_owned(),
+            Self::Oracle => "oracle".to_owned(),
+        }
+    }
+
+    /// What the comparison has to know of it.
+    pub(super) fn walker(&self) -> Walker {
+        let (kind, reads) = match self {
+            Self::Phrases { .. } => (Kind::Agent, true),
+            Self::Random(_) | Self::Straight(_) => (Kind::Floor, false),
+            Self::NearestRoom => (Kind::Ceiling, true),
+            Self::Oracle => (Kind::Ceiling, false),
+        };
+        Walker { name: self.name(), kind, reads }
+    }
+}
+
+/// What each agent decides by: the defaults of its grounder, with what a file says instead.
+///
+/// # Errors
+/// When there is no such agent, or the file names what there is not.
+pub(super) fn parameters(
+    names: &[String],
+    grounder: &str,
+    file: Option<&Path>,
+) -> Result<BTreeMap<String, Parameters>, Error> {
+    let mut tables = toml::Table::new();
+    if let Some(file) = file {
+        let wrong = |error: toml::de::Error| wrong(file, error.to_string().trim());
+        tables = text_file::read(file, "read the parameters")?.parse().map_err(wrong)?;
+    }
+    let mut all = BTreeMap::new();
+    for name in names {
+        if !READERS.contains(&name.as_str()) {
+            let problem = format!("--agents {name}: there is no such agent");
+            return Err(Error::usage(problem, format!("name one of: {}", READERS.join(", "))));
+        }
+        let default = Parameters::default_of(name, grounder);
+        let own = tables.remove(name);
+        let own =
+            own.map(|own| changed(&default, own).map_err(|problem| wrong(file.unwrap_or(Path::new("")), &problem)));
+        if all.insert(name.clone(), own.transpose()?.unwrap_or(default)).is_some() {
+            return Err(Error::usage(format!("--agents {name}: it comes twice"), "name it once"));
+        }
+    }
+    match (tables.keys().next(), file) {
+        (Some(unused), Some(file)) => Err(wrong(file, &format!("no agent named {unused} walks"))),
+        _ => Ok(all),
+    }
+}
+
+fn wrong(file: &Path, problem: &str) -> Error {
+    let hint = "write a table per agent, as in: [clip-nav] on one line and stop_threshold = 0.7 on the next";
+    Error::usage(format!("{}: {problem}", file.display()), hint)
+}
+
+/// Parameters with some of their values changed.
+fn changed(default: &Parameters, own: toml::Value) -> Result<Parameters, String> {
+    let mut table = toml::Table::try_from(default).map_err(|error| error.to_string())?;
+    let toml::Value::Table(own) = own else { return Err("an agent's parameters are a table".to_owned()) };
+    for (name, value) in own {
+        match (table.get_mut(&name), value) {
+            (Some(toml::Value::Table(inner)), toml::Value::Table(own)) => inner.extend(own),
+            (_, value) => drop(table.insert(name, value)),
+        }
+    }
+    let parameters: Parameters =
+        toml::Value::Table(table).try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+    let Back { window, .. } = parameters.back.unwrap_or(Back { window: 1, threshold: 0.0, nodes: 0 });
+    let is_sane = parameters.max_hops <= 1000 && (1..=1000).contains(&window);
+    if is_sane { Ok(parameters) } else { Err("max_hops is at most 1000, and back.window from 1 to 1000".to_owned()) }
+}

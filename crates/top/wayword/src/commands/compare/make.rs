@@ -1,0 +1,102 @@
+//! All walks of one item.
+
+use super::{
+    agents::{Agent, RANDOM_WALKS},
+    grounders::Grounders,
+    sets::{Item, Told},
+};
+use std::collections::BTreeMap;
+use wayword_core::{Platform, rng};
+use wayword_navigation::{
+    Eyes, WalkError,
+    agents::{Walked, nearest_room, oracle, random, rooms_in, straight, walk_by_phrases},
+    comparison::UNREAD,
+    directions::{Directions, Splitter},
+    walk::Walk,
+};
+
+/// Who takes part.
+pub(super) struct Crew<'a> {
+    pub(super) platform: &'a dyn Platform,
+    pub(super) grounders: &'a Grounders,
+    pub(super) splitter: &'a dyn Splitter,
+    pub(super) agents: &'a [Agent],
+    pub(super) seed: u64,
+}
+
+impl Crew<'_> {
+    /// Every agent's walks for an item, in the order of agents, sets and texts.
+    ///
+    /// # Errors
+    /// When the world cannot be looked at, or a model fails.
+    pub(super) fn walks(&self, item: &Item) -> Result<Vec<Walk>, WalkError> {
+        let directions = self.directions(item)?;
+        let eyes = |grounder| Eyes::new(self.platform, grounder, self.grounders.need_pictures, &item.start.scene);
+        let (views, boxes) = (eyes(self.grounders.views.as_ref())?, eyes(self.grounders.boxes.as_ref())?);
+        let mut walks = Vec::new();
+        for agent in self.agents {
+            match agent {
+                Agent::Phrases { parameters, by_detector, .. } => {
+                    let eyes = if *by_detector { &boxes } else { &views };
+                    for told in &item.told {
+                        let directions = &directions[told.text.as_str()];
+                        let walked = walk_by_phrases(eyes, &item.start, directions, parameters)?;
+                        walks.push(walk(agent, item, told, Some(directions.clone()), walked));
+                    }
+                }
+                Agent::NearestRoom => {
+                    for told in item.told.iter().filter(|told| !told.is_swapped) {
+                        let walked = nearest_room(self.platform, &item.start, &rooms_in(&told.text))?;
+                        walks.push(walk(agent, item, told, None, walked));
+                    }
+                }
+                Agent::Random(_) | Agent::Straight(_) | Agent::Oracle => walks.extend(self.blind(agent, item)?),
+            }
+        }
+        Ok(walks)
+    }
+
+    /// Each text of an item, taken apart once.
+    fn directions<'i>(&self, item: &'i Item) -> Result<BTreeMap<&'i str, Directions>, WalkError> {
+        let mut texts: Vec<&str> = item.told.iter().map(|told| told.text.as_str()).collect();
+        texts.sort_unstable();
+        texts.dedup();
+        let parts = self.splitter.split(&texts).into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok(texts.into_iter().zip(parts).collect())
+    }
+
+    /// Walks by nothing that anybody said.
+    fn blind(&self, agent: &Agent, item: &Item) -> Result<Vec<Walk>, WalkError> {
+        let graph = self.platform.graph(&item.start.scene)?;
+        let goal = &item.episode.viewpoints[item.episode.viewpoints.len() - 1];
+        let unread = |index| Told { set: UNREAD.to_owned(), index, text: String::new(), is_swapped: false };
+        let one = |walked| vec![walk(agent, item, &unread(0), None, walked)];
+        Ok(match agent {
+            Agent::Random(hops) => {
+                let draw = |index: usize| {
+                    let mut rng =
+                        rng(self.seed, &["random walk", &item.episode.id, &hops.to_string(), &index.to_string()]);
+                    walk(agent, item, &unread(index), None, random(&graph, &item.start, *hops, &mut rng))
+                };
+                (0..RANDOM_WALKS).map(draw).collect()
+            }
+            Agent::Straight(hops) => one(straight(&graph, &item.start, *hops)),
+            _ => one(oracle(&graph, &item.start, goal)?),
+        })
+    }
+}
+
+fn walk(agent: &Agent, item: &Item, told: &Told, directions: Option<Directions>, walked: Walked) -> Walk {
+    Walk {
+        agent: agent.name(),
+        set: told.set.clone(),
+        item: item.episode.id.clone(),
+        text_index: told.index,
+        text: told.text.clone(),
+        scene: item.start.scene.clone(),
+        directions,
+        steps: walked.steps,
+        end: walked.end,
+        object: walked.object,
+    }
+}

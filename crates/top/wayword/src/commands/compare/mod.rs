@@ -1,0 +1,156 @@
+//! `wayword compare`.
+
+mod agents;
+mod grounders;
+mod make;
+mod outputs;
+mod page;
+mod plan;
+mod score;
+mod sets;
+mod splitter;
+
+use crate::{
+    calls::Calls,
+    cli::Compare,
+    error::{Error, Exit},
+    in_order::in_order,
+    output::Output,
+    run::{self, Journal},
+    team::cores,
+    world,
+};
+use agents::Agent;
+use grounders::Grounders;
+use make::Crew;
+use outputs::Gathered;
+use score::Judge;
+use sets::Item;
+use std::{fs, path::Path};
+use wayword_core::ModelError;
+use wayword_navigation::WalkError;
+
+pub(super) use page::{is_comparison, write_of_folder};
+pub(crate) use plan::Plan;
+
+/// Names of the files in a comparison's folder, beside `config.toml`.
+pub(crate) mod file {
+    /// Every walk, one line each.
+    pub(crate) const WALKS: &str = "walks.jsonl";
+    /// The result.
+    pub(crate) const COMPARISON: &str = "comparison.json";
+    /// The tables.
+    pub(super) const MARKDOWN: &str = "comparison.md";
+    pub(super) const LATEX: &str = "comparison.tex";
+    /// The agents' trajectories as evaluators take them.
+    pub(super) const SUBMISSIONS: &str = "submissions";
+}
+
+/// Items between two flushes to the disk.
+const FLUSH: usize = 16;
+
+pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
+    let plan = Plan::of(args)?;
+    let platform = world::open_named(&plan.platform, plan.data.as_deref())?;
+    let (items, sets) = sets::load(&plan, platform.as_ref())?;
+    let judge = Judge::new(&items, platform.as_ref(), plan.rule)?;
+    let job = splitter::job(args, &plan)?;
+    Calls::rehearse(&job.settings, &job.service, &job.providers)?;
+    let grounders = Grounders::open(&plan, output)?;
+    fs::create_dir_all(&args.out).map_err(Error::io(&args.out, "make the folder"))?;
+    let _lock = run::lock(&args.out)?;
+    run::keep_config(&args.out, &plan)?;
+    let calls = Calls::open(&job.settings, &job.service, &job.providers, &run::id_of(&args.out, "compare")?, output)?;
+    let splitter = splitter::splitter(&plan.split, calls.as_ref())?;
+    let agents = Agent::all(&plan.parameters, &plan.agents);
+    let crew = Crew {
+        platform: platform.as_ref(),
+        grounders: &grounders,
+        splitter: splitter.as_ref(),
+        agents: &agents,
+        seed: plan.seed,
+    };
+    let failed = walk_all(&args.out, &items, &crew, calls.as_ref(), output)?;
+    if let Some(calls) = &calls {
+        calls.record()?;
+        output.say(format_args!("models: {}", calls.spent()));
+    }
+    let gathered = Gathered::of(&args.out, &judge)?;
+    let comparison = score::comparison(&plan, &crew, sets, &judge, &gathered.results);
+    outputs::write(&args.out, &comparison, &gathered)?;
+    let page = args.out.join(run::file::REPORT);
+    page::write(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
+    output.data(&comparison, crate::report::comparison::screen(&comparison));
+    output.say(format_args!("walks, tables and page: {}", args.out.display()));
+    Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
+}
+
+/// Makes the walks that are not in the folder yet. Returns how many items failed.
+fn walk_all(
+    folder: &Path,
+    items: &[Item],
+    crew: &Crew<'_>,
+    calls: Option<&Calls>,
+    output: &Output,
+) -> Result<usize, Error> {
+    let mut walks = Journal::open(&folder.join(file::WALKS), key_of)?;
+    let last = |item: &Item| crew.agents.last().map(|agent| last_key(agent, item)).unwrap_or_default();
+    let left: Vec<&Item> = items.iter().filter(|item| !walks.has(&last(item))).collect();
+    if left.len() < items.len() {
+        output.say(format_args!("continuing: {} of {} items are done", items.len() - left.len(), items.len()));
+    }
+    if let Some(calls) = calls {
+        let talk = *output;
+        calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));
+    }
+    let bar = output.progress(items.len(), "items");
+    bar.set_position((items.len() - left.len()) as u64);
+    bar.reset_eta();
+    let (mut failed, mut unflushed) = (0, 0);
+    let workers = calls.map_or_else(cores, Calls::workers);
+    in_order(
+        &left,
+        workers,
+        |item| crew.walks(item),
+        |item, made| {
+            bar.inc(1);
+            match made {
+                Ok(made) => made.iter().try_for_each(|walk| walks.append(walk))?,
+                Err(error) if is_of_item(&error) => {
+                    failed += 1;
+                    output.say(format_args!("item {}: {error}", item.episode.id));
+                }
+                Err(error) => return Err(error.into()),
+            }
+            unflushed += 1;
+            if unflushed == FLUSH {
+                walks.sync()?;
+                unflushed = 0;
+            }
+            calls.and_then(Calls::interrupted).map_or(Ok(true), |interrupted| Err(Error::from(interrupted)))
+        },
+    )?;
+    walks.sync()?;
+    bar.finish_and_clear();
+    Ok(failed)
+}
+
+/// Whether a failure is one item's, so that the others may still be walked.
+fn is_of_item(error: &WalkError) -> bool {
+    matches!(error, WalkError::Model(ModelError::Failed { .. }))
+}
+
+/// The key of a walk's line.
+fn key_of(line: &serde_json::Value) -> Option<String> {
+    let text = |field: &str| line.get(field)?.as_str();
+    Some(key(text("agent")?, text("set")?, text("item")?, line.get("text_index")?.as_u64()?))
+}
+
+fn key(agent: &str, set: &str, item: &str, text_index: u64) -> String {
+    format!("{agent}\n{set}\n{item}\n{text_index}")
+}
+
+/// The key of an item's last walk: where it is, all of them are.
+fn last_key(agent: &Agent, item: &Item) -> String {
+    key(&agent.name(), wayword_navigation::comparison::UNREAD, &item.episode.id, 0)
+}

@@ -1,0 +1,107 @@
+//! The page of a comparison: its tables and plots, and some of its walks step by step.
+
+use super::{file, plan::Plan, score::Judge, sets};
+use crate::{
+    episodes,
+    error::Error,
+    report::{
+        comparison::{self, Written},
+        replay::{Replay, Sample},
+    },
+    run, text_file, world,
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+    sync::Arc,
+};
+use wayword_core::{Platform, SceneId, ViewpointGraph, ViewpointId};
+use wayword_metrics::{Metric, Score};
+use wayword_navigation::{comparison::Comparison, walk::Walk};
+
+/// Whether a folder holds a comparison that was finished.
+pub(in crate::commands) fn is_comparison(folder: &Path) -> bool {
+    folder.join(file::COMPARISON).is_file()
+}
+
+/// Writes the page of a comparison as its folder holds it; it needs the world and the episodes, not the sets of instructions.
+///
+/// # Errors
+/// When the folder, the world or the episodes cannot be read, or the page not written.
+pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<Written, Error> {
+    let plan: Plan = run::config_of(folder)?;
+    let path = folder.join(file::COMPARISON);
+    let found: Comparison = serde_json::from_str(&text_file::read(&path, "read the comparison")?).map_err(|error| {
+        Error::usage(format!("{}: {error}", path.display()), "run `wayword compare` with the same --out again")
+    })?;
+    let platform = world::open_named(&plan.platform, plan.data.as_deref())?;
+    let mut episodes = episodes::read(&plan.episodes, platform.as_ref())?;
+    episodes.truncate(plan.limit.unwrap_or(usize::MAX));
+    let items: Vec<_> = episodes.into_iter().map(|episode| sets::item(episode, &[])).collect();
+    // Not asked for by the rule: items that no set has may not be fit for it, and nobody walks them.
+    let mut judge = Judge::new(&items, platform.as_ref(), None)?;
+    judge.rule = found.about.rule;
+    write(folder, out, &found, &judge, platform.as_ref(), most)
+}
+
+/// Writes the page of a comparison with at most so many replays.
+///
+/// # Errors
+/// When the walks cannot be read, or the page not written.
+pub(super) fn write(
+    folder: &Path,
+    out: &Path,
+    found: &Comparison,
+    judge: &Judge<'_>,
+    platform: &dyn Platform,
+    most: usize,
+) -> Result<Written, Error> {
+    let (chosen, left_out) = choose(folder, judge, most)?;
+    let mut graphs: BTreeMap<SceneId, Arc<ViewpointGraph>> = BTreeMap::new();
+    for shown in &chosen {
+        let scene = &shown.walk.scene;
+        if !graphs.contains_key(scene) {
+            graphs.insert(scene.clone(), platform.graph(scene)?);
+        }
+    }
+    let replays: Vec<Replay<'_>> = chosen
+        .iter()
+        .filter_map(|shown| {
+            let graph = graphs.get(&shown.walk.scene)?;
+            let Shown { walk, score, reference } = shown;
+            Some(Replay { walk, graph, reference, score, rule: judge.rule })
+        })
+        .collect();
+    comparison::write(out, found, &replays, left_out)
+}
+
+/// A walk that the page shows.
+struct Shown {
+    walk: Walk,
+    score: Score,
+    reference: Vec<ViewpointId>,
+}
+
+/// Goes over the walks twice, so that no more of them are held than are shown.
+fn choose(folder: &Path, judge: &Judge<'_>, most: usize) -> Result<(Vec<Shown>, usize), Error> {
+    let mut sample = Sample::of(most);
+    let mut at = 0_usize;
+    judge.each(folder, |walk, score, _| {
+        let is_success = score.get(Metric::SuccessRate, judge.rule).is_some_and(|rate| rate > 0.0);
+        sample.offer(&walk, is_success, at);
+        at += 1;
+        Ok(())
+    })?;
+    let (chosen, left_out) = sample.chosen();
+    let chosen: BTreeSet<usize> = chosen.into_iter().collect();
+    let mut shown = Vec::with_capacity(chosen.len());
+    let mut at = 0_usize;
+    judge.each(folder, |walk, score, demand| {
+        if chosen.contains(&at) {
+            shown.push(Shown { walk, score, reference: demand.reference.clone() });
+        }
+        at += 1;
+        Ok(())
+    })?;
+    Ok((shown, left_out))
+}

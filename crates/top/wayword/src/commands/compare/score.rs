@@ -1,0 +1,111 @@
+//! From walks to figures.
+
+use super::{
+    agents::Agent,
+    file,
+    make::Crew,
+    plan::{Plan, last_part},
+    sets::Item,
+};
+use crate::{demands::Demands, episodes, error::Error, run::lines};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
+use wayword_core::Platform;
+use wayword_metrics::{Demand, Distances, Rule, Score, Trajectory, score};
+use wayword_navigation::{
+    comparison::{About, Comparison, Results, Set, Walker, compare},
+    walk::Walk,
+};
+
+/// What intervals cover.
+const LEVEL: f64 = 0.95;
+
+/// Judges walks.
+pub(super) struct Judge<'a> {
+    /// By item.
+    demands: BTreeMap<&'a str, (Arc<Distances>, Demand)>,
+    clusters: BTreeMap<&'a str, String>,
+    /// What counts as success.
+    pub(super) rule: Rule,
+}
+
+impl<'a> Judge<'a> {
+    /// A judge of these items, by the rule that was asked for; where nobody says, by visibility if every item has an object.
+    ///
+    /// # Errors
+    /// When a scene cannot be read, or the rule cannot be applied.
+    pub(super) fn new(items: &'a [Item], platform: &dyn Platform, rule: Option<Rule>) -> Result<Self, Error> {
+        let all = Demands::new(platform);
+        let mut demands = BTreeMap::new();
+        for item in items {
+            demands.insert(item.episode.id.as_str(), all.of(&item.episode)?);
+        }
+        let blind = items.iter().find(|item| demands[item.episode.id.as_str()].1.visible_from.is_none());
+        let rule = match (rule, blind) {
+            (Some(Rule::Visible), Some(blind)) => {
+                let problem = format!("--rule visible: item {} names no object whose place is known", blind.episode.id);
+                return Err(Error::usage(problem, "judge by distance with --rule distance"));
+            }
+            (Some(rule), _) => rule,
+            (None, Some(_)) => Rule::Distance,
+            (None, None) => Rule::Visible,
+        };
+        let clusters = items.iter().map(|item| (item.episode.id.as_str(), episodes::cluster(&item.episode))).collect();
+        Ok(Self { demands, clusters, rule })
+    }
+
+    /// Hands every walk of a folder on, with its score and its item's demand.
+    ///
+    /// # Errors
+    /// When the walks cannot be read, or one is none over its scene's graph.
+    pub(super) fn each(
+        &self,
+        folder: &Path,
+        mut take: impl FnMut(Walk, Score, &Demand) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        lines::each(&folder.join(file::WALKS), |line| {
+            let walk: Walk = line.parse()?;
+            // The same folder may hold walks of more items, where --limit was changed by hand.
+            let Some((distances, demand)) = self.demands.get(walk.item.as_str()) else { return Ok(()) };
+            let viewpoints = walk.steps.iter().map(|step| step.viewpoint.clone()).collect();
+            let trajectory = Trajectory { viewpoints, object: walk.object.clone() };
+            let score = score(distances, demand, &trajectory).map_err(|problems| {
+                let problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
+                line.broken(problems.join("; "))
+            })?;
+            take(walk, score, demand)
+        })
+    }
+
+    /// The path of an item.
+    pub(super) fn cluster(&self, item: &str) -> &str {
+        self.clusters.get(item).map_or("", String::as_str)
+    }
+}
+
+/// The comparison of what was walked.
+pub(super) fn comparison(
+    plan: &Plan,
+    crew: &Crew<'_>,
+    sets: Vec<Set>,
+    judge: &Judge<'_>,
+    results: &Results,
+) -> Comparison {
+    let paths: std::collections::BTreeSet<&String> = judge.clusters.values().collect();
+    let about = About {
+        platform: plan.platform.clone(),
+        episodes: last_part(&plan.episodes.to_string_lossy()),
+        grounder: crew.grounders.views.name().to_owned(),
+        detector: crew.grounders.boxes.name().to_owned(),
+        splitter: crew.splitter.name().to_owned(),
+        rule: judge.rule,
+        level: LEVEL,
+        resamples: plan.resamples,
+        seed: plan.seed,
+        items: judge.clusters.len(),
+        paths: paths.len(),
+        parameters: plan.parameters.iter().map(|(agent, of)| (agent.clone(), of.named())).collect(),
+        wayword: env!("CARGO_PKG_VERSION").to_owned(),
+    };
+    let walkers: Vec<Walker> = crew.agents.iter().map(Agent::walker).collect();
+    compare(about, sets, &walkers, &plan.swaps, results)
+}

@@ -1,0 +1,148 @@
+//! Sets of instructions, brought together item by item.
+
+use super::plan::{Plan, last_part};
+use crate::{cli::By, episodes, error::Error, texts};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::Platform;
+use wayword_formats::Episode;
+use wayword_metrics::{Atlas, Distances};
+use wayword_navigation::{
+    agents::Start,
+    comparison::{Set, swapped_set},
+    swap::{Candidate, Swap, other_path, swapped},
+};
+use wayword_synthesis::text::word_count;
+
+/// Goals nearer to each other than this are one goal, metres: what R2R takes for an arrival.
+const SAME_GOAL_M: f64 = 3.0;
+
+/// An item that every set has.
+#[derive(Debug)]
+pub(super) struct Item {
+    pub(super) episode: Episode,
+    pub(super) start: Start,
+    /// Everything that agents are told about it, in the order of the sets; then the swaps of the first.
+    pub(super) told: Vec<Told>,
+}
+
+/// An instruction.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Told {
+    pub(super) set: String,
+    /// Its place among the item's texts in that set.
+    pub(super) index: usize,
+    pub(super) text: String,
+    /// Whether it is one of the first set, swapped.
+    pub(super) is_swapped: bool,
+}
+
+/// The common items, and what there is to say of each set.
+///
+/// # Errors
+/// When a set cannot be read, or the sets have no item in common.
+pub(super) fn load(plan: &Plan, platform: &dyn Platform) -> Result<(Vec<Item>, Vec<Set>), Error> {
+    let mut episodes = episodes::read(&plan.episodes, platform)?;
+    episodes.truncate(plan.limit.unwrap_or(usize::MAX));
+    let own: BTreeMap<String, Vec<String>> =
+        episodes.iter().map(|episode| (episode.id.clone(), episode.instructions.clone())).collect();
+    let mut all: Vec<(&str, BTreeMap<String, Vec<String>>)> = Vec::new();
+    for (name, source) in &plan.instructions {
+        let texts = if source.is_empty() { own.clone() } else { texts_of(source)? };
+        all.push((name, texts.into_iter().filter(|(item, _)| own.contains_key(item)).collect()));
+    }
+    let in_all = |item: &str| all.iter().all(|(_, texts)| texts.contains_key(item));
+    let common: BTreeSet<String> = own.keys().filter(|item| in_all(item)).cloned().collect();
+    if common.is_empty() {
+        let problem = "the sets of instructions and the episodes have no item in common";
+        return Err(Error::usage(problem, "items are matched by id: give runs over the same --episodes"));
+    }
+    let sets = all.iter().zip(&plan.instructions).map(|((name, texts), (_, source))| {
+        let of_common = || texts.iter().filter(|(item, _)| common.contains(*item)).flat_map(|(_, texts)| texts);
+        let words: usize = of_common().map(|text| word_count(text)).sum();
+        Set {
+            name: (*name).to_owned(),
+            source: last_part(if source.is_empty() { plan.episodes.to_str().unwrap_or_default() } else { source }),
+            texts: of_common().count(),
+            left_out: texts.len() - common.len(),
+            words: words as f64 / of_common().count().max(1) as f64,
+        }
+    });
+    let sets = sets.collect();
+    episodes.retain(|episode| common.contains(&episode.id));
+    let mut items: Vec<Item> = episodes.into_iter().map(|episode| item(episode, &all)).collect();
+    add_swaps(&mut items, plan, platform)?;
+    Ok((items, sets))
+}
+
+fn texts_of(source: &str) -> Result<BTreeMap<String, Vec<String>>, Error> {
+    Ok(texts::set(source, None, By::Item)?.into_iter().map(|(item, texts)| (item, texts.texts)).collect())
+}
+
+/// An item with its texts of some sets.
+pub(super) fn item(episode: Episode, sets: &[(&str, BTreeMap<String, Vec<String>>)]) -> Item {
+    let of_set = |(set, texts): &(&str, BTreeMap<String, Vec<String>>)| {
+        let told = |(index, text): (usize, &String)| Told {
+            set: (*set).to_owned(),
+            index,
+            text: text.clone(),
+            is_swapped: false,
+        };
+        texts.get(&episode.id).into_iter().flatten().enumerate().map(told).collect::<Vec<_>>()
+    };
+    let told = sets.iter().flat_map(of_set).collect();
+    let start = Start {
+        scene: episode.scene.clone(),
+        viewpoint: episode.viewpoints[0].clone(),
+        heading: episode.start_heading.unwrap_or(wayword_core::Heading::NORTH),
+    };
+    Item { episode, start, told }
+}
+
+/// Adds each text of the first set in every swap that changes it.
+fn add_swaps(items: &mut [Item], plan: &Plan, platform: &dyn Platform) -> Result<(), Error> {
+    let Some((first, _)) = plan.instructions.first() else { return Ok(()) };
+    let of_first: Vec<Vec<String>> = items
+        .iter()
+        .map(|item| item.told.iter().filter(|told| told.set == *first).map(|told| told.text.clone()).collect())
+        .collect();
+    let elsewhere =
+        if plan.swaps.contains(&Swap::OtherPath) { other_items(items, plan, platform)? } else { Vec::new() };
+    for (at, item) in items.iter_mut().enumerate() {
+        for swap in &plan.swaps {
+            for (index, text) in of_first[at].iter().enumerate() {
+                let wrong = match swap {
+                    Swap::OtherPath => elsewhere.get(at).copied().flatten().and_then(|other| {
+                        let texts = &of_first[other];
+                        texts.get(index % texts.len().max(1)).cloned()
+                    }),
+                    swap => swapped(*swap, text, plan.seed, &format!("{}_{index}", item.episode.id)),
+                };
+                let told = |text| Told { set: swapped_set(first, *swap), index, text, is_swapped: true };
+                item.told.extend(wrong.map(told));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// For each item, one of the same scene on another path whose goal is another; none where the scene has none.
+fn other_items(items: &[Item], plan: &Plan, platform: &dyn Platform) -> Result<Vec<Option<usize>>, Error> {
+    let atlas = Atlas::new(platform);
+    let mut distances: BTreeMap<&wayword_core::SceneId, std::sync::Arc<Distances>> = BTreeMap::new();
+    for item in items {
+        distances.insert(&item.episode.scene, atlas.scene(&item.episode.scene)?);
+    }
+    let candidates: Vec<Candidate> = items
+        .iter()
+        .map(|item| Candidate {
+            id: item.episode.id.clone(),
+            scene: item.episode.scene.clone(),
+            goal: item.episode.viewpoints[item.episode.viewpoints.len() - 1].clone(),
+            cluster: episodes::cluster(&item.episode),
+        })
+        .collect();
+    let is_far = |a: &Candidate, b: &Candidate| {
+        distances[&a.scene].metres(&a.goal, &b.goal).is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
+    };
+    Ok((0..items.len()).map(|at| other_path(&candidates, at, plan.seed, &is_far)).collect())
+}

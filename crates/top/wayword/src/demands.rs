@@ -1,0 +1,36 @@
+//! What episodes demand of a trajectory, by what the platform knows.
+
+use crate::error::Error;
+use std::sync::Arc;
+use wayword_core::Platform;
+use wayword_formats::Episode;
+use wayword_metrics::{Atlas, Demand, Distances};
+
+/// What episodes of a platform demand. Distances of a scene are computed once.
+pub struct Demands<'a> {
+    platform: &'a dyn Platform,
+    atlas: Atlas<'a>,
+}
+
+impl<'a> Demands<'a> {
+    /// Nothing computed yet.
+    #[must_use]
+    pub fn new(platform: &'a dyn Platform) -> Self {
+        Self { platform, atlas: Atlas::new(platform) }
+    }
+
+    /// What an episode demands, and the distances of its scene.
+    ///
+    /// # Errors
+    /// When the scene cannot be read.
+    pub fn of(&self, episode: &Episode) -> Result<(Arc<Distances>, Demand), Error> {
+        let distances = self.atlas.scene(&episode.scene)?;
+        let visible = episode.target_object.as_ref().map(|object| self.platform.visible_from(&episode.scene, object));
+        let demand = Demand {
+            reference: episode.viewpoints.clone(),
+            object: episode.target_object.clone(),
+            visible_from: visible.transpose()?.flatten(),
+        };
+        Ok((distances, demand))
+    }
+}

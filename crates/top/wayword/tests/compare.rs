@@ -1,0 +1,181 @@
+//! `wayword compare`: agents walk a made-up building by what people wrote and by what a run wrote.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, Ran};
+use serde_json::Value;
+use std::fs;
+
+const REVERIE: &str = "data/reverie/REVERIE_val_seen.json";
+const R2R: &str = "data/r2r/R2R_val_seen.json";
+
+fn compare(building: &Building, episodes: &str, args: &[&str]) -> Ran {
+    let mut all =
+        vec!["compare", "--platform", "matterport", "--data", "data", "--episodes", episodes, "--resamples", "200"];
+    if !args.contains(&"--grounder") {
+        all.extend(["--grounder", "labels/lexical"]);
+    }
+    if !args.contains(&"--out") {
+        all.extend(["--out", "walked"]);
+    }
+    all.extend(args);
+    building.wayword(&all)
+}
+
+fn comparison(building: &Building) -> Value {
+    serde_json::from_str(&fs::read_to_string(building.path("walked/comparison.json")).unwrap()).unwrap()
+}
+
+fn rate(found: &Value, agent: &str, set: Option<&str>) -> f64 {
+    let rows = found["rows"].as_array().unwrap();
+    let row = rows.iter().find(|row| row["agent"] == agent && row["set"].as_str() == set).unwrap();
+    row["figures"]["success_rate"]["mean"].as_f64().unwrap()
+}
+
+#[test]
+fn the_table_has_agents_floors_and_ceilings() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let ran = compare(&building, REVERIE, &["--instructions", "original", "--instructions", "ours=run#reverie"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found = comparison(&building);
+    assert_eq!(found["about"]["rule"], "visible");
+    assert_eq!(found["about"]["grounder"], "labels/lexical");
+    assert_eq!(found["about"]["detector"], "labels/lexical/detector");
+    assert_eq!(rate(&found, "oracle", None), 1.0);
+    for agent in ["clip-nav", "seq-clip-nav", "glip-nav", "nearest-room"] {
+        for set in ["original", "ours"] {
+            assert!((0.0..=1.0).contains(&rate(&found, agent, Some(set))));
+        }
+    }
+    assert!(rate(&found, "random/5", None) < rate(&found, "clip-nav", Some("original")), "{found}");
+    for row in found["rows"].as_array().unwrap() {
+        let figure = |name: &str| row["figures"][name]["mean"].as_f64().unwrap();
+        assert!(figure("spl") <= figure("success_rate") + 1e-12, "{row}");
+        assert!(figure("success_rate") <= figure("oracle_success_rate") + 1e-12, "{row}");
+    }
+    let swaps = found["swaps"].as_array().unwrap();
+    assert_eq!(swaps.len(), 3 * 4, "three agents, four swaps");
+    for name in ["comparison.md", "comparison.tex", "report.html", "walks.jsonl", "config.toml"] {
+        assert!(building.path("walked").join(name).exists(), "{name}");
+    }
+    assert!(ran.out.contains("not perception") && ran.out.contains("clip-nav"), "{}", ran.out);
+}
+
+/// The agents' own trajectories are what the evaluator takes, and it finds what the table says.
+#[test]
+fn the_submissions_evaluate_to_the_tables_figures() {
+    let building = Building::new();
+    assert_eq!(compare(&building, REVERIE, &["--swaps", "none"]).code, Some(0));
+    let submission = "walked/submissions/seq-clip-nav.original.json";
+    let args = ["evaluate", submission, "--platform", "matterport", "--data", "data", "--episodes", REVERIE, "--json"];
+    let ran = building.wayword(&args);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let told: Value = serde_json::from_str(&ran.out).unwrap();
+    let text = told.to_string();
+    // Every item of the building has two texts: the mean over texts is the mean over items.
+    let expected = rate(&comparison(&building), "seq-clip-nav", Some("original"));
+    assert!(text.contains(&format!("\"mean\":{expected}")), "{expected} is not in {text}");
+}
+
+#[test]
+fn a_comparison_that_was_stopped_goes_on_and_ends_the_same() {
+    let building = Building::new();
+    assert_eq!(compare(&building, R2R, &[]).code, Some(0));
+    let read = |name: &str| fs::read(building.path("walked").join(name)).unwrap();
+    let (walks, table) = (read("walks.jsonl"), read("comparison.json"));
+    for cut in [0, walks.len() / 3, walks.len() / 2 + 7, walks.len() - 1] {
+        fs::write(building.path("walked/walks.jsonl"), &walks[..cut]).unwrap();
+        let ran = compare(&building, R2R, &[]);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        assert_eq!((read("walks.jsonl"), read("comparison.json")), (walks.clone(), table.clone()), "cut at {cut}");
+    }
+    let other = compare(&building, R2R, &["--seed", "7"]);
+    assert_eq!(other.code, Some(1));
+    assert!(other.err.contains("other settings (seed)"), "{other:?}");
+}
+
+#[test]
+fn a_seed_gives_one_table() {
+    let building = Building::new();
+    let table = |out: &str| {
+        let ran = compare(&building, R2R, &["--out", out, "--seed", "3"]);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        fs::read(building.path(out).join("comparison.json")).unwrap()
+    };
+    assert_eq!(table("a"), table("b"));
+}
+
+#[test]
+fn what_agents_decide_by_can_be_changed_by_name() {
+    let building = Building::new();
+    fs::write(building.path("p.toml"), "[clip-nav]\nmax_hops = 0\n").unwrap();
+    let args = ["--agents", "clip-nav", "--parameters", "p.toml", "--swaps", "none"];
+    let ran = compare(&building, R2R, &args);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found = comparison(&building);
+    assert_eq!(found["about"]["parameters"]["clip-nav"]["max_hops"], "0");
+    assert_eq!(rate(&found, "clip-nav", Some("original")), 0.0, "who may not walk does not arrive");
+    for (text, told) in [
+        ("[clip-nav]\nstop = 1\n", "unknown field"),
+        ("[glip-nav]\nmax_hops = 3\n", "no agent named glip-nav walks"),
+        ("[clip-nav]\nmax_hops = 5000\n", "at most 1000"),
+        ("clip-nav = 3\n", "are a table"),
+    ] {
+        fs::write(building.path("p.toml"), text).unwrap();
+        let ran = compare(&building, R2R, &args);
+        assert!(ran.code == Some(1) && ran.err.contains(told) && ran.err.contains("p.toml"), "{text}: {ran:?}");
+    }
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_and_leaves_no_folder() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    for (args, told) in [
+        (vec!["--agents", "flip-nav"], "there is no such agent"),
+        (vec!["--agents", "clip-nav,clip-nav"], "it comes twice"),
+        (vec!["--instructions", "ours"], "that names no set"),
+        (vec!["--instructions", "original", "--instructions", "original"], "comes twice"),
+        (vec!["--instructions", "ours=run"], "several styles"),
+        (vec!["--grounder", "magic"], "there is no such grounder"),
+        (vec!["--grounder", "hf/openai/clip-vit-base-patch32"], "no GLIP network"),
+        (vec!["--rule", "visible", "--episodes", R2R], "names no object"),
+    ] {
+        let ran = if args.contains(&"--episodes") {
+            compare(&building, R2R, &args[..2])
+        } else {
+            compare(&building, REVERIE, &args)
+        };
+        assert_eq!(ran.code, Some(1), "{args:?}: {ran:?}");
+        assert!(ran.err.contains(told) && ran.err.contains("hint: "), "{args:?}: {ran:?}");
+        assert!(!building.path("walked").exists(), "{args:?}");
+    }
+}
+
+#[test]
+fn generated_houses_can_be_walked_by_their_own_instructions() {
+    let building = Building::new();
+    let made =
+        building.wayword(&["generate", "--paths", "2", "--style", "reverie", "--scan", "house-1", "--out", "houses"]);
+    assert_eq!(made.code, Some(0), "{made:?}");
+    let ran = building.wayword(&[
+        "compare",
+        "--episodes",
+        "houses/instructions.jsonl",
+        "--grounder",
+        "labels/lexical",
+        "--agents",
+        "clip-nav",
+        "--swaps",
+        "none",
+        "--resamples",
+        "200",
+        "--out",
+        "walked",
+    ]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(rate(&comparison(&building), "oracle", None), 1.0);
+}
