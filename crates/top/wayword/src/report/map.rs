@@ -50,6 +50,10 @@ pub(super) struct Hop {
 /// A frame on the map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Spot {
+    /// The frame's number, from 1.
+    pub(super) number: usize,
+    /// Whether the last frame is here.
+    pub(super) is_last: bool,
     /// Where the frame is.
     pub(super) at: [f64; 2],
     /// Where its number is: aside, where another number is in the way.
@@ -73,7 +77,7 @@ pub(super) const RADIUS: f64 = 9.5;
 /// How near two numbers may come: they may touch, but each has to be read.
 const LEAST_APART: f64 = 1.5 * RADIUS;
 /// How far a way back bends away from the way there, at its control point.
-const BEND: f64 = 22.0;
+const BEND: f64 = 32.0;
 /// Widest stretch of the world that is drawn, metres.
 const MOST_SPAN_M: f64 = 2_000.0;
 /// Most nodes and edges of the graph that are drawn.
@@ -83,7 +87,8 @@ impl MapView {
     /// The map of the first `frames` frames, or `None` where their positions make no map.
     pub(super) fn new(path: &Path, map: &Map, frames: usize) -> Option<Self> {
         let stops: Vec<DVec3> = path.frames.iter().take(frames).map(|frame| frame.pose.position).collect();
-        Self::draw(map, &Trail { stops: &stops, start: path.frames.first()?.pose.heading, backs: &[], annotated: &[] })
+        let start = path.frames.first()?.pose.heading;
+        Self::draw(map, &Trail { stops: &stops, start, backs: &[], annotated: &[], is_numbered_once: false })
     }
 
     /// The map of a trail, or `None` where its positions make no map.
@@ -109,7 +114,7 @@ impl MapView {
             edges: edges(&places, &map.edges),
             nodes: dots(&places),
             hops: hops(trail, &at),
-            spots: spots(&at, sheet.size),
+            spots: spots(trail, &at, sheet.size),
             start_deg: tenth(trail.start.deg()),
             bar: tenth(f64::from(bar_m) * sheet.scale),
             bar_m,
@@ -127,6 +132,8 @@ pub(super) struct Trail<'a> {
     pub(super) backs: &'a [bool],
     /// The path that people annotated; its last is the goal.
     pub(super) annotated: &'a [DVec3],
+    /// Whether a place has one number, that of the first stop there, however often the walk comes by.
+    pub(super) is_numbered_once: bool,
 }
 
 /// How the world lies on the sheet.
@@ -224,25 +231,33 @@ const WAYS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0], [0.7, -0.7], [-0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
 
 /// Puts each number on its frame, or beside it where an earlier number is there (stairs, loops, close frames).
-fn spots(at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
-    let mut badges: Vec<[f64; 2]> = Vec::new();
-    for place in at {
+fn spots(trail: &Trail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
+    let first_at = |stop: usize| {
+        let earlier = trail.stops.iter().position(|other| *other == trail.stops[stop]);
+        earlier.filter(|_| trail.is_numbered_once).unwrap_or(stop)
+    };
+    let last = at.len().checked_sub(1).map(first_at);
+    let mut spots: Vec<Spot> = Vec::new();
+    for (stop, place) in at.iter().enumerate().filter(|(stop, _)| first_at(*stop) == *stop) {
         let is_free = |spot: &[f64; 2]| {
             let is_inside = (0..2).all(|axis| spot[axis] >= RADIUS && spot[axis] <= size[axis] - RADIUS);
-            is_inside && badges.iter().all(|other| (spot[0] - other[0]).hypot(spot[1] - other[1]) >= LEAST_APART)
+            is_inside
+                && spots.iter().all(|other| (spot[0] - other.badge[0]).hypot(spot[1] - other.badge[1]) >= LEAST_APART)
         };
         let beside = [2.3, 3.6, 5.0]
             .into_iter()
             .flat_map(|far| WAYS.map(|way| [0, 1].map(|axis| tenth(place[axis] + way[axis] * far * RADIUS))));
         let badge = std::iter::once(*place).chain(beside).find(is_free).unwrap_or(*place);
-        badges.push(badge);
+        spots.push(Spot {
+            number: stop + 1,
+            is_last: last == Some(stop),
+            at: *place,
+            badge,
+            is_aside: *place != badge,
+            colour: colour(stop, at.len()),
+        });
     }
-    let frames = at.len();
-    at.iter()
-        .zip(badges)
-        .enumerate()
-        .map(|(number, (at, badge))| Spot { at: *at, badge, is_aside: *at != badge, colour: colour(number, frames) })
-        .collect()
+    spots
 }
 
 #[cfg(test)]
@@ -307,12 +322,20 @@ mod tests {
     }
 
     #[test]
-    fn a_way_back_is_bent_and_the_annotated_path_is_on_the_sheet() {
+    fn a_way_back_is_bent_to_where_a_number_is_and_the_annotated_path_is_on_the_sheet() {
         let stops = [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
         let annotated = [stops[0], DVec3::new(30.0, 0.0, 0.0)];
-        let trail = Trail { stops: &stops, start: Heading::NORTH, backs: &[false, true], annotated: &annotated };
+        let trail = Trail {
+            stops: &stops,
+            start: Heading::NORTH,
+            backs: &[false, true],
+            annotated: &annotated,
+            is_numbered_once: true,
+        };
         let map = MapView::draw(&Map::default(), &trail).unwrap();
         assert_eq!(map.hops.iter().map(|hop| hop.is_back).collect::<Vec<_>>(), [false, true]);
+        let numbers: Vec<(usize, bool)> = map.spots.iter().map(|spot| (spot.number, spot.is_last)).collect();
+        assert_eq!(numbers, [(1, true), (2, false)]);
         assert!(map.hops[0].data.contains('L') && map.hops[1].data.contains('Q'));
         let annotated = map.annotated.unwrap();
         assert!((0.0..=map.width).contains(&annotated.goal[0]) && annotated.goal[0] > map.spots[0].at[0] + 100.0);

@@ -128,7 +128,7 @@ fn of_table(comparison: &Comparison) -> Vec<String> {
 /// How differences and swaps are to be read, where there are any.
 fn of_differences(comparison: &Comparison) -> Vec<String> {
     let mut notes = Vec::new();
-    if comparison.rows.iter().any(|row| row.against_first.is_some()) {
+    if comparison.rows.iter().any(|row| row.against_first.is_some()) || !comparison.swaps.is_empty() {
         notes.push(
             "McNemar's p, of each item's first text, is descriptive: it takes items for independent, which they are not. Beside it: items on which one of the two alone succeeds."
                 .to_owned(),

@@ -10,9 +10,16 @@ const MOST_GROUPS: usize = 1_000;
 #[derive(Debug, Clone)]
 pub struct Sample<T> {
     most: usize,
-    groups: BTreeMap<Group, Vec<T>>,
+    groups: BTreeMap<Group, Kept<T>>,
     /// How many walks passed by.
     offered: usize,
+}
+
+/// What is kept of a group: one walk of each item, for the next item's tell more than the same item's by another text.
+#[derive(Debug, Clone)]
+struct Kept<T> {
+    last_item: String,
+    places: Vec<T>,
 }
 
 /// Walks that are alike: by swapped texts, agent, set, success.
@@ -33,16 +40,17 @@ impl<T: Ord> Sample<T> {
         if self.groups.len() >= MOST_GROUPS && !self.groups.contains_key(&group) {
             return;
         }
-        let kept = self.groups.entry(group).or_default();
-        if kept.len() < self.most {
-            kept.push(place);
+        let kept = self.groups.entry(group).or_insert_with(|| Kept { last_item: String::new(), places: Vec::new() });
+        if kept.places.len() < self.most && kept.last_item != walk.item {
+            kept.places.push(place);
+            kept.last_item.clone_from(&walk.item);
         }
     }
 
     /// The places of the chosen walks, in their order, and how many walks are left out.
     #[must_use]
     pub fn chosen(self) -> (Vec<T>, usize) {
-        let mut groups: Vec<_> = self.groups.into_values().map(Vec::into_iter).collect();
+        let mut groups: Vec<_> = self.groups.into_values().map(|kept| kept.places.into_iter()).collect();
         let mut chosen = Vec::new();
         loop {
             let before = chosen.len();
@@ -64,11 +72,11 @@ mod tests {
     use wayword_core::SceneId;
     use wayword_navigation::walk::End;
 
-    fn walk(agent: &str, set: &str) -> Walk {
+    fn walk(agent: &str, set: &str, item: usize) -> Walk {
         Walk {
             agent: agent.into(),
             set: set.into(),
-            item: "1".into(),
+            item: item.to_string(),
             text_index: 0,
             text: String::new(),
             scene: SceneId::new("s").unwrap(),
@@ -83,17 +91,26 @@ mod tests {
     fn what_is_rare_is_shown_too() {
         let mut sample = Sample::of(4);
         for at in 0..50 {
-            sample.offer(&walk("a", "original"), at == 40, at);
-            sample.offer(&walk("b", "original"), false, 100 + at);
+            sample.offer(&walk("a", "original", at), at == 40, at);
+            sample.offer(&walk("b", "original", at), false, 100 + at);
         }
         assert_eq!(sample.chosen(), (vec![0, 1, 40, 100], 96));
     }
 
     #[test]
+    fn an_item_is_shown_once_for_each_agent_and_outcome() {
+        let mut sample = Sample::of(9);
+        for at in 0..6 {
+            sample.offer(&walk("a", "original", at / 3), at == 2, at);
+        }
+        assert_eq!(sample.chosen(), (vec![0, 2, 3], 3));
+    }
+
+    #[test]
     fn swapped_texts_come_last_and_nothing_is_shown_where_nothing_is_wanted() {
         let mut sample = Sample::of(1);
-        sample.offer(&walk("a", "original~directions"), true, 1);
-        sample.offer(&walk("b", "original"), true, 2);
+        sample.offer(&walk("a", "original~directions", 1), true, 1);
+        sample.offer(&walk("b", "original", 1), true, 2);
         assert_eq!(sample.clone().chosen(), (vec![2], 1));
         sample.most = 0;
         assert_eq!(sample.chosen(), (vec![], 2));

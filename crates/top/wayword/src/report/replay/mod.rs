@@ -14,7 +14,10 @@ use serde::Serialize;
 use steps::{StepView, steps};
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
 use wayword_metrics::{Outcome, Rule, Score};
-use wayword_navigation::walk::{Choice, End, Walk};
+use wayword_navigation::{
+    comparison::UNREAD,
+    walk::{Choice, End, Walk},
+};
 
 /// Most steps of a walk that are shown.
 const MOST_STEPS: usize = 100;
@@ -53,7 +56,10 @@ impl Entry {
     pub(super) fn new(number: usize, replay: &Replay<'_>) -> Self {
         let walk = replay.walk;
         let (class, sign) = mark(replay.outcome());
-        let names = [&walk.agent, &walk.set, &walk.item].map(|name| short(name)).join(", ");
+        let set = Some(&walk.set).filter(|set| *set != UNREAD);
+        let names: Vec<String> =
+            [Some(&walk.agent), set, Some(&walk.item)].into_iter().flatten().map(|name| short(name)).collect();
+        let names = names.join(", ");
         // Numbered and not named, for names come from anywhere.
         Self { anchor: format!("r{number}"), title: format!("{names} (text {})", walk.text_index + 1), class, sign }
     }
@@ -166,7 +172,7 @@ impl Replay<'_> {
         let start = steps.first()?.heading_rad;
         MapView::draw(
             &Map::near(&around, self.graph),
-            &Trail { stops: &stops, start, backs: &backs, annotated: &annotated },
+            &Trail { stops: &stops, start, backs: &backs, annotated: &annotated, is_numbered_once: true },
         )
     }
 }

@@ -14,6 +14,8 @@ pub(super) struct StepView {
     /// From 1.
     number: usize,
     anchor: String,
+    /// The step (from 1) that stood here first, and has its number on the map.
+    again: Option<usize>,
     colour: Colour,
     heading: String,
     /// The phrase in hand; none where the agent does not look.
@@ -59,6 +61,7 @@ pub(super) fn steps(
     let step = |(at, step): (usize, &Step)| StepView {
         number: at + 1,
         anchor: anchor(at),
+        again: walk.steps[..at].iter().position(|other| other.viewpoint == step.viewpoint).map(|first| first + 1),
         colour: colour(at, shown),
         heading: format!("{:.0}°", step.heading_rad.deg()),
         phrase: (!step.views.is_empty()).then(|| phrase(walk, step)),
@@ -116,7 +119,8 @@ impl Range {
 
     fn long(self, score: f32) -> u32 {
         let (low, high) = (f64::from(self.low), f64::from(self.high));
-        let share = if high > low { (f64::from(score) - low) / (high - low) } else { 1.0 };
+        // Where all scores are one, a bar tells only whether there is any.
+        let share = if high > low { (f64::from(score) - low) / (high - low) } else { f64::from(score) };
         (100.0 * share).clamp(0.0, 100.0).round() as u32
     }
 }

@@ -112,6 +112,7 @@ fn going_back_is_told_and_drawn() {
     assert_eq!((card.matches("class=\"retreat\"").count(), card.matches("↩ goes back").count()), (1, 1));
     assert_eq!((card.matches("class=\"hop").count(), card.matches("class=\"annotated\"").count()), (3, 1));
     assert_eq!(card.matches("class=\"view chosen\"").count(), 2);
+    assert!(card.contains("at&nbsp;2"), "step 4 stands where step 2 stood");
 }
 
 #[test]
