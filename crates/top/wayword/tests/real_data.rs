@@ -5,7 +5,11 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
+use serde_json::{Value, json};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 fn data() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
@@ -30,4 +34,43 @@ fn nearly_all_of_val_seen_passes_every_check_in_both_styles() {
     let count = |key: &str| summary[key].as_u64().unwrap();
     assert_eq!((count("items"), count("passed") + count("unverified") + count("rejected")), (501, 1002), "{summary}");
     assert!(count("passed") * 100 >= 1002 * 99, "fewer than 99 % pass: {summary}");
+}
+
+/// The annotated path of each item, handed in for each of its instructions.
+#[test]
+fn annotated_paths_of_val_seen_end_where_they_should() {
+    let Some(data) = data() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let episodes = data.join("reverie/REVERIE_val_seen.json");
+    let items: Vec<Value> = serde_json::from_slice(&fs::read(&episodes).unwrap()).unwrap();
+    let mut submitted = Vec::new();
+    // Weighted by instructions: how many end where their object is listed with a place in the picture.
+    let mut visible = 0;
+    for item in &items {
+        let path = item["path"].as_array().unwrap();
+        let instructions = item["instructions"].as_array().unwrap().len();
+        let goal = path[path.len() - 1].as_str().unwrap();
+        let boxes = data.join(format!("reverie/BBox/{}_{goal}.json", item["scan"].as_str().unwrap()));
+        let boxes: Value = serde_json::from_slice(&fs::read(boxes).unwrap_or_else(|_| b"{}".to_vec())).unwrap();
+        let places = &boxes[goal][item["objId"].to_string()]["visible_pos"];
+        visible += if places.as_array().is_some_and(|places| !places.is_empty()) { instructions } else { 0 };
+        for place in 0..instructions {
+            let name = format!("{}_{place}", item["id"].as_str().unwrap());
+            submitted.push(json!({"instr_id": name, "trajectory": path, "predObjId": item["objId"]}));
+        }
+    }
+    let file = folder.path().join("submission.json");
+    fs::write(&file, Value::from(submitted.clone()).to_string()).unwrap();
+    let mut command = common::command(&["evaluate", "--platform", "matterport", "--json", "--resamples", "100"]);
+    let ran = common::run(command.arg("--data").arg(&data).arg("--episodes").arg(&episodes).arg(&file));
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found = ran.json();
+    assert_eq!((&found["items"], &found["paths"]), (&json!(501), &json!(126)));
+    assert_eq!(found["instructions"], submitted.len());
+    let rate = |rule: usize| found["rules"][rule]["figures"]["success_rate"]["mean"].as_f64().unwrap();
+    let expected = visible as f64 / submitted.len() as f64;
+    println!("visible from the end of the annotated path: {visible} of {} instructions", submitted.len());
+    assert!(expected > 0.99 && expected < 1.0, "the data is not what it was: {expected}");
+    assert!((rate(0) - expected).abs() < 1e-9, "{} is not {expected}", rate(0));
+    assert!((rate(1) - 1.0).abs() < 1e-12);
 }

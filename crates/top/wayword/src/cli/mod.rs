@@ -3,6 +3,7 @@
 mod compare;
 #[cfg(feature = "remote")]
 mod doctor;
+mod evaluate;
 #[cfg(feature = "remote")]
 mod ledger;
 mod models;
@@ -17,6 +18,7 @@ use wayword_synthesis::walk::FrameSelection;
 pub use compare::{Compare, SuccessRule, SwapName};
 #[cfg(feature = "remote")]
 pub use doctor::Doctor;
+pub use evaluate::Evaluate;
 #[cfg(feature = "remote")]
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
@@ -52,6 +54,8 @@ Examples:
       The run in the file format that agents read.
   wayword check REVERIE_val_seen.json --platform matterport --data DATA --style reverie
       Anyone's instructions, held against the evidence of their paths.
+  wayword evaluate submission.json --episodes REVERIE_val_seen.json --platform matterport --data DATA
+      Anyone's trajectories, scored as the official evaluators do, with intervals.
 
 Exit codes:
   0  done, and every check passed
@@ -80,6 +84,8 @@ pub enum Command {
     Similarity(Similarity),
     /// Let agents walk by sets of instructions, and hold the sets against each other.
     Compare(Box<Compare>),
+    /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with intervals.
+    Evaluate(Evaluate),
     /// Check keys, endpoints, models and data, and say what to do.
     #[cfg(feature = "remote")]
     Doctor(Box<Doctor>),

@@ -7,6 +7,7 @@ mod config;
 mod demo;
 #[cfg(feature = "remote")]
 mod doctor;
+mod evaluate;
 mod export;
 mod generate;
 mod house;
@@ -39,6 +40,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Export(args) => export::run(&args, output),
         Command::Report(args) => report::run(&args, output),
         Command::Compare(args) => compare::run(&args, output),
+        Command::Evaluate(args) => evaluate::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
         Command::Similarity(args) => similarity::run(&args, output),
         #[cfg(feature = "remote")]

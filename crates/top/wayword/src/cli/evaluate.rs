@@ -1,0 +1,43 @@
+//! `wayword evaluate` as it is typed.
+
+use super::{SuccessRule, World};
+use clap::Args;
+use std::path::PathBuf;
+
+/// `wayword evaluate`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword evaluate submission.json --episodes REVERIE_val_seen.json --platform matterport --data DATA
+      Success, path length and fidelity of anyone's trajectories, by REVERIE's official rule and by the lenient one.
+  wayword evaluate submission.json --episodes R2R_val_seen.json --platform matterport --data DATA --per-item scores.jsonl
+  wayword evaluate runs/table/submissions/clip-nav.original.json --episodes REVERIE_val_seen.json \\
+      --platform matterport --data DATA --rule visible --json
+      What `wayword compare` left of its agents' walks.
+
+A submission is a JSON list of {\"instr_id\": \"ID_PLACE\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
+plain or gzip; one item for every instruction. If anything is wrong with it, all that is wrong is told, nothing is scored, and the
+exit code is 1.")]
+pub struct Evaluate {
+    /// The trajectories, as the evaluators of R2R and REVERIE take them.
+    #[arg(value_name = "SUBMISSION")]
+    pub submission: PathBuf,
+    /// The episodes that were walked: R2R, REVERIE, RxR or Wayword.
+    #[arg(long, value_name = "FILE")]
+    pub episodes: PathBuf,
+    /// The world.
+    #[command(flatten)]
+    pub world: World,
+    /// Only this rule of success. [default: every rule that can be applied]
+    #[arg(long)]
+    pub rule: Option<SuccessRule>,
+    /// Where to put the figures of each instruction, one JSON object per line.
+    #[arg(long, value_name = "FILE")]
+    pub per_item: Option<PathBuf>,
+    /// Resamples of the intervals.
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
+    pub resamples: u32,
+    /// Seed of the intervals.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+}

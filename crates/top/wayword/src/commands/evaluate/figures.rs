@@ -1,0 +1,150 @@
+//! The figures of a submission: means over instructions, as the official evaluators give them, with intervals.
+
+use super::handed_in::Scored;
+use crate::cli::Evaluate;
+use serde::Serialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+};
+use wayword_metrics::{Estimate, Metric, Rule, clustered_interval};
+
+/// What the intervals cover.
+const LEVEL: f64 = 0.95;
+
+/// Figures that go by a rule of success; the others are the same for each.
+const BY_RULE: [Metric; 4] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl, Metric::Sdtw];
+
+/// How the intervals are drawn.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct Drawn {
+    pub(super) resamples: usize,
+    pub(super) seed: u64,
+}
+
+/// All figures of a submission.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    submission: String,
+    episodes: String,
+    instructions: usize,
+    items: usize,
+    paths: usize,
+    /// Instructions for which an object was named.
+    objects_named: usize,
+    /// What the intervals cover. They are clustered by path.
+    level: f64,
+    #[serde(flatten)]
+    drawn: Drawn,
+    rules: Vec<ByRule>,
+    /// What goes by no rule of success.
+    whatever_the_rule: BTreeMap<Metric, Figure>,
+}
+
+/// What goes by a rule of success.
+#[derive(Debug, Serialize)]
+struct ByRule {
+    rule: Rule,
+    /// The rule in words.
+    words: &'static str,
+    figures: BTreeMap<Metric, Figure>,
+}
+
+/// A mean over instructions.
+#[derive(Debug, Serialize)]
+struct Figure {
+    #[serde(flatten)]
+    estimate: Estimate,
+    /// Instructions that have no such figure, and are not in the mean.
+    left_out: usize,
+}
+
+impl Report {
+    pub(super) fn new(args: &Evaluate, scored: &[Scored<'_>], rules: &[Rule], drawn: Drawn) -> Self {
+        let has_objects = scored.iter().any(|scored| scored.score.grounding.is_some());
+        let by_rule = |rule: &Rule| ByRule {
+            rule: *rule,
+            words: words(*rule, has_objects),
+            figures: figures(scored, *rule, drawn, |metric| BY_RULE.contains(&metric)),
+        };
+        Self {
+            submission: args.submission.display().to_string(),
+            episodes: args.episodes.display().to_string(),
+            instructions: scored.len(),
+            items: scored.iter().map(|scored| scored.item).collect::<BTreeSet<_>>().len(),
+            paths: scored.iter().map(|scored| &scored.path).collect::<BTreeSet<_>>().len(),
+            objects_named: scored.iter().filter(|scored| scored.names_object).count(),
+            level: LEVEL,
+            drawn,
+            rules: rules.iter().map(by_rule).collect(),
+            whatever_the_rule: figures(scored, Rule::Distance, drawn, |metric| !BY_RULE.contains(&metric)),
+        }
+    }
+}
+
+/// A rule of success in words, with what it is to such episodes.
+fn words(rule: Rule, has_objects: bool) -> &'static str {
+    match (rule, has_objects) {
+        (Rule::Visible, _) => "the target is visible from the last viewpoint (REVERIE's official rule)",
+        (Rule::Distance, true) => {
+            "the last viewpoint is under 3 m from the goal (the lenient rule: on REVERIE not the official one)"
+        }
+        (Rule::Distance, false) => "the last viewpoint is under 3 m from the goal (R2R's official rule)",
+    }
+}
+
+/// The figures that some instruction has.
+fn figures(
+    scored: &[Scored<'_>],
+    rule: Rule,
+    drawn: Drawn,
+    is_wanted: impl Fn(Metric) -> bool,
+) -> BTreeMap<Metric, Figure> {
+    let figure = |metric: Metric| {
+        let values: Vec<(&str, f64)> =
+            scored.iter().filter_map(|scored| Some((scored.path.as_str(), scored.score.get(metric, rule)?))).collect();
+        let estimate = clustered_interval(&values, drawn.resamples, LEVEL, drawn.seed)?;
+        Some((metric, Figure { estimate, left_out: scored.len() - values.len() }))
+    };
+    Metric::ALL.into_iter().filter(|metric| is_wanted(*metric)).filter_map(figure).collect()
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{}: {} instructions of {} items on {} paths",
+            self.submission, self.instructions, self.items, self.paths
+        )?;
+        for ByRule { words, figures, .. } in &self.rules {
+            writeln!(f, "\nsuccess: {words}")?;
+            table(f, figures)?;
+        }
+        writeln!(f, "\nwhatever counts as success")?;
+        table(f, &self.whatever_the_rule)?;
+        if self.whatever_the_rule.contains_key(&Metric::Rgs) && self.objects_named == 0 {
+            writeln!(f, "no trajectory names an object (predObjId), so RGS and RGSPL are 0")?;
+        }
+        write!(f, "\nmeans over instructions; intervals of {:.0} %, clustered by path", self.level * 100.0)
+    }
+}
+
+fn table(f: &mut fmt::Formatter<'_>, figures: &BTreeMap<Metric, Figure>) -> fmt::Result {
+    for (metric, Figure { estimate, left_out }) in figures {
+        let Estimate { mean, low, high, .. } = estimate;
+        let name = metric.short();
+        match metric {
+            Metric::NavigationErrorM | Metric::TrajectoryLengthM => {
+                write!(f, "  {name:<7} {mean:>7.2}     {low:.2} to {high:.2}")?;
+            }
+            _ => write!(f, "  {name:<7} {:>6.1} %    {:.1} to {:.1} %", mean * 100.0, low * 100.0, high * 100.0)?,
+        }
+        if *left_out > 0 {
+            let why =
+                if *metric == Metric::NavigationErrorM { "the goal cannot be reached" } else { "no object is known" };
+            write!(f, "   ({left_out} left out: {why})")?;
+        }
+        writeln!(f)?;
+    }
+    Ok(())
+}
