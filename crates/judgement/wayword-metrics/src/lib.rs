@@ -1,7 +1,7 @@
 //! Figures about instructions and trajectories, each with its interval and with what it has to be read beside.
 //!
-//! Architecture invariant: pure functions. Nothing here reads a file, knows a platform or runs a model; vectors come from the
-//! caller.
+//! Architecture invariant: nothing here reads a file, runs a model or knows a platform beyond the graph that it hands out; vectors
+//! come from the caller. What is computed is kept ([`Atlas`]), and the same input gives the same figures.
 
 mod bootstrap;
 mod mcnemar;

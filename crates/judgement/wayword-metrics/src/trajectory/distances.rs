@@ -1,102 +1,128 @@
-//! Distances between all nodes of a viewpoint graph.
+//! How far it is from every viewpoint of a scene to every other.
 
 use std::{
     cmp::Ordering,
-    collections::{BTreeMap, BinaryHeap},
+    collections::{BinaryHeap, HashMap},
 };
 use wayword_core::{ViewpointGraph, ViewpointId};
 
-/// Shortest distances over a viewpoint graph, all pairs, metres.
+/// The distances over a viewpoint graph between all its viewpoints, computed once.
+///
+/// They take eight bytes for each pair: 1 MB for the largest of Matterport's buildings.
 #[derive(Debug, Clone)]
 pub struct Distances {
-    index: BTreeMap<ViewpointId, usize>,
-    /// Row by row; infinite where there is no way.
+    places: HashMap<ViewpointId, usize>,
+    roads: Roads,
+    /// From one place to all, place after place; infinite where there is no way.
     metres: Vec<f64>,
-    /// Neighbours of node `i`: `to[first[i]..first[i + 1]]`, in the order of their numbers.
-    first: Vec<usize>,
-    to: Vec<(usize, f64)>,
 }
 
 impl Distances {
-    /// Computes them: Dijkstra from every node.
+    /// All distances of a graph: a shortest-path tree (Dijkstra 1959) from each viewpoint.
     #[must_use]
     pub fn new(graph: &ViewpointGraph) -> Self {
-        let index: BTreeMap<ViewpointId, usize> =
-            graph.viewpoints().enumerate().map(|(at, id)| (id.clone(), at)).collect();
-        let mut neighbours: Vec<Vec<(usize, f64)>> = vec![Vec::new(); index.len()];
-        for (a, b, length_m) in graph.edges() {
-            let (a, b) = (index[a], index[b]);
-            neighbours[a].push((b, length_m));
-            neighbours[b].push((a, length_m));
+        let places: HashMap<ViewpointId, usize> = graph.viewpoints().cloned().zip(0..).collect();
+        let roads = Roads::new(graph, &places);
+        let mut metres = vec![f64::INFINITY; places.len() * places.len()];
+        let mut frontier = BinaryHeap::new();
+        for (start, row) in metres.chunks_exact_mut(places.len().max(1)).enumerate() {
+            roads.walk_all(start, row, &mut frontier);
         }
-        let (mut first, mut to) = (vec![0], Vec::new());
-        for mut of_node in neighbours {
-            of_node.sort_by_key(|(node, _)| *node);
-            to.extend(of_node);
-            first.push(to.len());
-        }
-        let mut distances = Self { index, metres: Vec::new(), first, to };
-        let nodes = distances.index.len();
-        let mut metres = vec![f64::INFINITY; nodes * nodes];
-        let mut heap = BinaryHeap::new();
-        for (from, row) in metres.chunks_mut(nodes.max(1)).enumerate() {
-            distances.from(from, row, &mut heap);
-        }
-        distances.metres = metres;
-        distances
+        Self { places, roads, metres }
     }
 
-    fn from(&self, from: usize, row: &mut [f64], heap: &mut BinaryHeap<Reached>) {
-        row[from] = 0.0;
-        heap.push(Reached { metres: 0.0, node: from });
-        while let Some(Reached { metres, node }) = heap.pop() {
-            if metres > row[node] {
+    /// The length of the shortest way from one viewpoint to another, metres; `None` where there is no way, or where the scene
+    /// does not know one of them.
+    #[must_use]
+    pub fn metres(&self, a: &ViewpointId, b: &ViewpointId) -> Option<f64> {
+        let metres = self.between(self.place(a)?, self.place(b)?);
+        metres.is_finite().then_some(metres)
+    }
+
+    /// Whether the scene has such a viewpoint.
+    #[must_use]
+    pub fn has(&self, viewpoint: &ViewpointId) -> bool {
+        self.places.contains_key(viewpoint)
+    }
+
+    /// Whether an edge joins two viewpoints. None joins a viewpoint to itself.
+    #[must_use]
+    pub fn has_edge(&self, a: &ViewpointId, b: &ViewpointId) -> bool {
+        let ends = self.place(a).zip(self.place(b));
+        ends.is_some_and(|(a, b)| self.joins(a, b))
+    }
+
+    /// Where a viewpoint stands in the other functions' figures.
+    pub(super) fn place(&self, viewpoint: &ViewpointId) -> Option<usize> {
+        self.places.get(viewpoint).copied()
+    }
+
+    /// From one place to another, metres; infinite where there is no way.
+    pub(super) fn between(&self, a: usize, b: usize) -> f64 {
+        self.metres[a * self.places.len() + b]
+    }
+
+    pub(super) fn joins(&self, a: usize, b: usize) -> bool {
+        self.roads.from(a).iter().any(|(other, _)| *other == b)
+    }
+}
+
+/// The edges of all places in one row: those of place `n` stand from `first[n]` to `first[n + 1]`.
+#[derive(Debug, Clone)]
+struct Roads {
+    first: Vec<usize>,
+    /// The other end, and the length in metres.
+    to: Vec<(usize, f64)>,
+}
+
+impl Roads {
+    /// An edge that is too long for a number is none: sums over it would mean nothing.
+    fn new(graph: &ViewpointGraph, places: &HashMap<ViewpointId, usize>) -> Self {
+        let mut ends: Vec<(usize, usize, f64)> = graph
+            .edges()
+            .filter(|(_, _, length_m)| length_m.is_finite())
+            .flat_map(|(a, b, length_m)| [(places[a], places[b], length_m), (places[b], places[a], length_m)])
+            .collect();
+        ends.sort_unstable_by_key(|(a, b, _)| (*a, *b));
+        let first = (0..=places.len()).map(|place| ends.partition_point(|(a, _, _)| *a < place)).collect();
+        Self { first, to: ends.into_iter().map(|(_, b, length_m)| (b, length_m)).collect() }
+    }
+
+    fn from(&self, place: usize) -> &[(usize, f64)] {
+        &self.to[self.first[place]..self.first[place + 1]]
+    }
+
+    /// Writes the distances from `start` into a row that holds infinity everywhere. The frontier comes and goes empty.
+    fn walk_all(&self, start: usize, row: &mut [f64], frontier: &mut BinaryHeap<Reached>) {
+        row[start] = 0.0;
+        frontier.push(Reached { metres: 0.0, place: start });
+        while let Some(Reached { metres, place }) = frontier.pop() {
+            if metres > row[place] {
                 continue;
             }
-            for &(next, length_m) in &self.to[self.first[node]..self.first[node + 1]] {
-                let metres = metres + length_m;
-                if metres < row[next] {
-                    row[next] = metres;
-                    heap.push(Reached { metres, node: next });
+            for (next, length_m) in self.from(place) {
+                let through = metres + length_m;
+                if through < row[*next] {
+                    row[*next] = through;
+                    frontier.push(Reached { metres: through, place: *next });
                 }
             }
         }
     }
-
-    /// The distance between two nodes; `None` where one is unknown, or there is no way.
-    #[must_use]
-    pub fn metres(&self, a: &ViewpointId, b: &ViewpointId) -> Option<f64> {
-        let (a, b) = (*self.index.get(a)?, *self.index.get(b)?);
-        Some(self.metres[a * self.index.len() + b]).filter(|metres| metres.is_finite())
-    }
-
-    /// Whether there is such a node.
-    #[must_use]
-    pub fn has(&self, id: &ViewpointId) -> bool {
-        self.index.contains_key(id)
-    }
-
-    /// Whether two nodes are joined.
-    #[must_use]
-    pub fn has_edge(&self, a: &ViewpointId, b: &ViewpointId) -> bool {
-        let (Some(&a), Some(&b)) = (self.index.get(a), self.index.get(b)) else { return false };
-        self.to[self.first[a]..self.first[a + 1]].binary_search_by_key(&b, |(node, _)| *node).is_ok()
-    }
 }
 
-/// A node that was reached: the nearest comes first.
+/// A place on the frontier; the nearest is the greatest, because a heap gives out its greatest.
+#[derive(Debug, Clone, Copy)]
 struct Reached {
     metres: f64,
-    node: usize,
+    place: usize,
 }
 
-impl PartialEq for Reached {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.metres.total_cmp(&self.metres).then(other.place.cmp(&self.place))
     }
 }
-
-impl Eq for Reached {}
 
 impl PartialOrd for Reached {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
@@ -104,8 +130,56 @@ impl PartialOrd for Reached {
     }
 }
 
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.metres.total_cmp(&self.metres).then_with(|| other.node.cmp(&self.node))
+impl PartialEq for Reached {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Reached {}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{any_graph, graph, id};
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_way_round_is_as_long_as_its_edges() {
+        let line = Distances::new(&graph(&[[0.0, 0.0], [3.0, 4.0], [3.0, 0.0]], &[(0, 1), (1, 2)]));
+        assert_eq!(line.metres(&id(0), &id(2)), Some(9.0));
+        assert_eq!(line.metres(&id(2), &id(2)), Some(0.0));
+        assert!(line.has_edge(&id(2), &id(1)) && !line.has_edge(&id(0), &id(2)) && !line.has_edge(&id(1), &id(1)));
+    }
+
+    #[test]
+    fn what_cannot_be_reached_or_is_not_there_has_no_distance() {
+        let parts = Distances::new(&graph(&[[0.0, 0.0], [1.0, 0.0], [9.0, 9.0]], &[(0, 1)]));
+        assert_eq!(parts.metres(&id(0), &id(2)), None);
+        assert_eq!(parts.metres(&id(0), &id(7)), None);
+        assert!(parts.has(&id(2)) && !parts.has(&id(7)) && !parts.has_edge(&id(0), &id(7)));
+        assert_eq!(Distances::new(&ViewpointGraph::default()).metres(&id(0), &id(0)), None);
+    }
+
+    #[test]
+    fn an_edge_too_long_for_a_number_is_none() {
+        let far = Distances::new(&graph(&[[-1e300, 0.0], [1e300, 0.0]], &[(0, 1)]));
+        assert!(!far.has_edge(&id(0), &id(1)));
+    }
+
+    proptest! {
+        #[test]
+        fn distances_are_those_of_the_shortest_paths(graph in any_graph()) {
+            let distances = Distances::new(&graph);
+            for a in graph.viewpoints() {
+                for b in graph.viewpoints() {
+                    let route = graph.shortest_path(a, b).unwrap().map(|route| route.length_m);
+                    let found = distances.metres(a, b);
+                    prop_assert_eq!(found.is_some(), route.is_some());
+                    prop_assert!((found.unwrap_or(0.0) - route.unwrap_or(0.0)).abs() < 1e-9);
+                    prop_assert_eq!(distances.has_edge(a, b), graph.neighbours(a).contains(&b));
+                }
+            }
+        }
     }
 }

@@ -1,40 +1,47 @@
-//! How closely a trajectory follows the annotated path.
+//! How closely a trajectory keeps to the annotated path. Both are places of a scene, never empty.
 
-use super::{
-    Distances,
-    score::{ARRIVED_M, length_m},
-};
-use wayword_core::ViewpointId;
+use super::Distances;
 
-/// nDTW: `exp(-DTW / (3 m * nodes of the reference))`, with distances over the graph (Magalhaes et al. 2019, arXiv 1907.05446;
-/// VLN-DUET, `map_nav_src/r2r/eval_utils.py`, `cal_dtw`). 0 where no way joins the two.
-pub(super) fn normalised_warping(distances: &Distances, stood: &[ViewpointId], reference: &[ViewpointId]) -> f64 {
-    let mut before = vec![f64::INFINITY; reference.len() + 1];
-    before[0] = 0.0;
-    for at in stood {
-        let mut row = vec![f64::INFINITY; reference.len() + 1];
-        for (place, node) in reference.iter().enumerate() {
-            let apart_m = distances.metres(at, node).unwrap_or(f64::INFINITY);
-            row[place + 1] = apart_m + before[place].min(before[place + 1]).min(row[place]);
-        }
-        before = row;
-    }
-    (-before[reference.len()] / (ARRIVED_M * reference.len() as f64)).exp()
+/// What distances from the path are measured by, metres: `threshold` in VLN-DUET's `map_nav_src/r2r/eval_utils.py`.
+const THRESHOLD_M: f64 = 3.0;
+
+/// Sum of the distances between places in a row, metres.
+pub(super) fn length_m(distances: &Distances, places: &[usize]) -> f64 {
+    places.windows(2).map(|hop| distances.between(hop[0], hop[1])).sum()
 }
 
-/// CLS: path coverage times length score (Jain et al. 2019, arXiv 1905.12255; VLN-DUET, `map_nav_src/r2r/eval_utils.py`, `cal_cls`).
-/// The reference divides zero by zero where both lengths are 0; there the length score is 1.
-pub(super) fn coverage_weighted_by_length(
-    distances: &Distances,
-    stood: &[ViewpointId],
-    reference: &[ViewpointId],
-) -> f64 {
-    let nearest_m =
-        |node: &ViewpointId| stood.iter().filter_map(|at| distances.metres(at, node)).fold(f64::INFINITY, f64::min);
-    let covered: f64 = reference.iter().map(|node| (-nearest_m(node) / ARRIVED_M).exp()).sum();
+/// Normalised dynamic time warping (Ilharco et al. 2019, section 3).
+pub(super) fn ndtw(distances: &Distances, taken: &[usize], reference: &[usize]) -> f64 {
+    // The least cost of warping what was taken so far onto each start of the path; the empty start comes first.
+    let mut costs = vec![f64::INFINITY; reference.len() + 1];
+    costs[0] = 0.0;
+    for place in taken {
+        let mut diagonal = costs[0];
+        costs[0] = f64::INFINITY;
+        for (at, on_path) in reference.iter().enumerate() {
+            let before = diagonal.min(costs[at]).min(costs[at + 1]);
+            diagonal = costs[at + 1];
+            costs[at + 1] = before + distances.between(*place, *on_path);
+        }
+    }
+    (-costs[reference.len()] / (THRESHOLD_M * reference.len() as f64)).exp()
+}
+
+/// Coverage weighted by length score (Jain et al. 2019, section 4).
+pub(super) fn cls(distances: &Distances, taken: &[usize], reference: &[usize]) -> f64 {
+    let nearest_m = |on_path: &usize| {
+        // From the path to the trajectory, as the reference has it.
+        taken.iter().map(|place| distances.between(*on_path, *place)).fold(f64::INFINITY, f64::min)
+    };
+    let covered: f64 = reference.iter().map(|on_path| (-nearest_m(on_path) / THRESHOLD_M).exp()).sum();
     let coverage = covered / reference.len() as f64;
     let expected_m = coverage * length_m(distances, reference);
-    let off_m = (expected_m - length_m(distances, stood)).abs();
-    let length_score = if expected_m + off_m > 0.0 { expected_m / (expected_m + off_m) } else { 1.0 };
-    coverage * length_score
+    let off_m = (expected_m - length_m(distances, taken)).abs();
+    if expected_m.is_infinite() {
+        0.0
+    } else if expected_m + off_m == 0.0 {
+        coverage
+    } else {
+        coverage * expected_m / (expected_m + off_m)
+    }
 }

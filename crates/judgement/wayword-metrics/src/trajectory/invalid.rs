@@ -1,60 +1,124 @@
-//! What makes a trajectory none of its episode.
+//! What keeps a trajectory from being scored.
 
 use super::{Demand, Distances, Trajectory};
 use wayword_core::ViewpointId;
 
-/// Something that makes a trajectory none of its episode.
+/// Something about a trajectory, or about what is demanded of it, that allows no figure. Steps count from 0, the start.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Invalid {
-    /// It has no viewpoint.
-    #[error("the trajectory is empty")]
+    /// It holds no viewpoint.
+    #[error("the trajectory is empty: list its viewpoints from the start on, and the start alone for one who stays")]
     Empty,
-    /// The scene has no such viewpoint.
-    #[error("step {step}: the scene has no viewpoint {viewpoint}")]
-    Unknown {
-        /// Its place in the trajectory, from 0.
-        step: usize,
-        /// Which.
-        viewpoint: ViewpointId,
-    },
-    /// It begins elsewhere.
-    #[error("it starts at {found} and not at the episode's start {expected}")]
+    /// It starts elsewhere.
+    #[error("the trajectory starts at {found}: it has to start where its episode does, at {expected}")]
     Start {
-        /// Where it begins.
+        /// Its first viewpoint.
         found: ViewpointId,
-        /// Where the episode does.
+        /// The episode's.
         expected: ViewpointId,
     },
-    /// A hop that is neither an edge nor a stay.
-    #[error("step {step}: there is no edge from {from} to {to}")]
-    NoEdge {
-        /// The place in the trajectory, from 0, that is hopped to.
+    /// A viewpoint that the scene does not have.
+    #[error("viewpoint {viewpoint} (step {step} of the trajectory) is not in the scene's graph: check the scene")]
+    Unknown {
+        /// Where it stands.
         step: usize,
-        /// From there.
+        /// Its name.
+        viewpoint: ViewpointId,
+    },
+    /// Two viewpoints in a row that are neither the same nor joined.
+    #[error(
+        "there is no edge from {from} to {to} (step {step} of the trajectory): list every viewpoint that is passed"
+    )]
+    NoEdge {
+        /// Where the second one stands.
+        step: usize,
+        /// The first one.
         from: ViewpointId,
-        /// To there.
+        /// The second one.
         to: ViewpointId,
+    },
+    /// An episode without a path.
+    #[error("the episode has no annotated path: nothing can be held against it")]
+    NoReference,
+    /// A viewpoint of the episode's path that the scene does not have.
+    #[error("viewpoint {viewpoint} (step {step} of the episode's path) is not in the scene's graph: check the scene")]
+    UnknownInReference {
+        /// Where it stands.
+        step: usize,
+        /// Its name.
+        viewpoint: ViewpointId,
     },
 }
 
-/// Everything that makes a trajectory none of its episode; empty where it is one.
+/// All that keeps a trajectory from being scored; empty where nothing does.
 #[must_use]
 pub fn problems(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Vec<Invalid> {
-    let stood = &trajectory.viewpoints;
-    let (Some(found), Some(expected)) = (stood.first(), demand.reference.first()) else { return vec![Invalid::Empty] };
-    let mut problems = Vec::new();
-    if found != expected {
-        problems.push(Invalid::Start { found: found.clone(), expected: expected.clone() });
-    }
-    for (step, viewpoint) in stood.iter().enumerate() {
-        if !distances.has(viewpoint) {
-            problems.push(Invalid::Unknown { step, viewpoint: viewpoint.clone() });
-        } else if let Some(from) = step.checked_sub(1).map(|before| &stood[before]) {
-            let goes = from == viewpoint || distances.has_edge(from, viewpoint);
-            if !goes && distances.has(from) {
-                problems.push(Invalid::NoEdge { step, from: from.clone(), to: viewpoint.clone() });
+    Located::new(distances, demand, trajectory).err().unwrap_or_default()
+}
+
+/// A trajectory and the path that is demanded, as places of the scene.
+pub(super) struct Located {
+    /// Where the trajectory leads through; never empty.
+    pub(super) taken: Vec<usize>,
+    /// The annotated path; never empty, and its start is that of `taken`.
+    pub(super) reference: Vec<usize>,
+}
+
+impl Located {
+    pub(super) fn new(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Result<Self, Vec<Invalid>> {
+        let mut wrong = Vec::new();
+        let taken = places(distances, &trajectory.viewpoints, &mut wrong, |step, viewpoint| Invalid::Unknown {
+            step,
+            viewpoint,
+        });
+        let reference = places(distances, &demand.reference, &mut wrong, |step, viewpoint| {
+            Invalid::UnknownInReference { step, viewpoint }
+        });
+        match (trajectory.viewpoints.first(), demand.reference.first()) {
+            (Some(found), Some(start)) if found != start => {
+                wrong.push(Invalid::Start { found: found.clone(), expected: start.clone() });
+            }
+            (found, start) => {
+                wrong.extend(found.is_none().then_some(Invalid::Empty));
+                wrong.extend(start.is_none().then_some(Invalid::NoReference));
             }
         }
+        for (at, hop) in taken.windows(2).enumerate() {
+            // An unknown viewpoint is told above; its hops would say nothing more.
+            let (Some(a), Some(b)) = (hop[0], hop[1]) else { continue };
+            if a != b && !distances.joins(a, b) {
+                let [from, to] = [at, at + 1].map(|step| trajectory.viewpoints[step].clone());
+                wrong.push(Invalid::NoEdge { step: at + 1, from, to });
+            }
+        }
+        let known = |places: Vec<Option<usize>>| places.into_iter().flatten().collect();
+        if wrong.is_empty() { Ok(Self { taken: known(taken), reference: known(reference) }) } else { Err(wrong) }
     }
-    problems
+
+    /// Where both start.
+    pub(super) fn start(&self) -> usize {
+        self.reference[0]
+    }
+
+    /// Where the trajectory ends.
+    pub(super) fn last(&self) -> usize {
+        self.taken[self.taken.len() - 1]
+    }
+
+    /// Where the annotated path ends.
+    pub(super) fn goal(&self) -> usize {
+        self.reference[self.reference.len() - 1]
+    }
+}
+
+fn places(
+    distances: &Distances,
+    viewpoints: &[ViewpointId],
+    wrong: &mut Vec<Invalid>,
+    unknown: impl Fn(usize, ViewpointId) -> Invalid,
+) -> Vec<Option<usize>> {
+    let places: Vec<Option<usize>> = viewpoints.iter().map(|viewpoint| distances.place(viewpoint)).collect();
+    let missing = places.iter().zip(viewpoints).enumerate().filter(|(_, (place, _))| place.is_none());
+    wrong.extend(missing.map(|(at, (_, viewpoint))| unknown(at, viewpoint.clone())));
+    places
 }

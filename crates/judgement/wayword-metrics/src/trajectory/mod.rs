@@ -5,6 +5,10 @@ mod distances;
 mod fidelity;
 mod invalid;
 mod score;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
 
 pub use atlas::Atlas;
 pub use distances::Distances;

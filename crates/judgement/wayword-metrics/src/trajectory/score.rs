@@ -2,47 +2,48 @@
 
 use super::{
     Demand, Distances, Grounding, Outcome, Score, Trajectory,
-    fidelity::{coverage_weighted_by_length, normalised_warping},
-    invalid::{Invalid, problems},
+    fidelity::{cls, length_m, ndtw},
+    invalid::{Invalid, Located},
 };
 use wayword_core::ViewpointId;
 
-/// Under this distance from the goal, strictly, a trajectory has arrived, metres (R2R, `tasks/R2R/eval.py`, `error_margin`).
-pub(super) const ARRIVED_M: f64 = 3.0;
+/// Nearer to the goal than this, strictly, is a success (R2R, `tasks/R2R/eval.py`, `error_margin`).
+const SUCCESS_M: f64 = 3.0;
 
-/// Scores a trajectory by what its episode demands.
+/// The figures of a trajectory, or all that keeps it from having any.
 ///
-/// Success, lengths and errors are those of R2R's `tasks/R2R/eval.py` and REVERIE's `tasks/REVERIE/eval_release.py`; nDTW, SDTW and
-/// CLS those of VLN-DUET's `map_nav_src/r2r/eval_utils.py`. Where these divide zero by zero, a success counts 1: a trajectory that
-/// stays where its goal is has gone the shortest way. A goal that cannot be reached is never reached, and has no error.
+/// SR, OSR, NE, TL and SPL by distance are R2R's (`tasks/R2R/eval.py`; SPL as Anderson et al. 2018 define it), SR, OSR, SPL by
+/// visibility, RGS and RGSPL are REVERIE's (`tasks/REVERIE/eval_release.py`), nDTW, SDTW and CLS are those of VLN-DUET
+/// (`map_nav_src/r2r/eval_utils.py`). Where they say nothing:
+///
+/// - The start is the goal and nobody moves: the references divide zero by zero; here such a success weighs 1. Who moves though
+///   the start is the goal has SPL 0, as there.
+/// - The goal cannot be reached from the start: the references fail; here there are no errors, no success by distance, and
+///   every SPL and RGSPL is 0, because no way is the shortest.
+/// - Neither the annotated path nor the trajectory moves: CLS divides zero by zero in the reference; here it is 1. An annotated
+///   path with a hop that nobody can make has nDTW and CLS 0.
+/// - The same viewpoint twice in a row is a stay: it adds no length, and to nDTW what any other viewpoint adds.
 ///
 /// # Errors
-/// Everything that makes the trajectory none of its episode.
+/// Each problem of the trajectory, when it does not start at the episode's start, or is no way over the scene's graph.
 pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Result<Score, Vec<Invalid>> {
-    let problems = problems(distances, demand, trajectory);
-    let (Some(start), Some(goal), true) = (demand.reference.first(), demand.reference.last(), problems.is_empty())
-    else {
-        return Err(problems);
-    };
-    let stood = &trajectory.viewpoints;
-    let length_m = length_m(distances, stood);
-    let shortest_m = distances.metres(start, goal);
-    let to_goal = |at: &ViewpointId| distances.metres(at, goal);
-    let navigation_error_m = stood.last().and_then(to_goal);
-    let oracle_error_m = stood.iter().filter_map(to_goal).min_by(f64::total_cmp);
-    let weight =
-        shortest_m.map_or(0.0, |shortest_m| if length_m > 0.0 { shortest_m / length_m.max(shortest_m) } else { 1.0 });
-    let ndtw = normalised_warping(distances, stood, &demand.reference);
-    let outcome = |success: bool, oracle_success: bool| Outcome {
+    let located = Located::new(distances, demand, trajectory)?;
+    let length_m = length_m(distances, &located.taken);
+    let weight = efficiency(distances.between(located.start(), located.goal()), length_m);
+    let ndtw = ndtw(distances, &located.taken, &located.reference);
+    let outcome = |success, oracle_success| Outcome {
         success,
         oracle_success,
         spl: if success { weight } else { 0.0 },
         sdtw: if success { ndtw } else { 0.0 },
     };
-    let arrived = |error_m: Option<f64>| error_m.is_some_and(|error_m| error_m < ARRIVED_M);
-    let visible = demand.visible_from.as_ref().map(|from| {
-        let sees = |at: &ViewpointId| from.contains(at);
-        outcome(stood.last().is_some_and(sees), stood.iter().any(sees))
+
+    let to_goal_m = |place| distances.between(place, located.goal());
+    let error_m = to_goal_m(located.last());
+    let oracle_m = located.taken.iter().map(|place| to_goal_m(*place)).fold(f64::INFINITY, f64::min);
+    let visible = demand.object.as_ref().and(demand.visible_from.as_ref()).map(|from| {
+        let sees = |viewpoint: &ViewpointId| from.contains(viewpoint);
+        outcome(trajectory.viewpoints.last().is_some_and(sees), trajectory.viewpoints.iter().any(sees))
     });
     let grounding = demand.object.as_ref().map(|object| {
         let rgs = trajectory.object.as_ref() == Some(object);
@@ -50,17 +51,24 @@ pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) ->
     });
     Ok(Score {
         length_m,
-        navigation_error_m,
-        oracle_error_m,
-        distance: outcome(arrived(navigation_error_m), arrived(oracle_error_m)),
+        navigation_error_m: error_m.is_finite().then_some(error_m),
+        oracle_error_m: oracle_m.is_finite().then_some(oracle_m),
+        distance: outcome(error_m < SUCCESS_M, oracle_m < SUCCESS_M),
         visible,
         grounding,
         ndtw,
-        cls: coverage_weighted_by_length(distances, stood, &demand.reference),
+        cls: cls(distances, &located.taken, &located.reference),
     })
 }
 
-/// The length of a trajectory: the sum of the distances between its nodes.
-pub(super) fn length_m(distances: &Distances, viewpoints: &[ViewpointId]) -> f64 {
-    viewpoints.windows(2).filter_map(|pair| distances.metres(&pair[0], &pair[1])).sum()
+/// The shortest length as a share of the length that was walked, at most 1.
+fn efficiency(shortest_m: f64, length_m: f64) -> f64 {
+    let longer_m = shortest_m.max(length_m);
+    if longer_m.is_infinite() {
+        0.0
+    } else if longer_m == 0.0 {
+        1.0
+    } else {
+        shortest_m / longer_m
+    }
 }

@@ -1,0 +1,198 @@
+use super::{
+    testing::{any_case, graph, id, ids, object},
+    *,
+};
+use proptest::prelude::*;
+
+/// Five places in a row, 2 m apart, and a sixth that nobody can reach.
+fn corridor() -> Distances {
+    let points = [[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [6.0, 0.0], [8.0, 0.0], [0.0, 9.0]];
+    Distances::new(&graph(&points, &[(0, 1), (1, 2), (2, 3), (3, 4)]))
+}
+
+fn demand(reference: &[usize], visible_from: &[usize]) -> Demand {
+    Demand {
+        reference: ids(reference),
+        object: Some(object("lamp")),
+        visible_from: Some(visible_from.iter().map(|n| id(*n)).collect()),
+    }
+}
+
+fn walked(places: &[usize]) -> Trajectory {
+    Trajectory { viewpoints: ids(places), object: None }
+}
+
+fn scored(reference: &[usize], visible_from: &[usize], places: &[usize]) -> Score {
+    score(&corridor(), &demand(reference, visible_from), &walked(places)).unwrap()
+}
+
+fn wrong(reference: &[usize], places: &[usize]) -> Vec<Invalid> {
+    let (demand, trajectory) = (demand(reference, &[]), walked(places));
+    let found = problems(&corridor(), &demand, &trajectory);
+    assert_eq!(score(&corridor(), &demand, &trajectory).err().unwrap_or_default(), found);
+    found
+}
+
+fn close(found: f64, expected: f64) -> bool {
+    (found - expected).abs() < 1e-12
+}
+
+#[test]
+fn the_annotated_path_itself_has_the_best_of_all_figures() {
+    let found = scored(&[0, 1, 2, 3], &[3], &[0, 1, 2, 3]);
+    let best = Outcome { success: true, oracle_success: true, spl: 1.0, sdtw: 1.0 };
+    assert_eq!((found.distance, found.visible), (best, Some(best)));
+    assert_eq!((found.ndtw, found.cls, found.length_m), (1.0, 1.0, 6.0));
+    assert_eq!((found.navigation_error_m, found.oracle_error_m), (Some(0.0), Some(0.0)));
+}
+
+#[test]
+fn who_passes_the_goal_has_oracle_success_alone() {
+    let found = scored(&[0, 1], &[1], &[0, 1, 2, 3]);
+    assert_eq!((found.navigation_error_m, found.oracle_error_m), (Some(4.0), Some(0.0)));
+    let passed =
+        |outcome: Outcome| !outcome.success && outcome.oracle_success && outcome.spl == 0.0 && outcome.sdtw == 0.0;
+    assert!(passed(found.distance) && passed(found.visible.unwrap()));
+}
+
+#[test]
+fn success_by_distance_ends_before_three_metres() {
+    let line = |last_m| {
+        let distances = Distances::new(&graph(&[[0.0, 0.0], [last_m, 0.0]], &[(0, 1)]));
+        score(&distances, &demand(&[0, 1], &[]), &walked(&[0])).unwrap().distance.success
+    };
+    assert!(line(2.999_999) && !line(3.0));
+}
+
+#[test]
+fn visibility_asks_for_no_nearness_and_nearness_for_no_visibility() {
+    let far = scored(&[0, 1, 2, 3, 4], &[0], &[0]);
+    assert!(far.visible.unwrap().success && !far.distance.success);
+    assert_eq!(far.visible.unwrap().spl, 1.0, "a nearer viewpoint that sees the object is no better than the goal");
+    let near = scored(&[0, 1, 2], &[], &[0, 1]);
+    assert!(near.distance.success && !near.visible.unwrap().oracle_success);
+}
+
+#[test]
+fn a_detour_costs_its_length() {
+    let found = scored(&[0, 1, 2], &[2], &[0, 1, 0, 1, 2]);
+    assert_eq!((found.length_m, found.distance.spl, found.visible.unwrap().spl), (8.0, 0.5, 0.5));
+}
+
+#[test]
+fn a_stay_has_no_length_but_counts_in_ndtw() {
+    let (brisk, slow) = (scored(&[0, 1, 2, 3], &[3], &[0, 1, 2]), scored(&[0, 1, 2, 3], &[3], &[0, 1, 2, 2]));
+    assert_eq!((brisk.length_m, brisk.distance.spl, brisk.cls), (slow.length_m, slow.distance.spl, slow.cls));
+    assert!(close(brisk.ndtw, (-2.0f64 / 12.0).exp()) && close(slow.ndtw, brisk.ndtw));
+    let late = scored(&[0, 1], &[], &[0, 1, 2, 2]);
+    assert!(close(late.ndtw, (-4.0f64 / 6.0).exp()), "two stays off the path cost twice: {}", late.ndtw);
+}
+
+#[test]
+fn coverage_is_weighted_by_the_length_that_it_expects() {
+    let found = scored(&[0, 1, 2], &[], &[0, 1]);
+    let coverage = (2.0 + (-2.0f64 / 3.0).exp()) / 3.0;
+    let expected_m = coverage * 4.0;
+    assert!(close(found.cls, coverage * expected_m / (expected_m + (expected_m - 2.0).abs())));
+}
+
+#[test]
+fn who_stays_where_the_goal_is_has_done_all() {
+    let found = scored(&[0], &[0], &[0, 0]);
+    assert_eq!((found.distance.spl, found.visible.unwrap().spl, found.cls, found.ndtw), (1.0, 1.0, 1.0, 1.0));
+    let left = scored(&[0], &[1], &[0, 1]);
+    assert_eq!((left.distance.success, left.distance.spl, left.visible.unwrap().spl, left.cls), (true, 0.0, 0.0, 0.0));
+}
+
+#[test]
+fn a_goal_that_cannot_be_reached_has_no_errors_and_no_success_by_distance() {
+    let found = scored(&[0, 5], &[0], &[0, 1, 0]);
+    assert_eq!((found.navigation_error_m, found.oracle_error_m), (None, None));
+    assert!(!found.distance.oracle_success);
+    assert_eq!(found.visible.map(|visible| (visible.success, visible.spl)), Some((true, 0.0)));
+    assert_eq!((found.ndtw, found.cls), (0.0, 0.0));
+    assert_eq!(found.get(Metric::NavigationErrorM, Rule::Distance), None);
+}
+
+#[test]
+fn the_right_object_counts_wherever_one_stands() {
+    let grounded = |named: Option<&str>| {
+        let trajectory = Trajectory { object: named.map(object), ..walked(&[0, 1, 0]) };
+        score(&corridor(), &demand(&[0, 1, 2], &[2]), &trajectory).unwrap().grounding.unwrap()
+    };
+    assert_eq!(grounded(Some("lamp")), Grounding { rgs: true, rgspl: 1.0 });
+    assert_eq!(grounded(Some("door")), Grounding { rgs: false, rgspl: 0.0 });
+    assert_eq!(grounded(None), Grounding { rgs: false, rgspl: 0.0 });
+}
+
+#[test]
+fn an_episode_without_an_object_is_judged_by_distance_alone() {
+    let demand = Demand { object: None, ..demand(&[0, 1], &[1]) };
+    let found = score(&corridor(), &demand, &walked(&[0, 1])).unwrap();
+    assert_eq!((found.visible, found.grounding), (None, None));
+    assert_eq!(found.get(Metric::SuccessRate, Rule::Visible), None);
+    assert_eq!(found.get(Metric::SuccessRate, Rule::Distance), Some(1.0));
+}
+
+#[test]
+fn every_problem_is_told_and_nothing_is_scored() {
+    let no_edge = |step, from, to| Invalid::NoEdge { step, from: id(from), to: id(to) };
+    assert_eq!(
+        wrong(&[0, 1], &[0, 2, 2, 9, 1, 4]),
+        [Invalid::Unknown { step: 3, viewpoint: id(9) }, no_edge(1, 0, 2), no_edge(5, 1, 4),]
+    );
+    assert_eq!(wrong(&[0, 1], &[1]), [Invalid::Start { found: id(1), expected: id(0) }]);
+    assert_eq!(wrong(&[0, 1], &[]), [Invalid::Empty]);
+    assert_eq!(wrong(&[], &[0]), [Invalid::NoReference]);
+    assert_eq!(wrong(&[0, 8], &[0]), [Invalid::UnknownInReference { step: 1, viewpoint: id(8) }]);
+    assert_eq!(wrong(&[0, 1], &[0, 0, 1]), []);
+}
+
+proptest! {
+    #[test]
+    fn figures_keep_to_their_ranges_and_to_each_other((graph, demand, trajectory) in any_case()) {
+        let distances = Distances::new(&graph);
+        let found = score(&distances, &demand, &trajectory).unwrap();
+        prop_assert!((0.0..=1.0).contains(&found.ndtw) && (0.0..=1.0).contains(&found.cls), "{:?}", found);
+        prop_assert!(found.length_m.is_finite() && found.length_m >= 0.0);
+        prop_assert_eq!(found.visible.is_some(), demand.object.is_some());
+        for outcome in [Some(found.distance), found.visible].into_iter().flatten() {
+            let success = f64::from(u8::from(outcome.success));
+            prop_assert!((0.0..=success).contains(&outcome.spl), "SPL beyond SR: {:?}", outcome);
+            prop_assert!((0.0..=success).contains(&outcome.sdtw) && outcome.sdtw <= found.ndtw);
+            prop_assert!(outcome.oracle_success >= outcome.success);
+        }
+        prop_assert!(found.oracle_error_m.zip(found.navigation_error_m).is_none_or(|(oracle, last)| oracle <= last));
+        prop_assert_eq!(found.oracle_error_m.is_some(), found.navigation_error_m.is_some());
+        if let Some(grounding) = found.grounding {
+            prop_assert!((0.0..=f64::from(u8::from(grounding.rgs))).contains(&grounding.rgspl));
+        }
+    }
+
+    #[test]
+    fn whoever_walks_the_annotated_path_keeps_to_it_wholly((graph, demand, _) in any_case()) {
+        let trajectory = Trajectory { viewpoints: demand.reference.clone(), object: None };
+        // A path with a hop that is no edge cannot be walked.
+        if let Ok(found) = score(&Distances::new(&graph), &demand, &trajectory) {
+            prop_assert_eq!(found.ndtw, 1.0);
+            prop_assert!((found.cls - 1.0).abs() < 1e-12);
+            prop_assert!(found.distance.success);
+        }
+    }
+
+    #[test]
+    fn staying_changes_nothing_but_ndtw((graph, demand, trajectory) in any_case(), at in 0..12usize) {
+        let distances = Distances::new(&graph);
+        let brisk = score(&distances, &demand, &trajectory).unwrap();
+        let mut slow = trajectory;
+        let at = at % slow.viewpoints.len();
+        slow.viewpoints.insert(at, slow.viewpoints[at].clone());
+        let slow = score(&distances, &demand, &slow).unwrap();
+        let but_ndtw = |of: &Score| {
+            let outcome = |of: Outcome| (of.success, of.oracle_success, of.spl);
+            (of.length_m, of.navigation_error_m, of.oracle_error_m, of.cls, outcome(of.distance), of.visible.map(outcome))
+        };
+        prop_assert_eq!(but_ndtw(&slow), but_ndtw(&brisk));
+        prop_assert!(slow.ndtw <= brisk.ndtw);
+    }
+}

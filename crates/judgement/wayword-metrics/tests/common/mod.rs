@@ -1,0 +1,48 @@
+//! Cases whose figures somebody else computed.
+
+use serde_json::Value;
+use std::collections::BTreeSet;
+use wayword_core::{ObjectId, ViewpointId};
+use wayword_metrics::{Demand, Score, Trajectory};
+
+/// How far figures may lie apart that are sums in another order.
+const TOLERANCE: f64 = 1e-9;
+
+pub(crate) fn viewpoints<'a, C: FromIterator<ViewpointId>>(ids: impl IntoIterator<Item = &'a Value>) -> C {
+    ids.into_iter().map(|id| ViewpointId::new(id.as_str().unwrap()).unwrap()).collect()
+}
+
+pub(crate) fn object(id: &Value) -> Option<ObjectId> {
+    id.as_str().map(|id| ObjectId::new(id).unwrap())
+}
+
+pub(crate) fn demand(case: &Value, visible_from: Option<BTreeSet<ViewpointId>>) -> Demand {
+    let reference = viewpoints(case["reference"].as_array().unwrap());
+    Demand { reference, object: object(&case["object"]), visible_from }
+}
+
+pub(crate) fn trajectory(case: &Value) -> Trajectory {
+    Trajectory { viewpoints: viewpoints(case["trajectory"].as_array().unwrap()), object: object(&case["named"]) }
+}
+
+/// Holds every figure that is expected against its namesake, and every figure against an expectation.
+pub(crate) fn assert_agrees(score: &Score, expected: &Value, case: &str) {
+    let found = serde_json::to_value(score).unwrap();
+    assert_same(&found, expected, case);
+}
+
+fn assert_same(found: &Value, expected: &Value, place: &str) {
+    match (found, expected) {
+        (Value::Object(found), Value::Object(expected)) => {
+            assert_eq!(found.keys().collect::<BTreeSet<_>>(), expected.keys().collect(), "{place}");
+            for (name, found) in found {
+                assert_same(found, &expected[name], &format!("{place}: {name}"));
+            }
+        }
+        (Value::Number(found), Value::Number(expected)) => {
+            let [found, expected] = [found, expected].map(|number| number.as_f64().unwrap());
+            assert!((found - expected).abs() < TOLERANCE, "{place}: {found} and not {expected}");
+        }
+        _ => assert_eq!(found, expected, "{place}"),
+    }
+}
