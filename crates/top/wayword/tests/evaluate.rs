@@ -137,6 +137,7 @@ fn annotated_paths_succeed_by_both_rules() {
         for (metric, expected) in [("success_rate", 1.0), ("oracle_success_rate", 1.0), ("spl", spl), ("sdtw", 1.0)] {
             is(mean(&rule["figures"], metric), expected);
         }
+        assert_eq!(rule["figures"]["spl"]["clusters"], ITEMS, "intervals are clustered by path");
     }
     assert_eq!(rules.len(), 2);
     let others = &found["whatever_the_rule"];
@@ -298,8 +299,10 @@ fn a_malformed_file_is_told_item_by_item() {
     for (told, parts) in told.iter().zip([["item 1", "earlier item"], ["item 5", "empty"], ["item 7", "missing"]]) {
         assert!(parts.iter().all(|part| told.contains(part)) && told.contains("submission.json"), "{told}");
     }
-    building.write("broken.json", "[{\"instr_id\": ");
+    building.write("broken.json", r#"[{"\u001b[31mred": [}]"#);
     assert_eq!(problems(&evaluate_file(&building, "broken.json", R2R, &["--json"])).len(), 1);
+    let shown = evaluate_file(&building, "broken.json", R2R, &[]);
+    assert!(shown.out.contains("[31mred") && !shown.out.contains('\u{1b}'), "{shown:?}");
 }
 
 #[test]

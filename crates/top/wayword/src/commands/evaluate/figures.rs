@@ -148,3 +148,42 @@ fn table(f: &mut fmt::Formatter<'_>, figures: &BTreeMap<Metric, Figure>) -> fmt:
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_metrics::{Outcome, Score};
+
+    fn scored(navigation_error_m: Option<f64>) -> Scored<'static> {
+        let nothing = Outcome { success: false, oracle_success: false, spl: 0.0, sdtw: 0.0 };
+        let score = Score {
+            length_m: 2.0,
+            navigation_error_m,
+            oracle_error_m: navigation_error_m,
+            distance: nothing,
+            visible: None,
+            grounding: None,
+            ndtw: 0.5,
+            cls: 0.5,
+        };
+        Scored { instr_id: "1_0".to_owned(), item: "1", path: "a/1".to_owned(), names_object: false, score }
+    }
+
+    #[test]
+    fn what_has_no_figure_is_left_out_of_the_mean_and_counted() {
+        let all = [scored(Some(4.0)), scored(None), scored(Some(6.0))];
+        let found = figures(&all, Rule::Distance, Drawn { resamples: 100, seed: 0 }, |_| true);
+        let error = &found[&Metric::NavigationErrorM];
+        assert!((error.estimate.mean - 5.0).abs() < 1e-12);
+        assert_eq!((error.left_out, found[&Metric::SuccessRate].left_out), (1, 0));
+        assert!(!found.contains_key(&Metric::Rgs));
+        struct Shown(BTreeMap<Metric, Figure>);
+        impl fmt::Display for Shown {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                table(f, &self.0)
+            }
+        }
+        let shown = Shown(found).to_string();
+        assert!(shown.contains("5.00     5.00 to 5.00   (1 left out: the goal cannot be reached)"), "{shown}");
+    }
+}

@@ -61,6 +61,8 @@ impl Refusal {
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Problem { instr_id, problem } in self.problems.iter().take(SHOWN) {
+            // A file's keys are quoted, and may hold what a terminal obeys.
+            let problem = problem.replace(char::is_control, "\u{fffd}");
             match instr_id {
                 Some(instr_id) => writeln!(f, "{instr_id}: {problem}")?,
                 None => writeln!(f, "{problem}")?,
