@@ -98,6 +98,24 @@ fn a_comparison_that_was_stopped_goes_on_and_ends_the_same() {
 }
 
 #[test]
+fn the_report_shows_walks_that_succeed_and_walks_that_do_not() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let sets = ["--instructions", "original", "--instructions", "ours=run#reverie", "--replays", "0"];
+    assert_eq!(compare(&building, REVERIE, &sets).code, Some(0));
+    let page = || fs::read_to_string(building.path("walked/report.html")).unwrap();
+    assert!(!page().contains("<article "));
+    // The page needs the world and the episodes alone.
+    fs::remove_dir_all(building.path("run")).unwrap();
+    let ran = building.wayword(&["report", "--run", "walked", "--items", "30"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let page = page();
+    assert_eq!(page.matches("<article ").count(), 30);
+    assert!(page.contains("✓ success</span></h2>") && page.contains("✗ no success</span></h2>"));
+    assert!(page.contains("class=\"flag\"") && page.contains("class=\"view chosen\""));
+}
+
+#[test]
 fn a_seed_gives_one_table() {
     let building = Building::new();
     let table = |out: &str| {
