@@ -1,0 +1,65 @@
+//! Between Habitat's frame and Wayword's.
+//!
+//! Habitat: right-handed, metres, y up, an agent looks along -z. Wayword: z up, heading 0 along +y and clockwise. So north is
+//! Habitat's -z.
+
+use wayword_core::DVec3;
+
+/// Height of the eye over the ground, metres (Habitat's sensors of the VLN tasks).
+pub const EYE_M: f64 = 1.5;
+
+/// A place or direction of Habitat in Wayword's frame.
+#[must_use]
+pub fn wayword_from_habitat(place: DVec3) -> DVec3 {
+    DVec3::new(place.x, -place.z, place.y)
+}
+
+/// A place or direction of Wayword in Habitat's frame.
+#[must_use]
+pub fn habitat_from_wayword(place: DVec3) -> DVec3 {
+    DVec3::new(place.x, place.z, -place.y)
+}
+
+/// The quaternion (w, x, y, z) of an agent of Habitat that looks along a level heading.
+#[must_use]
+pub fn habitat_rotation_from_heading(heading_rad: f64) -> [f64; 4] {
+    // Yaw is counter-clockwise about +y, and 0 looks along -z, which is north.
+    let (sin, cos) = libm::sincos(-heading_rad / 2.0);
+    [cos, 0.0, sin, 0.0]
+}
+
+/// The way that an agent of Habitat looks, in Wayword's frame: its rotation (w, x, y, z) applied to -z. The rotation need not
+/// have length 1; of a rotation of length 0, or one that is not finite, nothing comes that has a direction.
+#[must_use]
+pub fn forward_from_habitat_rotation([w, x, y, z]: [f64; 4]) -> DVec3 {
+    let rotation = glam::DQuat::from_xyzw(x, y, z, w).normalize();
+    wayword_from_habitat(rotation * DVec3::NEG_Z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use wayword_core::Heading;
+
+    #[test]
+    fn up_is_up_and_forward_is_north() {
+        assert_eq!(wayword_from_habitat(DVec3::Y), DVec3::Z);
+        assert_eq!(wayword_from_habitat(DVec3::NEG_Z), DVec3::Y);
+        assert_eq!(wayword_from_habitat(DVec3::X), DVec3::X);
+    }
+
+    proptest! {
+        #[test]
+        fn there_and_back_is_the_same(x in -1e3..1e3, y in -1e3..1e3, z in -1e3..1e3) {
+            let place = DVec3::new(x, y, z);
+            prop_assert_eq!(habitat_from_wayword(wayword_from_habitat(place)), place);
+        }
+
+        #[test]
+        fn a_heading_is_the_way_that_its_rotation_looks(heading_rad in -7.0..7.0f64) {
+            let forward = forward_from_habitat_rotation(habitat_rotation_from_heading(heading_rad));
+            prop_assert!((forward - Heading::new(heading_rad).unwrap().direction()).length() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Which ground hangs together.
+
+use super::{Island, polygon::Polygon};
+use std::sync::OnceLock;
+
+/// The islands, the largest first; tells every polygon its own.
+pub(super) fn find(polygons: &mut [Polygon]) -> Vec<Island> {
+    let mut islands: Vec<Island> = Vec::new();
+    let mut seen = vec![false; polygons.len()];
+    for start in 0..polygons.len() {
+        if seen[start] || !polygons[start].is_walkable {
+            continue;
+        }
+        let mut members = vec![start];
+        seen[start] = true;
+        let mut next = 0;
+        while let Some(&polygon) = members.get(next) {
+            next += 1;
+            for neighbour in polygons[polygon].neighbours() {
+                if polygons[neighbour].is_walkable && !std::mem::replace(&mut seen[neighbour], true) {
+                    members.push(neighbour);
+                }
+            }
+        }
+        members.sort_unstable();
+        let area_m2 = members.iter().map(|polygon| polygons[*polygon].area_m2).sum();
+        islands.push(Island { polygons: members, area_m2, maze: OnceLock::new() });
+    }
+    islands.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
+    for (number, island) in islands.iter().enumerate() {
+        for polygon in &island.polygons {
+            polygons[*polygon].island = number;
+        }
+    }
+    islands
+}

@@ -1,0 +1,48 @@
+//! Storeys, told from the heights at which ground lies.
+
+use super::Ground;
+use wayword_core::DVec3;
+
+/// Height of a slice, metres.
+const SLICE_M: f64 = 0.25;
+/// No two floors lie nearer above one another, metres.
+const STOREY_M: f64 = 2.0;
+/// A floor has at least this share of the area of the largest one: a landing has not.
+const LEAST_SHARE: f64 = 0.15;
+/// Who stands no farther below a floor stands on it: it is nearer than the one below, metres.
+const BELOW_M: f64 = 1.0;
+
+/// Heights of the floors of the largest island, from the lowest. Slices with the most ground are floors, one after the other, as
+/// long as they lie apart from those found before.
+pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
+    let Some(island) = ground.islands.first() else { return Vec::new() };
+    let mut slices: std::collections::BTreeMap<i64, f64> = std::collections::BTreeMap::new();
+    for triangle in island.polygons.iter().flat_map(|polygon| &ground.polygons[*polygon].triangles) {
+        let [a, b, c] = triangle;
+        let slice = ((a.z + b.z + c.z) / 3.0 / SLICE_M).floor() as i64;
+        *slices.entry(slice).or_default() += 0.5 * (*b - *a).cross(*c - *a).length();
+    }
+    // A floor that lies on the line between two slices counts in both.
+    let around = |slice: i64| -> f64 { (slice - 1..=slice + 1).filter_map(|slice| slices.get(&slice)).sum() };
+    let mut by_area: Vec<(i64, f64)> = slices.keys().map(|slice| (*slice, around(*slice))).collect();
+    by_area.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    let largest = by_area.first().map_or(0.0, |slice| slice.1);
+    let mut floors: Vec<f64> = Vec::new();
+    for (slice, area_m2) in by_area {
+        let height_m = (slice as f64 + 0.5) * SLICE_M;
+        if area_m2 >= LEAST_SHARE * largest && floors.iter().all(|floor| (floor - height_m).abs() >= STOREY_M) {
+            floors.push(height_m);
+        }
+    }
+    floors.sort_by(f64::total_cmp);
+    floors
+}
+
+impl Ground {
+    /// The storey of a place on the ground, the lowest being 1.
+    #[must_use]
+    pub fn level(&self, place: DVec3) -> u32 {
+        let under = self.storeys_m.iter().filter(|floor_m| **floor_m <= place.z + BELOW_M).count();
+        under.max(1) as u32
+    }
+}

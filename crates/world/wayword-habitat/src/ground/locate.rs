@@ -1,0 +1,67 @@
+//! Where somebody stands who is not quite on the ground: Detour's `findNearestPoly` as Habitat asks it.
+
+use super::{
+    Ground,
+    polygon::{Polygon, nearest_on_edge},
+};
+use wayword_core::DVec3;
+
+/// How far from a place ground is looked for: half the box, metres (`PathFinder::Impl`, `polyPickExt`).
+const REACH_M: DVec3 = DVec3::new(2.0, 2.0, 4.0);
+
+/// A place on the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foothold {
+    /// On the surface.
+    pub place: DVec3,
+    pub(super) polygon: usize,
+    /// Number of the island, the largest being 0.
+    pub island: usize,
+}
+
+impl Ground {
+    /// The ground nearest to a place, within 2 m to all sides and 4 m up and down. Straight under or over a place, what is within
+    /// a step counts as no distance.
+    #[must_use]
+    pub fn nearest(&self, place: DVec3) -> Option<Foothold> {
+        self.nearest_of(place, |_| true)
+    }
+
+    /// The same among the polygons of one island.
+    #[must_use]
+    pub fn nearest_on(&self, island: usize, place: DVec3) -> Option<Foothold> {
+        self.nearest_of(place, |polygon| polygon.island == island)
+    }
+
+    fn nearest_of(&self, place: DVec3, wanted: impl Fn(&Polygon) -> bool) -> Option<Foothold> {
+        if !place.is_finite() {
+            return None;
+        }
+        let (low, high) = (place - REACH_M, place + REACH_M);
+        let mut best: Option<(f64, Foothold)> = None;
+        for (index, polygon) in self.polygons.iter().enumerate() {
+            let meets = polygon.low.cmple(high).all() && polygon.high.cmpge(low).all();
+            if !(meets && polygon.is_walkable && wanted(polygon)) {
+                continue;
+            }
+            let (on, off) = self.nearest_in(polygon, place);
+            if best.is_none_or(|(least, _)| off < least) {
+                best = Some((off, Foothold { place: on, polygon: index, island: polygon.island }));
+            }
+        }
+        best.map(|(_, foothold)| foothold)
+    }
+
+    /// The nearest place of a polygon, and the square of how far it counts as being off.
+    fn nearest_in(&self, polygon: &Polygon, place: DVec3) -> (DVec3, f64) {
+        if let Some(height_m) = polygon.holds(place).then(|| polygon.height_m(place)).flatten() {
+            let off_m = ((place.z - height_m).abs() - self.climb_m).max(0.0);
+            return (place.with_z(height_m), off_m * off_m);
+        }
+        let sides = polygon.triangles.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]);
+        let on = sides.map(|(a, b)| nearest_on_edge(a, b, place));
+        let off = |on: &DVec3| (*on - place).truncate().length_squared();
+        let on = on.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_else(|| polygon.nearest_on_border(place));
+        (on, on.distance_squared(place))
+    }
+}

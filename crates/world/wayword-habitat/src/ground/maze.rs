@@ -1,0 +1,202 @@
+//! One island as the search for shortest ways needs it.
+//!
+//! The search (polyanya: Cui, Harabor, Grastien, "Compromise-free Pathfinding on a Navigation Mesh", IJCAI 2017) knows the plane
+//! alone. It goes from polygon to polygon over shared edges, so floors that lie above one another do not disturb it; but it
+//! remembers places at which ways bend by their coordinates, so two of them must not coincide, and start and end must be
+//! known by their polygon.
+
+use super::{Foothold, polygon::Polygon};
+use glam::{DVec2, Vec2};
+use polyanya::{Mesh, Vertex};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::DVec3;
+
+/// Two vertices on doors between tiles are one when they lie this near, metres.
+const WELD_M: f64 = 1e-3;
+/// And when their heights differ by less than this, metres.
+const SAME_STOREY_M: f64 = 0.5;
+/// A bend lies this near to its vertex, metres: the search rounds by millimetres.
+const BEND_M: f64 = 0.02;
+
+/// An island made ready for the search.
+#[derive(Debug)]
+pub(super) struct Maze {
+    mesh: Mesh,
+    /// The coordinates there are counted from here, so that they are small.
+    origin: DVec2,
+    /// Where each vertex of the search lies.
+    places: Vec<DVec3>,
+    /// The search's number of each polygon.
+    numbers: BTreeMap<usize, u32>,
+}
+
+impl Maze {
+    pub(super) fn new(polygons: &[Polygon], members: &[usize]) -> Option<Self> {
+        let numbers: BTreeMap<usize, u32> =
+            members.iter().enumerate().map(|(at, polygon)| (*polygon, at as u32)).collect();
+        let outlines = Outlines::new(members.iter().map(|polygon| &polygons[*polygon]));
+        let low = outlines.places.iter().copied().reduce(DVec3::min)?;
+        let high = outlines.places.iter().copied().reduce(DVec3::max)?;
+        let origin = ((low + high) / 2.0).truncate();
+        let flat = distinct(&outlines.places, origin);
+        let vertices =
+            flat.into_iter().zip(outlines.around()).map(|(coords, around)| Vertex::new(coords, around)).collect();
+        let one_way =
+            |polygon: &usize| polygons[*polygon].neighbours().filter(|other| numbers.contains_key(other)).count() < 2;
+        let pieces = members
+            .iter()
+            .zip(&outlines.rings)
+            .map(|(polygon, ring)| polyanya::Polygon::new(ring.clone(), one_way(polygon)));
+        let mut mesh = Mesh::new(vertices, pieces.collect()).ok()?;
+        let heights = outlines.places.iter().map(|place| place.z as f32).collect();
+        mesh.layers.first_mut()?.set_heights(heights).ok()?;
+        mesh.set_search_delta(1e-3);
+        Some(Self { mesh, origin, places: outlines.places, numbers })
+    }
+
+    /// Where the shortest way between two places of the island bends.
+    pub(super) fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
+        let (from, to) = (self.coords(start)?, self.coords(end)?);
+        let path = self.mesh.path(from, to)?;
+        let layer = self.mesh.layers.first()?;
+        let rings: Vec<&[u32]> = path
+            .polygons()
+            .iter()
+            .filter_map(|(_, polygon)| layer.polygons.get(*polygon as usize))
+            .map(|polygon| polygon.vertices.as_slice())
+            .collect();
+        let mut bends = Vec::new();
+        // The way goes through the polygons in their order, so a bend lies in none before that of the last one.
+        let mut reached = 0;
+        for bend in path.path.split_last().map_or(&[][..], |(_, before)| before) {
+            let found = rings.iter().enumerate().skip(reached).find_map(|(at, ring)| {
+                let off =
+                    |vertex: &u32| layer.vertices.get(*vertex as usize).map_or(f32::MAX, |v| v.coords.distance(*bend));
+                let vertex = ring.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+                (f64::from(off(vertex)) < BEND_M).then_some((at, *vertex))
+            });
+            let (at, vertex) = found?;
+            reached = at;
+            let place = self.places.get(vertex as usize)?;
+            if bends.last() != Some(place) {
+                bends.push(*place);
+            }
+        }
+        Some(bends)
+    }
+
+    /// A place as the search knows it. It finds polygons by coordinates and mean height, which can name another storey's under
+    /// a slope: a place a little further inside is then tried.
+    fn coords(&self, foothold: &Foothold) -> Option<polyanya::Coords> {
+        let number = *self.numbers.get(&foothold.polygon)?;
+        let layer = self.mesh.layers.first()?;
+        let ring = &layer.polygons.get(number as usize)?.vertices;
+        let corners = || ring.iter().filter_map(|vertex| layer.vertices.get(*vertex as usize));
+        let middle = corners().map(|vertex| vertex.coords).sum::<Vec2>() / ring.len() as f32;
+        let mean_m =
+            ring.iter().filter_map(|vertex| self.places.get(*vertex as usize)).map(|place| place.z).sum::<f64>()
+                / ring.len() as f64;
+        let place = (foothold.place.truncate() - self.origin).as_vec2();
+        let tries = [0.0, 1e-4, 1e-3, 1e-2].map(|share| place + (middle - place) * share);
+        tries.into_iter().find_map(|place| {
+            let found = self.mesh.get_closest_point_at_height(place, mean_m as f32)?;
+            let found_number = found.polygon() & 0x00ff_ffff;
+            (found_number == number || self.touch(found_number, number)).then_some(found)
+        })
+    }
+
+    /// Whether two polygons share an edge: a place on it belongs to both.
+    fn touch(&self, a: u32, b: u32) -> bool {
+        let layer = self.mesh.layers.first();
+        let ring = |number: u32| layer.and_then(|layer| layer.polygons.get(number as usize)).map(|p| &p.vertices);
+        let (Some(a), Some(b)) = (ring(a), ring(b)) else { return false };
+        a.iter().filter(|vertex| b.contains(vertex)).count() >= 2
+    }
+}
+
+/// The polygons' outlines over common vertices, with a vertex at both ends of every door.
+struct Outlines {
+    places: Vec<DVec3>,
+    /// For each polygon, counter-clockwise.
+    rings: Vec<Vec<u32>>,
+}
+
+impl Outlines {
+    fn new<'a>(polygons: impl Iterator<Item = &'a Polygon>) -> Self {
+        let mut welds = Welds::default();
+        let ring = |polygon: &Polygon| {
+            let mut ring: Vec<u32> = Vec::with_capacity(polygon.corners.len());
+            for (corner, next) in polygon.edges() {
+                let mut shares: Vec<f64> = corner.portals.iter().flat_map(|door| [door.from, door.to]).collect();
+                shares.sort_by(f64::total_cmp);
+                let doors = shares.into_iter().map(|share| corner.place.lerp(next.place, share));
+                for place in std::iter::once(corner.place).chain(doors) {
+                    let vertex = welds.vertex(place);
+                    if !ring.contains(&vertex) {
+                        ring.push(vertex);
+                    }
+                }
+            }
+            ring
+        };
+        let rings = polygons.map(ring).collect();
+        Self { places: welds.places, rings }
+    }
+
+    /// The polygons at each vertex, and `u32::MAX` where it lies on the border.
+    fn around(&self) -> Vec<Vec<u32>> {
+        let mut around: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); self.places.len()];
+        let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        for (number, ring) in self.rings.iter().enumerate() {
+            for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+                around[*a as usize].insert(number as u32);
+                *edges.entry((*a.min(b), *a.max(b))).or_default() += 1;
+            }
+        }
+        for ((a, b), _) in edges.into_iter().filter(|(_, polygons)| *polygons == 1) {
+            around[a as usize].insert(u32::MAX);
+            around[b as usize].insert(u32::MAX);
+        }
+        around.into_iter().map(|polygons| polygons.into_iter().collect()).collect()
+    }
+}
+
+/// Vertices by their place. What lies at the same place seen from above is one unless it is a storey apart: tiles that meet in
+/// a door may differ in height by a climb.
+#[derive(Default)]
+struct Welds {
+    places: Vec<DVec3>,
+    by_cell: BTreeMap<(i64, i64), Vec<u32>>,
+}
+
+impl Welds {
+    fn vertex(&mut self, place: DVec3) -> u32 {
+        let (x, y) = ((place.x / WELD_M).floor() as i64, (place.y / WELD_M).floor() as i64);
+        let cells = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (x + dx, y + dy)));
+        let near = |vertex: &&u32| {
+            let off = self.places[**vertex as usize] - place;
+            off.truncate().abs().max_element() < WELD_M && off.z.abs() < SAME_STOREY_M
+        };
+        let known = cells.filter_map(|cell| self.by_cell.get(&cell)).flatten().find(near);
+        if let Some(vertex) = known {
+            return *vertex;
+        }
+        let vertex = self.places.len() as u32;
+        self.places.push(place);
+        self.by_cell.entry((x, y)).or_default().push(vertex);
+        vertex
+    }
+}
+
+/// The places seen from above, counted from the origin: where two coincide, one moves by a hair.
+fn distinct(places: &[DVec3], origin: DVec2) -> Vec<Vec2> {
+    let mut taken = BTreeSet::new();
+    let flat = |place: &DVec3| {
+        let mut flat = (place.truncate() - origin).as_vec2();
+        while !taken.insert((flat.x.to_bits(), flat.y.to_bits())) {
+            flat.x = flat.x.next_up();
+        }
+        flat
+    };
+    places.iter().map(flat).collect()
+}

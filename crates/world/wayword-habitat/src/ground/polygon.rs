@@ -1,0 +1,131 @@
+//! One convex piece of ground.
+
+use crate::{axes::wayword_from_habitat, navmesh::Tile};
+use wayword_core::DVec3;
+
+/// A convex piece of ground with the surface over it.
+#[derive(Debug)]
+pub(super) struct Polygon {
+    /// Counter-clockwise from above, at least three unless it is no ground.
+    pub(super) corners: Vec<Corner>,
+    pub(super) triangles: Vec<[DVec3; 3]>,
+    pub(super) area_m2: f64,
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
+    pub(super) is_walkable: bool,
+    /// Number of its island, the largest being 0.
+    pub(super) island: usize,
+}
+
+/// A corner, and the edge from it to the next one.
+#[derive(Clone, Debug)]
+pub(super) struct Corner {
+    pub(super) place: DVec3,
+    /// Who borders there, within the tile.
+    pub(super) neighbour: Option<usize>,
+    /// Who borders there in other tiles, with the ends of what is shared.
+    pub(super) portals: Vec<Portal>,
+}
+
+/// A part of an edge behind which lies another tile's polygon.
+#[derive(Clone, Debug)]
+pub(super) struct Portal {
+    pub(super) polygon: usize,
+    /// Shares of the edge's length, the smaller first.
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+pub(super) fn world(place: [f32; 3]) -> DVec3 {
+    wayword_from_habitat(glam::Vec3::from(place).as_dvec3())
+}
+
+impl Polygon {
+    /// A polygon of a tile; `neighbour` tells who lies behind each of the tile's edges.
+    pub(super) fn new(tile: &Tile, index: usize, neighbour: impl Fn(usize) -> Option<usize>) -> Self {
+        let poly = &tile.polys[index];
+        let places: Vec<DVec3> = poly.corners().iter().map(|vert| world(tile.verts[usize::from(*vert)])).collect();
+        let corner = |edge: usize| Corner { place: places[edge], neighbour: neighbour(edge), portals: Vec::new() };
+        let mut corners: Vec<Corner> = (0..places.len()).map(corner).collect();
+        if doubled_area(&places) < 0.0 {
+            // The edge of a corner is the one to the next: turned round, it belongs to the other end.
+            corners.reverse();
+            let first = corners.first().map(|corner| corner.neighbour);
+            for at in 0..corners.len() {
+                let next = corners.get(at + 1).map(|corner| corner.neighbour).or(first);
+                corners[at].neighbour = next.flatten();
+            }
+        }
+        let triangles: Vec<[DVec3; 3]> =
+            tile.triangles(index).into_iter().map(|triangle| triangle.map(world)).collect();
+        let area = |[a, b, c]: &[DVec3; 3]| 0.5 * (*b - *a).cross(*c - *a).length();
+        let all = || triangles.iter().flatten().chain(&places);
+        Self {
+            area_m2: triangles.iter().map(area).sum(),
+            low: all().copied().reduce(DVec3::min).unwrap_or_default(),
+            high: all().copied().reduce(DVec3::max).unwrap_or_default(),
+            is_walkable: poly.is_ground() && corners.len() >= 3,
+            island: usize::MAX,
+            corners,
+            triangles,
+        }
+    }
+
+    /// The edges, each with its corner first.
+    pub(super) fn edges(&self) -> impl Iterator<Item = (&Corner, &Corner)> {
+        self.corners.iter().zip(self.corners.iter().cycle().skip(1))
+    }
+
+    /// Everybody who borders on it.
+    pub(super) fn neighbours(&self) -> impl Iterator<Item = usize> {
+        let portals = self.corners.iter().flat_map(|corner| &corner.portals).map(|portal| portal.polygon);
+        self.corners.iter().filter_map(|corner| corner.neighbour).chain(portals)
+    }
+
+    /// Whether a place lies over it, its edges included.
+    pub(super) fn holds(&self, place: DVec3) -> bool {
+        self.edges().all(|(a, b)| side(a.place, b.place, place) >= 0.0)
+    }
+
+    /// The height of its surface under or over a place that it holds.
+    pub(super) fn height_m(&self, place: DVec3) -> Option<f64> {
+        let over = |triangle: &&[DVec3; 3]| {
+            let [a, b, c] = **triangle;
+            let sides = [side(a, b, place), side(b, c, place), side(c, a, place)];
+            // Either way round, and with a hair's breadth of room, so that no place falls between two triangles.
+            sides.iter().all(|side| *side >= -1e-9) || sides.iter().all(|side| *side <= 1e-9)
+        };
+        let [a, b, c] = *self.triangles.iter().find(over)?;
+        let whole = side(a, b, c);
+        if whole == 0.0 {
+            return Some(a.z);
+        }
+        let (to_b, to_c) = (side(c, a, place) / whole, side(a, b, place) / whole);
+        Some(a.z + (b.z - a.z) * to_b + (c.z - a.z) * to_c)
+    }
+
+    /// The place on its border that lies nearest to one outside, seen from above.
+    pub(super) fn nearest_on_border(&self, place: DVec3) -> DVec3 {
+        let edges = self.edges().map(|(a, b)| nearest_on_edge(a.place, b.place, place));
+        let off = |on: &DVec3| (*on - place).truncate().length_squared();
+        edges.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(place)
+    }
+}
+
+/// Twice the area of a triangle seen from above; positive where c lies left of the way from a to b.
+pub(super) fn side(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
+}
+
+fn doubled_area(places: &[DVec3]) -> f64 {
+    let first = places.first().copied().unwrap_or_default();
+    places.windows(2).map(|pair| side(first, pair[0], pair[1])).sum()
+}
+
+/// The place on an edge nearest to another seen from above, with the edge's height there.
+pub(super) fn nearest_on_edge(a: DVec3, b: DVec3, place: DVec3) -> DVec3 {
+    let along = (b - a).truncate();
+    let length_squared = along.length_squared();
+    let share = if length_squared > 0.0 { (place - a).truncate().dot(along) / length_squared } else { 0.0 };
+    a + (b - a) * share.clamp(0.0, 1.0)
+}

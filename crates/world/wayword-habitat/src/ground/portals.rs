@@ -1,0 +1,100 @@
+//! Doors between tiles: edges on a tile's side that lie along those of the tile beside it (`dtNavMesh::connectExtLinks`).
+
+use super::polygon::{Polygon, Portal, world};
+use crate::navmesh::{Behind, NavMesh};
+use std::collections::BTreeMap;
+use wayword_core::DVec3;
+
+/// What two edges must share to be a door, metres.
+const LEAST_M: f64 = 0.02;
+/// How far the sides of two tiles may lie apart, metres.
+const APART_M: f64 = 0.01;
+
+/// An edge on a side of a tile.
+#[derive(Debug)]
+struct Opening {
+    polygon: usize,
+    corner: usize,
+    ends: [DVec3; 2],
+    /// 0 where the side is crossed along Habitat's x, 1 along its z.
+    axis: usize,
+}
+
+/// Finds the doors and enters them on both sides.
+pub(super) fn open(mesh: &NavMesh, polygons: &mut [Polygon], climb_m: f64) {
+    // Keyed by the tile's place and the side: 0 is +x, 2 is +z, 4 is -x, 6 is -z.
+    let mut sides: BTreeMap<([i32; 2], u8), Vec<Opening>> = BTreeMap::new();
+    let mut first = 0;
+    for tile in &mesh.tiles {
+        let [x, z, _] = tile.header.place;
+        for (index, poly) in tile.polys.iter().enumerate() {
+            for edge in 0..poly.corners().len() {
+                let Behind::Portal(side) = poly.behind(edge) else { continue };
+                let place = |corner: usize| world(tile.verts[usize::from(poly.corners()[corner])]);
+                let ends = [place(edge), place((edge + 1) % poly.corners().len())];
+                let corner = polygons[first + index].corners.iter().position(|corner| ends.contains(&corner.place));
+                let Some(corner) = corner.and_then(|_| edge_of(&polygons[first + index], ends)) else { continue };
+                let axis = usize::from(side == 2 || side == 6);
+                let opening = Opening { polygon: first + index, corner, ends, axis };
+                sides.entry(([x, z], side)).or_default().push(opening);
+            }
+        }
+        first += tile.polys.len();
+    }
+    for ((place, side), openings) in &sides {
+        let (beside, opposite) = match side {
+            0 => (place[0].checked_add(1).map(|x| [x, place[1]]), 4),
+            2 => (place[1].checked_add(1).map(|z| [place[0], z]), 6),
+            // The other two sides have been met from there.
+            _ => continue,
+        };
+        let Some(others) = beside.and_then(|beside| sides.get(&(beside, opposite))) else { continue };
+        for one in openings {
+            for other in others {
+                join(polygons, one, other, climb_m);
+            }
+        }
+    }
+}
+
+/// The corner from which the edge with these ends runs, whichever way round.
+fn edge_of(polygon: &Polygon, ends: [DVec3; 2]) -> Option<usize> {
+    polygon.edges().position(|(a, b)| ends == [a.place, b.place] || ends == [b.place, a.place])
+}
+
+fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) {
+    // World x is Habitat's x, world y its -z: what runs along the side is the other one.
+    let across = |place: DVec3| if one.axis == 0 { place.x } else { place.y };
+    let along = |place: DVec3| if one.axis == 0 { place.y } else { place.x };
+    if (across(one.ends[0]) - across(other.ends[0])).abs() > APART_M {
+        return;
+    }
+    let span = |opening: &Opening| {
+        let [a, b] = opening.ends.map(along);
+        (a.min(b), a.max(b))
+    };
+    let (a, b) = (span(one), span(other));
+    let (low, high) = (a.0.max(b.0), a.1.min(b.1));
+    if high - low < LEAST_M {
+        return;
+    }
+    let height = |opening: &Opening, at: f64| {
+        let [from, to] = opening.ends;
+        let length = along(to) - along(from);
+        from.z + (to.z - from.z) * ((at - along(from)) / length)
+    };
+    // Within a climb of one another at an end, or crossing between (`overlapSlabs`).
+    let gap = |at: f64| height(one, at) - height(other, at);
+    let (at_low, at_high) = (gap(low), gap(high));
+    let near = at_low.abs() <= 2.0 * climb_m || at_high.abs() <= 2.0 * climb_m || at_low * at_high < 0.0;
+    if !near {
+        return;
+    }
+    for (opening, beyond) in [(one, other), (other, one)] {
+        let corners = &mut polygons[opening.polygon].corners;
+        let (start, next) = (corners[opening.corner].place, corners[(opening.corner + 1) % corners.len()].place);
+        let share = |at: f64| ((at - along(start)) / (along(next) - along(start))).clamp(0.0, 1.0);
+        let (from, to) = (share(low).min(share(high)), share(low).max(share(high)));
+        corners[opening.corner].portals.push(Portal { polygon: beyond.polygon, from, to });
+    }
+}

@@ -1,0 +1,182 @@
+//! The viewpoint graph of an island: places well inside the ground, joined where the walk between is short and nearly straight.
+
+use super::{Ground, Way, polygon::nearest_on_edge};
+use crate::axes::EYE_M;
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError, rng};
+
+/// No viewpoint lies nearer to another than this on the same floor, metres.
+const APART_M: f64 = 1.8;
+/// Longest edge, metres.
+const REACH_M: f64 = 4.0;
+/// A walk may be longer than the straight line by this factor and still be an edge.
+const DETOUR: f64 = 1.1;
+/// Two edges of one viewpoint that leave within this angle: the longer one is dropped, as it leads past the other's end.
+const CLOSE_RAD: f64 = 0.35;
+/// Tries for each square metre of ground, and at most.
+const TRIES_PER_M2: f64 = 12.0;
+const MAX_TRIES: usize = 40_000;
+/// More open than this is no better, metres.
+const OPEN_ENOUGH_M: f64 = 1.0;
+
+/// A road map over an island (0 is the largest). The same ground gives the same graph. Every viewpoint can be reached from every
+/// other; names count from `v0000`.
+///
+/// # Errors
+/// Never for ground whose coordinates are finite; the graph checks names and positions itself.
+pub fn viewpoint_graph(ground: &Ground, island: usize) -> Result<ViewpointGraph, GraphError> {
+    let mut map = RoadMap { ground, island, nodes: Vec::new(), edges: Vec::new() };
+    map.place();
+    map.join_near();
+    map.connect();
+    map.into_graph()
+}
+
+struct RoadMap<'a> {
+    ground: &'a Ground,
+    island: usize,
+    /// On the ground.
+    nodes: Vec<DVec3>,
+    edges: Vec<(usize, usize)>,
+}
+
+impl RoadMap<'_> {
+    /// Open places first, then what lies nearer to walls, as long as there is nothing near.
+    fn place(&mut self) {
+        let area_m2 = self.ground.islands.get(self.island).map_or(0.0, |island| island.area_m2);
+        let tries = ((area_m2 * TRIES_PER_M2).ceil() as usize).clamp(1, MAX_TRIES);
+        let mut rng = rng(0, &["habitat viewpoints"]);
+        let border = self.border();
+        let mut places: Vec<(f64, DVec3)> = Vec::with_capacity(tries);
+        for _ in 0..tries {
+            let Some(foothold) = self.ground.random_place(self.island, &mut rng) else { return };
+            places.push((clearance(&border, foothold.place), foothold.place));
+        }
+        places.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (_, place) in places {
+            if self.nodes.iter().all(|node| far(*node, place)) {
+                self.nodes.push(place);
+            }
+        }
+        // By height and place, so that names say something about where they lie.
+        self.nodes.sort_by(|a, b| {
+            let key = |place: &DVec3| [(place.z / 0.5).floor(), (place.y / 2.0).floor(), place.x];
+            let (a, b) = (key(a), key(b));
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
+        });
+    }
+
+    /// The edges behind which there is no ground.
+    fn border(&self) -> Vec<(DVec3, DVec3)> {
+        let members = self.ground.islands.get(self.island).map_or(&[][..], |island| &island.polygons);
+        let edges = members.iter().flat_map(|polygon| self.ground.polygons[*polygon].edges());
+        let closed = edges.filter(|(corner, _)| corner.neighbour.is_none() && corner.portals.is_empty());
+        closed.map(|(corner, next)| (corner.place, next.place)).collect()
+    }
+
+    fn join_near(&mut self) {
+        let mut found: Vec<(f64, usize, usize)> = Vec::new();
+        for a in 0..self.nodes.len() {
+            for b in a + 1..self.nodes.len() {
+                let straight_m = self.nodes[a].distance(self.nodes[b]);
+                if straight_m > REACH_M {
+                    continue;
+                }
+                if self.way(a, b).is_some_and(|way| way.length_m <= straight_m * DETOUR) {
+                    found.push((straight_m, a, b));
+                }
+            }
+        }
+        found.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        for (_, a, b) in found {
+            let leads_past = |from: usize, to: usize| {
+                let way = (self.nodes[to] - self.nodes[from]).normalize_or_zero();
+                self.neighbours(from).any(|other| {
+                    (self.nodes[other] - self.nodes[from]).normalize_or_zero().dot(way) > libm::cos(CLOSE_RAD)
+                })
+            };
+            if !leads_past(a, b) && !leads_past(b, a) {
+                self.edges.push((a, b));
+            }
+        }
+    }
+
+    fn neighbours(&self, node: usize) -> impl Iterator<Item = usize> {
+        self.edges.iter().filter_map(move |(a, b)| match node {
+            _ if *a == node => Some(*b),
+            _ if *b == node => Some(*a),
+            _ => None,
+        })
+    }
+
+    fn way(&self, a: usize, b: usize) -> Option<Way> {
+        self.ground.geodesic(self.nodes[a], self.nodes[b]).ok()
+    }
+
+    /// Joins what is still apart, the nearest parts first: with a viewpoint at every bend of the way between.
+    fn connect(&mut self) {
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        let parts = self.parts();
+        for a in 0..self.nodes.len() {
+            for b in a + 1..self.nodes.len() {
+                if parts[a] != parts[b] {
+                    pairs.push((self.nodes[a].distance(self.nodes[b]), a, b));
+                }
+            }
+        }
+        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        let mut parts = parts;
+        for (_, a, b) in pairs {
+            if parts[a] == parts[b] {
+                continue;
+            }
+            let Some(way) = self.way(a, b) else { continue };
+            let mut last = a;
+            for bend in way.corners.iter().skip(1).rev().skip(1).rev() {
+                self.nodes.push(*bend);
+                parts.push(parts[a]);
+                self.edges.push((last, self.nodes.len() - 1));
+                last = self.nodes.len() - 1;
+            }
+            self.edges.push((last, b));
+            let (from, to) = (parts[b], parts[a]);
+            parts.iter_mut().filter(|part| **part == from).for_each(|part| *part = to);
+        }
+    }
+
+    /// For each node the smallest node that it can be reached from.
+    fn parts(&self) -> Vec<usize> {
+        let mut parts: Vec<usize> = (0..self.nodes.len()).collect();
+        for (a, b) in &self.edges {
+            let (keep, drop) = (parts[*a].min(parts[*b]), parts[*a].max(parts[*b]));
+            parts.iter_mut().filter(|part| **part == drop).for_each(|part| *part = keep);
+        }
+        parts
+    }
+
+    fn into_graph(self) -> Result<ViewpointGraph, GraphError> {
+        let mut graph = ViewpointGraph::default();
+        let mut ids: Vec<ViewpointId> = Vec::with_capacity(self.nodes.len());
+        for (number, place) in self.nodes.iter().enumerate() {
+            let Ok(id) = ViewpointId::new(format!("v{number:04}")) else { continue };
+            graph.add(id.clone(), *place + DVec3::Z * EYE_M, Some(self.ground.level(*place)))?;
+            ids.push(id);
+        }
+        for (a, b) in &self.edges {
+            graph.join(&ids[*a], &ids[*b])?;
+        }
+        Ok(graph)
+    }
+}
+
+/// Whether two places may both be viewpoints.
+fn far(a: DVec3, b: DVec3) -> bool {
+    let off = a - b;
+    off.truncate().length() >= APART_M || off.z.abs() > 1.2
+}
+
+/// How far a place lies from the border on its floor, as far as that matters.
+fn clearance(border: &[(DVec3, DVec3)], place: DVec3) -> f64 {
+    let on_floor = |(a, b): &&(DVec3, DVec3)| a.z.min(b.z) < place.z + 1.0 && a.z.max(b.z) > place.z - 1.0;
+    let off = |(a, b): &(DVec3, DVec3)| (nearest_on_edge(*a, *b, place) - place).truncate().length();
+    border.iter().filter(on_floor).map(off).fold(OPEN_ENOUGH_M, f64::min)
+}

@@ -1,0 +1,175 @@
+//! Ground that the tests pave themselves.
+
+use super::*;
+use crate::navmesh::{
+    NavMeshSettings,
+    build::{Piece, Surface, single_tile},
+};
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use wayword_core::rng;
+
+/// A navmesh of polygons given by their corners in Wayword's frame, counter-clockwise; those that share two corners border on
+/// one another.
+pub(crate) fn paved(polygons: &[Vec<[f32; 3]>]) -> NavMesh {
+    let mut surface = Surface { low_m: [-50.0; 3], high_m: [50.0; 3], ..Surface::default() };
+    let mut edges: BTreeMap<(u16, u16), (usize, usize)> = BTreeMap::new();
+    for (number, polygon) in polygons.iter().enumerate() {
+        let mut piece = Piece { neighbours: vec![0; polygon.len()], ..Piece::default() };
+        for [x, y, z] in polygon {
+            let vert = [*x, *z, -*y];
+            let known = surface.verts.iter().position(|other| *other == vert);
+            piece.corners.push(known.unwrap_or(surface.verts.len()) as u16);
+            if known.is_none() {
+                surface.verts.push(vert);
+            }
+        }
+        for edge in 0..polygon.len() {
+            let (a, b) = (piece.corners[edge], piece.corners[(edge + 1) % polygon.len()]);
+            if let Some((other, other_edge)) = edges.insert((a.min(b), a.max(b)), (number, edge)) {
+                piece.neighbours[edge] = other as u16 + 1;
+                surface.pieces[other].neighbours[other_edge] = number as u16 + 1;
+            }
+        }
+        piece.detail_tris = (2..polygon.len() as u8).map(|last| [0, last - 1, last, 0]).collect();
+        surface.pieces.push(piece);
+    }
+    single_tile(&surface, NavMeshSettings::default())
+}
+
+/// A rectangle at a height.
+fn slab(x: [f32; 2], y: [f32; 2], z: f32) -> Vec<[f32; 3]> {
+    vec![[x[0], y[0], z], [x[1], y[0], z], [x[1], y[1], z], [x[0], y[1], z]]
+}
+
+/// A floor of 3 x 3 squares of a metre without the middle one.
+fn ring() -> Vec<Vec<[f32; 3]>> {
+    let squares = (0..9).filter(|n| *n != 4).map(|n| ((n % 3) as f32, (n / 3) as f32));
+    squares.map(|(x, y)| slab([x, x + 1.0], [y, y + 1.0], 0.0)).collect()
+}
+
+/// Two floors of 4 x 4 m above one another, of strips, and a ramp beside them from the lower's far end to the upper's near end:
+/// who goes up walks along the floor, back up the ramp, and stands above where she was.
+fn two_storeys() -> Vec<Vec<[f32; 3]>> {
+    let strip = |n: u8, z: f32| slab([0.0, 4.0], [f32::from(n), f32::from(n) + 1.0], z);
+    let mut polygons: Vec<_> = (0..4).map(|n| strip(n, 0.0)).collect();
+    polygons.extend((0..4).map(|n| strip(n, 3.0)));
+    polygons.push(vec![[4.0, 3.0, 0.0], [5.0, 3.0, 0.0], [5.0, 4.0, 0.0], [4.0, 4.0, 0.0]]);
+    polygons.push(vec![[4.0, 1.0, 3.0], [5.0, 1.0, 3.0], [5.0, 3.0, 0.0], [4.0, 3.0, 0.0]]);
+    polygons.push(vec![[4.0, 0.0, 3.0], [5.0, 0.0, 3.0], [5.0, 1.0, 3.0], [4.0, 1.0, 3.0]]);
+    polygons
+}
+
+fn at(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+#[test]
+fn ways_bend_around_what_is_no_ground() {
+    let ground = Ground::new(&paved(&ring()));
+    assert!((ground.area_m2() - 8.0).abs() < 1e-6);
+    let way = ground.geodesic(at(0.5, 1.5, 0.0), at(2.5, 1.4, 0.0)).unwrap();
+    assert_eq!(way.corners, [at(0.5, 1.5, 0.0), at(1.0, 1.0, 0.0), at(2.0, 1.0, 0.0), at(2.5, 1.4, 0.0)]);
+    let expected = 0.5_f64.hypot(0.5) + 1.0 + 0.5_f64.hypot(0.4);
+    assert!((way.length_m - expected).abs() < 1e-6);
+}
+
+#[test]
+fn a_place_under_another_floor_is_reached_by_the_ramp() {
+    let ground = Ground::new(&paved(&two_storeys()));
+    assert_eq!(ground.islands_m2().count(), 1);
+    let (below, above) = (at(2.0, 0.5, 0.0), at(2.0, 0.5, 3.0));
+    let way = ground.geodesic(below, above).unwrap();
+    // Along the lower floor, up between (4, 3) and (4, 1) where it is steep, and back.
+    assert_eq!(way.corners.len(), 4, "{way:?}");
+    let ramp = at(4.0, 3.0, 0.0).distance(at(4.0, 1.0, 3.0));
+    let expected = below.distance(at(4.0, 3.0, 0.0)) + ramp + at(4.0, 1.0, 3.0).distance(above);
+    assert!((way.length_m - expected).abs() < 1e-6, "{way:?}");
+    assert_eq!((ground.level(below), ground.level(above)), (1, 2));
+    // What is asked for a little below or above the floor is on that floor.
+    assert_eq!(ground.nearest(at(2.0, 0.5, 2.2)).unwrap().place, above);
+    assert_eq!(ground.nearest(at(2.0, 0.5, 0.9)).unwrap().place, below);
+}
+
+#[test]
+fn ground_that_is_not_joined_cannot_be_reached() {
+    let apart = vec![slab([0.0, 1.0], [0.0, 1.0], 0.0), slab([3.0, 5.0], [0.0, 1.0], 0.0)];
+    let ground = Ground::new(&paved(&apart));
+    assert_eq!(ground.islands_m2().map(f64::round).collect::<Vec<_>>(), [2.0, 1.0]);
+    assert_eq!(ground.geodesic(at(0.5, 0.5, 0.0), at(4.0, 0.5, 0.0)), Err(NoWay::Apart));
+    let far = at(0.5, 9.0, 0.0);
+    assert_eq!(ground.geodesic(far, at(4.0, 0.5, 0.0)), Err(NoWay::OffGround(far)));
+    assert!(ground.nearest(at(f64::NAN, 0.0, 0.0)).is_none());
+}
+
+#[test]
+fn slivers_are_no_ground() {
+    let sliver = vec![[1.0, 0.0, 0.0], [1.0 + 1e-6, 0.5, 0.0], [1.0, 1.0, 0.0]];
+    let ground = Ground::new(&paved(&[slab([0.0, 1.0], [0.0, 1.0], 0.0), sliver]));
+    assert!((ground.area_m2() - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn tiles_are_joined_where_their_edges_overlap() {
+    // Two tiles beside each other; the door between is the half of the first one's edge that the second one's covers.
+    let mut mesh = paved(&[slab([0.0, 2.0], [0.0, 2.0], 0.0)]);
+    let mut beside = paved(&[slab([2.0, 4.0], [1.0, 3.0], 0.1)]);
+    mesh.tiles[0].polys[0].open(1, 0);
+    beside.tiles[0].polys[0].open(3, 4);
+    beside.tiles[0].header.place = [1, 0, 0];
+    mesh.tiles.append(&mut beside.tiles);
+    let ground = Ground::new(&mesh);
+    assert_eq!(ground.islands_m2().count(), 1);
+    let way = ground.geodesic(at(1.0, 0.0, 0.0), at(4.0, 1.0, 0.1)).unwrap();
+    assert_eq!(way.corners.len(), 3, "{way:?}");
+    assert!(way.corners[1].truncate().distance(glam::DVec2::new(2.0, 1.0)) < 1e-6);
+    assert!(NavMesh::from_bytes(&mesh.to_bytes()).is_ok());
+}
+
+#[test]
+fn frames_stand_at_equal_distances_and_both_ends() {
+    let ground = Ground::new(&paved(&ring()));
+    let way = ground.geodesic(at(0.5, 0.5, 0.0), at(2.5, 0.5, 0.0)).unwrap();
+    let stops = stops_along(&ground, &way, 0.75);
+    let xs: Vec<f64> = stops.iter().map(|stop| (stop.position.x * 1000.0).round() / 1000.0).collect();
+    assert_eq!(xs, [0.5, 1.167, 1.833, 2.5]);
+    assert!(stops.iter().all(|stop| stop.position.z == crate::axes::EYE_M && stop.level == Some(1)));
+}
+
+#[test]
+fn the_viewpoint_graph_reaches_every_floor() {
+    let ground = Ground::new(&paved(&two_storeys()));
+    let graph = viewpoint_graph(&ground, 0).unwrap();
+    assert_eq!(graph.components(), 1);
+    let levels: std::collections::BTreeSet<_> = graph.viewpoints().map(|id| graph.level(id)).collect();
+    assert_eq!(levels, [Some(1), Some(2)].into());
+    assert!(graph.len() > 6, "{} viewpoints", graph.len());
+    for (a, b, length_m) in graph.edges() {
+        let under = |id| graph.position(id).unwrap() - DVec3::Z * crate::axes::EYE_M;
+        let walk = ground.geodesic(under(a), under(b)).unwrap();
+        assert!(walk.length_m <= length_m * 1.1 + 1e-6, "{a} to {b}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn random_places_lie_on_the_ground(seed: u64) {
+        let ground = Ground::new(&paved(&two_storeys()));
+        let mut rng = rng(seed, &["test"]);
+        let foothold = ground.random_place(0, &mut rng).unwrap();
+        let again = ground.nearest(foothold.place).unwrap();
+        prop_assert!(again.place.distance(foothold.place) < 1e-6);
+    }
+
+    #[test]
+    fn ways_keep_the_triangle_inequality_and_are_the_same_backwards(seed: u64) {
+        let ground = Ground::new(&paved(&two_storeys()));
+        let mut rng = rng(seed, &["test"]);
+        let places: Vec<DVec3> = (0..3).map(|_| ground.random_place(0, &mut rng).unwrap().place).collect();
+        let length = |a: usize, b: usize| ground.geodesic(places[a], places[b]).unwrap().length_m;
+        prop_assert!(length(0, 1) >= places[0].distance(places[1]) - 1e-6);
+        // The search is exact in the plane; on the ramp the surface is longer than it.
+        prop_assert!((length(0, 1) - length(1, 0)).abs() < 1e-3);
+        prop_assert!(length(0, 2) <= (length(0, 1) + length(1, 2)) * 1.3);
+    }
+}

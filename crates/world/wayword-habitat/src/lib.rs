@@ -1,0 +1,10 @@
+//! Habitat's scenes and navmeshes without Habitat: read, walked on, drawn.
+//!
+//! Everything that leaves this crate is in Wayword's frame (metres, z up, north is +y); files are in Habitat's.
+
+pub mod axes;
+pub mod ground;
+pub mod navmesh;
+
+pub use ground::{Foothold, Ground, NoWay, Way};
+pub use navmesh::{NavMesh, NavMeshError, NavMeshSettings};

@@ -1,0 +1,142 @@
+//! Making a tile out of polygons, as `dtCreateNavMeshData` does (Detour, `DetourNavMeshBuilder.cpp`).
+
+use super::{BvNode, DetailMesh, Grid, Header, MAX_CORNERS, NavMesh, NavMeshSettings, Poly, Tile};
+
+/// `DT_NULL_LINK`.
+const NO_LINK: u32 = u32::MAX;
+/// Recast's area of walkable ground, and Habitat's flag for it.
+const WALKABLE_AREA: u8 = 63;
+const WALK_FLAG: u16 = 1;
+
+/// Polygons before they are a tile.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Surface {
+    /// Metres, y up.
+    pub(crate) verts: Vec<[f32; 3]>,
+    pub(crate) pieces: Vec<Piece>,
+    pub(crate) low_m: [f32; 3],
+    pub(crate) high_m: [f32; 3],
+}
+
+/// One polygon with the surface over it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Piece {
+    /// Three to six vertices, and what lies behind the edge that begins at each: 0, or the number of a piece and 1.
+    pub(crate) corners: Vec<u16>,
+    pub(crate) neighbours: Vec<u16>,
+    /// Vertices of the detail mesh beyond the corners.
+    pub(crate) detail_verts: Vec<[f32; 3]>,
+    pub(crate) detail_tris: Vec<[u8; 4]>,
+}
+
+/// A navmesh of one tile, as Habitat bakes them. Counts above 65,535 are not Detour's: the caller keeps below.
+pub(crate) fn single_tile(surface: &Surface, settings: NavMeshSettings) -> NavMesh {
+    let (low_m, high_m) = (surface.low_m, surface.high_m);
+    let polys = surface.pieces.len() as u32;
+    let poly_bits = polys.max(1).next_power_of_two().ilog2();
+    let mut tile = tile(surface, &settings);
+    // Salt 1, tile 0: the reference that `dtNavMesh::init` gives to an only tile.
+    tile.reference = 1_u32.checked_shl(poly_bits).unwrap_or(0);
+    let grid = Grid {
+        origin_m: low_m,
+        tile_m: [high_m[0] - low_m[0], high_m[2] - low_m[2]],
+        max_tiles: 1,
+        max_polys: polys as i32,
+    };
+    NavMesh::new(grid, Some(settings), vec![tile])
+}
+
+/// A tile without a place in any grid.
+pub(crate) fn tile(surface: &Surface, settings: &NavMeshSettings) -> Tile {
+    let mut tile = Tile { verts: surface.verts.clone(), ..Tile::default() };
+    for piece in &surface.pieces {
+        let mut poly = Poly {
+            first_link: NO_LINK,
+            flags: WALK_FLAG,
+            vert_count: piece.corners.len().min(MAX_CORNERS) as u8,
+            area_and_type: WALKABLE_AREA,
+            ..Poly::default()
+        };
+        for (slot, corner) in poly.verts.iter_mut().zip(&piece.corners) {
+            *slot = *corner;
+        }
+        for (slot, neighbour) in poly.neis.iter_mut().zip(&piece.neighbours) {
+            *slot = *neighbour;
+        }
+        tile.polys.push(poly);
+        tile.detail_meshes.push(DetailMesh {
+            vert_base: tile.detail_verts.len() as u32,
+            tri_base: tile.detail_tris.len() as u32,
+            verts: piece.detail_verts.len() as u8,
+            tris: piece.detail_tris.len() as u8,
+            padding: [0; 2],
+        });
+        tile.detail_verts.extend(&piece.detail_verts);
+        tile.detail_tris.extend(&piece.detail_tris);
+    }
+    let edges: usize = surface.pieces.iter().map(|piece| piece.corners.len()).sum();
+    tile.links = vec![0; 12 * edges];
+    tile.bv_nodes = tree(surface, settings.cell_size_m);
+    tile.header = Header {
+        polys: tile.polys.len() as u32,
+        verts: tile.verts.len() as u32,
+        links: edges as u32,
+        detail_meshes: tile.detail_meshes.len() as u32,
+        detail_verts: tile.detail_verts.len() as u32,
+        detail_tris: tile.detail_tris.len() as u32,
+        bv_nodes: tile.bv_nodes.len() as u32,
+        off_mesh_base: tile.polys.len() as i32,
+        agent_m: [settings.agent_height_m, settings.agent_radius_m, settings.agent_max_climb_m],
+        low_m: surface.low_m,
+        high_m: surface.high_m,
+        bv_quant_factor: 1.0 / settings.cell_size_m,
+        ..Header::default()
+    };
+    tile
+}
+
+/// Boxes around the pieces, halved along the longest side until each holds one (`createBVTree`): twice as many nodes as
+/// pieces, the last of them empty.
+fn tree(surface: &Surface, cell_size_m: f32) -> Vec<BvNode> {
+    let steps = |metres: f32, low: f32| ((metres - low) / cell_size_m).clamp(0.0, f32::from(u16::MAX)) as u16;
+    let mut boxes: Vec<BvNode> = Vec::with_capacity(surface.pieces.len());
+    for (index, piece) in surface.pieces.iter().enumerate() {
+        let corners = piece.corners.iter().filter_map(|corner| surface.verts.get(usize::from(*corner)));
+        let (mut low, mut high) = ([u16::MAX; 3], [0; 3]);
+        for place in corners.chain(&piece.detail_verts) {
+            for axis in 0..3 {
+                let step = steps(place[axis], surface.low_m[axis]);
+                (low[axis], high[axis]) = (low[axis].min(step), high[axis].max(step));
+            }
+        }
+        boxes.push(BvNode { low, high, index: index as i32 });
+    }
+    let mut nodes = Vec::with_capacity(2 * boxes.len());
+    if !boxes.is_empty() {
+        divide(&mut boxes, &mut nodes);
+    }
+    nodes.resize(2 * boxes.len(), BvNode { low: [0; 3], high: [0; 3], index: 0 });
+    nodes
+}
+
+fn divide(boxes: &mut [BvNode], nodes: &mut Vec<BvNode>) {
+    if let [only] = boxes {
+        nodes.push(*only);
+        return;
+    }
+    let (mut low, mut high) = ([u16::MAX; 3], [0; 3]);
+    for each in boxes.iter() {
+        low = std::array::from_fn(|axis| low[axis].min(each.low[axis]));
+        high = std::array::from_fn(|axis: usize| high[axis].max(each.high[axis]));
+    }
+    let side = |axis: usize| high[axis].saturating_sub(low[axis]);
+    // The first of the longest, as `longestAxis` has it.
+    let longest = (1..3).fold(0, |best, axis| if side(axis) > side(best) { axis } else { best });
+    boxes.sort_by_key(|each| each.low[longest]);
+    let here = nodes.len();
+    nodes.push(BvNode { low, high, index: 0 });
+    let (first, second) = boxes.split_at_mut(boxes.len() / 2);
+    divide(first, nodes);
+    divide(second, nodes);
+    nodes[here].index = -((nodes.len() - here) as i32);
+}

@@ -1,0 +1,95 @@
+//! Little-endian numbers from bytes that may end anywhere.
+
+use super::error::NavMeshError;
+
+/// A place in a file, which only moves forward.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Cursor<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0 }
+    }
+
+    /// Bytes from the file's beginning.
+    pub(crate) fn at(&self) -> usize {
+        self.at
+    }
+
+    pub(crate) fn left(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    pub(crate) fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
+
+    /// The next `needed` bytes. The count is 64 bits wide, so that no product of a file's counts runs over.
+    pub(crate) fn take(&mut self, needed: u64, what: &'static str) -> Result<&'a [u8], NavMeshError> {
+        let short = NavMeshError::Short { offset: self.at, what, needed, left: self.left() };
+        let count = usize::try_from(needed).ok().filter(|count| *count <= self.left()).ok_or(short)?;
+        let taken = &self.bytes[self.at..self.at + count];
+        self.at += count;
+        Ok(taken)
+    }
+
+    fn array<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], NavMeshError> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N as u64, what)?);
+        Ok(array)
+    }
+
+    pub(crate) fn u8(&mut self, what: &'static str) -> Result<u8, NavMeshError> {
+        Ok(self.array::<1>(what)?[0])
+    }
+
+    pub(crate) fn u16(&mut self, what: &'static str) -> Result<u16, NavMeshError> {
+        Ok(u16::from_le_bytes(self.array(what)?))
+    }
+
+    pub(crate) fn u32(&mut self, what: &'static str) -> Result<u32, NavMeshError> {
+        Ok(u32::from_le_bytes(self.array(what)?))
+    }
+
+    pub(crate) fn i32(&mut self, what: &'static str) -> Result<i32, NavMeshError> {
+        Ok(i32::from_le_bytes(self.array(what)?))
+    }
+
+    /// Any 32 bits: what has to be finite is checked by who reads it.
+    pub(crate) fn f32(&mut self, what: &'static str) -> Result<f32, NavMeshError> {
+        Ok(f32::from_le_bytes(self.array(what)?))
+    }
+
+    /// A number of things; negative ones are refused.
+    pub(crate) fn count(&mut self, what: &'static str) -> Result<u32, NavMeshError> {
+        let offset = self.at;
+        let count = self.i32(what)?;
+        u32::try_from(count).map_err(|_| NavMeshError::value(offset, what, count, "a count of 0 or more"))
+    }
+
+    /// A number that must be this one.
+    pub(crate) fn magic(&mut self, what: &'static str, expected: i32, hint: &str) -> Result<(), NavMeshError> {
+        let offset = self.at;
+        let found = self.i32(what)?;
+        if found == expected {
+            return Ok(());
+        }
+        Err(NavMeshError::value(offset, what, format!("{found:#x}"), format!("{expected:#x}: {hint}")))
+    }
+
+    /// `N` finite numbers within 1000 km.
+    pub(crate) fn place<const N: usize>(&mut self, what: &'static str) -> Result<[f32; N], NavMeshError> {
+        let mut place = [0.0; N];
+        for number in &mut place {
+            let offset = self.at;
+            *number = self.f32(what)?;
+            if !(number.is_finite() && number.abs() <= 1e6) {
+                return Err(NavMeshError::value(offset, what, *number, "metres within 1000 km of the origin"));
+            }
+        }
+        Ok(place)
+    }
+}

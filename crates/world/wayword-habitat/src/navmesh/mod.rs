@@ -1,0 +1,143 @@
+//! Habitat's `.navmesh` files, byte for byte.
+//!
+//! Layout: `PathFinder::loadNavMesh` and `saveNavMesh` of habitat-sim 0.3.3 (version 2), and RecastDemo's `Sample::saveAll`
+//! (version 1, which has no settings); the tiles are Detour's, version 7, with 32 bit references. Everything is kept as it
+//! was, so that what was read is written back the same.
+
+pub(crate) mod build;
+mod cursor;
+mod error;
+mod header;
+mod poly;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod tile;
+
+pub use error::NavMeshError;
+pub(crate) use header::Header;
+pub(crate) use poly::{Behind, MAX_CORNERS, Poly};
+pub use settings::NavMeshSettings;
+pub(crate) use tile::{BvNode, DetailMesh, Tile};
+
+use cursor::Cursor;
+use header::HEADER_BYTES;
+
+/// "MSET", read as a little-endian number.
+const MAGIC: i32 = 0x4D53_4554;
+
+/// A navmesh as its file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NavMesh {
+    /// The grid of tiles (`dtNavMeshParams`).
+    pub(crate) grid: Grid,
+    /// How it was baked; version 1 files do not say.
+    pub(crate) settings: Option<NavMeshSettings>,
+    pub(crate) tiles: Vec<Tile>,
+    /// What follows the last tile; Habitat does not look at it.
+    rest: Vec<u8>,
+}
+
+/// Where tiles lie and how many there may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Grid {
+    pub(crate) origin_m: [f32; 3],
+    /// Width and height of a tile, metres.
+    pub(crate) tile_m: [f32; 2],
+    pub(crate) max_tiles: i32,
+    pub(crate) max_polys: i32,
+}
+
+impl NavMesh {
+    /// A navmesh of one's own.
+    pub(crate) fn new(grid: Grid, settings: Option<NavMeshSettings>, tiles: Vec<Tile>) -> Self {
+        Self { grid, settings, tiles, rest: Vec::new() }
+    }
+
+    /// Reads a file's bytes. Memory is bounded by their number: every list lies within them.
+    ///
+    /// # Errors
+    /// [`NavMeshError`] names the byte, what stands there, and what was expected.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, NavMeshError> {
+        let mut cursor = Cursor::new(bytes);
+        cursor.magic("the file's magic number", MAGIC, "not a navmesh of Habitat or Recast")?;
+        let version_at = cursor.at();
+        let version = cursor.i32("the file's version")?;
+        if !(1..=2).contains(&version) {
+            return Err(NavMeshError::value(version_at, "the file's version", version, "1 (Recast) or 2 (Habitat)"));
+        }
+        let tiles_at = cursor.at();
+        let count = cursor.count("the number of tiles")?;
+        let grid = Grid::read(&mut cursor)?;
+        let settings = if version == 2 { Some(NavMeshSettings::read(&mut cursor)?) } else { None };
+        let room = cursor.left() as u64 / (8 + HEADER_BYTES);
+        if u64::from(count) > room {
+            let expected = format!("at most {room}, for which the file has room");
+            return Err(NavMeshError::value(tiles_at, "the number of tiles", count, expected));
+        }
+        let tiles = (0..count).map(|_| read_tile(&mut cursor)).collect::<Result<_, _>>()?;
+        Ok(Self { grid, settings, tiles, rest: cursor.rest().to_vec() })
+    }
+
+    /// The file's bytes; the same ones where it was read from a file.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        out.extend_from_slice(&MAGIC.to_le_bytes());
+        out.extend_from_slice(&i32::from(self.version()).to_le_bytes());
+        out.extend_from_slice(&(self.tiles.len() as u32).to_le_bytes());
+        self.grid.write(&mut out);
+        if let Some(settings) = &self.settings {
+            settings.write(&mut out);
+        }
+        self.tiles.iter().for_each(|tile| tile.write(&mut out));
+        out.extend_from_slice(&self.rest);
+        out
+    }
+
+    /// 1 for Recast's own files, 2 for Habitat's, which say how they were baked.
+    #[must_use]
+    pub fn version(&self) -> u8 {
+        if self.settings.is_some() { 2 } else { 1 }
+    }
+
+    /// How it was baked, where the file says so.
+    #[must_use]
+    pub fn settings(&self) -> Option<&NavMeshSettings> {
+        self.settings.as_ref()
+    }
+
+    /// Number of polygons in all tiles.
+    #[must_use]
+    pub fn polygons(&self) -> usize {
+        self.tiles.iter().map(|tile| tile.polys.len()).sum()
+    }
+}
+
+fn read_tile(cursor: &mut Cursor<'_>) -> Result<Tile, NavMeshError> {
+    let reference = cursor.u32("a tile's reference")?;
+    let size_at = cursor.at();
+    let bytes = u64::from(cursor.count("a tile's size")?);
+    if bytes < HEADER_BYTES || bytes > cursor.left() as u64 {
+        let expected = format!("{HEADER_BYTES} to {}, which the file still has", cursor.left());
+        return Err(NavMeshError::value(size_at, "a tile's size", bytes, expected));
+    }
+    Tile::read(cursor, reference, bytes)
+}
+
+impl Grid {
+    fn read(cursor: &mut Cursor<'_>) -> Result<Self, NavMeshError> {
+        Ok(Self {
+            origin_m: cursor.place("the grid's origin")?,
+            tile_m: [cursor.f32("a tile's width")?, cursor.f32("a tile's height")?],
+            max_tiles: cursor.i32("the most tiles")?,
+            max_polys: cursor.i32("the most polygons")?,
+        })
+    }
+
+    fn write(&self, out: &mut Vec<u8>) {
+        out.extend(self.origin_m.iter().chain(&self.tile_m).flat_map(|number| number.to_le_bytes()));
+        out.extend_from_slice(&self.max_tiles.to_le_bytes());
+        out.extend_from_slice(&self.max_polys.to_le_bytes());
+    }
+}

@@ -1,0 +1,103 @@
+//! A polygon of a tile: `dtPoly`.
+
+use super::{cursor::Cursor, error::NavMeshError, header::Header};
+
+/// Corners that a polygon has room for.
+pub(crate) const MAX_CORNERS: usize = 6;
+/// Set where an edge leads into another tile.
+const PORTAL: u16 = 0x8000;
+
+/// What lies behind an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Behind {
+    /// Nothing: the edge of the walkable ground.
+    Border,
+    /// Another polygon of the tile, by its index.
+    Polygon(usize),
+    /// Whatever lies in the tile on this side: 0 is +x, 2 +z, 4 -x, 6 -z.
+    Portal(u8),
+}
+
+/// A convex piece of ground, or a connection off it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Poly {
+    pub(crate) first_link: u32,
+    pub(crate) verts: [u16; MAX_CORNERS],
+    /// Behind the edge from corner i to the next.
+    pub(crate) neis: [u16; MAX_CORNERS],
+    pub(crate) flags: u16,
+    pub(crate) vert_count: u8,
+    /// Six bits of area, two of type.
+    pub(crate) area_and_type: u8,
+}
+
+impl Poly {
+    pub(super) fn read(cursor: &mut Cursor<'_>, header: &Header) -> Result<Self, NavMeshError> {
+        let start = cursor.at();
+        let mut poly = Self { first_link: cursor.u32("a polygon's link")?, ..Self::default() };
+        for vert in &mut poly.verts {
+            *vert = cursor.u16("a polygon's corner")?;
+        }
+        for nei in &mut poly.neis {
+            *nei = cursor.u16("a polygon's neighbour")?;
+        }
+        poly.flags = cursor.u16("a polygon's flags")?;
+        poly.vert_count = cursor.u8("a polygon's number of corners")?;
+        poly.area_and_type = cursor.u8("a polygon's area")?;
+        poly.check(start, header)?;
+        Ok(poly)
+    }
+
+    fn check(&self, start: usize, header: &Header) -> Result<(), NavMeshError> {
+        let least = if self.is_ground() { 3 } else { 2 };
+        if !(least..=MAX_CORNERS as u8).contains(&self.vert_count) {
+            let expected = format!("{least} to {MAX_CORNERS}");
+            return Err(NavMeshError::value(start + 30, "a polygon's number of corners", self.vert_count, expected));
+        }
+        for (edge, vert) in self.corners().iter().enumerate() {
+            if u32::from(*vert) >= header.verts {
+                let expected = format!("below {}", header.verts);
+                return Err(NavMeshError::value(start + 4 + 2 * edge, "a polygon's corner", vert, expected));
+            }
+            let behind = self.behind(edge);
+            if matches!(behind, Behind::Polygon(other) if other as u64 >= u64::from(header.polys)) {
+                let expected = format!("at most {}", header.polys);
+                let found = self.neis[edge];
+                return Err(NavMeshError::value(start + 16 + 2 * edge, "a polygon's neighbour", found, expected));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether it is ground, and no off-mesh connection.
+    pub(crate) fn is_ground(&self) -> bool {
+        self.area_and_type >> 6 == 0
+    }
+
+    /// Its vertices in the tile.
+    pub(crate) fn corners(&self) -> &[u16] {
+        &self.verts[..usize::from(self.vert_count).min(MAX_CORNERS)]
+    }
+
+    /// What lies behind the edge from corner `edge` to the next.
+    pub(crate) fn behind(&self, edge: usize) -> Behind {
+        match self.neis.get(edge).copied().unwrap_or(0) {
+            0 => Behind::Border,
+            portal if portal & PORTAL != 0 => Behind::Portal((portal & 0xff) as u8),
+            polygon => Behind::Polygon(usize::from(polygon) - 1),
+        }
+    }
+
+    /// Makes an edge a portal into the next tile on a side.
+    #[cfg(test)]
+    pub(crate) fn open(&mut self, edge: usize, side: u8) {
+        self.neis[edge] = PORTAL | u16::from(side);
+    }
+
+    pub(super) fn write(&self, out: &mut Vec<u8>) {
+        out.extend_from_slice(&self.first_link.to_le_bytes());
+        out.extend([self.verts, self.neis].iter().flatten().flat_map(|number| number.to_le_bytes()));
+        out.extend_from_slice(&self.flags.to_le_bytes());
+        out.extend_from_slice(&[self.vert_count, self.area_and_type]);
+    }
+}

@@ -1,0 +1,106 @@
+//! Navmeshes that Habitat itself has written. Needs the oracle data; without it the tests say so.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
+
+mod oracles;
+
+use wayword_core::{DVec3, rng};
+use wayword_habitat::{
+    Ground, NavMesh,
+    axes::EYE_M,
+    ground::{stops_along, viewpoint_graph},
+};
+
+#[test]
+fn every_navmesh_of_habitat_is_written_back_byte_for_byte() {
+    for file in oracles::navmeshes() {
+        let bytes = std::fs::read(&file).unwrap();
+        let mesh = NavMesh::from_bytes(&bytes).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        assert_eq!(mesh.version(), 2);
+        assert!(mesh.polygons() > 0);
+        assert!(mesh.to_bytes() == bytes, "{} is written back otherwise", file.display());
+    }
+}
+
+/// The way as Habitat tells it, in Wayword's frame.
+fn corners(points: &serde_json::Value) -> Vec<DVec3> {
+    points.as_array().unwrap().iter().map(oracles::place).collect()
+}
+
+#[test]
+fn geodesics_along_habitats_own_trajectories_agree_to_a_millimetre() {
+    let Some(folder) = oracles::folder() else { return };
+    for name in ["traj_flat_a", "traj_simple_room"] {
+        let folder = folder.join("habitat_frames").join(name);
+        let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
+        let trajectory = oracles::json(&folder.join("trajectory.json"));
+        let expected = corners(&trajectory["path_points"]);
+        let way = ground.geodesic(expected[0], *expected.last().unwrap()).unwrap();
+        let length_m = trajectory["geodesic_distance"].as_f64().unwrap();
+        println!("{name}: {} of {length_m} m", way.length_m);
+        assert!((way.length_m - length_m).abs() < 1e-3, "{way:?}");
+        assert_eq!(way.corners.len(), expected.len());
+        for (ours, theirs) in way.corners.iter().zip(&expected) {
+            assert!(ours.distance(*theirs) < 1e-3, "{ours} {theirs}");
+        }
+    }
+}
+
+#[test]
+fn frames_stand_where_those_of_the_trajectories_do() {
+    let Some(folder) = oracles::folder() else { return };
+    for name in ["traj_flat_a", "traj_simple_room"] {
+        let folder = folder.join("habitat_frames").join(name);
+        let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
+        let trajectory = oracles::json(&folder.join("trajectory.json"));
+        let expected = corners(&trajectory["path_points"]);
+        let way = ground.geodesic(expected[0], *expected.last().unwrap()).unwrap();
+        let frames = trajectory["frames"].as_array().unwrap();
+        let stops = stops_along(&ground, &way, 1.0);
+        assert_eq!(stops.len(), frames.len().max(stops.len().min(7)));
+        // Theirs are a metre apart at most, or a little more: as many as they have are asked for.
+        let stops = stops_along(&ground, &way, way.length_m / (frames.len() - 1) as f64);
+        for (stop, frame) in stops.iter().zip(frames) {
+            let eye = oracles::place(&frame["agent_position"]) + DVec3::Z * EYE_M;
+            assert!(stop.position.distance(eye) < 2e-3, "{} {eye}", stop.position);
+        }
+    }
+}
+
+#[test]
+fn geodesics_and_area_agree_with_habitats_path_finder() {
+    let Some(folder) = oracles::folder() else { return };
+    let folder = folder.join("habitat_navmesh");
+    let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("rooms.navmesh")).unwrap()).unwrap());
+    let rooms = oracles::json(&folder.join("rooms.json"));
+    let area_m2 = rooms["area"].as_f64().unwrap();
+    println!("area {} of {area_m2} m2", ground.area_m2());
+    assert!((ground.area_m2() / area_m2 - 1.0).abs() < 1e-4);
+    for path in rooms["paths"].as_array().unwrap() {
+        let way = ground.geodesic(oracles::place(&path["start"]), oracles::place(&path["end"])).unwrap();
+        let length_m = path["geodesic"].as_f64().unwrap();
+        println!("{} of {length_m} m", way.length_m);
+        assert!((way.length_m / length_m - 1.0).abs() < 0.01, "{way:?}");
+    }
+}
+
+#[test]
+fn places_and_viewpoints_lie_on_the_largest_island() {
+    for file in oracles::navmeshes() {
+        let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(&file).unwrap()).unwrap());
+        let mut rng = rng(7, &["places"]);
+        for _ in 0..200 {
+            let place = ground.random_place(0, &mut rng).unwrap().place;
+            assert!(ground.nearest_on(0, place).unwrap().place.distance(place) < 1e-6);
+        }
+        let graph = viewpoint_graph(&ground, 0).unwrap();
+        let islands: Vec<f64> = ground.islands_m2().collect();
+        println!(
+            "{}: islands {islands:?}, {} viewpoints, {} edges",
+            file.display(),
+            graph.len(),
+            graph.edges().count()
+        );
+        assert_eq!(graph.components(), 1);
+    }
+}
