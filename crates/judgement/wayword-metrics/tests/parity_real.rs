@@ -18,8 +18,11 @@ use std::{
     time::{Duration, Instant},
 };
 use wayword_core::{Platform, SceneId};
-use wayword_metrics::{Atlas, Demand, Distances, Trajectory, score};
+use wayword_metrics::{Atlas, Demand, Distances, Score, Trajectory, score};
 use wayword_platforms::Matterport;
+
+/// How often the figures are timed: other programs' work makes single times tell little.
+const PASSES: usize = 9;
 
 fn platform() -> Option<Matterport> {
     let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data"));
@@ -77,11 +80,15 @@ fn figures_are_those_of_another_evaluator() {
         let demand = common::demand(case, Some(visible_from.clone()));
         all.push((atlas.scene(&scene).unwrap(), demand, common::trajectory(case)));
     }
-    let before = Instant::now();
-    let scores: Vec<_> = all.iter().map(|(on, demand, trajectory)| score(on, demand, trajectory).unwrap()).collect();
-    let took: Duration = before.elapsed();
+    let pass = || -> (Vec<Score>, Duration) {
+        let before = Instant::now();
+        let scores = all.iter().map(|(on, demand, trajectory)| score(on, demand, trajectory).unwrap()).collect();
+        (scores, before.elapsed())
+    };
+    let fastest = (0..PASSES).map(|_| pass().1).min().unwrap();
+    let (scores, _) = pass();
     for (n, (score, case)) in scores.iter().zip(&cases).enumerate() {
         common::assert_agrees(score, &case["expected"], &format!("line {}", n + 1));
     }
-    println!("{} trajectories agree; their figures alone took {took:?} on one core", cases.len());
+    println!("{} trajectories agree; their figures alone took {fastest:?} on one core", cases.len());
 }

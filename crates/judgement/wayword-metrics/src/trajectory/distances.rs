@@ -1,9 +1,7 @@
 //! How far it is from every viewpoint of a scene to every other.
 
-use std::{
-    cmp::Ordering,
-    collections::{BinaryHeap, HashMap},
-};
+use super::places::Places;
+use std::{cmp::Ordering, collections::BinaryHeap};
 use wayword_core::{ViewpointGraph, ViewpointId};
 
 /// The distances over a viewpoint graph between all its viewpoints, computed once.
@@ -11,7 +9,7 @@ use wayword_core::{ViewpointGraph, ViewpointId};
 /// They take eight bytes for each pair: 1 MB for the largest of Matterport's buildings.
 #[derive(Debug, Clone)]
 pub struct Distances {
-    places: HashMap<ViewpointId, usize>,
+    places: Places,
     roads: Roads,
     /// From one place to all, place after place; infinite where there is no way.
     metres: Vec<f64>,
@@ -21,7 +19,7 @@ impl Distances {
     /// All distances of a graph: a shortest-path tree (Dijkstra 1959) from each viewpoint.
     #[must_use]
     pub fn new(graph: &ViewpointGraph) -> Self {
-        let places: HashMap<ViewpointId, usize> = graph.viewpoints().cloned().zip(0..).collect();
+        let places = Places::new(graph.viewpoints());
         let roads = Roads::new(graph, &places);
         let mut metres = vec![f64::INFINITY; places.len() * places.len()];
         let mut frontier = BinaryHeap::new();
@@ -42,7 +40,7 @@ impl Distances {
     /// Whether the scene has such a viewpoint.
     #[must_use]
     pub fn has(&self, viewpoint: &ViewpointId) -> bool {
-        self.places.contains_key(viewpoint)
+        self.places.find(viewpoint).is_some()
     }
 
     /// Whether an edge joins two viewpoints. None joins a viewpoint to itself.
@@ -54,7 +52,7 @@ impl Distances {
 
     /// Where a viewpoint stands in the other functions' figures.
     pub(super) fn place(&self, viewpoint: &ViewpointId) -> Option<usize> {
-        self.places.get(viewpoint).copied()
+        self.places.find(viewpoint)
     }
 
     /// From one place to another, metres; infinite where there is no way.
@@ -77,11 +75,12 @@ struct Roads {
 
 impl Roads {
     /// An edge that is too long for a number is none: sums over it would mean nothing.
-    fn new(graph: &ViewpointGraph, places: &HashMap<ViewpointId, usize>) -> Self {
+    fn new(graph: &ViewpointGraph, places: &Places) -> Self {
         let mut ends: Vec<(usize, usize, f64)> = graph
             .edges()
             .filter(|(_, _, length_m)| length_m.is_finite())
-            .flat_map(|(a, b, length_m)| [(places[a], places[b], length_m), (places[b], places[a], length_m)])
+            .filter_map(|(a, b, length_m)| Some((places.find(a)?, places.find(b)?, length_m)))
+            .flat_map(|(a, b, length_m)| [(a, b, length_m), (b, a, length_m)])
             .collect();
         ends.sort_unstable_by_key(|(a, b, _)| (*a, *b));
         let first = (0..=places.len()).map(|place| ends.partition_point(|(a, _, _)| *a < place)).collect();

@@ -1,47 +1,72 @@
-//! How closely a trajectory keeps to the annotated path. Both are places of a scene, never empty.
+//! How closely a trajectory keeps to the annotated path.
 
-use super::Distances;
+use super::{Distances, invalid::Located};
 
 /// What distances from the path are measured by, metres: `threshold` in VLN-DUET's `map_nav_src/r2r/eval_utils.py`.
 const THRESHOLD_M: f64 = 3.0;
 
-/// Sum of the distances between places in a row, metres.
-pub(super) fn length_m(distances: &Distances, places: &[usize]) -> f64 {
-    places.windows(2).map(|hop| distances.between(hop[0], hop[1])).sum()
+/// The distance of each viewpoint of a trajectory to each of the annotated path. All figures but lengths are made of these.
+pub(super) struct Apart {
+    /// Metres, infinite where there is no way; a row for each viewpoint of the trajectory.
+    metres: Vec<f64>,
+    /// Viewpoints of the annotated path.
+    on_path: usize,
 }
 
-/// Normalised dynamic time warping (Ilharco et al. 2019, section 3).
-pub(super) fn ndtw(distances: &Distances, taken: &[usize], reference: &[usize]) -> f64 {
-    // The least cost of warping what was taken so far onto each start of the path; the empty start comes first.
-    let mut costs = vec![f64::INFINITY; reference.len() + 1];
-    costs[0] = 0.0;
-    for place in taken {
-        let mut diagonal = costs[0];
-        costs[0] = f64::INFINITY;
-        for (at, on_path) in reference.iter().enumerate() {
-            let before = diagonal.min(costs[at]).min(costs[at + 1]);
-            diagonal = costs[at + 1];
-            costs[at + 1] = before + distances.between(*place, *on_path);
+impl Apart {
+    pub(super) fn new(distances: &Distances, located: &Located) -> Self {
+        let Located { taken, reference } = located;
+        let mut metres = Vec::with_capacity(taken.len() * reference.len());
+        for place in taken {
+            metres.extend(reference.iter().map(|on_path| distances.between(*place, *on_path)));
+        }
+        Self { metres, on_path: reference.len() }
+    }
+
+    fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.metres.chunks_exact(self.on_path)
+    }
+
+    /// From each viewpoint of the trajectory to the goal.
+    pub(super) fn to_goal_m(&self) -> impl Iterator<Item = f64> {
+        self.rows().map(|row| row[row.len() - 1])
+    }
+
+    /// Normalised dynamic time warping (Ilharco et al. 2019, arXiv 1907.05446).
+    pub(super) fn ndtw(&self) -> f64 {
+        // The least cost of warping what was taken so far onto each start of the path; before all stands the empty start.
+        let mut costs = vec![f64::INFINITY; self.on_path];
+        let mut before_all = 0.0;
+        for row in self.rows() {
+            let mut diagonal = std::mem::replace(&mut before_all, f64::INFINITY);
+            let mut left = f64::INFINITY;
+            for (cost, metres) in costs.iter_mut().zip(row) {
+                left = metres + least(least(diagonal, *cost), left);
+                diagonal = std::mem::replace(cost, left);
+            }
+        }
+        (-costs[self.on_path - 1] / (THRESHOLD_M * self.on_path as f64)).exp()
+    }
+
+    /// Coverage weighted by length score (Jain et al. 2019, arXiv 1905.12255), for the lengths of the trajectory and of the path.
+    pub(super) fn cls(&self, length_m: f64, path_m: f64) -> f64 {
+        let to_path_m = |at: usize| self.metres[at..].iter().step_by(self.on_path);
+        let nearest_m = |at| to_path_m(at).copied().fold(f64::INFINITY, least);
+        let covered: f64 = (0..self.on_path).map(|at| (-nearest_m(at) / THRESHOLD_M).exp()).sum();
+        let coverage = covered / self.on_path as f64;
+        let expected_m = coverage * path_m;
+        let off_m = (expected_m - length_m).abs();
+        if expected_m.is_infinite() {
+            0.0
+        } else if expected_m + off_m == 0.0 {
+            coverage
+        } else {
+            coverage * expected_m / (expected_m + off_m)
         }
     }
-    (-costs[reference.len()] / (THRESHOLD_M * reference.len() as f64)).exp()
 }
 
-/// Coverage weighted by length score (Jain et al. 2019, section 4).
-pub(super) fn cls(distances: &Distances, taken: &[usize], reference: &[usize]) -> f64 {
-    let nearest_m = |on_path: &usize| {
-        // From the path to the trajectory, as the reference has it.
-        taken.iter().map(|place| distances.between(*on_path, *place)).fold(f64::INFINITY, f64::min)
-    };
-    let covered: f64 = reference.iter().map(|on_path| (-nearest_m(on_path) / THRESHOLD_M).exp()).sum();
-    let coverage = covered / reference.len() as f64;
-    let expected_m = coverage * length_m(distances, reference);
-    let off_m = (expected_m - length_m(distances, taken)).abs();
-    if expected_m.is_infinite() {
-        0.0
-    } else if expected_m + off_m == 0.0 {
-        coverage
-    } else {
-        coverage * expected_m / (expected_m + off_m)
-    }
+/// The lesser of two distances. They are never NaN, and not to care for that is one instruction instead of three.
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }

@@ -85,40 +85,30 @@ impl Located {
         }
         for (at, hop) in taken.windows(2).enumerate() {
             // An unknown viewpoint is told above; its hops would say nothing more.
-            let (Some(a), Some(b)) = (hop[0], hop[1]) else { continue };
-            if a != b && !distances.joins(a, b) {
+            let is_told = hop.contains(&NOWHERE);
+            if !is_told && hop[0] != hop[1] && !distances.joins(hop[0], hop[1]) {
                 let [from, to] = [at, at + 1].map(|step| trajectory.viewpoints[step].clone());
                 wrong.push(Invalid::NoEdge { step: at + 1, from, to });
             }
         }
-        let known = |places: Vec<Option<usize>>| places.into_iter().flatten().collect();
-        if wrong.is_empty() { Ok(Self { taken: known(taken), reference: known(reference) }) } else { Err(wrong) }
-    }
-
-    /// Where both start.
-    pub(super) fn start(&self) -> usize {
-        self.reference[0]
-    }
-
-    /// Where the trajectory ends.
-    pub(super) fn last(&self) -> usize {
-        self.taken[self.taken.len() - 1]
-    }
-
-    /// Where the annotated path ends.
-    pub(super) fn goal(&self) -> usize {
-        self.reference[self.reference.len() - 1]
+        if wrong.is_empty() { Ok(Self { taken, reference }) } else { Err(wrong) }
     }
 }
+
+/// In the stead of a viewpoint that the scene does not have. No place is that, and nothing that holds one leaves this file.
+const NOWHERE: usize = usize::MAX;
 
 fn places(
     distances: &Distances,
     viewpoints: &[ViewpointId],
     wrong: &mut Vec<Invalid>,
     unknown: impl Fn(usize, ViewpointId) -> Invalid,
-) -> Vec<Option<usize>> {
-    let places: Vec<Option<usize>> = viewpoints.iter().map(|viewpoint| distances.place(viewpoint)).collect();
-    let missing = places.iter().zip(viewpoints).enumerate().filter(|(_, (place, _))| place.is_none());
-    wrong.extend(missing.map(|(at, (_, viewpoint))| unknown(at, viewpoint.clone())));
-    places
+) -> Vec<usize> {
+    let place = |(step, viewpoint): (usize, &ViewpointId)| {
+        distances.place(viewpoint).unwrap_or_else(|| {
+            wrong.push(unknown(step, viewpoint.clone()));
+            NOWHERE
+        })
+    };
+    viewpoints.iter().enumerate().map(place).collect()
 }

@@ -4,6 +4,7 @@ mod atlas;
 mod distances;
 mod fidelity;
 mod invalid;
+mod places;
 mod score;
 #[cfg(test)]
 mod testing;

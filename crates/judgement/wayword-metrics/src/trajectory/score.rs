@@ -2,7 +2,7 @@
 
 use super::{
     Demand, Distances, Grounding, Outcome, Score, Trajectory,
-    fidelity::{cls, length_m, ndtw},
+    fidelity::Apart,
     invalid::{Invalid, Located},
 };
 use wayword_core::ViewpointId;
@@ -28,9 +28,10 @@ const SUCCESS_M: f64 = 3.0;
 /// Each problem of the trajectory, when it does not start at the episode's start, or is no way over the scene's graph.
 pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Result<Score, Vec<Invalid>> {
     let located = Located::new(distances, demand, trajectory)?;
-    let length_m = length_m(distances, &located.taken);
-    let weight = efficiency(distances.between(located.start(), located.goal()), length_m);
-    let ndtw = ndtw(distances, &located.taken, &located.reference);
+    let apart = Apart::new(distances, &located);
+    let [length_m, path_m] = [&located.taken, &located.reference].map(|places| length_m(distances, places));
+    let weight = efficiency(apart.to_goal_m().next().unwrap_or(f64::INFINITY), length_m);
+    let ndtw = apart.ndtw();
     let outcome = |success, oracle_success| Outcome {
         success,
         oracle_success,
@@ -38,9 +39,8 @@ pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) ->
         sdtw: if success { ndtw } else { 0.0 },
     };
 
-    let to_goal_m = |place| distances.between(place, located.goal());
-    let error_m = to_goal_m(located.last());
-    let oracle_m = located.taken.iter().map(|place| to_goal_m(*place)).fold(f64::INFINITY, f64::min);
+    let error_m = apart.to_goal_m().last().unwrap_or(f64::INFINITY);
+    let oracle_m = apart.to_goal_m().fold(f64::INFINITY, f64::min);
     let visible = demand.object.as_ref().and(demand.visible_from.as_ref()).map(|from| {
         let sees = |viewpoint: &ViewpointId| from.contains(viewpoint);
         outcome(trajectory.viewpoints.last().is_some_and(sees), trajectory.viewpoints.iter().any(sees))
@@ -57,8 +57,13 @@ pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) ->
         visible,
         grounding,
         ndtw,
-        cls: cls(distances, &located.taken, &located.reference),
+        cls: apart.cls(length_m, path_m),
     })
+}
+
+/// Sum of the distances between places in a row, metres.
+fn length_m(distances: &Distances, places: &[usize]) -> f64 {
+    places.windows(2).map(|hop| distances.between(hop[0], hop[1])).sum()
 }
 
 /// The shortest length as a share of the length that was walked, at most 1.

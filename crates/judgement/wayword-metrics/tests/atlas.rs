@@ -1,0 +1,33 @@
+//! An atlas over the built-in houses.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::{sync::Arc, thread};
+use wayword_core::{Platform, PlatformError, SceneId};
+use wayword_metrics::{Atlas, Distances};
+use wayword_platforms::HousePlatform;
+
+#[test]
+fn threads_share_one_and_the_same_distances_of_a_scene() {
+    let platform = HousePlatform::default();
+    let atlas = Atlas::new(&platform);
+    let scenes: Vec<SceneId> = platform.scenes().unwrap().into_iter().take(2).collect();
+    let ask = || -> Vec<Arc<Distances>> { scenes.iter().map(|scene| atlas.scene(scene).unwrap()).collect() };
+    let asked = thread::scope(|scope| {
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(ask)).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect::<Vec<_>>()
+    });
+    for (at, scene) in scenes.iter().enumerate() {
+        assert!(asked.iter().all(|by| Arc::ptr_eq(&by[at], &asked[0][at])));
+        let graph = platform.graph(scene).unwrap();
+        assert!(graph.viewpoints().all(|viewpoint| asked[0][at].has(viewpoint)));
+    }
+    assert!(!Arc::ptr_eq(&asked[0][0], &asked[0][1]), "each scene has its own");
+}
+
+#[test]
+fn a_scene_that_is_not_there_is_the_platforms_error() {
+    let platform = HousePlatform::default();
+    let found = Atlas::new(&platform).scene(&SceneId::new("no-such-scene").unwrap());
+    assert!(matches!(found, Err(PlatformError::UnknownScene { .. })));
+}
