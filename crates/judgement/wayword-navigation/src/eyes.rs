@@ -20,8 +20,11 @@ pub struct Eyes<'a> {
     graph: Arc<ViewpointGraph>,
     needs_pictures: bool,
     around: Mutex<BTreeMap<ViewpointId, Arc<Around>>>,
-    scores: Mutex<BTreeMap<(ViewpointId, Vec<String>), Arc<[Vec<f32>; 4]>>>,
+    scores: Mutex<BTreeMap<(ViewpointId, Vec<String>), Scores>>,
 }
+
+/// How well phrases fit each of the four views of a node.
+type Scores = Arc<[Vec<f32>; 4]>;
 
 /// What surrounds a node.
 struct Around {
@@ -113,12 +116,7 @@ impl<'a> Eyes<'a> {
         Ok(Around { views, onward: Gaze::compass().map(|gaze| onward(&self.graph, viewpoint, gaze)) })
     }
 
-    fn scores(
-        &self,
-        viewpoint: &ViewpointId,
-        around: &Around,
-        phrases: &[String],
-    ) -> Result<Arc<[Vec<f32>; 4]>, WalkError> {
+    fn scores(&self, viewpoint: &ViewpointId, around: &Around, phrases: &[String]) -> Result<Scores, WalkError> {
         let key = (viewpoint.clone(), phrases.to_vec());
         if let Some(scores) = self.scores.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return Ok(Arc::clone(scores));

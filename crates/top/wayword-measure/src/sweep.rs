@@ -81,7 +81,7 @@ fn walks(grounder: &str) -> Vec<Parameters> {
     let default = Parameters::default_of("clip-nav", grounder);
     let mut all = Vec::new();
     for phrase_threshold in [0.3, 0.4, 0.5, 0.6, 0.8] {
-        for stop_threshold in [0.4, 0.5, 0.55, 0.6, 0.65, 0.7, 0.8] {
+        for stop_threshold in [0.3, 0.4, 0.5, 0.55, 0.6, 0.65, 0.7, 0.8] {
             for stop_with_phrases_left in [0, 1, 12] {
                 for max_hops in [10, 15, 20, 30, 40] {
                     for shun_visited in [false, true] {
@@ -105,7 +105,7 @@ fn walks(grounder: &str) -> Vec<Parameters> {
 /// Everything that is tried of going back.
 fn backs(best: &Parameters) -> Vec<Parameters> {
     let mut all = vec![*best];
-    for window in [2, 3, 4, 6, 8] {
+    for window in [3, 6, 8, 12] {
         for threshold in [0.05, 0.1, 0.2, 0.3, 0.4, 0.5] {
             for nodes in [1, 2, 3, 4] {
                 all.push(Parameters { back: Some(Back { window, threshold, nodes }), ..*best });

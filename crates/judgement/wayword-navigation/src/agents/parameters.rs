@@ -43,17 +43,16 @@ impl Parameters {
     #[must_use]
     pub fn default_of(agent: &str, grounder: &str) -> Self {
         let by_boxes = agent == "glip-nav";
-        let (phrase_threshold, stop_threshold, stop_with_phrases_left, window) = match (grounder, by_boxes) {
+        let (phrase_threshold, stop_threshold, stop_with_phrases_left, back) = match (grounder, by_boxes) {
             // Cosines of a sentence encoder between a phrase and a name.
-            ("labels", false) => (0.3, 0.4, 0, 3),
-            ("labels", true) => (0.6, 0.55, ALWAYS, 8),
+            ("labels", false) => (0.8, 0.4, ALWAYS, Back { window: 8, threshold: 0.2, nodes: 1 }),
+            ("labels", true) => (0.6, 0.6, ALWAYS, Back { window: 8, threshold: 0.05, nodes: 2 }),
             // Shares of places found.
-            ("labels/lexical", false) => (0.3, 0.4, 1, 8),
-            ("labels/lexical", true) => (0.4, 0.4, ALWAYS, 8),
+            ("labels/lexical", false) => (0.6, 0.4, 1, Back { window: 12, threshold: 0.05, nodes: 1 }),
+            ("labels/lexical", true) => (0.6, 0.3, ALWAYS, Back { window: 12, threshold: 0.05, nodes: 4 }),
             // Cosines of CLIP between a phrase and a picture, all close to each other. Not swept: there were no photographs.
-            _ => (0.26, 0.28, 0, 3),
+            _ => (0.26, 0.28, 0, Back { window: 8, threshold: 0.2, nodes: 1 }),
         };
-        let back = Back { window, threshold: 0.05, nodes: 1 };
         Self {
             phrase_threshold,
             stop_threshold,

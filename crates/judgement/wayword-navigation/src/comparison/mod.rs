@@ -46,7 +46,7 @@ pub struct About {
     pub resamples: usize,
     /// Seed of everything random.
     pub seed: u64,
-    /// Items that every set has, to which all rows are confined.
+    /// Items that every set has and that could be walked, to which all rows are confined.
     pub items: usize,
     /// Paths on which those items lie: items on one path are not independent.
     pub paths: usize,

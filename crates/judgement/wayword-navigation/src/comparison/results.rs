@@ -25,6 +25,12 @@ impl Results {
         self.clusters.entry(walk.item.clone()).or_insert_with(|| cluster.to_owned());
     }
 
+    /// How many items were walked, and on how many paths they lie.
+    #[must_use]
+    pub fn extent(&self) -> (usize, usize) {
+        (self.clusters.len(), self.clusters.values().collect::<BTreeSet<_>>().len())
+    }
+
     /// The texts by which an agent walked.
     pub(super) fn texts(&self, agent: &str, set: &str) -> Texts {
         let scores = self.of(agent, set).into_iter().flatten();

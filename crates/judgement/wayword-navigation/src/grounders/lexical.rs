@@ -1,6 +1,6 @@
 //! Phrases against labels by their words: no model, no weights.
 
-use super::{Sees, scene::labels_of};
+use super::{Sees, labels_of::labels_of};
 use crate::directions::{Place, places};
 use std::{
     collections::BTreeMap,

@@ -1,7 +1,7 @@
 //! Grounders that go by labels. Named `labels` wherever they take part: they perceive nothing.
 
+mod labels_of;
 mod lexical;
-mod scene;
 mod similar;
 
 pub use lexical::Lexical;

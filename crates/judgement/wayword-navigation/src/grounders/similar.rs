@@ -1,6 +1,6 @@
 //! Phrases against labels by a sentence encoder.
 
-use super::{Sees, scene::labels_of};
+use super::{Sees, labels_of::labels_of};
 use crate::directions::places;
 use std::{
     collections::{BTreeMap, BTreeSet},

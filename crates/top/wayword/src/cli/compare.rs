@@ -39,9 +39,9 @@ pub struct Compare {
     /// Who walks: clip-nav, seq-clip-nav, glip-nav. Floors and ceilings walk beside them.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "clip-nav,seq-clip-nav,glip-nav")]
     pub agents: Vec<String>,
-    /// Who says how well phrases fit views: labels (with a text encoder), labels/lexical (by words, no weights), or a CLIP as
+    /// Who says how well phrases fit views: labels/lexical (by words, no weights), labels (with a text encoder), or a CLIP as
     /// hf/ORG/NAME.
-    #[arg(long, value_name = "GROUNDER", default_value = "labels")]
+    #[arg(long, value_name = "GROUNDER", default_value = "labels/lexical")]
     pub grounder: String,
     /// The sentence encoder of `labels`.
     #[arg(long, value_name = "MODEL", default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]
@@ -49,6 +49,9 @@ pub struct Compare {
     /// Who takes instructions apart: rules, or a language model as provider/model.
     #[arg(long, value_name = "MODEL", default_value = "rules")]
     pub split: String,
+    /// Base URL of the provider of --split.
+    #[arg(long, value_name = "URL")]
+    pub base_url: Option<String>,
     /// Success: the target is visible from the last viewpoint (REVERIE's official rule), or the goal is under 3 m away. [default:
     /// visible where every item names an object, else distance]
     #[arg(long)]

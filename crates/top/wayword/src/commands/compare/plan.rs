@@ -31,6 +31,9 @@ pub(crate) struct Plan {
     pub(crate) encoder: Option<String>,
     /// Who takes instructions apart.
     pub(crate) split: String,
+    /// Where that model is reached, where not at its provider's own address.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) base_url: Option<String>,
     /// What counts as success; decided by the items where nobody says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) rule: Option<Rule>,
@@ -81,6 +84,7 @@ impl Plan {
             grounder: args.grounder.clone(),
             encoder: (args.grounder == "labels").then(|| args.encoder.clone()),
             split: args.split.clone(),
+            base_url: args.base_url.clone(),
             rule: args.rule.map(Into::into),
             swaps: args.swaps.iter().filter_map(|swap| swap.swap()).collect(),
             limit: args.limit,

@@ -90,7 +90,7 @@ pub(super) fn comparison(
     judge: &Judge<'_>,
     results: &Results,
 ) -> Comparison {
-    let paths: std::collections::BTreeSet<&String> = judge.clusters.values().collect();
+    let (items, paths) = results.extent();
     let about = About {
         platform: plan.platform.clone(),
         episodes: last_part(&plan.episodes.to_string_lossy()),
@@ -101,8 +101,8 @@ pub(super) fn comparison(
         level: LEVEL,
         resamples: plan.resamples,
         seed: plan.seed,
-        items: judge.clusters.len(),
-        paths: paths.len(),
+        items,
+        paths,
         parameters: plan.parameters.iter().map(|(agent, of)| (agent.clone(), of.named())).collect(),
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
     };

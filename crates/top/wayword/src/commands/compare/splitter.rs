@@ -12,7 +12,7 @@ use wayword_navigation::directions::{ByModel, ByRules, Splitter};
 
 /// How the splitter's model is reached: it is the only one of the job, in the place of the one who asks.
 pub(super) fn job(args: &Compare, plan: &Plan) -> Result<Job, Error> {
-    let roles = AskedRoles { ask: Some(plan.split.clone()), ..AskedRoles::default() };
+    let roles = AskedRoles { ask: Some(plan.split.clone()), base_url: plan.base_url.clone(), ..AskedRoles::default() };
     let asked = Asked { service: args.service.clone(), ..Asked::default() };
     let file = config::read(args.config.as_deref())?;
     let file = Asked { providers: file.providers, service: file.service, ..Asked::default() };

@@ -156,6 +156,12 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
             nature(&about.detector)
         ));
     }
+    if about.grounder.starts_with("labels") && comparison.sets.len() > 1 {
+        told.push(
+            "Instructions that were written from the same labels share the grounder's words: that such a set does better than people's here does not say that it would with eyes."
+                .to_owned(),
+        );
+    }
     told
 }
 
