@@ -1,0 +1,232 @@
+//! A floor as cells that are free or not: where a simulator says no more than that.
+
+mod shortest;
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
+
+/// Most cells of a floor: 500 m by 500 m at 25 cm.
+pub(crate) const MAX_CELLS: usize = 4_000_000;
+/// No viewpoint lies nearer to another than this, metres.
+const APART_M: f64 = 1.5;
+/// Longest edge of the viewpoint graph, metres.
+const REACH_M: f64 = 3.0;
+const STRAIGHT: [(i64, i64); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+
+/// Cells over a floor. Cell 0 is the south-western one; rows lead north.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Raster {
+    /// Middle of cell 0, metres, world frame.
+    origin_m: [f64; 2],
+    cell_m: f64,
+    columns: usize,
+    free: Vec<bool>,
+}
+
+impl Raster {
+    /// A raster over a rectangle; `is_free` is asked for the middle of each cell. `None` where it would have no cell, or
+    /// more than [`MAX_CELLS`].
+    pub(crate) fn over(
+        [x0, y0]: [f64; 2],
+        [x1, y1]: [f64; 2],
+        cell_m: f64,
+        is_free: impl Fn([f64; 2]) -> bool,
+    ) -> Option<Self> {
+        let count = |from: f64, to: f64| {
+            let count = ((to - from) / cell_m).round() + 1.0;
+            (1.0..=MAX_CELLS as f64).contains(&count).then_some(count as usize)
+        };
+        let (columns, rows) = (count(x0, x1)?, count(y0, y1)?);
+        let cells = columns.checked_mul(rows).filter(|cells| *cells <= MAX_CELLS)?;
+        let mut raster = Self { origin_m: [x0, y0], cell_m, columns, free: Vec::new() };
+        raster.free = (0..cells).map(|cell| is_free(raster.middle(cell))).collect();
+        Some(raster)
+    }
+
+    /// A raster from the middles of cells, of which those that are listed with `true` are free.
+    pub(crate) fn of_cells(cells: &[([f64; 2], bool)], cell_m: f64) -> Option<Self> {
+        let finite = || cells.iter().filter(|(middle, _)| middle.iter().all(|number| number.is_finite()));
+        let bound = |axis: usize, start: f64, better: fn(f64, f64) -> f64| {
+            finite().map(|(middle, _)| middle[axis]).fold(start, better)
+        };
+        let low = [0, 1].map(|axis| bound(axis, f64::INFINITY, f64::min));
+        let high = [0, 1].map(|axis| bound(axis, f64::NEG_INFINITY, f64::max));
+        let mut raster = Self::over(low, high, cell_m, |_| false)?;
+        for (middle, is_free) in finite() {
+            if let Some(cell) = raster.cell_at(*middle) {
+                raster.free[cell] = *is_free;
+            }
+        }
+        Some(raster)
+    }
+
+    /// The middle of a cell, metres.
+    pub(crate) fn middle(&self, cell: usize) -> [f64; 2] {
+        let (column, row) = (cell % self.columns, cell / self.columns);
+        [self.origin_m[0] + column as f64 * self.cell_m, self.origin_m[1] + row as f64 * self.cell_m]
+    }
+
+    /// The cell of a point.
+    fn cell_at(&self, point: [f64; 2]) -> Option<usize> {
+        let step = |axis: usize| {
+            let step = ((point[axis] - self.origin_m[axis]) / self.cell_m).round();
+            (step >= 0.0 && step < self.free.len() as f64).then_some(step as usize)
+        };
+        let (column, row) = (step(0).filter(|column| *column < self.columns)?, step(1)?);
+        Some(row.checked_mul(self.columns)? + column).filter(|cell| *cell < self.free.len())
+    }
+
+    /// Whether somebody can stand at a point.
+    pub(crate) fn is_free(&self, point: [f64; 2]) -> bool {
+        self.cell_at(point).is_some_and(|cell| self.free[cell])
+    }
+
+    fn neighbour(&self, cell: usize, (dx, dy): (i64, i64)) -> Option<usize> {
+        let (column, row) = ((cell % self.columns) as i64 + dx, (cell / self.columns) as i64 + dy);
+        let inside = (0..self.columns as i64).contains(&column) && row >= 0;
+        let next = (row * self.columns as i64 + column) as usize;
+        (inside && next < self.free.len()).then_some(next)
+    }
+
+    /// Takes away everything but the largest part in which one can walk.
+    pub(crate) fn keep_largest_part(&mut self) {
+        let mut part = vec![0_usize; self.free.len()];
+        let mut sizes = vec![0_usize];
+        for start in 0..self.free.len() {
+            if !self.free[start] || part[start] != 0 {
+                continue;
+            }
+            sizes.push(0);
+            let (name, mut open) = (sizes.len() - 1, vec![start]);
+            part[start] = name;
+            while let Some(cell) = open.pop() {
+                sizes[name] += 1;
+                for next in STRAIGHT.into_iter().filter_map(|step| self.neighbour(cell, step)) {
+                    if self.free[next] && part[next] == 0 {
+                        part[next] = name;
+                        open.push(next);
+                    }
+                }
+            }
+        }
+        let largest = (1..sizes.len()).rev().max_by_key(|name| sizes[*name]).unwrap_or(0);
+        self.free.iter_mut().zip(part).for_each(|(free, name)| *free = *free && name == largest);
+    }
+
+    /// Steps from each cell to the next that is not free; what lies outside is not.
+    fn clearances(&self) -> Vec<u32> {
+        let mut steps = vec![u32::MAX; self.free.len()];
+        let mut open = VecDeque::new();
+        for (cell, step) in steps.iter_mut().enumerate() {
+            let at_edge = STRAIGHT.into_iter().any(|step| self.neighbour(cell, step).is_none());
+            if !self.free[cell] || at_edge {
+                *step = u32::from(self.free[cell]);
+                open.push_back(cell);
+            }
+        }
+        while let Some(cell) = open.pop_front() {
+            for next in STRAIGHT.into_iter().filter_map(|step| self.neighbour(cell, step)) {
+                if steps[next] > steps[cell] + 1 {
+                    steps[next] = steps[cell] + 1;
+                    open.push_back(next);
+                }
+            }
+        }
+        steps
+    }
+
+    /// Places for viewpoints: the most open ones first, none too near to another.
+    pub(crate) fn places(&self) -> Vec<[f64; 2]> {
+        let clearances = self.clearances();
+        let mut cells: Vec<usize> = (0..self.free.len()).filter(|cell| self.free[*cell]).collect();
+        cells.sort_by_key(|cell| (std::cmp::Reverse(clearances[*cell]), *cell));
+        let mut chosen: Vec<[f64; 2]> = Vec::new();
+        for place in cells.into_iter().map(|cell| self.middle(cell)) {
+            if chosen.iter().all(|other| distance(*other, place) >= APART_M) {
+                chosen.push(place);
+            }
+        }
+        chosen
+    }
+
+    /// Whether one can walk straight from one point to another.
+    pub(crate) fn is_straight(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        let count = (distance(from, to) / self.cell_m * 4.0).ceil().max(1.0) as usize;
+        (0..=count).all(|step| {
+            let share = step as f64 / count as f64;
+            self.is_free([0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share))
+        })
+    }
+
+    /// A graph over eyes above this floor: edges where the walk is straight and free, and corners of shortest ways between
+    /// parts that no such edge joins.
+    pub(crate) fn graph(&self, eyes: &[DVec3]) -> Result<ViewpointGraph, GraphError> {
+        let mut graph = ViewpointGraph::default();
+        let mut nodes: Vec<(ViewpointId, DVec3)> = Vec::new();
+        for eye in eyes {
+            self.add(&mut graph, &mut nodes, *eye)?;
+        }
+        // Each round joins two parts, or finds that nothing can.
+        for _ in 0..eyes.len() {
+            if graph.components() < 2 || !self.join_parts(&mut graph, &mut nodes)? {
+                break;
+            }
+        }
+        Ok(graph)
+    }
+
+    fn add(
+        &self,
+        graph: &mut ViewpointGraph,
+        nodes: &mut Vec<(ViewpointId, DVec3)>,
+        eye: DVec3,
+    ) -> Result<(), GraphError> {
+        // Names made of digits are always valid.
+        let Ok(id) = ViewpointId::new(format!("v{}", nodes.len())) else { return Ok(()) };
+        graph.add(id.clone(), eye, None)?;
+        for (other, place) in nodes.iter() {
+            if place.distance(eye) <= REACH_M && self.is_straight(flat(eye), flat(*place)) {
+                graph.join(&id, other)?;
+            }
+        }
+        nodes.push((id, eye));
+        Ok(())
+    }
+
+    /// Adds the corners of the shortest way between the first part and the node nearest to it that is in another.
+    fn join_parts(
+        &self,
+        graph: &mut ViewpointGraph,
+        nodes: &mut Vec<(ViewpointId, DVec3)>,
+    ) -> Result<bool, GraphError> {
+        let Some((first, _)) = nodes.first() else { return Ok(false) };
+        let reached = graph.distances_from(first)?;
+        let (inside, outside): (Vec<_>, Vec<_>) = nodes.iter().cloned().partition(|(id, _)| reached.contains_key(id));
+        drop(reached);
+        let pairs = inside.iter().flat_map(|a| outside.iter().map(move |b| (a, b)));
+        let Some((a, b)) = pairs.min_by(|(a, b), (c, d)| a.1.distance(b.1).total_cmp(&c.1.distance(d.1))) else {
+            return Ok(false);
+        };
+        let Some(way) = self.shortest(flat(a.1), flat(b.1)) else { return Ok(false) };
+        let mut before = a.0.clone();
+        for corner in way.iter().skip(1).take(way.len().saturating_sub(2)) {
+            self.add(graph, nodes, DVec3::new(corner[0], corner[1], a.1.z))?;
+            let Some((id, _)) = nodes.last() else { return Ok(false) };
+            graph.join(&before, id)?;
+            before = id.clone();
+        }
+        graph.join(&before, &b.0)?;
+        Ok(true)
+    }
+}
+
+fn flat(place: DVec3) -> [f64; 2] {
+    [place.x, place.y]
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+    (dx * dx + dy * dy).sqrt()
+}

@@ -1,0 +1,139 @@
+//! Labels from what the pixels of a picture show.
+
+use std::{cmp::Reverse, collections::BTreeMap};
+use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
+use wayword_render::{Camera, Picture, Visible, visible_objects};
+
+/// An object counts from this share of the picture's pixels on, as in the built-in house.
+const LEAST_SHARE: f64 = 0.0015;
+/// And if at least this share of its box shows, as far as that lies within the picture.
+const LEAST_SHOWN: f64 = 0.22;
+/// Always there, so never worth a label.
+const SHELL: [&str; 6] = ["floor", "wall", "walls", "ceiling", "character", "door jamb"];
+
+/// An object of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Thing {
+    pub(crate) object: ObjectId,
+    /// In plain words.
+    pub(crate) name: String,
+    /// The middle of its box, metres, world frame.
+    pub(crate) centre: DVec3,
+    /// The corners of its box.
+    pub(crate) corners: [DVec3; 8],
+}
+
+impl Thing {
+    /// An object by the middle of its box and the ways from there to three of its sides. `None` for what is no object that
+    /// anybody would name.
+    pub(crate) fn new(id: i64, name: &str, centre: DVec3, [a, b, c]: [DVec3; 3]) -> Option<Self> {
+        let name = plain(name);
+        let usable = centre.is_finite() && [a, b, c].iter().all(|side| side.is_finite());
+        if name.is_empty() || SHELL.contains(&name.as_str()) || !usable {
+            return None;
+        }
+        let sign = |n: usize, bit: usize| if n >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let corners = std::array::from_fn(|n| centre + a * sign(n, 0) + b * sign(n, 1) + c * sign(n, 2));
+        Some(Self { object: ObjectId::new(id.to_string()).ok()?, name, centre, corners })
+    }
+}
+
+/// A model's name in plain words: lower case, no underscores.
+pub(crate) fn plain(name: &str) -> String {
+    let words: String = name.chars().take(64).map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
+    words.split_whitespace().map(str::to_lowercase).collect::<Vec<_>>().join(" ")
+}
+
+/// The scene's things by their colour, `0xRRGGBB`: as ids of pixels.
+pub(crate) type Palette = BTreeMap<u32, Thing>;
+
+/// The id of a colour.
+pub(crate) fn colour_id([r, g, b]: [u8; 3]) -> u32 {
+    u32::from_be_bytes([0, r, g, b])
+}
+
+/// Labels of what is visible, largest first: things whose box's middle lies within the gaze. `ids` are the colours of the
+/// picture's pixels, rows from the top.
+pub(crate) fn labels(camera: &Camera, gaze: Gaze, ids: Vec<u32>, palette: &Palette) -> Vec<Label> {
+    let depth_m = vec![0.0; ids.len()];
+    let picture = Picture { width: camera.width, height: camera.height, rgb: Vec::new(), depth_m, ids };
+    let least = f64::from(camera.width) * f64::from(camera.height) * LEAST_SHARE;
+    let mut seen: Vec<Visible> =
+        visible_objects(&picture).into_iter().filter(|each| f64::from(each.pixels) >= least).collect();
+    seen.sort_by_key(|each| (Reverse(each.pixels), each.id));
+    let told = seen.iter().filter_map(|each| {
+        let thing = palette.get(&each.id)?;
+        let shows = shown(camera, thing, each).is_none_or(|share| share >= LEAST_SHOWN);
+        shows.then(|| label(camera, each, thing)).flatten()
+    });
+    told.filter(|label| gaze.holds(label.heading)).collect()
+}
+
+fn label(camera: &Camera, seen: &Visible, thing: &Thing) -> Option<Label> {
+    let offset = thing.centre - camera.position;
+    let level_m = libm::sqrt(offset.x * offset.x + offset.y * offset.y);
+    Some(Label {
+        object: thing.object.clone(),
+        name: thing.name.clone(),
+        heading: Heading::new(libm::atan2(offset.x, offset.y)).ok()?,
+        elevation_rad: libm::atan2(offset.z, level_m),
+        box_px: Some(seen.bbox.map(f64::from)),
+        distance_m: Some(offset.length()),
+        position: Some(thing.centre),
+        colour: None,
+    })
+}
+
+/// Share of a thing's box, as far as it lies in the picture, that the box of its visible pixels covers. None where the
+/// thing reaches behind the eye.
+fn shown(camera: &Camera, thing: &Thing, seen: &Visible) -> Option<f64> {
+    let corners = thing.corners.iter().map(|corner| camera.project(*corner)).collect::<Option<Vec<_>>>()?;
+    let side = |value: fn(&(f64, f64, f64)) -> f64, end: u32| {
+        let values = corners.iter().map(value);
+        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+        (high.min(f64::from(end)) - low.max(0.0)).max(1.0)
+    };
+    let (width, height) = (side(|corner| corner.0, camera.width), side(|corner| corner.1, camera.height));
+    Some(f64::from(seen.bbox[2]) * f64::from(seen.bbox[3]) / (width * height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chair two metres ahead, half a metre wide, whose pixels fill `columns` of the picture's 160.
+    fn seen(columns: u32) -> Vec<Label> {
+        let camera = Camera {
+            position: DVec3::new(0.0, 0.0, 1.0),
+            heading_rad: 0.0,
+            elevation_rad: 0.0,
+            vertical_fov_rad: 2.0 * libm::atan(0.75),
+            width: 160,
+            height: 120,
+        };
+        let half = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * 0.25);
+        let chair = Thing::new(7, "Arm_Chair", DVec3::new(0.0, 2.0, 1.0), half).unwrap();
+        let ids = (0..160 * 120).map(|n| {
+            let (x, y) = (n % 160, n / 160);
+            u32::from((70..70 + columns).contains(&x) && (50..70).contains(&y)) * 5
+        });
+        labels(&camera, Gaze::quarter(Heading::NORTH), ids.collect(), &Palette::from([(5, chair)]))
+    }
+
+    #[test]
+    fn what_shows_is_labelled_and_what_only_peeks_out_is_not() {
+        let label = seen(20).remove(0);
+        assert_eq!((label.name.as_str(), label.object.as_str(), label.distance_m), ("arm chair", "7", Some(2.0)));
+        assert_eq!(label.box_px, Some([70.0, 50.0, 20.0, 20.0]));
+        assert!(seen(1).is_empty(), "too few pixels");
+        assert!(seen(4).is_empty(), "too little of its box");
+    }
+
+    #[test]
+    fn walls_and_nonsense_are_no_things() {
+        let side = [DVec3::X; 3];
+        assert_eq!(Thing::new(1, "Wall", DVec3::ZERO, side), None);
+        assert_eq!(Thing::new(1, "__", DVec3::ZERO, side), None);
+        assert_eq!(Thing::new(1, "chair", DVec3::NAN, side), None);
+    }
+}

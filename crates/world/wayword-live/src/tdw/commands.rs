@@ -1,0 +1,190 @@
+//! Commands to the build, with the JSON of TDW's `command_api.md`.
+
+use serde::Serialize;
+
+/// A point or a direction, Unity's (see [`crate::unity`]).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "each is the coordinate of that name")]
+pub struct Vector3 {
+    pub x: f64,
+    pub y: f64,
+    pub z: f64,
+}
+
+/// A rotation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "each is the component of that name")]
+pub struct Quaternion {
+    pub w: f64,
+    pub x: f64,
+    pub y: f64,
+    pub z: f64,
+}
+
+/// A point of the grid on which walls of procedural rooms stand, one metre apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[allow(missing_docs, reason = "each is the coordinate of that name")]
+pub struct GridPoint {
+    pub x: u32,
+    pub y: u32,
+}
+
+/// How often the build sends something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Frequency {
+    /// With the answer to this list of commands.
+    Once,
+    /// With every answer from now on.
+    Always,
+    /// No more.
+    Never,
+}
+
+/// A command. Fields are named as in the command's JSON; those that are left out there have the build's defaults.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "$type", rename_all = "snake_case")]
+#[allow(missing_docs, reason = "fields are those of command_api.md")]
+pub enum Command {
+    /// Lets the build end at its errors.
+    SetErrorHandling,
+    /// Asks for `vers`.
+    SendVersion,
+    /// Loads a scene that is part of the build.
+    LoadScene { scene_name: String },
+    /// Downloads and loads a scene.
+    AddScene { name: String, url: String },
+    /// Walls around a procedural room, in order.
+    CreateExteriorWalls { walls: Vec<GridPoint> },
+    /// Walls within it.
+    CreateInteriorWalls { walls: Vec<GridPoint> },
+    /// Its ceiling.
+    CreateProcGenCeiling,
+    /// Downloads and places an object; `rotation` in Euler angles, degrees.
+    AddObject {
+        name: String,
+        url: String,
+        scale_factor: f64,
+        position: Vector3,
+        rotation: Vector3,
+        category: String,
+        id: i32,
+        affordance_points: Vec<Vector3>,
+    },
+    /// Resizes an object.
+    ScaleObject { scale_factor: Vector3, id: i32 },
+    /// Whether an object is moved by forces.
+    SetKinematicState { id: i32, is_kinematic: bool, use_gravity: bool },
+    /// Bakes the navmesh of a procedural scene.
+    BakeNavMesh { voxel_size: f64, carve_type: &'static str, ignore: Vec<i32> },
+    /// A body with a camera.
+    CreateAvatar {
+        #[serde(rename = "type")]
+        kind: &'static str,
+        id: String,
+    },
+    /// Puts it somewhere.
+    TeleportAvatarTo { position: Vector3, avatar_id: String },
+    /// Turns it.
+    RotateAvatarTo { rotation: Quaternion, avatar_id: String },
+    /// Size of pictures, pixels.
+    SetScreenSize { width: u32, height: u32 },
+    /// Vertical field of view, degrees.
+    SetFieldOfView { field_of_view: f64, avatar_id: String },
+    /// Whether the `_img` pass comes as PNG; else JPEG.
+    SetImgPassEncoding { value: bool },
+    /// Which passes come.
+    SetPassMasks { pass_masks: Vec<&'static str>, avatar_id: String },
+    /// Asks for `imag`; of all avatars where `ids` is empty.
+    SendImages { ids: Vec<String>, frequency: Frequency },
+    /// Asks for `segm`.
+    SendSegmentationColors { ids: Vec<i32>, frequency: Frequency },
+    /// Asks for `cate`.
+    SendCategories { frequency: Frequency },
+    /// Asks for `avki`.
+    SendAvatars { ids: Vec<String>, frequency: Frequency },
+    /// Asks for `sreg`.
+    SendSceneRegions { frequency: Frequency },
+    /// Asks for `tran`.
+    SendTransforms { ids: Vec<i32>, frequency: Frequency },
+    /// Asks for `boun`.
+    SendBounds { ids: Vec<i32>, frequency: Frequency },
+    /// Asks for `cama`.
+    SendCameraMatrices { ids: Vec<String>, frequency: Frequency },
+    /// Asks for `imse`.
+    SendImageSensors { ids: Vec<String>, frequency: Frequency },
+    /// Asks for `occu`.
+    SendOccupancyMap { cell_size: f64, raycast_y: f64 },
+    /// Asks for `isnm`.
+    SendIsOnNavMesh { position: Vector3, max_distance: f64, id: i32 },
+    /// Asks for exactly one `path` with that id.
+    SendNavMeshPath { origin: Vector3, destination: Vector3, id: i32 },
+    /// Ends the build; it answers `quit`.
+    Terminate,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    /// The JSON of TDW's `command_api.md`, as its Python client sends it.
+    #[test]
+    fn commands_have_the_documented_json() {
+        let at = Vector3 { x: 1.0, y: 0.5, z: -2.0 };
+        let avatar_id = || "a".to_owned();
+        let documented: Vec<(Command, Value)> = vec![
+            (Command::SetErrorHandling, json!({ "$type": "set_error_handling" })),
+            (Command::SendVersion, json!({ "$type": "send_version" })),
+            (
+                Command::LoadScene { scene_name: "ProcGenScene".into() },
+                json!({ "$type": "load_scene", "scene_name": "ProcGenScene" }),
+            ),
+            (
+                Command::CreateExteriorWalls { walls: vec![GridPoint { x: 0, y: 3 }] },
+                json!({ "$type": "create_exterior_walls", "walls": [{ "x": 0, "y": 3 }] }),
+            ),
+            (Command::CreateProcGenCeiling, json!({ "$type": "create_proc_gen_ceiling" })),
+            (
+                Command::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: avatar_id() },
+                json!({ "$type": "create_avatar", "type": "A_Img_Caps_Kinematic", "id": "a" }),
+            ),
+            (
+                Command::TeleportAvatarTo { position: at, avatar_id: avatar_id() },
+                json!({ "$type": "teleport_avatar_to", "position": { "x": 1.0, "y": 0.5, "z": -2.0 }, "avatar_id": "a" }),
+            ),
+            (
+                Command::RotateAvatarTo {
+                    rotation: Quaternion { w: 1.0, x: 0.0, y: 0.0, z: 0.0 },
+                    avatar_id: avatar_id(),
+                },
+                json!({ "$type": "rotate_avatar_to", "rotation": { "w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0 }, "avatar_id": "a" }),
+            ),
+            (
+                Command::SetPassMasks { pass_masks: vec!["_img", "_id"], avatar_id: avatar_id() },
+                json!({ "$type": "set_pass_masks", "pass_masks": ["_img", "_id"], "avatar_id": "a" }),
+            ),
+            (
+                Command::SendImages { ids: vec![], frequency: Frequency::Once },
+                json!({ "$type": "send_images", "ids": [], "frequency": "once" }),
+            ),
+            (
+                Command::SendOccupancyMap { cell_size: 0.5, raycast_y: 2.5 },
+                json!({ "$type": "send_occupancy_map", "cell_size": 0.5, "raycast_y": 2.5 }),
+            ),
+            (
+                Command::SendNavMeshPath { origin: at, destination: at, id: 7 },
+                json!({
+                    "$type": "send_nav_mesh_path",
+                    "origin": { "x": 1.0, "y": 0.5, "z": -2.0 },
+                    "destination": { "x": 1.0, "y": 0.5, "z": -2.0 },
+                    "id": 7,
+                }),
+            ),
+            (Command::Terminate, json!({ "$type": "terminate" })),
+        ];
+        for (command, expected) in documented {
+            assert_eq!(serde_json::to_value(&command).unwrap(), expected);
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! The controller's side of the conversation: a REP socket that builds connect to, and one list of commands for each answer.
+
+use super::{
+    commands::Command,
+    error::TdwError,
+    output::{Output, Version, id_of},
+    zmtp::{Peer, Role, WireError},
+};
+use std::{
+    net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+/// How often a build may say that it heard nothing, for one list of commands: as often as with the Python client
+/// (`Controller.communicate`).
+const MAX_RESENDS: u32 = 1000;
+/// How long a stranger may take to greet.
+const GREETING: Duration = Duration::from_secs(5);
+
+/// Where to wait for a build, and for how long.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ControllerOptions {
+    /// Where builds connect to. TDW's own port is 1071; only this machine can reach the default.
+    pub address: SocketAddr,
+    /// How long to wait for a build.
+    pub connect_timeout: Duration,
+    /// How long to wait for an answer. A scene that has to be downloaded takes minutes.
+    pub step_timeout: Duration,
+}
+
+impl Default for ControllerOptions {
+    fn default() -> Self {
+        Self {
+            address: SocketAddr::from((Ipv4Addr::LOCALHOST, 1071)),
+            connect_timeout: Duration::from_secs(60),
+            step_timeout: Duration::from_secs(600),
+        }
+    }
+}
+
+/// A controller: at most one build at a time.
+///
+/// After an error on the wire the build is let go, because nobody knows any more whose turn it is; [`Controller::connect`]
+/// takes the next one.
+#[derive(Debug)]
+pub struct Controller {
+    listener: TcpListener,
+    options: ControllerOptions,
+    build: Option<Build>,
+}
+
+#[derive(Debug)]
+struct Build {
+    peer: Peer,
+    version: BuildVersion,
+}
+
+/// Which build is connected.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct BuildVersion {
+    /// TDW's own version.
+    pub tdw: String,
+    /// Unity's.
+    pub unity: String,
+}
+
+impl From<Version<'_>> for BuildVersion {
+    fn from(version: Version<'_>) -> Self {
+        Self { tdw: version.tdw.to_owned(), unity: version.unity.to_owned() }
+    }
+}
+
+/// What a build answered: frames of output data and the frame's number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Response {
+    frames: Vec<Vec<u8>>,
+    /// The build's own count of frames.
+    pub frame_number: u32,
+}
+
+impl Response {
+    /// The frames, read one by one.
+    pub fn outputs(&self) -> impl Iterator<Item = Result<Output<'_>, TdwError>> {
+        self.frames.iter().map(|frame| Ok(Output::read(frame)?))
+    }
+
+    /// What `pick` takes of the first frame that it takes anything of.
+    ///
+    /// # Errors
+    /// Where there is none, or a frame of a kind that we know cannot be read.
+    pub fn first<'a, T>(
+        &'a self,
+        id: &'static str,
+        asked: &'static str,
+        pick: impl Fn(Output<'a>) -> Option<T>,
+    ) -> Result<T, TdwError> {
+        for output in self.frames.iter().filter(|frame| id_of(frame).is_some_and(|its| its == id.as_bytes())) {
+            if let Some(found) = pick(Output::read(output)?) {
+                return Ok(found);
+            }
+        }
+        Err(TdwError::Missing { id, asked })
+    }
+}
+
+impl Controller {
+    /// Starts to listen; no build needs to be there yet.
+    ///
+    /// # Errors
+    /// When the port is taken.
+    pub fn bind(options: ControllerOptions) -> Result<Self, TdwError> {
+        let refused = |source| TdwError::Bind { address: options.address, source };
+        let listener = TcpListener::bind(options.address).map_err(refused)?;
+        listener.set_nonblocking(true).map_err(refused)?;
+        Ok(Self { listener, options, build: None })
+    }
+
+    /// Where builds connect to: the port that the system chose, where 0 was asked for.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.listener.local_addr().unwrap_or(self.options.address)
+    }
+
+    /// Whether a build is there.
+    #[must_use]
+    pub fn is_connected(&self) -> bool {
+        self.build.is_some()
+    }
+
+    /// Which build is there.
+    #[must_use]
+    pub fn version(&self) -> Option<&BuildVersion> {
+        self.build.as_ref().map(|build| &build.version)
+    }
+
+    /// Waits for a build, unless one is there, and asks it who it is.
+    ///
+    /// # Errors
+    /// When none comes in time, or it does not speak as a build does.
+    pub fn connect(&mut self) -> Result<&BuildVersion, TdwError> {
+        if self.build.is_none() {
+            let peer = self.wait()?;
+            self.build = Some(Build { peer, version: BuildVersion::default() });
+            let hello = [Command::SetErrorHandling, Command::SendVersion];
+            let version = self.communicate(&hello).and_then(|response| {
+                response.first("vers", "send_version", |output| match output {
+                    Output::Version(version) => Some(BuildVersion::from(version)),
+                    _ => None,
+                })
+            });
+            match version {
+                Ok(version) => self.build.iter_mut().for_each(|build| build.version = version.clone()),
+                Err(error) => {
+                    self.build = None;
+                    return Err(error);
+                }
+            }
+        }
+        self.version().ok_or_else(|| self.nobody(None))
+    }
+
+    /// Takes connections until one greets as a build does. Who only opens one and says nothing costs five seconds.
+    fn wait(&self) -> Result<Peer, TdwError> {
+        let deadline = Instant::now() + self.options.connect_timeout;
+        let mut last = None;
+        while Instant::now() < deadline {
+            match self.listener.accept() {
+                Ok((stream, _)) => match greet(stream, deadline) {
+                    Ok(peer) => return Ok(peer),
+                    Err(error) => last = Some(error),
+                },
+                // Nobody yet, or somebody who left again.
+                Err(_) => sleep(Duration::from_millis(5)),
+            }
+        }
+        Err(self.nobody(last))
+    }
+
+    fn nobody(&self, last: Option<WireError>) -> TdwError {
+        TdwError::NoBuild { address: self.address(), seconds: self.options.connect_timeout.as_secs(), last }
+    }
+
+    /// Sends commands and waits for the answer, telling them again as long as the build says that it did not hear.
+    ///
+    /// # Errors
+    /// When no build is there, it is gone, late or quits with an error, or it answers what no build does.
+    pub fn communicate(&mut self, commands: &[Command]) -> Result<Response, TdwError> {
+        let told = self.tell(commands);
+        if told.as_ref().is_err_and(TdwError::is_loss) {
+            self.build = None;
+        }
+        told
+    }
+
+    fn tell(&mut self, commands: &[Command]) -> Result<Response, TdwError> {
+        let address = self.address();
+        let Some(build) = &mut self.build else {
+            return Err(self.nobody(None));
+        };
+        let text = serde_json::to_vec(commands).map_err(|error| TdwError::Scene(error.to_string()))?;
+        build.peer.until(Instant::now() + self.options.step_timeout);
+        for _ in 0..=MAX_RESENDS {
+            let answer = build.peer.send(&[&text]).and_then(|()| build.peer.receive());
+            let response = response(answer.map_err(|source| TdwError::Wire { address, source })?)?;
+            let holds = |id: &[u8; 4]| response.frames.iter().find(|frame| id_of(frame).is_some_and(|its| its == *id));
+            if holds(b"ftre").is_some() {
+                continue;
+            }
+            return match holds(b"quit").map(|frame| Output::read(frame)).transpose()? {
+                Some(Output::Quit(false)) => Err(TdwError::Quit),
+                Some(_) => {
+                    self.build = None;
+                    Ok(response)
+                }
+                None => Ok(response),
+            };
+        }
+        Err(TdwError::NeverHeard { times: MAX_RESENDS })
+    }
+
+    /// Ends the build, where one is there.
+    ///
+    /// # Errors
+    /// When it does not answer; it is let go in any case.
+    pub fn terminate(&mut self) -> Result<(), TdwError> {
+        if self.is_connected() {
+            let told = self.communicate(&[Command::Terminate]);
+            self.build = None;
+            told?;
+        }
+        Ok(())
+    }
+}
+
+/// The build speaks first, and what it says then means nothing.
+fn greet(stream: TcpStream, deadline: Instant) -> Result<Peer, WireError> {
+    let deadline = deadline.min(Instant::now() + GREETING);
+    let mut peer = Peer::greet(stream, Role::Rep, deadline)?;
+    peer.receive()?;
+    Ok(peer)
+}
+
+fn response(mut frames: Vec<Vec<u8>>) -> Result<Response, TdwError> {
+    let last = frames.pop().unwrap_or_default();
+    let number = last.as_slice().try_into().map_err(|_| TdwError::NoFrameNumber { length: last.len() })?;
+    Ok(Response { frames, frame_number: u32::from_be_bytes(number) })
+}

@@ -1,0 +1,271 @@
+//! The scenes that a build is told to load: TDW's floor plans, and procedural rooms.
+
+use super::{
+    commands::{Command, GridPoint, Vector3},
+    error::TdwError,
+};
+use serde::Deserialize;
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io::Read,
+    path::{Path, PathBuf},
+};
+use wayword_core::SceneId;
+
+/// Floor plans that TDW has, by their structure and look (`tdw/add_ons/floorplan.py`).
+const PLANS: [&str; 12] = ["1a", "1b", "1c", "2a", "2b", "2c", "4a", "4b", "4c", "5a", "5b", "5c"];
+/// Ways to furnish each.
+const LAYOUTS: [&str; 3] = ["0", "1", "2"];
+/// A procedural scene that is listed; any other size can be asked for by its name.
+const ROOM: &str = "room_8x10";
+/// Sides that a procedural room may have, metres.
+const SIDES_M: std::ops::RangeInclusive<u32> = 3..=40;
+/// Largest file of the Python package that is read, bytes.
+const MAX_FILE_BYTES: u64 = 32 << 20;
+
+/// A scene, parsed from its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Plan {
+    /// `floorplan_1a`, or with furniture `floorplan_1a_0`.
+    Floor { scene: String, layout: Option<String> },
+    /// `room_8x10`: two rooms side by side, without furniture.
+    Room { width_m: u32, length_m: u32 },
+}
+
+/// The names of all scenes that can be listed; floor plans come furnished where the furniture's lists are at hand.
+pub(super) fn names(package: Option<&Path>) -> Vec<String> {
+    let furnished = |plan: &str| LAYOUTS.map(|layout| format!("floorplan_{plan}_{layout}")).to_vec();
+    let mut names: Vec<String> = match package {
+        Some(_) => PLANS.iter().flat_map(|plan| furnished(plan)).collect(),
+        None => PLANS.iter().map(|plan| format!("floorplan_{plan}")).collect(),
+    };
+    names.push(ROOM.to_owned());
+    names
+}
+
+impl Plan {
+    pub(super) fn of(scene: &SceneId) -> Option<Self> {
+        if let Some(rest) = scene.as_str().strip_prefix("floorplan_") {
+            let (plan, layout) = rest.split_once('_').map_or((rest, None), |(plan, layout)| (plan, Some(layout)));
+            let is_known = PLANS.contains(&plan) && layout.is_none_or(|layout| LAYOUTS.contains(&layout));
+            let scene = format!("floorplan_{plan}");
+            return is_known.then(|| Self::Floor { scene, layout: layout.map(str::to_owned) });
+        }
+        let (width, length) = scene.as_str().strip_prefix("room_")?.split_once('x')?;
+        let side =
+            |text: &str| text.parse().ok().filter(|side: &u32| SIDES_M.contains(side) && side.to_string() == text);
+        Some(Self::Room { width_m: side(width)?, length_m: side(length)? })
+    }
+
+    /// The commands that load it.
+    ///
+    /// # Errors
+    /// When the lists of its furniture cannot be read.
+    pub(super) fn commands(&self, package: Option<&Path>) -> Result<Vec<Command>, TdwError> {
+        match self {
+            Self::Room { width_m, length_m } => Ok(room(*width_m, *length_m)),
+            Self::Floor { scene, layout } => {
+                let url = format!("https://tdw-public.s3.amazonaws.com/scenes/{}/2020.3/{scene}", system().0);
+                let mut commands = vec![Command::AddScene { name: scene.clone(), url }];
+                if let Some(layout) = layout {
+                    let package = package.ok_or_else(|| {
+                        let hint = "name the folder of the Python package tdw, where they are";
+                        TdwError::Scene(format!("the furniture of {scene}_{layout} is not at hand: {hint}"))
+                    })?;
+                    commands.extend(Furniture::read(package)?.commands(scene, layout)?);
+                }
+                Ok(commands)
+            }
+        }
+    }
+}
+
+/// The system's name in the scenes' addresses, and in the records of models: the build runs beside us.
+fn system() -> (&'static str, &'static str) {
+    match std::env::consts::OS {
+        "macos" => ("osx", "Darwin"),
+        "windows" => ("windows", "Windows"),
+        _ => ("linux", "Linux"),
+    }
+}
+
+/// A box of walls, and in one that is wide enough a wall across with a gap of two metres.
+fn room(width: u32, length: u32) -> Vec<Command> {
+    let bottom = (0..=width).map(|x| GridPoint { x, y: 0 });
+    let top = (0..=width).map(|x| GridPoint { x, y: length });
+    let left = (1..length).map(|y| GridPoint { x: 0, y });
+    let right = (1..length).map(|y| GridPoint { x: width, y });
+    let mut commands = vec![
+        Command::LoadScene { scene_name: "ProcGenScene".to_owned() },
+        Command::CreateExteriorWalls { walls: bottom.chain(top).chain(left).chain(right).collect() },
+    ];
+    if length >= 6 && width >= 4 {
+        let gap = width / 2 - 1..=width / 2;
+        let walls = (1..width).filter(|x| !gap.contains(x)).map(|x| GridPoint { x, y: length / 2 });
+        commands.push(Command::CreateInteriorWalls { walls: walls.collect() });
+    }
+    commands.push(Command::CreateProcGenCeiling);
+    commands.push(Command::BakeNavMesh { voxel_size: 0.166_666_7, carve_type: "all", ignore: Vec::new() });
+    commands
+}
+
+/// What the Python package knows of the floor plans' furniture.
+struct Furniture {
+    /// By structure ("1"), by layout.
+    layouts: BTreeMap<String, BTreeMap<String, Vec<Placed>>>,
+    package: PathBuf,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+struct Placed {
+    name: String,
+    library: String,
+    position: Axes,
+    rotation: Axes,
+    scale_factor: Axes,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+struct Axes {
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+#[derive(Deserialize)]
+struct Library {
+    records: BTreeMap<String, Record>,
+}
+
+#[derive(Deserialize)]
+struct Record {
+    urls: BTreeMap<String, String>,
+    scale_factor: f64,
+    wcategory: String,
+}
+
+impl From<Axes> for Vector3 {
+    fn from(Axes { x, y, z }: Axes) -> Self {
+        Self { x, y, z }
+    }
+}
+
+fn read<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
+    let refused = |reason: String| {
+        TdwError::Scene(format!("{}: {reason}; is this the folder of the Python package tdw?", file.display()))
+    };
+    let mut text = Vec::new();
+    let opened = File::open(file).and_then(|file| file.take(MAX_FILE_BYTES).read_to_end(&mut text));
+    opened.map_err(|error| refused(error.to_string()))?;
+    serde_json::from_slice(&text).map_err(|error| refused(error.to_string()))
+}
+
+impl Furniture {
+    fn read(package: &Path) -> Result<Self, TdwError> {
+        let layouts = read(&package.join("add_ons").join("floorplan_layouts.json"))?;
+        Ok(Self { layouts, package: package.to_owned() })
+    }
+
+    /// Each piece where the layout has it, and held there: a picture of it is the same whenever it is taken. Pieces have
+    /// numbers from 1 on.
+    fn commands(&self, scene: &str, layout: &str) -> Result<Vec<Command>, TdwError> {
+        let structure = scene.trim_start_matches("floorplan_").get(..1).unwrap_or_default();
+        let pieces = self.layouts.get(structure).and_then(|layouts| layouts.get(layout));
+        let pieces =
+            pieces.ok_or_else(|| TdwError::Scene(format!("the package tdw has no layout {layout} of {scene}")))?;
+        let mut libraries: BTreeMap<&str, Library> = BTreeMap::new();
+        let mut commands = Vec::new();
+        for (piece, id) in pieces.iter().zip(1..) {
+            if !libraries.contains_key(piece.library.as_str()) {
+                libraries.insert(&piece.library, self.library(&piece.library)?);
+            }
+            let record = libraries.get(piece.library.as_str()).and_then(|library| library.records.get(&piece.name));
+            let url = record.and_then(|record| record.urls.get(system().1));
+            let (Some(record), Some(url)) = (record, url) else {
+                let at = format!("{} of {}", piece.name, piece.library);
+                return Err(TdwError::Scene(format!("the package tdw does not know the model {at} for this system")));
+            };
+            commands.push(Command::AddObject {
+                name: piece.name.clone(),
+                url: url.clone(),
+                scale_factor: record.scale_factor,
+                position: piece.position.into(),
+                rotation: piece.rotation.into(),
+                category: record.wcategory.clone(),
+                id,
+                affordance_points: Vec::new(),
+            });
+            if piece.scale_factor != (Axes { x: 1.0, y: 1.0, z: 1.0 }) {
+                commands.push(Command::ScaleObject { scale_factor: piece.scale_factor.into(), id });
+            }
+            commands.push(Command::SetKinematicState { id, is_kinematic: true, use_gravity: false });
+        }
+        Ok(commands)
+    }
+
+    /// A library's records; its name comes from a file, so it must not lead out of the folder.
+    fn library(&self, name: &str) -> Result<Library, TdwError> {
+        if name.contains(['/', '\\']) || name.starts_with('.') {
+            return Err(TdwError::Scene(format!("the package tdw names a library {name:?}: expected a file's name")));
+        }
+        read(&self.package.join("metadata_libraries").join(name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(name: &str) -> Option<Plan> {
+        Plan::of(&SceneId::new(name).unwrap())
+    }
+
+    #[test]
+    fn every_listed_scene_has_a_plan_and_nothing_else_has() {
+        for name in names(None).into_iter().chain(names(Some(Path::new("tdw")))) {
+            assert!(plan(&name).is_some(), "{name}");
+        }
+        for name in
+            ["floorplan_3a", "floorplan_1a_3", "floorplan_", "room_2x8", "room_08x8", "room_8x999", "room_8", "x"]
+        {
+            assert_eq!(plan(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_room_is_closed_and_its_inner_wall_is_not() {
+        let commands = plan("room_8x10").unwrap().commands(None).unwrap();
+        let Command::CreateExteriorWalls { walls } = &commands[1] else { panic!("{commands:?}") };
+        assert_eq!(walls.len(), 2 * (8 + 10), "the perimeter, each point once");
+        let Command::CreateInteriorWalls { walls } = &commands[2] else { panic!("{commands:?}") };
+        assert!(walls.iter().all(|point| point.y == 5) && walls.len() == 5);
+    }
+
+    #[test]
+    fn furniture_stands_where_the_package_has_it() {
+        let package = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            std::fs::create_dir_all(package.path().join(name).parent().unwrap()).unwrap();
+            std::fs::write(package.path().join(name), text).unwrap();
+        };
+        let place = r#"{"x":1,"y":0.5,"z":-2}"#;
+        let one = r#"{"x":1,"y":1,"z":1}"#;
+        let piece = format!(
+            r#"{{"name":"sofa_a","library":"models_core.json","position":{place},"rotation":{place},"scale_factor":{one}}}"#
+        );
+        write("add_ons/floorplan_layouts.json", &format!(r#"{{"1":{{"0":[{piece}]}}}}"#));
+        let urls = r#"{"Linux":"u","Darwin":"u","Windows":"u"}"#;
+        write(
+            "metadata_libraries/models_core.json",
+            &format!(r#"{{"records":{{"sofa_a":{{"urls":{urls},"scale_factor":1.0,"wcategory":"sofa"}}}}}}"#),
+        );
+        let commands = plan("floorplan_1a_0").unwrap().commands(Some(package.path())).unwrap();
+        let Command::AddObject { category, position, id, .. } = &commands[1] else { panic!("{commands:?}") };
+        assert_eq!((category.as_str(), position.z, *id), ("sofa", -2.0, 1));
+        let unfurnished = plan("floorplan_1a_0").unwrap().commands(None).unwrap_err().to_string();
+        assert!(unfurnished.contains("package tdw"), "{unfurnished}");
+        let missing = plan("floorplan_1a_1").unwrap().commands(Some(package.path())).unwrap_err().to_string();
+        assert!(missing.contains("no layout 1"), "{missing}");
+    }
+}

@@ -1,0 +1,183 @@
+//! A build with a scene in it: what is asked of it, step by step.
+
+use super::{
+    commands::{Command, Frequency, Quaternion, Vector3},
+    controller::{Controller, Response},
+    error::TdwError,
+    output::{Bounds, NavMeshPath, Occupancy, OnNavMesh, Output, Segment},
+    pictures::{self, Kind},
+    scenes::Plan,
+};
+use crate::{
+    raster::Raster,
+    sight::{Palette, Thing, colour_id},
+    unity::{unity_from_wayword, unity_rotation_from_heading, wayword_from_unity},
+    walk::EYE_M,
+};
+use std::path::Path;
+use wayword_core::{DVec3, ViewpointGraph};
+use wayword_render::Camera;
+
+/// The avatar that looks.
+const AVATAR: &str = "a";
+/// Side of the occupancy map's cells, metres: two fit into a narrow door.
+const CELL_M: f64 = 0.25;
+/// From where the map looks down for obstacles: below ceilings, metres.
+const RAYCAST_M: f64 = 2.5;
+/// How far a place may be from the navmesh, metres.
+const SNAP_M: f64 = 0.5;
+/// Questions in one list of commands.
+const BATCH: usize = 256;
+
+/// What a scene holds: surveyed once, when it is first loaded.
+#[derive(Debug)]
+pub(super) struct Survey {
+    pub(super) graph: ViewpointGraph,
+    pub(super) palette: Palette,
+}
+
+/// Loads a scene and puts the avatar into it.
+pub(super) fn load(
+    controller: &mut Controller,
+    plan: &Plan,
+    package: Option<&Path>,
+    (width, height): (u32, u32),
+) -> Result<(), TdwError> {
+    let mut commands = plan.commands(package)?;
+    let passes = [Kind::Img, Kind::Id].map(Kind::name).to_vec();
+    commands.extend([
+        Command::SetScreenSize { width, height },
+        Command::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: AVATAR.to_owned() },
+        Command::SetImgPassEncoding { value: true },
+        Command::SetPassMasks { pass_masks: passes, avatar_id: AVATAR.to_owned() },
+    ]);
+    controller.communicate(&commands).map(drop)
+}
+
+/// Asks what stands where, and where one can walk.
+pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
+    let (ids, frequency) = (Vec::new(), Frequency::Once);
+    let answer = controller.communicate(&[
+        Command::SendSegmentationColors { ids: ids.clone(), frequency },
+        Command::SendBounds { ids, frequency },
+        Command::SendOccupancyMap { cell_size: CELL_M, raycast_y: RAYCAST_M },
+    ])?;
+    let raster = answer.first("occu", "send_occupancy_map", |output| match output {
+        Output::Occupancy(map) => Some(raster(&map)),
+        _ => None,
+    })?;
+    let unusable =
+        || TdwError::Scene("the build's occupancy map has no usable cells: is the scene's floor at y = 0?".into());
+    let mut raster = raster.ok_or_else(unusable)?;
+    raster.keep_largest_part();
+    let eyes = eyes(controller, &raster.places())?;
+    let graph = raster.graph(&eyes).map_err(|error| TdwError::Scene(error.to_string()))?;
+    Ok(Survey { graph, palette: palette(&answer)? })
+}
+
+fn raster(map: &Occupancy) -> Option<Raster> {
+    let floor = |[x, z]: [f32; 2]| [f64::from(x), f64::from(z)];
+    let cells: Vec<_> = map.positions.iter().zip(&map.cells).map(|(at, cell)| (floor(*at), *cell == 0)).collect();
+    Raster::of_cells(&cells, CELL_M)
+}
+
+/// Things by their colours. One that has no box is left out: nobody could say where it is.
+fn palette(answer: &Response) -> Result<Palette, TdwError> {
+    let bounds = answer.first("boun", "send_bounds", |output| match output {
+        Output::Bounds(bounds) => Some(bounds),
+        _ => None,
+    })?;
+    let segments = answer.first("segm", "send_segmentation_colors", |output| match output {
+        Output::Segmentation(segments) => Some(segments),
+        _ => None,
+    })?;
+    let by_id: std::collections::BTreeMap<i32, Bounds> = bounds.into_iter().map(|each| (each.id, each)).collect();
+    let thing = |segment: &Segment<'_>| {
+        let points = by_id.get(&segment.id)?.points.map(|point| wayword_from_unity(point.map(f64::from)));
+        let [front, _, right, _, top, _, centre] = points;
+        let name = if segment.category.is_empty() { segment.name } else { segment.category };
+        let thing = Thing::new(segment.id.into(), name, centre, [front - centre, right - centre, top - centre])?;
+        Some((colour_id(segment.colour), thing))
+    };
+    Ok(segments.iter().filter_map(thing).collect())
+}
+
+/// The eyes above those places that are on the navmesh.
+fn eyes(controller: &mut Controller, places: &[[f64; 2]]) -> Result<Vec<DVec3>, TdwError> {
+    let mut eyes = Vec::new();
+    for batch in places.chunks(BATCH) {
+        let ask = |(id, [x, y]): (usize, &[f64; 2])| Command::SendIsOnNavMesh {
+            position: vector(DVec3::new(*x, *y, 0.0)),
+            max_distance: SNAP_M,
+            id: id as i32,
+        };
+        let commands: Vec<Command> = batch.iter().enumerate().map(ask).collect();
+        let answer = controller.communicate(&commands)?;
+        let mut found: Vec<Option<f64>> = vec![None; batch.len()];
+        for output in answer.outputs() {
+            if let Output::OnNavMesh(OnNavMesh { id, is_on: true, position }) = output?
+                && let Some(height) = usize::try_from(id).ok().and_then(|id| found.get_mut(id))
+            {
+                *height = Some(f64::from(position[1])).filter(|height| height.is_finite());
+            }
+        }
+        let above = batch.iter().zip(found).filter_map(|([x, y], height)| Some(DVec3::new(*x, *y, height? + EYE_M)));
+        eyes.extend(above);
+    }
+    Ok(eyes)
+}
+
+/// The corners of the way between two eyes, eyes themselves; `None` where the navmesh has none.
+pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, TdwError> {
+    let [origin, destination] = [from, to].map(|eye| vector(eye - DVec3::Z * EYE_M));
+    let answer = controller.communicate(&[Command::SendNavMeshPath { origin, destination, id: 0 }])?;
+    let path = answer.first("path", "send_nav_mesh_path", |output| match output {
+        Output::Path(path) => Some(path),
+        _ => None,
+    })?;
+    let NavMeshPath { corners, state: 1, .. } = path else { return Ok(None) };
+    let eye = |corner: [f32; 3]| wayword_from_unity(corner.map(f64::from)) + DVec3::Z * EYE_M;
+    let way: Vec<DVec3> = corners.into_iter().map(eye).collect();
+    Ok(Some(way).filter(|way| way.len() >= 2 && way.iter().all(|corner| corner.is_finite())))
+}
+
+/// A picture and the colour of each pixel's object.
+pub(super) struct Shot {
+    pub(super) rgb: Vec<u8>,
+    pub(super) ids: Vec<u32>,
+}
+
+/// Looks through a camera of the size that the scene was loaded with.
+pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot, TdwError> {
+    let size = (camera.width, camera.height);
+    let avatar_id = || AVATAR.to_owned();
+    let heading = wayword_core::Heading::new(camera.heading_rad).unwrap_or(wayword_core::Heading::NORTH);
+    let [x, y, z, w] = unity_rotation_from_heading(heading);
+    let field_of_view = camera.vertical_fov_rad.to_degrees();
+    let answer = controller.communicate(&[
+        Command::TeleportAvatarTo { position: vector(camera.position), avatar_id: avatar_id() },
+        Command::RotateAvatarTo { rotation: Quaternion { w, x, y, z }, avatar_id: avatar_id() },
+        Command::SetFieldOfView { field_of_view, avatar_id: avatar_id() },
+        Command::SendImages { ids: vec![avatar_id()], frequency: Frequency::Once },
+    ])?;
+    let images = answer.first("imag", "send_images", |output| match output {
+        Output::Images(images) if images.avatar == AVATAR => Some(images),
+        _ => None,
+    })?;
+    if (images.width, images.height) != size {
+        let reason = format!("{} x {} pixels: expected {} x {}", images.width, images.height, size.0, size.1);
+        return Err(TdwError::Picture { pass: Kind::Img.name(), reason });
+    }
+    let pixels = |kind: Kind| {
+        let pass = images.passes.iter().find(|pass| pass.mask == kind.mask());
+        let missing = || TdwError::Picture { pass: kind.name(), reason: "it was not sent".to_owned() };
+        pictures::rgb(pass.ok_or_else(missing)?, kind, size)
+    };
+    let ids = pixels(Kind::Id)?.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect();
+    Ok(Shot { rgb: pixels(Kind::Img)?, ids })
+}
+
+fn vector(place: DVec3) -> Vector3 {
+    let [x, y, z] = unity_from_wayword(place);
+    Vector3 { x, y, z }
+}

@@ -1,0 +1,190 @@
+//! A program that speaks like the TDW build and draws a generated house: what tests and demonstrations drive.
+//!
+//! It knows the commands that Wayword and its tests send and passes over all others, as the build does with what it cannot
+//! do. Rooms, walls and furniture are the house's, whatever scene and objects it is told to load.
+
+mod answers;
+mod flat;
+mod pictures;
+mod state;
+mod world;
+
+use super::zmtp::{Peer, Role, WireError};
+use state::State;
+use std::{
+    net::{SocketAddr, TcpStream},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{JoinHandle, sleep, spawn},
+    time::{Duration, Instant},
+};
+pub use world::World;
+
+/// How often it looks whether it is to stop.
+const PAUSE: Duration = Duration::from_millis(50);
+/// How long it takes part in an exchange that has begun.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Which build to pretend to be, and which of its faults to have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StandInOptions {
+    /// The version that it says it is; up to 1.12 `vers` is a FlatBuffer, later plain bytes.
+    pub version: &'static str,
+    /// Seed of the house that it draws; the next one with a single storey is taken.
+    pub house: u64,
+    /// So many lists of commands it pretends not to have heard (`ftre`).
+    pub deaf: u32,
+    /// After so many answers the connection breaks, once, and a new build takes over.
+    pub breaks_after: Option<u32>,
+    /// After so many answers it says nothing more.
+    pub hangs_after: Option<u32>,
+    /// Answers every list of commands with these frames instead, where there are any.
+    pub canned: Option<Vec<Vec<u8>>>,
+}
+
+impl Default for StandInOptions {
+    fn default() -> Self {
+        Self { version: "1.13.0.0", house: 1, deaf: 0, breaks_after: None, hangs_after: None, canned: None }
+    }
+}
+
+/// A stand-in that runs in a thread of its own until it is dropped or told to terminate.
+#[derive(Debug)]
+pub struct StandIn {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl StandIn {
+    /// Starts one that connects to a controller as soon as it listens.
+    #[must_use]
+    pub fn start(controller: SocketAddr, options: StandInOptions) -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopped = stop.clone();
+        let thread = spawn(move || Build { controller, options, stop: stopped, answered: 0 }.run());
+        Self { stop, thread: Some(thread) }
+    }
+
+    /// Waits until it has been told to terminate.
+    pub fn join(mut self) {
+        self.thread.take().map(JoinHandle::join);
+    }
+}
+
+impl Drop for StandIn {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.thread.take().map(JoinHandle::join);
+    }
+}
+
+struct Build {
+    controller: SocketAddr,
+    options: StandInOptions,
+    stop: Arc<AtomicBool>,
+    answered: u32,
+}
+
+impl Build {
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Connects again and again: a build that lost its controller waits for the next.
+    fn run(&mut self) {
+        let mut world = None;
+        while !self.is_stopped() {
+            let talked = TcpStream::connect(self.controller)
+                .map_err(|source| WireError::Io { doing: "connecting", source })
+                .and_then(|stream| self.talk(stream, &mut world));
+            match talked {
+                Ok(()) => return,
+                Err(_) => sleep(PAUSE),
+            }
+        }
+    }
+
+    fn talk(&mut self, stream: TcpStream, world: &mut Option<Arc<World>>) -> Result<(), WireError> {
+        let mut peer = Peer::greet(stream, Role::Req, Instant::now() + PATIENCE)?;
+        peer.send(&[b"hello"])?;
+        let world = world.get_or_insert_with(|| Arc::new(World::with_one_storey(self.options.house))).clone();
+        let mut state = State::new(world, self.options.version);
+        loop {
+            while !peer.has_news(PAUSE) {
+                if self.is_stopped() {
+                    return Ok(());
+                }
+            }
+            peer.until(Instant::now() + PATIENCE);
+            let commands = peer.receive()?;
+            self.answered += 1;
+            if self.options.hangs_after.is_some_and(|after| self.answered > after) {
+                continue;
+            }
+            if self.options.breaks_after.is_some_and(|after| self.answered > after) {
+                self.options.breaks_after = None;
+                return Err(WireError::Gone { doing: "breaking as was asked" });
+            }
+            let frames = self.frames(&mut state, &commands);
+            peer.until(Instant::now() + PATIENCE);
+            peer.send(&frames)?;
+            if state.has_quit {
+                return Ok(());
+            }
+        }
+    }
+
+    fn frames(&mut self, state: &mut State, commands: &[Vec<u8>]) -> Vec<Vec<u8>> {
+        if self.options.deaf > 0 {
+            self.options.deaf -= 1;
+            return vec![b"\0\0\0\0ftre".to_vec(), vec![0; 4]];
+        }
+        let mut frames = match &self.options.canned {
+            Some(frames) if state.is_known() => frames.clone(),
+            _ => state.obey(commands),
+        };
+        frames.push(self.answered.to_be_bytes().to_vec());
+        frames
+    }
+}
+
+/// An `imag` frame with one raw pass of a size, for [`StandInOptions::canned`]: the largest picture that the build sends.
+#[must_use]
+pub fn canned_picture(width: u32, height: u32) -> Vec<u8> {
+    use flat::Field;
+    let pixels = (0..width as usize * height as usize * 3).map(|index| (index % 251) as u8).collect();
+    let pass = vec![Field::I32(16), Field::Bytes(pixels), Field::U8(1)];
+    let fields = vec![
+        Field::Text("a".to_owned()),
+        Field::Text("SensorContainer".to_owned()),
+        Field::I32(width as i32),
+        Field::I32(height as i32),
+        Field::Tables(vec![pass]),
+    ];
+    flat::buffer(b"imag", fields)
+}
+
+/// A small frame of every kind that the stand-in sends, with its id; `vers` in both layouts.
+#[cfg(test)]
+pub(super) fn frames_of_every_kind() -> &'static [(String, Vec<u8>)] {
+    static FRAMES: std::sync::OnceLock<Vec<(String, Vec<u8>)>> = std::sync::OnceLock::new();
+    const COMMANDS: &str = r#"[
+        {"$type":"create_avatar","type":"A_Img_Caps_Kinematic","id":"a"}, {"$type":"set_screen_size","width":8,"height":6},
+        {"$type":"set_pass_masks","pass_masks":["_img","_id","_depth"],"avatar_id":"a"},
+        {"$type":"send_version"}, {"$type":"send_images","ids":[],"frequency":"once"}, {"$type":"send_segmentation_colors"},
+        {"$type":"send_categories"}, {"$type":"send_scene_regions"}, {"$type":"send_bounds"}, {"$type":"send_transforms"},
+        {"$type":"send_occupancy_map","cell_size":2.0,"raycast_y":2.5}, {"$type":"send_avatars"},
+        {"$type":"send_camera_matrices"}, {"$type":"send_image_sensors"},
+        {"$type":"send_is_on_nav_mesh","position":{"x":2,"y":0,"z":2},"max_distance":2,"id":3},
+        {"$type":"send_nav_mesh_path","origin":{"x":1,"y":0,"z":1},"destination":{"x":3,"y":0,"z":3},"id":4},
+        {"$type":"terminate"}]"#;
+    FRAMES.get_or_init(|| {
+        let mut old = State::new(Arc::new(World::with_one_storey(1)), "1.12.27");
+        let mut frames = old.obey(&[br#"[{"$type":"send_version"}]"#.to_vec()]);
+        let mut new = State::new(old.world, "1.13.0.0");
+        frames.extend(new.obey(&[COMMANDS.as_bytes().to_vec()]));
+        frames.into_iter().map(|frame| (String::from_utf8_lossy(&frame[4..8]).into_owned(), frame)).collect()
+    })
+}

@@ -1,0 +1,146 @@
+//! What the stand-in has been told so far.
+
+use super::{answers, world::World};
+use crate::unity::{wayword_forward_from_unity_rotation, wayword_from_unity};
+use serde_json::Value;
+use std::sync::Arc;
+use wayword_render::Camera;
+
+/// An avatar with its camera.
+#[derive(Debug, Clone)]
+pub(super) struct Avatar {
+    pub(super) id: String,
+    pub(super) position: [f64; 3],
+    /// x, y, z, w.
+    pub(super) rotation: [f64; 4],
+    pub(super) field_of_view_deg: f64,
+    pub(super) pass_masks: Vec<String>,
+}
+
+/// Which avatars' pictures are asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Pictures {
+    None,
+    Once(Vec<String>),
+    Always(Vec<String>),
+}
+
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) world: Arc<World>,
+    pub(super) version: &'static str,
+    pub(super) avatars: Vec<Avatar>,
+    pub(super) size: (u32, u32),
+    pub(super) png: bool,
+    pub(super) pictures: Pictures,
+    pub(super) has_quit: bool,
+    asked_version: bool,
+}
+
+impl State {
+    pub(super) fn new(world: Arc<World>, version: &'static str) -> Self {
+        Self {
+            world,
+            version,
+            avatars: Vec::new(),
+            size: (256, 256),
+            png: true,
+            pictures: Pictures::None,
+            has_quit: false,
+            asked_version: false,
+        }
+    }
+
+    /// Whether it has said which build it is.
+    pub(super) fn is_known(&self) -> bool {
+        self.asked_version
+    }
+
+    /// Does what it is told and gives back what it was asked for, one frame each.
+    pub(super) fn obey(&mut self, message: &[Vec<u8>]) -> Vec<Vec<u8>> {
+        let commands: Vec<Value> =
+            message.first().and_then(|text| serde_json::from_slice(text).ok()).unwrap_or_default();
+        let mut frames = Vec::new();
+        for command in &commands {
+            let kind = command["$type"].as_str().unwrap_or_default();
+            self.asked_version |= kind == "send_version";
+            self.change(kind, command);
+            frames.extend(answers::to(self, kind, command));
+        }
+        frames.extend(answers::pictures(self));
+        frames
+    }
+
+    fn change(&mut self, kind: &str, command: &Value) {
+        match kind {
+            "load_scene" | "add_scene" => self.avatars.clear(),
+            "create_avatar" => self.avatars.push(Avatar {
+                id: command["id"].as_str().unwrap_or("a").to_owned(),
+                position: [0.0; 3],
+                rotation: [0.0, 0.0, 0.0, 1.0],
+                field_of_view_deg: 54.43223,
+                pass_masks: vec!["_img".to_owned()],
+            }),
+            "set_screen_size" => self.size = (side(command, "width"), side(command, "height")),
+            "set_img_pass_encoding" => self.png = command["value"].as_bool().unwrap_or(true),
+            "send_images" => {
+                let ids = texts(&command["ids"]);
+                self.pictures = match command["frequency"].as_str() {
+                    Some("always") => Pictures::Always(ids),
+                    Some("never") => Pictures::None,
+                    _ => Pictures::Once(ids),
+                };
+            }
+            "terminate" => self.has_quit = true,
+            _ => self.move_avatar(kind, command),
+        }
+    }
+
+    fn move_avatar(&mut self, kind: &str, command: &Value) {
+        let id = command["avatar_id"].as_str().unwrap_or("a");
+        let Some(avatar) = self.avatars.iter_mut().find(|avatar| avatar.id == id) else {
+            return;
+        };
+        match kind {
+            "teleport_avatar_to" => avatar.position = vector(&command["position"]),
+            "rotate_avatar_to" => {
+                let [x, y, z] = vector(&command["rotation"]);
+                avatar.rotation = [x, y, z, command["rotation"]["w"].as_f64().unwrap_or(1.0)];
+            }
+            "look_at_position" => avatar.look_at(vector(&command["position"])),
+            "set_field_of_view" => {
+                avatar.field_of_view_deg = command["field_of_view"].as_f64().unwrap_or(54.43223).clamp(1.0, 170.0);
+            }
+            "set_pass_masks" => avatar.pass_masks = texts(&command["pass_masks"]),
+            _ => {}
+        }
+    }
+}
+
+impl Avatar {
+    fn look_at(&mut self, target: [f64; 3]) {
+        let [x, y, z] = [0, 1, 2].map(|axis| target[axis] - self.position[axis]);
+        let (yaw, pitch) = (libm::atan2(x, z), -libm::atan2(y, libm::sqrt(x * x + z * z)));
+        let ((sin_y, cos_y), (sin_p, cos_p)) = (libm::sincos(yaw / 2.0), libm::sincos(pitch / 2.0));
+        self.rotation = [cos_y * sin_p, sin_y * cos_p, -sin_y * sin_p, cos_y * cos_p];
+    }
+
+    pub(super) fn camera(&self, (width, height): (u32, u32)) -> Camera {
+        let forward = wayword_forward_from_unity_rotation(self.rotation);
+        let fov_rad = self.field_of_view_deg.to_radians();
+        Camera::looking_along(wayword_from_unity(self.position), forward, fov_rad, width, height)
+    }
+}
+
+fn side(command: &Value, name: &str) -> u32 {
+    command[name].as_u64().unwrap_or(256).clamp(1, 4096) as u32
+}
+
+/// A point; what is missing is 0, as in the build.
+pub(super) fn vector(value: &Value) -> [f64; 3] {
+    ["x", "y", "z"].map(|axis| value[axis].as_f64().unwrap_or(0.0))
+}
+
+fn texts(value: &Value) -> Vec<String> {
+    value.as_array().into_iter().flatten().filter_map(|text| text.as_str().map(str::to_owned)).collect()
+}

@@ -1,0 +1,86 @@
+//! The house that the stand-in shows, in Unity's coordinates.
+
+use crate::unity::{unity_from_wayword, wayword_from_unity};
+use wayword_core::DVec3;
+use wayword_platforms::house::{Ground, HouseScene, Object, Role, generate};
+
+/// Steps in which a position on the navmesh is looked for, metres.
+const SNAP_STEP_M: f64 = 0.05;
+
+/// A house with its drawing and its walkable ground.
+#[derive(Debug)]
+pub struct World {
+    pub(super) scene: HouseScene,
+    ground: Ground,
+}
+
+impl World {
+    /// The first house with a single storey from a seed on: TDW's floor plans have one.
+    ///
+    /// # Panics
+    /// Never: generated houses can be drawn, and one in a few has one storey.
+    #[must_use]
+    #[allow(clippy::expect_used, reason = "a stand-in is for tests, and a generated house can be drawn")]
+    pub fn with_one_storey(seed: u64) -> Self {
+        let house = (seed..).map(generate).find(|house| house.storeys == 1).expect("a house with one storey");
+        let ground = Ground::of(&house);
+        Self { scene: HouseScene::new(house).expect("a drawing of the house"), ground }
+    }
+
+    /// Everything that has a colour of its own in the `_id` pass, by number.
+    pub(super) fn objects(&self) -> impl Iterator<Item = (u32, &Object)> {
+        self.scene.objects.iter().filter(|(_, object)| object.role != Role::Shell).map(|(id, object)| (*id, object))
+    }
+
+    /// Whether a number belongs to something that has a colour of its own.
+    pub(super) fn is_object(&self, id: u32) -> bool {
+        self.scene.objects.get(&id).is_some_and(|object| object.role != Role::Shell)
+    }
+
+    /// The rooms: number, middle and size, Unity's.
+    pub(super) fn rooms(&self) -> impl Iterator<Item = (i32, [f32; 3], [f32; 3])> {
+        self.scene.house.rooms.iter().enumerate().map(|(index, room)| {
+            let (area, base_cm) = (room.outline, room.base_cm());
+            let low = DVec3::new(area.x0.into(), area.y0.into(), base_cm.into()) / 100.0;
+            let high = DVec3::new(area.x1.into(), area.y1.into(), (base_cm + room.height_cm).into()) / 100.0;
+            (index as i32, unity_f32((low + high) / 2.0), unity_f32(high - low))
+        })
+    }
+
+    /// Lower and upper corner of the whole house, metres, world frame.
+    pub(super) fn extent(&self) -> (DVec3, DVec3) {
+        let corners = self.rooms().map(|(_, centre, size)| {
+            let half = size.map(|side| f64::from(side) / 2.0);
+            let (centre, half) = (wayword_from_unity(centre.map(f64::from)), wayword_from_unity(half));
+            (centre - half, centre + half)
+        });
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
+    }
+
+    /// Whether a point of the floor is inside, and whether one can stand there.
+    pub(super) fn standing(&self, x: f64, z: f64) -> (bool, bool) {
+        let floor = wayword_from_unity([x, 0.0, z]);
+        (self.scene.house.room_at(floor.x, floor.y, 0.0).is_some(), self.ground.is_walkable(floor))
+    }
+
+    /// The walkable point nearest to a Unity position, within a distance.
+    pub(super) fn on_nav_mesh(&self, position: [f64; 3], max_distance: f64) -> Option<DVec3> {
+        let place = wayword_from_unity(position).with_z(0.0);
+        let reach = (max_distance.clamp(0.0, 2.0) / SNAP_STEP_M) as i32;
+        let offsets = (-reach..=reach).flat_map(|dx| (-reach..=reach).map(move |dy| (dx, dy)));
+        let near = offsets.map(|(dx, dy)| place + DVec3::new(dx.into(), dy.into(), 0.0) * SNAP_STEP_M);
+        near.filter(|near| self.ground.is_walkable(*near))
+            .min_by(|a, b| a.distance_squared(place).total_cmp(&b.distance_squared(place)))
+    }
+
+    /// The corners of a way over the ground between two Unity positions.
+    pub(super) fn way(&self, from: [f64; 3], to: [f64; 3]) -> Option<Vec<DVec3>> {
+        let (from, to) = (self.on_nav_mesh(from, 0.5)?, self.on_nav_mesh(to, 0.5)?);
+        self.ground.geodesic(from, to).ok().map(|way| way.corners)
+    }
+}
+
+/// A place of the world frame as the build sends it.
+pub(super) fn unity_f32(place: DVec3) -> [f32; 3] {
+    unity_from_wayword(place).map(|number| number as f32)
+}

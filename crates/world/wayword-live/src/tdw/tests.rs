@@ -1,0 +1,112 @@
+//! The reader against the stand-in's frames, and against what nobody should send.
+
+use super::{Output, output, stand_in::frames_of_every_kind};
+use proptest::prelude::*;
+
+#[test]
+fn every_kind_of_frame_is_read_whole() {
+    for (id, frame) in frames_of_every_kind() {
+        let read = Output::read(frame).unwrap_or_else(|error| panic!("{error}"));
+        assert!(!matches!(read, Output::Other(_)), "{id}");
+    }
+}
+
+#[test]
+fn both_layouts_of_the_version_are_read() {
+    let versions = frames_of_every_kind().iter().filter(|(id, _)| id == "vers").map(|(_, frame)| {
+        match Output::read(frame).unwrap() {
+            Output::Version(version) => (version.tdw.to_owned(), version.unity.to_owned(), version.standalone),
+            other => panic!("{other:?}"),
+        }
+    });
+    let expected = ["1.12.27", "1.13.0.0"].map(|tdw| (tdw.to_owned(), "2020.3.24f1".to_owned(), true));
+    assert_eq!(versions.collect::<Vec<_>>(), expected);
+}
+
+/// A path frame as flatc 2.0.8 lays it out (`tdw.fbs` of the reference): vtable before the table, vector after.
+#[test]
+fn a_buffer_laid_out_by_another_writer_is_read() {
+    let mut frame = Vec::new();
+    frame.extend(20_u32.to_le_bytes());
+    frame.extend(b"path");
+    // Two bytes of padding, then the vtable: its size, the table's size, and where path, state and id are.
+    frame.extend([0, 0]);
+    frame.extend([10_u16, 16, 8, 7, 12].iter().flat_map(|entry| entry.to_le_bytes()));
+    frame.extend(10_i32.to_le_bytes());
+    frame.extend([0, 0, 0, 2]);
+    frame.extend(8_u32.to_le_bytes());
+    frame.extend(9_i32.to_le_bytes());
+    frame.extend(12_u32.to_le_bytes());
+    frame.extend([1.5_f32, 0.0, -2.0].iter().flat_map(|number| number.to_le_bytes()));
+    let path = super::NavMeshPath { id: 9, state: 2, corners: vec![[1.5, 0.0, -2.0]] };
+    assert_eq!(Output::read(&frame), Ok(Output::Path(path)));
+}
+
+#[test]
+fn what_cannot_be_read_says_where_and_what_was_expected() {
+    let frame = &frames_of_every_kind().iter().find(|(id, _)| id == "path").unwrap().1;
+    let error = Output::read(&frame[..frame.len() - 8]).unwrap_err().to_string();
+    assert!(error.contains("`path`") && error.contains("byte ") && error.contains("within the frame"), "{error}");
+    assert_eq!(Output::read(b"abc").unwrap_err().source.at, 4);
+}
+
+/// Bytes that reading a frame allocates, at most.
+fn held(output: &Output<'_>) -> usize {
+    match output {
+        Output::Images(images) => size_of_val(&images.passes[..]),
+        Output::Segmentation(segments) => size_of_val(&segments[..]),
+        Output::Path(path) => size_of_val(&path.corners[..]),
+        Output::Regions(regions) => size_of_val(&regions[..]),
+        Output::Occupancy(map) => map.cells.len() + size_of_val(&map.positions[..]),
+        Output::Transforms(transforms) => size_of_val(&transforms[..]),
+        Output::Bounds(bounds) => size_of_val(&bounds[..]),
+        Output::Categories(categories) => size_of_val(&categories[..]),
+        Output::Sensors(_, sensors) => size_of_val(&sensors[..]),
+        _ => 0,
+    }
+}
+
+/// An element is borrowed by an offset of four bytes, and the widest takes 64.
+const MOST_FOLD: usize = 16;
+
+fn reads_within_bounds(frame: &[u8]) {
+    if let Ok(output) = Output::read(frame) {
+        assert!(held(&output) <= MOST_FOLD * frame.len() + 64, "{} bytes of {}", held(&output), frame.len());
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_break_the_reader(kind in 0..64_usize, bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let kinds = frames_of_every_kind();
+        let mut frame = vec![bytes.len() as u8 / 2, 0, 0, 0];
+        frame.extend(kinds[kind % kinds.len()].0.as_bytes());
+        frame.extend(&bytes);
+        reads_within_bounds(&frame);
+    }
+
+    #[test]
+    fn no_mutation_breaks_the_reader(
+        kind in 0..64_usize,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in any::<prop::sample::Index>(),
+        is_cut in any::<bool>(),
+    ) {
+        let kinds = frames_of_every_kind();
+        let mut frame = kinds[kind % kinds.len()].1.clone();
+        // Where offsets and lengths are: pixels and numbers further on are never wrong.
+        let near = frame.len().min(400);
+        for (at, byte) in changes {
+            frame[at.index(near)] = byte;
+        }
+        if is_cut {
+            frame.truncate(cut.index(frame.len()));
+        }
+        reads_within_bounds(&frame);
+    }
+
+    #[test]
+    fn an_id_is_read_from_anything(bytes in prop::collection::vec(any::<u8>(), 0..12)) {
+        prop_assert_eq!(output::id_of(&bytes).is_some(), bytes.len() >= 8);
+    }
+}

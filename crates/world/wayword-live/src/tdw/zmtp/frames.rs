@@ -1,0 +1,108 @@
+//! Frames and messages after the greeting.
+
+use super::{Peer, WireError};
+use std::io::Write;
+
+/// Longest message that is taken: a few pictures of 8192 x 4096 raw pixels.
+const MAX_MESSAGE_BYTES: u64 = 256 << 20;
+/// Most frames that one message may have.
+const MAX_FRAMES: usize = 4096;
+/// Commands between two messages (heartbeats, say) that are passed over.
+const MAX_COMMANDS: usize = 64;
+
+/// What was announced about a frame.
+pub(super) struct Header {
+    pub(super) command: bool,
+    more: bool,
+    length: u64,
+}
+
+impl Peer {
+    /// The next message without its envelope: everything after the empty frame that a REQ or REP socket puts first.
+    ///
+    /// # Errors
+    /// When the connection ends, is late, or carries what no such socket sends.
+    pub(crate) fn receive(&mut self) -> Result<Vec<Vec<u8>>, WireError> {
+        let mut frames = Vec::new();
+        let mut in_envelope = true;
+        let (mut left, mut commands) = (MAX_MESSAGE_BYTES, 0);
+        loop {
+            let header = self.header()?;
+            let body = self.body(&header, left)?;
+            if header.command {
+                commands += 1;
+                if commands > MAX_COMMANDS {
+                    return Err(self.malformed(0, "a message", "one command after another"));
+                }
+                continue;
+            }
+            left -= body.len() as u64;
+            match in_envelope {
+                true => in_envelope = !body.is_empty(),
+                false => frames.push(body),
+            }
+            if frames.len() > MAX_FRAMES {
+                return Err(self.malformed(0, "at most 4096 frames in a message", "more"));
+            }
+            if !header.more {
+                let whole = !in_envelope && !frames.is_empty();
+                return if whole {
+                    Ok(frames)
+                } else {
+                    Err(self.malformed(0, "an empty frame and content", "neither"))
+                };
+            }
+        }
+    }
+
+    /// Sends a message in its envelope.
+    ///
+    /// # Errors
+    /// When the connection ends or is late.
+    pub(crate) fn send(&mut self, frames: &[impl AsRef<[u8]>]) -> Result<(), WireError> {
+        // Small frames travel together; a large one is not copied.
+        let mut packet = vec![u8::from(!frames.is_empty()), 0];
+        for (index, frame) in frames.iter().enumerate() {
+            let (frame, more) = (frame.as_ref(), u8::from(index + 1 < frames.len()));
+            match u8::try_from(frame.len()) {
+                Ok(length) => packet.extend([more, length]),
+                Err(_) => {
+                    packet.push(more | 2);
+                    packet.extend((frame.len() as u64).to_be_bytes());
+                }
+            }
+            if frame.len() < 64 << 10 {
+                packet.extend_from_slice(frame);
+                continue;
+            }
+            self.put(&packet, "sending")?;
+            packet.clear();
+            self.put(frame, "sending")?;
+        }
+        self.put(&packet, "sending")?;
+        self.reader.get_mut().stream.flush().map_err(|source| WireError::of(source, "sending"))
+    }
+
+    pub(super) fn header(&mut self) -> Result<Header, WireError> {
+        let doing = "waiting for a message";
+        let [flags] = self.take(doing)?;
+        if flags & !7 != 0 {
+            return Err(self.malformed(1, "the flags of a frame (0 to 7)", flags.to_string()));
+        }
+        let length = if flags & 2 != 0 {
+            u64::from_be_bytes(self.take(doing)?)
+        } else {
+            let [length] = self.take(doing)?;
+            u64::from(length)
+        };
+        Ok(Header { command: flags & 4 != 0, more: flags & 1 != 0, length })
+    }
+
+    pub(super) fn body(&mut self, header: &Header, most: u64) -> Result<Vec<u8>, WireError> {
+        if header.length > most {
+            let found = format!("one of {} bytes", header.length);
+            return Err(self.malformed(8, "a frame within what is left of 256 MiB (4 KiB for a command)", found));
+        }
+        self.take_long(header.length, "reading a message")
+    }
+}

@@ -1,0 +1,116 @@
+//! How two sockets meet: signature, revision, then what the older of the two understands.
+
+use super::{Peer, Role, WireError};
+
+/// As libzmq writes it, so that the oldest peers see a frame of length 1.
+const SIGNATURE: [u8; 10] = [0xff, 0, 0, 0, 0, 0, 0, 0, 1, 0x7f];
+const DOING: &str = "greeting";
+/// Longest command that is read, bytes.
+const MAX_COMMAND_BYTES: u64 = 4096;
+
+impl Role {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Rep => "REP",
+            #[cfg(feature = "stand-in")]
+            Self::Req => "REQ",
+        }
+    }
+
+    /// Its number in ZMTP 2.0.
+    fn number(self) -> u8 {
+        match self {
+            Self::Rep => 4,
+            #[cfg(feature = "stand-in")]
+            Self::Req => 3,
+        }
+    }
+
+    /// Whom it talks to, by name and number.
+    fn talks_to(self) -> [(&'static str, u8); 2] {
+        match self {
+            Self::Rep => [("REQ", 3), ("DEALER", 5)],
+            #[cfg(feature = "stand-in")]
+            Self::Req => [("REP", 4), ("ROUTER", 6)],
+        }
+    }
+}
+
+pub(super) fn exchange(peer: &mut Peer, role: Role) -> Result<(), WireError> {
+    peer.put(&[&SIGNATURE[..], &[3]].concat(), DOING)?;
+    let theirs: [u8; 10] = peer.take(DOING)?;
+    if theirs[0] != 0xff || theirs[9] & 1 == 0 {
+        return Err(peer.malformed(10, "the signature of a ZeroMQ socket (ff .. 7f)", hex(&theirs)));
+    }
+    match peer.take::<1>(DOING)? {
+        [0] => Err(peer.malformed(1, "ZMTP 2.0 or newer", "revision 0")),
+        [1 | 2] => second(peer, role),
+        _ => third(peer, role),
+    }
+}
+
+/// ZMTP 2.0: the kind of socket as a number, and an identity.
+fn second(peer: &mut Peer, role: Role) -> Result<(), WireError> {
+    peer.put(&[role.number(), 0, 0], DOING)?;
+    let [kind] = peer.take(DOING)?;
+    if role.talks_to().iter().all(|(_, number)| *number != kind) {
+        return Err(peer.malformed(1, "a socket that fits (REQ talks to REP)", format!("socket type {kind}")));
+    }
+    let header = peer.header()?;
+    peer.body(&header, MAX_COMMAND_BYTES).map(drop)
+}
+
+/// ZMTP 3.0: the rest of the greeting, then READY from both.
+fn third(peer: &mut Peer, role: Role) -> Result<(), WireError> {
+    let mut rest = [0; 53];
+    rest[1..5].copy_from_slice(b"NULL");
+    peer.put(&rest, DOING)?;
+    let theirs: [u8; 53] = peer.take(DOING)?;
+    if theirs[1..21] != rest[1..21] {
+        return Err(peer.malformed(52, "the mechanism NULL", hex(&theirs[1..21])));
+    }
+    peer.put(&ready(role), DOING)?;
+    let header = peer.header()?;
+    if !header.command {
+        return Err(peer.malformed(1, "the command READY", "a message"));
+    }
+    let body = peer.body(&header, MAX_COMMAND_BYTES)?;
+    let kind = socket_type(&body).ok_or_else(|| {
+        peer.malformed(body.len() as u64, "the command READY with a Socket-Type", hex(&body[..body.len().min(24)]))
+    })?;
+    if role.talks_to().iter().all(|(name, _)| name.as_bytes() != kind) {
+        let found = format!("a {} socket", String::from_utf8_lossy(&kind[..kind.len().min(16)]));
+        return Err(peer.malformed(body.len() as u64, "a socket that fits (REQ talks to REP)", found));
+    }
+    Ok(())
+}
+
+fn ready(role: Role) -> Vec<u8> {
+    let mut body = b"\x05READY".to_vec();
+    for (name, value) in [("Socket-Type", role.name()), ("Identity", "")] {
+        body.push(name.len() as u8);
+        body.extend_from_slice(name.as_bytes());
+        body.extend_from_slice(&(value.len() as u32).to_be_bytes());
+        body.extend_from_slice(value.as_bytes());
+    }
+    [&[4, body.len() as u8], &body[..]].concat()
+}
+
+/// The property Socket-Type of a READY command; names of properties are compared without their case (RFC 23).
+fn socket_type(body: &[u8]) -> Option<&[u8]> {
+    let mut rest = body.strip_prefix(b"\x05READY")?;
+    while let Some((length, after)) = rest.split_first() {
+        let (name, after) = after.split_at_checked(usize::from(*length))?;
+        let (length, after) = after.split_first_chunk()?;
+        let (value, after) = after.split_at_checked(u32::from_be_bytes(*length) as usize)?;
+        if name.eq_ignore_ascii_case(b"Socket-Type") {
+            return Some(value);
+        }
+        rest = after;
+    }
+    None
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,167 @@
+//! ZeroMQ's wire protocol, as far as a REP and a REQ socket over TCP need it: ZMTP 3.0 with the NULL mechanism (RFC 23), and
+//! ZMTP 2.0 (RFC 15) for builds with an older NetMQ.
+//!
+//! The crate `zeromq` 0.7 would be the other way. It was not taken, because it allocates whatever length a frame announces
+//! before a byte of it has come, so that nine bytes from a stranger end the program; because it refuses peers older than
+//! 3.0; and because it needs an async runtime. Tests hold this module against it and against libzmq.
+
+mod frames;
+mod greeting;
+
+use std::{
+    io::{self, BufReader, Read},
+    net::TcpStream,
+    time::{Duration, Instant},
+};
+
+/// Which end of the conversation a socket is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// Answers: the controller.
+    Rep,
+    /// Asks: the build.
+    #[cfg(feature = "stand-in")]
+    Req,
+}
+
+/// A conversation that cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum WireError {
+    /// The other side closed the connection.
+    #[error("the other side closed the connection while {doing}")]
+    Gone {
+        /// What was under way.
+        doing: &'static str,
+    },
+    /// Nothing came, or could be sent, in time.
+    #[error("nothing came in time while {doing}")]
+    Late {
+        /// What was under way.
+        doing: &'static str,
+    },
+    /// The system failed.
+    #[error("{source} while {doing}")]
+    Io {
+        /// What was under way.
+        doing: &'static str,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Bytes that are not ZeroMQ, or more of them than are taken.
+    #[error("byte {at} of the connection: expected {expected}, found {found}")]
+    Malformed {
+        /// Where, counted from the first byte that came.
+        at: u64,
+        /// What should have been there.
+        expected: &'static str,
+        /// What was.
+        found: String,
+    },
+}
+
+impl WireError {
+    fn of(source: io::Error, doing: &'static str) -> Self {
+        match source.kind() {
+            io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => Self::Late { doing },
+            io::ErrorKind::UnexpectedEof
+            | io::ErrorKind::ConnectionReset
+            | io::ErrorKind::ConnectionAborted
+            | io::ErrorKind::BrokenPipe => Self::Gone { doing },
+            _ => Self::Io { doing, source },
+        }
+    }
+}
+
+/// A peer that has been greeted.
+#[derive(Debug)]
+pub(crate) struct Peer {
+    reader: BufReader<Timed>,
+    /// Bytes taken so far, for messages about them.
+    taken: u64,
+}
+
+/// A stream whose reads end at a deadline, however slowly the bytes drip.
+#[derive(Debug)]
+struct Timed {
+    stream: TcpStream,
+    deadline: Instant,
+}
+
+impl Timed {
+    fn left(&self) -> io::Result<Duration> {
+        let left = self.deadline.saturating_duration_since(Instant::now());
+        // The system takes a zero for "for ever".
+        if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
+    }
+}
+
+impl Read for Timed {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let left = self.left()?;
+        self.stream.set_read_timeout(Some(left))?;
+        self.stream.read(into)
+    }
+}
+
+impl Peer {
+    /// Greets whoever is at the other end of a connection.
+    ///
+    /// # Errors
+    /// When it is no ZeroMQ socket of the fitting kind, or does not answer by the deadline.
+    pub(crate) fn greet(stream: TcpStream, role: Role, deadline: Instant) -> Result<Self, WireError> {
+        let set_up = |stream: &TcpStream| {
+            stream.set_nonblocking(false)?;
+            stream.set_nodelay(true)
+        };
+        set_up(&stream).map_err(|source| WireError::of(source, "setting up the connection"))?;
+        let reader = BufReader::with_capacity(64 << 10, Timed { stream, deadline });
+        let mut peer = Self { reader, taken: 0 };
+        greeting::exchange(&mut peer, role)?;
+        Ok(peer)
+    }
+
+    /// Every read and write from now on ends at `deadline`.
+    pub(crate) fn until(&mut self, deadline: Instant) {
+        self.reader.get_mut().deadline = deadline;
+    }
+
+    /// Whether something has come, or the connection has ended, within a while.
+    #[cfg(feature = "stand-in")]
+    pub(crate) fn has_news(&self, within: Duration) -> bool {
+        let stream = &self.reader.get_ref().stream;
+        !self.reader.buffer().is_empty()
+            || (stream.set_read_timeout(Some(within)).is_ok() && stream.peek(&mut [0]).is_ok())
+    }
+
+    fn take<const N: usize>(&mut self, doing: &'static str) -> Result<[u8; N], WireError> {
+        let mut bytes = [0; N];
+        self.reader.read_exact(&mut bytes).map_err(|source| WireError::of(source, doing))?;
+        self.taken += N as u64;
+        Ok(bytes)
+    }
+
+    /// Takes as many bytes as were announced. Memory grows with what really comes.
+    fn take_long(&mut self, length: u64, doing: &'static str) -> Result<Vec<u8>, WireError> {
+        let mut bytes = Vec::with_capacity(length.min(1 << 20) as usize);
+        let taken = (&mut self.reader).take(length).read_to_end(&mut bytes);
+        taken.map_err(|source| WireError::of(source, doing))?;
+        self.taken += bytes.len() as u64;
+        if (bytes.len() as u64) < length {
+            return Err(WireError::Gone { doing });
+        }
+        Ok(bytes)
+    }
+
+    fn put(&mut self, bytes: &[u8], doing: &'static str) -> Result<(), WireError> {
+        let timed = self.reader.get_mut();
+        let put = timed.left().and_then(|left| {
+            timed.stream.set_write_timeout(Some(left))?;
+            io::Write::write_all(&mut timed.stream, bytes)
+        });
+        put.map_err(|source| WireError::of(source, doing))
+    }
+
+    fn malformed(&self, back: u64, expected: &'static str, found: impl Into<String>) -> WireError {
+        WireError::Malformed { at: self.taken.saturating_sub(back), expected, found: found.into() }
+    }
+}

@@ -1,0 +1,154 @@
+//! Random walks through a live world: a way between two places, with frames along it.
+
+use crate::sight::Thing;
+use rand::Rng;
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{
+    DVec3, Frame, Gaze, Heading, Label, ObjectId, Path, PathRequest, PlatformError, Pose, SceneId, Target,
+    ViewpointGraph, ViewpointId, path::Stop, rng,
+};
+
+/// Height of the eye above the ground, metres.
+pub(crate) const EYE_M: f64 = 1.5;
+/// So many pairs of places are tried.
+const TRIES: usize = 400;
+/// Ends at which nothing fit to be a target is visible that are passed over before one is accepted.
+const MAX_BARE_ENDS: usize = 6;
+/// A corner so near to the frame before it gets none of its own, metres.
+const CROWDED_M: f64 = 0.4;
+/// A target is at most so far from the last frame, metres.
+const TARGET_REACH_M: f64 = 4.0;
+
+/// What a walk needs of a world.
+pub(crate) trait Walkable {
+    /// The corners of the shortest way between two eyes, both among them; `None` where there is none.
+    fn way(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, PlatformError>;
+
+    /// What is visible from a pose within a gaze.
+    fn labels(&mut self, pose: Pose, gaze: Gaze) -> Result<Vec<Label>, PlatformError>;
+
+    /// Everything visible around a pose.
+    fn labels_around(&mut self, pose: Pose) -> Result<Vec<Label>, PlatformError> {
+        let views = Gaze::around(pose.heading).map(|gaze| self.labels(pose, gaze));
+        views.into_iter().collect::<Result<Vec<_>, _>>().map(|views| views.concat())
+    }
+}
+
+/// A walk between two of `eyes` whose length keeps to `request`, with frames at most `interval_m` apart and at corners. Hops
+/// play no part: a walk over open ground has none.
+pub(crate) fn path(
+    world: &mut dyn Walkable,
+    (scene, eyes): (&SceneId, &[DVec3]),
+    request: &PathRequest,
+    seed: u64,
+    interval_m: f64,
+) -> Result<Path, PlatformError> {
+    let mut dice = rng(seed, &["live path", scene.as_str()]);
+    let mut bare = None;
+    let mut bare_ends = 0;
+    for _ in 0..if eyes.is_empty() { 0 } else { TRIES } {
+        let (from, to) = (eyes[dice.random_range(0..eyes.len())], eyes[dice.random_range(0..eyes.len())]);
+        if from == to || from.distance(to) > *request.length_m.end() {
+            continue;
+        }
+        let Some(way) = world.way(from, to)? else { continue };
+        let frames = Path::frames_along(stops(&way, interval_m), None);
+        let mut path = Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None };
+        if !request.length_m.contains(&path.length_m()) {
+            continue;
+        }
+        let Some(last) = path.frames.last() else { continue };
+        let labels = world.labels_around(last.pose)?;
+        path.target = target(&labels, &mut dice);
+        if path.target.is_some() {
+            return Ok(path);
+        }
+        bare_ends += 1;
+        bare.get_or_insert(path);
+        if bare_ends > MAX_BARE_ENDS {
+            break;
+        }
+    }
+    bare.ok_or_else(|| {
+        let request = format!("{} to {} metres", request.length_m.start(), request.length_m.end());
+        PlatformError::NoSuchPath { scene: scene.clone(), request }
+    })
+}
+
+/// Where frames are taken: at both ends, at corners, and at equal distances of at most `interval_m` between.
+fn stops(way: &[DVec3], interval_m: f64) -> Vec<Stop> {
+    let interval_m = if interval_m.is_finite() { interval_m.max(0.1) } else { 1.0 };
+    let Some((first, rest)) = way.split_first() else { return Vec::new() };
+    let last = *way.last().unwrap_or(first);
+    let mut marks = vec![*first];
+    for corner in rest.iter().take(rest.len().saturating_sub(1)) {
+        let before = marks.last().copied().unwrap_or(*first);
+        if before.distance(*corner) >= CROWDED_M && corner.distance(last) >= CROWDED_M {
+            marks.push(*corner);
+        }
+    }
+    marks.push(last);
+    let mut places = vec![*first];
+    for leg in marks.windows(2) {
+        let count = (leg[0].distance(leg[1]) / interval_m).ceil().max(1.0) as usize;
+        places.extend((1..=count).map(|step| leg[0].lerp(leg[1], step as f64 / count as f64)));
+    }
+    places.dedup();
+    places.into_iter().map(|position| Stop { position, viewpoint: None, level: None }).collect()
+}
+
+/// One of the things in reach that has no namesake in sight.
+fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
+    let is_alone = |label: &&Label| labels.iter().filter(|other| other.name == label.name).count() == 1;
+    let in_reach = |label: &&Label| label.distance_m.is_some_and(|distance_m| distance_m <= TARGET_REACH_M);
+    let likely: Vec<&Label> = labels.iter().filter(in_reach).filter(is_alone).collect();
+    let chosen = (!likely.is_empty()).then(|| likely[dice.random_range(0..likely.len())])?;
+    Some(Target { object: chosen.object.clone(), name: chosen.name.clone(), told_by: Vec::new(), has_namesake: false })
+}
+
+/// The viewpoints from which each object is seen.
+pub(crate) fn seen_from(
+    world: &mut dyn Walkable,
+    graph: &ViewpointGraph,
+) -> Result<BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
+    let mut seen: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
+    for viewpoint in graph.viewpoints() {
+        let eye = graph.position(viewpoint).unwrap_or_default();
+        for label in world.labels_around(Pose::level(eye, Heading::NORTH))? {
+            seen.entry(label.object).or_default().insert(viewpoint.clone());
+        }
+    }
+    Ok(seen)
+}
+
+/// The name of an object among a scene's things.
+pub(crate) fn name_of<'a>(mut things: impl Iterator<Item = &'a Thing>, object: &ObjectId) -> Option<String> {
+    things.find(|thing| thing.object == *object).map(|thing| thing.name.clone())
+}
+
+/// Refuses a frame from which nothing can be looked at.
+pub(crate) fn check(scene: &SceneId, frame: &Frame) -> Result<(), PlatformError> {
+    let usable = frame.pose.position.is_finite() && frame.pose.position.abs().max_element() < 1e5;
+    if usable { Ok(()) } else { Err(PlatformError::NotAViewpoint { scene: scene.clone() }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn frames_are_evenly_spread_and_keep_the_ends(
+            corners in prop::collection::vec((-9.0..9.0f64, -9.0..9.0f64), 2..7), interval_m in 0.2..3.0f64,
+        ) {
+            let way: Vec<DVec3> = corners.iter().map(|(x, y)| DVec3::new(*x, *y, EYE_M)).collect();
+            let stops = stops(&way, interval_m);
+            prop_assert_eq!(stops[0].position, way[0]);
+            prop_assert_eq!(stops[stops.len() - 1].position, way[way.len() - 1]);
+            for pair in stops.windows(2) {
+                prop_assert!(pair[0].position.distance(pair[1].position) <= interval_m + 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The genuine Python client drives the stand-in build. `WAYWORD_TDW_PYTHON` names a Python, or several with commas between,
+//! that has the package `tdw`; without it there is nothing to run.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use serde_json::Value;
+use std::{net::SocketAddr, net::TcpListener, path::Path, process::Command};
+use wayword_live::tdw::stand_in::{StandIn, StandInOptions};
+use wayword_platforms::house::{HouseScene, Role, generate};
+
+fn drive(python: &str, version: &'static str) -> (Value, Vec<String>) {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let build = StandIn::start(
+        SocketAddr::from(([127, 0, 0, 1], port)),
+        StandInOptions { version, ..StandInOptions::default() },
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/drive_tdw.py");
+    let driven = Command::new(python).arg(script).arg(port.to_string()).arg(folder.path()).output().unwrap();
+    let (out, err) = (String::from_utf8_lossy(&driven.stdout), String::from_utf8_lossy(&driven.stderr));
+    assert!(driven.status.success(), "{python}: {out}{err}");
+    build.join();
+    let told = out.lines().last().unwrap_or_default();
+    let saved = std::fs::read_dir(folder.path().join("a")).unwrap();
+    let mut names: Vec<String> = saved.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    (serde_json::from_str(told).unwrap(), names)
+}
+
+fn near(told: &Value, expected: [f64; 3]) -> bool {
+    (0..3).all(|axis| (told[axis].as_f64().unwrap() - expected[axis]).abs() < 1e-4)
+}
+
+#[test]
+fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
+    let Ok(pythons) = std::env::var("WAYWORD_TDW_PYTHON") else {
+        println!(
+            "SKIPPED: name a Python with the package tdw in WAYWORD_TDW_PYTHON (pip install tdw==1.13.0.0, or 1.12.27)"
+        );
+        return;
+    };
+    for python in pythons.split(',') {
+        for version in ["1.13.0.0", "1.12.27"] {
+            let client = Command::new(python).args(["-c", "import tdw.version as v; print(v.__version__)"]).output();
+            let client = String::from_utf8_lossy(&client.unwrap().stdout).trim().to_owned();
+            // The client knows the layout of its own version only.
+            if client.starts_with("1.13") == version.starts_with("1.13") {
+                let (told, saved) = drive(python, version);
+                holds(&told, &saved, version);
+                println!(
+                    "tdw {client} drove the stand-in {version}: {} objects, {} seen",
+                    told["objects"].as_object().unwrap().len(),
+                    told["seen"].as_array().unwrap().len()
+                );
+            }
+        }
+    }
+}
+
+fn holds(told: &Value, saved: &[String], version: &str) {
+    let house = (1..).map(generate).find(|house| house.storeys == 1).unwrap();
+    let scene = HouseScene::new(house).unwrap();
+    let objects: Vec<_> = scene.objects.iter().filter(|(_, object)| object.role != Role::Shell).collect();
+    assert_eq!((&told["build"], &told["unity"]), (&version.into(), &"2020.3.24f1".into()));
+    assert_eq!(told["size"], serde_json::json!([160, 120]));
+    assert_eq!(told["passes"], serde_json::json!(["_img", "_id", "_depth"]));
+    assert!(
+        ["img_0000.png", "id_0000.png", "depth_0000.png"].iter().all(|name| saved.contains(&(*name).to_owned())),
+        "{saved:?}"
+    );
+    assert_eq!(told["objects"].as_object().unwrap().len(), objects.len());
+    for (id, object) in objects {
+        assert_eq!(told["objects"][id.to_string()][1], object.name.as_str());
+        let (centre, low) = (object.centre_m(), object.bounds_m.0);
+        assert!(near(&told["bounds"][id.to_string()], [centre.x, centre.z, centre.y]));
+        assert!(near(&told["transforms"][id.to_string()], [centre.x, low.z, centre.y]));
+    }
+    assert!(!told["seen"].as_array().unwrap().is_empty());
+    assert!(told["unknown_colours"].as_u64().unwrap() <= 1, "walls are black, and nothing else is unknown");
+    assert_eq!(told["rooms"], scene.house.rooms.len());
+    let depth_m = told["depth"][1].as_f64().unwrap();
+    assert!((0.1..20.0).contains(&depth_m), "{depth_m} m ahead");
+    assert!(near(&told["avatar"][1], [3.0, 1.5, 3.0]));
+    // Looks from (3, 3) to (4, 7).
+    let slope = told["avatar"][2][0].as_f64().unwrap() / told["avatar"][2][2].as_f64().unwrap();
+    assert!((slope - 0.25).abs() < 1e-5 && (told["sensor"][1].as_f64().unwrap() - 60.0).abs() < 1e-4);
+    // World to camera, row by row: the eye is at the camera's origin.
+    let row = |n: usize| -> f64 {
+        [3.0, 1.5, 3.0, 1.0].iter().enumerate().map(|(i, x)| told["camera"][4 * n + i].as_f64().unwrap() * x).sum()
+    };
+    assert!((0..3).all(|n| row(n).abs() < 1e-4));
+    assert!(told["occupancy"]["0"].as_u64().unwrap() > 50 && told["occupancy"]["1"].as_u64().unwrap() > 20);
+    assert_eq!(told["on_nav_mesh"][0], true);
+    assert_eq!((&told["path"][0], &told["path"][1]), (&7.into(), &"complete".into()));
+    let (last, end) = (&told["path"][3], &told["path"][4]);
+    assert!(
+        ["x", "y", "z"]
+            .iter()
+            .enumerate()
+            .all(|(n, axis)| (last[n].as_f64().unwrap() - end[axis].as_f64().unwrap()).abs() < 0.06)
+    );
+    assert_eq!(told["quit"], true);
+}

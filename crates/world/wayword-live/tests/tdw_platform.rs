@@ -1,0 +1,120 @@
+//! The platform over the stand-in build: graph, paths, views, labels, and what becomes of them when the build is lost.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::{collections::BTreeSet, net::SocketAddr, time::Duration};
+use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
+use wayword_live::tdw::{
+    ControllerOptions, TdwOptions, TdwPlatform,
+    stand_in::{StandIn, StandInOptions},
+};
+use wayword_platforms::house::{Ground, HouseScene, Role, generate};
+
+fn start(options: StandInOptions) -> (TdwPlatform, StandIn) {
+    let controller = ControllerOptions {
+        address: SocketAddr::from(([127, 0, 0, 1], 0)),
+        connect_timeout: Duration::from_secs(20),
+        step_timeout: Duration::from_secs(60),
+    };
+    let platform =
+        TdwPlatform::new(TdwOptions { controller, width_px: 160, height_px: 120, ..TdwOptions::default() }).unwrap();
+    let build = StandIn::start(platform.address(), options);
+    (platform, build)
+}
+
+fn scene() -> SceneId {
+    SceneId::new("floorplan_1a").unwrap()
+}
+
+#[test]
+fn the_graph_lies_on_walkable_ground_and_is_one() {
+    let (platform, _build) = start(StandInOptions::default());
+    let graph = platform.graph(&scene()).unwrap();
+    let house = (1..).map(generate).find(|house| house.storeys == 1).unwrap();
+    let ground = Ground::of(&house);
+    assert!(graph.len() > 20 && graph.components() == 1, "{} viewpoints", graph.len());
+    let rooms: BTreeSet<_> = graph
+        .viewpoints()
+        .map(|id| {
+            let eye = graph.position(id).unwrap();
+            assert!((eye.z - 1.5).abs() < 1e-6);
+            assert!(ground.is_walkable(eye.with_z(0.0)), "{eye}");
+            house.room_at(eye.x, eye.y, 0.0).unwrap().outline.x0
+        })
+        .collect();
+    assert!(rooms.len() >= 3);
+}
+
+#[test]
+fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
+    let (platform, _build) = start(StandInOptions::default());
+    let request = PathRequest { length_m: 4.0..=16.0, ..PathRequest::default() };
+    for seed in 0..2 {
+        let path = platform.sample_path(&scene(), &request, seed).unwrap();
+        assert!(request.length_m.contains(&path.length_m()));
+        assert!(path.moves().iter().all(|step| step.distance_m < 1.01));
+        let (target, last) = (path.target.clone().unwrap(), path.frames.last().unwrap());
+        assert_eq!(platform.object_name(&scene(), last, &target.object).unwrap(), Some(target.name));
+        assert_eq!(platform.sample_path(&scene(), &request, seed).unwrap(), path);
+    }
+}
+
+/// What the stand-in sends is what our renderer draws, through the whole chain: pixels, and names of what is seen where.
+#[test]
+fn a_view_is_the_houses_own_and_its_labels_are_what_the_pixels_show() {
+    let (platform, _build) = start(StandInOptions::default());
+    let graph = platform.graph(&scene()).unwrap();
+    let drawn = HouseScene::new((1..).map(generate).find(|house| house.storeys == 1).unwrap()).unwrap();
+    let mut labels = 0;
+    for id in graph.viewpoints().step_by(9) {
+        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
+        let gaze = Gaze::quarter(Heading::new(1.0).unwrap());
+        let view = platform.look(&scene(), &frame, gaze).unwrap();
+        let camera = wayword_render::Camera {
+            position: frame.pose.position,
+            heading_rad: 1.0,
+            elevation_rad: 0.0,
+            vertical_fov_rad: 2.0 * libm::atan(0.75),
+            width: 160,
+            height: 120,
+        };
+        let picture = drawn.picture(&camera).unwrap();
+        let pixels = view.image.as_ref().unwrap().rgb();
+        let off = picture.rgb.iter().zip(pixels).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+        assert!(off < pixels.len() / 200, "{off} of {} values differ", pixels.len());
+        let truth = view.ground_truth().unwrap();
+        assert!(truth.lists_objects);
+        for label in &truth.labels {
+            let object = &drawn.objects[&label.object.as_str().parse::<u32>().unwrap()];
+            assert!(object.role != Role::Shell && object.name == label.name);
+            assert!(label.position.unwrap().distance(object.centre_m()) < 1e-4);
+            assert!(picture.ids.contains(&label.object.as_str().parse().unwrap()));
+        }
+        labels += truth.labels.len();
+    }
+    assert!(labels > 5, "{labels}");
+}
+
+#[test]
+fn a_lost_build_costs_a_path_nothing() {
+    let request = PathRequest { length_m: 4.0..=16.0, ..PathRequest::default() };
+    let (steady, _build) = start(StandInOptions::default());
+    let (shaky, _other) = start(StandInOptions { breaks_after: Some(5), ..StandInOptions::default() });
+    let expected = steady.sample_path(&scene(), &request, 3).unwrap();
+    assert_eq!(shaky.sample_path(&scene(), &request, 3).unwrap(), expected);
+}
+
+#[test]
+fn a_scene_that_nobody_knows_is_refused_without_a_build() {
+    let controller = ControllerOptions {
+        address: SocketAddr::from(([127, 0, 0, 1], 0)),
+        connect_timeout: Duration::from_millis(50),
+        ..ControllerOptions::default()
+    };
+    let platform = TdwPlatform::new(TdwOptions { controller, ..TdwOptions::default() }).unwrap();
+    let unknown = platform.graph(&SceneId::new("floorplan_9z").unwrap()).unwrap_err().to_string();
+    assert!(unknown.contains("room_8x10"), "{unknown}");
+    let alone = platform.graph(&scene()).unwrap_err().to_string();
+    assert!(alone.contains("tcp://127.0.0.1") && alone.contains("TDW.x86_64"), "{alone}");
+    assert!(platform.scenes().unwrap().contains(&scene()));
+}
