@@ -41,7 +41,7 @@ pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) ->
     Ok(labels)
 }
 
-fn target(
+pub(crate) fn target(
     platform: &dyn Platform,
     scene: &SceneId,
     last: &Frame,

@@ -13,10 +13,10 @@ mod names;
 mod object_positions;
 mod photographs;
 mod platform;
-mod read;
+pub(crate) mod read;
 mod recent;
 mod rooms;
-mod sample;
+pub(crate) mod sample;
 mod scene;
 mod thirty_six;
 

@@ -86,7 +86,7 @@ fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     })
 }
 
-fn in_words(request: &PathRequest) -> String {
+pub(crate) fn in_words(request: &PathRequest) -> String {
     let (hops, length_m) = (&request.hops, &request.length_m);
     format!("{} to {} hops and {} to {} metres", hops.start(), hops.end(), length_m.start(), length_m.end())
 }

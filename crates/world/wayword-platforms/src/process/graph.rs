@@ -1,0 +1,252 @@
+//! The viewpoint graph of a child's scene: its own, or made here from places and from what it says of the ways between.
+
+use super::{keeper::Keeper, labels::place, protocol::Offer};
+use serde::Deserialize;
+use serde_json::json;
+use std::collections::BTreeSet;
+use wayword_core::{DVec3, PlatformError, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
+
+const MAX_VIEWPOINTS: usize = 20_000;
+const MAX_EDGES: usize = 200_000;
+/// Places that are asked for where the graph is made here.
+const POINTS_ASKED: usize = 1000;
+/// Most places whose neighbours are asked for one by one, or whose ways are tried.
+const MAX_POINTS: usize = 5000;
+/// Ways are tried as far as this many spacings.
+const REACH: f64 = 3.0;
+/// So many nearest places are tried from each.
+const TRIED: usize = 8;
+/// Ways in one request.
+const BATCH: usize = 128;
+
+/// A place where one can stand.
+#[derive(Debug, Clone, Deserialize)]
+struct Place {
+    #[serde(default)]
+    id: Option<ViewpointId>,
+    position: [f64; 3],
+    #[serde(default)]
+    level: Option<u32>,
+}
+
+#[derive(Deserialize)]
+struct Whole {
+    viewpoints: Vec<Place>,
+    edges: Vec<(ViewpointId, ViewpointId)>,
+}
+
+#[derive(Deserialize)]
+struct Points {
+    points: Vec<Place>,
+}
+
+#[derive(Deserialize)]
+struct Neighbours {
+    viewpoints: Vec<ViewpointId>,
+}
+
+#[derive(Deserialize)]
+struct Walkable {
+    walkable: Vec<bool>,
+}
+
+/// The graph of a scene.
+///
+/// # Errors
+/// When the child does not answer, or its answers make no graph.
+pub(crate) fn of_scene(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
+    if keeper.world().has(Offer::Graph) {
+        return whole(keeper, scene);
+    }
+    let asked = json!({ "scene": scene, "count": POINTS_ASKED, "seed": 0 });
+    let Points { points } = keeper.ask("points", &asked)?;
+    if points.is_empty() || points.len() > MAX_POINTS {
+        let reason = format!("{} points, and 1 to {MAX_POINTS} can be used", points.len());
+        return Err(keeper.misfit("points", reason));
+    }
+    if keeper.world().has(Offer::Neighbours) {
+        by_neighbours(keeper, scene, &points)
+    } else {
+        by_walking(keeper, scene, points)
+    }
+}
+
+fn whole(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
+    let Whole { viewpoints, edges } = keeper.ask("graph", &json!({ "scene": scene }))?;
+    if viewpoints.is_empty() || viewpoints.len() > MAX_VIEWPOINTS || edges.len() > MAX_EDGES {
+        let reason = format!(
+            "{} viewpoints and {} edges, and 1 to {MAX_VIEWPOINTS} and at most {MAX_EDGES} can be used",
+            viewpoints.len(),
+            edges.len()
+        );
+        return Err(keeper.misfit("graph", reason));
+    }
+    let mut graph = nodes(&viewpoints).map_err(|reason| keeper.misfit("graph", reason))?;
+    for (a, b) in &edges {
+        graph.join(a, b).map_err(|error| keeper.misfit("graph", error.to_string()))?;
+    }
+    Ok(graph)
+}
+
+fn by_neighbours(keeper: &Keeper, scene: &SceneId, points: &[Place]) -> Result<ViewpointGraph, PlatformError> {
+    let mut graph = nodes(points).map_err(|reason| keeper.misfit("points", reason))?;
+    let names: Vec<ViewpointId> = graph.viewpoints().cloned().collect();
+    let mut edges = 0;
+    for name in &names {
+        let asked = json!({ "scene": scene, "viewpoint": name });
+        let Neighbours { viewpoints } = keeper.ask("neighbours", &asked)?;
+        edges += viewpoints.len();
+        if edges > MAX_EDGES {
+            return Err(keeper.misfit("neighbours", format!("more than {MAX_EDGES} in all")));
+        }
+        for other in &viewpoints {
+            graph.join(name, other).map_err(|error| keeper.misfit("neighbours", error.to_string()))?;
+        }
+    }
+    Ok(graph)
+}
+
+/// Nodes with the names that the child gave them.
+fn nodes(places: &[Place]) -> Result<ViewpointGraph, String> {
+    let mut graph = ViewpointGraph::default();
+    for (index, here) in places.iter().enumerate() {
+        let id = here.id.clone().ok_or_else(|| format!("viewpoint {index} has no `id`"))?;
+        let position = place(here.position).map_err(|reason| format!("viewpoint {id}: {reason}"))?;
+        graph.add(id, position, here.level.filter(|level| *level > 0)).map_err(|error| error.to_string())?;
+    }
+    Ok(graph)
+}
+
+/// Thins the places out, asks which ways between near ones can be walked straight, and keeps the largest connected part.
+fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Place>) -> Result<ViewpointGraph, PlatformError> {
+    let spacing_m = keeper.options().spacing_m;
+    let points = thinned(points, spacing_m).map_err(|reason| keeper.misfit("points", reason))?;
+    let tried = near_pairs(&points, REACH * spacing_m);
+    let mut open = Vec::new();
+    for batch in tried.chunks(BATCH) {
+        let pairs: Vec<_> = batch.iter().map(|(a, b)| [points[*a].position, points[*b].position]).collect();
+        let Walkable { walkable } = keeper.ask("walkable", &json!({ "scene": scene, "pairs": pairs }))?;
+        if walkable.len() != batch.len() {
+            let reason = format!("{} answers to {} pairs", walkable.len(), batch.len());
+            return Err(keeper.misfit("walkable", reason));
+        }
+        open.extend(batch.iter().zip(walkable).filter(|(_, open)| *open).map(|(pair, _)| *pair));
+    }
+    joined(&points, &open).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })
+}
+
+/// Places at least `spacing_m` apart, the first of each crowd, each with a name.
+fn thinned(points: Vec<Place>, spacing_m: f64) -> Result<Vec<Place>, String> {
+    let mut kept: Vec<Place> = Vec::new();
+    for point in points {
+        let here = place(point.position)?;
+        if kept.iter().all(|other| DVec3::from_array(other.position).distance(here) >= spacing_m) {
+            let name = || ViewpointId::new(format!("p{}", kept.len())).map_err(|error| error.to_string());
+            let id = point.id.clone().map_or_else(name, Ok)?;
+            kept.push(Place { id: Some(id), ..point });
+        }
+    }
+    Ok(kept)
+}
+
+/// Each place with its nearest ones, every pair once, in order.
+fn near_pairs(points: &[Place], reach_m: f64) -> Vec<(usize, usize)> {
+    let positions: Vec<DVec3> = points.iter().map(|point| DVec3::from_array(point.position)).collect();
+    let mut pairs = BTreeSet::new();
+    for (here, from) in positions.iter().enumerate() {
+        let mut near: Vec<(f64, usize)> = positions
+            .iter()
+            .enumerate()
+            .map(|(other, to)| (from.distance(*to), other))
+            .filter(|(far_m, other)| *other != here && *far_m <= reach_m)
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        pairs.extend(near.into_iter().take(TRIED).map(|(_, other)| (here.min(other), here.max(other))));
+    }
+    pairs.into_iter().collect()
+}
+
+/// The largest connected part of the graph; of two alike, the one with the first place.
+fn joined(points: &[Place], open: &[(usize, usize)]) -> Result<ViewpointGraph, GraphError> {
+    let part = parts(points.len(), open);
+    let size = |number: usize| part.iter().filter(|other| **other == number).count();
+    let numbers: BTreeSet<usize> = part.iter().copied().collect();
+    let largest = numbers.into_iter().rev().max_by_key(|number| size(*number));
+    let mut graph = ViewpointGraph::default();
+    for (point, number) in points.iter().zip(&part) {
+        if let (Some(id), true) = (&point.id, Some(*number) == largest) {
+            graph.add(id.clone(), DVec3::from_array(point.position), point.level.filter(|level| *level > 0))?;
+        }
+    }
+    for (a, b) in open {
+        if let (Some(from), Some(to), true) = (&points[*a].id, &points[*b].id, Some(part[*a]) == largest) {
+            graph.join(from, to)?;
+        }
+    }
+    Ok(graph)
+}
+
+/// For each place the first place of its part.
+fn parts(count: usize, open: &[(usize, usize)]) -> Vec<usize> {
+    let mut beside = vec![Vec::new(); count];
+    for (a, b) in open {
+        beside[*a].push(*b);
+        beside[*b].push(*a);
+    }
+    let mut part: Vec<Option<usize>> = vec![None; count];
+    for start in 0..count {
+        let mut waiting = vec![start];
+        while let Some(here) = waiting.pop() {
+            if part[here].is_none() {
+                part[here] = Some(start);
+                waiting.extend(&beside[here]);
+            }
+        }
+    }
+    part.into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn at(x: f64, y: f64) -> Place {
+        Place { id: None, position: [x, y, 1.5], level: None }
+    }
+
+    #[test]
+    fn the_largest_part_is_kept_and_walls_are_not_walked_through() {
+        let points: Vec<Place> = (0..8).map(|n| at(f64::from(n), 0.0)).collect();
+        let points = thinned(points, 1.0).unwrap();
+        // A wall between 4 and 5.
+        let open: Vec<_> = near_pairs(&points, 2.0).into_iter().filter(|(a, b)| (*a < 5) == (*b < 5)).collect();
+        let graph = joined(&points, &open).unwrap();
+        assert_eq!((graph.len(), graph.components()), (5, 1));
+        assert!(graph.viewpoints().all(|id| id.as_str() < "p5"));
+    }
+
+    proptest! {
+        #[test]
+        fn thinned_places_lie_apart_and_every_place_has_one_near(
+            xs in prop::collection::vec((0.0..8.0f64, 0.0..8.0f64), 1..80),
+        ) {
+            let points: Vec<Place> = xs.iter().map(|(x, y)| at(*x, *y)).collect();
+            let kept = thinned(points.clone(), 1.0).unwrap();
+            let far = |a: &Place, b: &Place| DVec3::from_array(a.position).distance(DVec3::from_array(b.position));
+            for (n, a) in kept.iter().enumerate() {
+                prop_assert!(kept[..n].iter().all(|b| far(a, b) >= 1.0));
+            }
+            prop_assert!(points.iter().all(|a| kept.iter().any(|b| far(a, b) < 1.0)));
+            let pairs = near_pairs(&kept, 3.0);
+            prop_assert!(pairs.iter().all(|(a, b)| a < b && far(&kept[*a], &kept[*b]) <= 3.0));
+            let graph = joined(&kept, &pairs).unwrap();
+            prop_assert_eq!(graph.components(), 1);
+            let inside = |n: usize| graph.position(kept[n].id.as_ref().unwrap()).is_some();
+            prop_assert!(pairs.iter().all(|(a, b)| inside(*a) == inside(*b)), "a way leads out of the part that was kept");
+            let all = parts(kept.len(), &pairs);
+            let largest = all.iter().map(|part| all.iter().filter(|other| *other == part).count()).max();
+            prop_assert_eq!(Some(graph.len()), largest);
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Keeps a child running: asks it, and starts it anew after a fault, a bounded number of times.
+//!
+//! A request that meets a fault is not asked again: it may be what kills the child. So whoever asked gets the error, and
+//! everybody else a fresh child.
+
+use super::{
+    child::Running,
+    fault::Fault,
+    options::ProcessOptions,
+    protocol::{FRAME, Greeting, PROTOCOL, World},
+    stderr::Hear,
+};
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+    time::Duration,
+};
+use wayword_core::PlatformError;
+
+/// So many answers earn a restart back.
+const ANSWERS_FOR_A_RESTART: u32 = 200;
+
+/// A child that is kept running, asked by one thread at a time.
+pub(crate) struct Keeper {
+    options: ProcessOptions,
+    hear: Hear,
+    world: World,
+    state: Mutex<State>,
+}
+
+struct State {
+    running: Option<Running>,
+    /// The folder of its pictures, without links.
+    images: Option<PathBuf>,
+    /// Requests so far, of all children: their ids.
+    asked: u64,
+    answered: u32,
+    restarts_left: u32,
+    last_fault: String,
+}
+
+impl Keeper {
+    /// Starts the child and hears its greeting.
+    pub(crate) fn start(options: ProcessOptions, hear: Hear) -> Result<Self, PlatformError> {
+        let mut state = State {
+            running: None,
+            images: None,
+            asked: 0,
+            answered: 0,
+            restarts_left: options.restarts,
+            last_fault: String::new(),
+        };
+        let world = state.launch(&options, &hear)?;
+        Ok(Self { options, hear, world, state: Mutex::new(state) })
+    }
+
+    pub(crate) fn options(&self) -> &ProcessOptions {
+        &self.options
+    }
+
+    pub(crate) fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Asks for what can be read from the answer alone.
+    pub(crate) fn ask<T: DeserializeOwned>(&self, method: &'static str, params: &Value) -> Result<T, PlatformError> {
+        self.ask_and_take(method, params, |result, _| serde_json::from_value(result).map_err(|error| error.to_string()))
+    }
+
+    /// Asks, and takes from the answer what is needed, before anybody else can ask: the child may put its next picture in
+    /// the place of this one. The folder of its pictures comes along.
+    pub(crate) fn ask_and_take<T>(
+        &self,
+        method: &'static str,
+        params: &Value,
+        take: impl FnOnce(Value, Option<&Path>) -> Result<T, String>,
+    ) -> Result<T, PlatformError> {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        self.revive(&mut state)?;
+        let result = state.ask(&self.options, method, params, self.options.answer_within).map_err(|failed| {
+            match (&failed.fault, params.get("scene").and_then(Value::as_str)) {
+                (Fault::Refused { code: Some(code), message }, Some(scene)) if code == "unknown_scene" => {
+                    PlatformError::UnknownScene { scene: scene.to_owned(), hint: message.clone() }
+                }
+                _ => failed.into_error(&self.options),
+            }
+        })?;
+        take(result, state.images.as_deref()).map_err(|reason| self.misfit(method, reason))
+    }
+
+    /// The error for an answer that was understood, but cannot be used.
+    pub(crate) fn misfit(&self, method: &'static str, reason: impl Into<String>) -> PlatformError {
+        Failed { fault: Fault::Misfit(reason.into()), method, id: None, last_words: String::new() }
+            .into_error(&self.options)
+    }
+
+    /// Starts the child again if it is gone.
+    fn revive(&self, state: &mut State) -> Result<(), PlatformError> {
+        if let Some(running) = state.running.as_mut()
+            && running.has_ended()
+        {
+            // Nobody was waiting for it, so nobody's request is lost.
+            state.last_fault =
+                format!("ended by itself{}", state.running.take().map_or_else(String::new, Running::bury));
+        }
+        if state.running.is_some() {
+            return Ok(());
+        }
+        let failed = |fault| Failed { fault, method: "hello", id: None, last_words: String::new() };
+        if state.restarts_left == 0 {
+            return Err(failed(Fault::GaveUp(state.last_fault.clone())).into_error(&self.options));
+        }
+        state.restarts_left -= 1;
+        if state.launch(&self.options, &self.hear)? != self.world {
+            state.running = None;
+            state.last_fault = Fault::Changed.to_string();
+            return Err(failed(Fault::Changed).into_error(&self.options));
+        }
+        Ok(())
+    }
+}
+
+impl State {
+    fn launch(&mut self, options: &ProcessOptions, hear: &Hear) -> Result<World, PlatformError> {
+        let started = Running::start(options, hear).map_err(|fault| {
+            self.last_fault = fault.to_string();
+            Failed { fault, method: "hello", id: None, last_words: String::new() }.into_error(options)
+        })?;
+        self.running = Some(started);
+        let params = json!({ "protocol": PROTOCOL, "frame": FRAME });
+        let greeting = self.ask(options, "hello", &params, options.start_within);
+        let world = greeting.and_then(|greeting| self.greeted(greeting).map_err(|fault| self.buried(fault, "hello")));
+        world.map_err(|failed| {
+            self.running = None;
+            failed.into_error(options)
+        })
+    }
+
+    fn greeted(&mut self, greeting: Value) -> Result<World, Fault> {
+        // The version first: another one may greet in another way.
+        if let Some(version) = greeting.get("protocol").and_then(Value::as_u64)
+            && version != PROTOCOL
+        {
+            return Err(Fault::Version(version));
+        }
+        let greeting: Greeting =
+            serde_json::from_value(greeting).map_err(|error| Fault::Greeting(error.to_string()))?;
+        if greeting.protocol != PROTOCOL {
+            return Err(Fault::Version(greeting.protocol));
+        }
+        if greeting.frame != FRAME {
+            return Err(Fault::Frame(greeting.frame.chars().take(80).collect()));
+        }
+        let unusable =
+            |folder: &Path, reason: String| Fault::Greeting(format!("`images` {}: {reason}", folder.display()));
+        self.images = match &greeting.images {
+            Some(folder) if !folder.is_absolute() => return Err(unusable(folder, "is not absolute".into())),
+            Some(folder) => Some(folder.canonicalize().map_err(|error| unusable(folder, error.to_string()))?),
+            None => None,
+        };
+        greeting.world().map_err(Fault::Greeting)
+    }
+
+    fn ask(
+        &mut self,
+        options: &ProcessOptions,
+        method: &'static str,
+        params: &Value,
+        within: Duration,
+    ) -> Result<Value, Failed> {
+        self.asked += 1;
+        let Some(running) = self.running.as_mut() else {
+            return Err(self.buried(Fault::Closed, method));
+        };
+        let result = running.ask(self.asked, method, params, within);
+        if result.as_ref().err().is_none_or(Fault::leaves_it_usable) {
+            self.answered += 1;
+            if self.answered.is_multiple_of(ANSWERS_FOR_A_RESTART) && self.restarts_left < options.restarts {
+                self.restarts_left += 1;
+            }
+        }
+        result.map_err(|fault| self.buried(fault, method))
+    }
+
+    /// What a fault makes of a request: the child is buried if it cannot be asked any more.
+    fn buried(&mut self, fault: Fault, method: &'static str) -> Failed {
+        let mut last_words = String::new();
+        if !fault.leaves_it_usable() {
+            last_words = self.running.take().map_or_else(String::new, Running::bury);
+            self.last_fault = format!("{fault}, when asked request {} ({method}){last_words}", self.asked);
+        }
+        Failed { fault, method, id: Some(self.asked), last_words }
+    }
+}
+
+/// A request that was not answered.
+struct Failed {
+    fault: Fault,
+    method: &'static str,
+    id: Option<u64>,
+    last_words: String,
+}
+
+impl Failed {
+    fn into_error(self, options: &ProcessOptions) -> PlatformError {
+        let Self { fault, method, id, last_words } = self;
+        let request = id.map_or_else(|| format!("`{method}`"), |id| format!("request {id} (`{method}`)"));
+        PlatformError::File {
+            file: options.shown(),
+            reason: format!("{request}: the child {fault}{last_words}"),
+            hint: fault.hint(),
+        }
+    }
+}

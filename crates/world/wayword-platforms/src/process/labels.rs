@@ -1,0 +1,182 @@
+//! What a child says about a view, taken into Wayword's words.
+
+use super::{picture::Sent, protocol};
+use serde::Deserialize;
+use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
+
+/// Most objects in one answer.
+const MAX_LABELS: usize = 5000;
+/// Numbers beyond this are no place and no distance in a world, metres.
+pub(crate) const MAX_COORDINATE_M: f64 = 1e6;
+/// A box may reach so far out of its picture, pixels: rounding.
+const BOX_SLACK_PX: f64 = 1.0;
+
+/// The answer to `observe`.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Observation {
+    #[serde(default)]
+    pub(crate) image: Option<Sent>,
+    #[serde(default)]
+    pub(crate) labels: Option<Vec<Seen>>,
+    #[serde(default)]
+    pub(crate) room: Option<String>,
+}
+
+/// An object that is seen.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Seen {
+    object: ObjectId,
+    name: String,
+    /// Its centre, metres; or a direction instead.
+    #[serde(default)]
+    position: Option<[f64; 3]>,
+    #[serde(default)]
+    heading_rad: Option<f64>,
+    #[serde(default)]
+    elevation_rad: Option<f64>,
+    #[serde(default)]
+    distance_m: Option<f64>,
+    #[serde(default)]
+    box_px: Option<[f64; 4]>,
+    #[serde(default)]
+    colour: Option<String>,
+}
+
+/// The labels of a view: those whose centre lies within its width.
+pub(crate) fn of_view(seen: Vec<Seen>, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Vec<Label>, String> {
+    if seen.len() > MAX_LABELS {
+        return Err(format!("{} labels, and at most {MAX_LABELS} are taken", seen.len()));
+    }
+    let labels: Result<Vec<Label>, String> = seen.into_iter().map(|seen| seen.label(eye, gaze, size_px)).collect();
+    Ok(labels?.into_iter().filter(|label| gaze.holds(label.heading)).collect())
+}
+
+/// A place, if it is one.
+pub(crate) fn place(position: [f64; 3]) -> Result<DVec3, String> {
+    let place = DVec3::from_array(position);
+    let near = place.is_finite() && place.abs().max_element() <= MAX_COORDINATE_M;
+    near.then_some(place).ok_or_else(|| format!("{position:?} is no place in a world"))
+}
+
+impl Seen {
+    fn label(self, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Label, String> {
+        let object = self.object.to_string();
+        self.unchecked(eye, gaze, size_px).map_err(|reason| format!("label of object {object:?}: {reason}"))
+    }
+
+    fn unchecked(self, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Label, String> {
+        let position = self.position.map(place).transpose()?;
+        let (heading, elevation_rad) = match (position, self.heading_rad) {
+            // What hangs right above the eye is ahead as well as anywhere else.
+            (Some(centre), _) => (Heading::towards(eye, centre).unwrap_or(gaze.heading), elevation_rad(eye, centre)),
+            (None, Some(heading)) => {
+                let heading = Heading::new(heading).map_err(|error| format!("`heading_rad`: {error}"))?;
+                (heading, within("elevation_rad", self.elevation_rad.unwrap_or(0.0), std::f64::consts::FRAC_PI_2)?)
+            }
+            (None, None) => return Err("has neither `position` nor `heading_rad`".into()),
+        };
+        let told_m = self.distance_m.map(|far| within("distance_m", far, MAX_COORDINATE_M)).transpose()?;
+        if told_m.is_some_and(|far| far < 0.0) {
+            return Err("`distance_m` is negative".into());
+        }
+        Ok(Label {
+            object: self.object,
+            name: protocol::name("`name`", &self.name)?,
+            heading,
+            elevation_rad,
+            box_px: self.box_px.map(|corners| box_px(corners, size_px)).transpose()?,
+            distance_m: told_m.or_else(|| position.map(|centre| eye.distance(centre))),
+            position,
+            colour: self.colour.map(|colour| protocol::name("`colour`", &colour)).transpose()?,
+        })
+    }
+}
+
+fn elevation_rad(eye: DVec3, centre: DVec3) -> f64 {
+    let (across, up) = ((centre - eye).truncate().length(), centre.z - eye.z);
+    libm::atan2(up, across)
+}
+
+fn within(field: &str, number: f64, most: f64) -> Result<f64, String> {
+    let fits = number.is_finite() && number.abs() <= most;
+    fits.then_some(number).ok_or_else(|| format!("`{field}` is {number}, which is beyond {most}"))
+}
+
+/// A box within its picture, cut to it.
+fn box_px([x, y, width, height]: [f64; 4], (width_px, height_px): (u32, u32)) -> Result<[f64; 4], String> {
+    let cut = |from: f64, long: f64, side_px: u32| {
+        let side = f64::from(side_px);
+        let fits = from >= -BOX_SLACK_PX && long >= 0.0 && from + long <= side + BOX_SLACK_PX;
+        let (start, end) = (from.clamp(0.0, side), (from + long).clamp(0.0, side));
+        fits.then_some((start, end - start))
+    };
+    match (cut(x, width, width_px), cut(y, height, height_px)) {
+        (Some((x, width)), Some((y, height))) => Ok([x, y, width, height]),
+        _ => {
+            Err(format!("`box_px` [{x}, {y}, {width}, {height}] does not lie in a picture of {width_px} x {height_px}"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use serde_json::{Value, json};
+
+    const SIZE_PX: (u32, u32) = (640, 480);
+
+    fn labels(seen: Value) -> Result<Vec<Label>, String> {
+        let seen: Vec<Seen> = serde_json::from_value(seen).map_err(|error| error.to_string())?;
+        of_view(seen, DVec3::new(1.0, 2.0, 1.5), Gaze::quarter(Heading::NORTH), SIZE_PX)
+    }
+
+    #[test]
+    fn a_position_gives_direction_and_distance() {
+        let found =
+            labels(json!([{"object": "7", "name": "lamp", "position": [2.0, 5.0, 1.5], "colour": "red"}])).unwrap();
+        assert!((found[0].heading.rad() - libm::atan2(1.0, 3.0)).abs() < 1e-12);
+        assert_eq!(found[0].elevation_rad, 0.0);
+        assert!((found[0].distance_m.unwrap() - 10.0f64.sqrt()).abs() < 1e-12);
+        let above = labels(json!([{"object": "7", "name": "lamp", "position": [1.0, 2.0, 2.5]}])).unwrap();
+        assert!((above[0].elevation_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_lies_outside_the_gaze_belongs_to_another_view() {
+        let behind = json!([{"object": "1", "name": "door", "position": [1.0, -3.0, 1.0]}, {"object": "2", "name": "rug", "heading_rad": -0.5}]);
+        let found = labels(behind).unwrap();
+        assert_eq!(found.iter().map(|label| label.name.as_str()).collect::<Vec<_>>(), ["rug"]);
+    }
+
+    #[test]
+    fn a_label_that_cannot_be_is_refused_by_name() {
+        for (bad, says) in [
+            (json!({"object": "7", "name": "lamp"}), "position"),
+            (json!({"object": "7", "name": "a\nb", "heading_rad": 0}), "name"),
+            (json!({"object": "a/b", "name": "lamp", "heading_rad": 0}), "separators"),
+            (json!({"object": "7", "name": "lamp", "position": [0.0, 1e9, 0.0]}), "no place"),
+            (json!({"object": "7", "name": "lamp", "heading_rad": 0, "distance_m": -1}), "negative"),
+            (json!({"object": "7", "name": "lamp", "heading_rad": 0, "box_px": [600, 0, 100, 10]}), "640 x 480"),
+            (json!({"object": "7", "name": "lamp", "heading_rad": 0, "elevation_rad": 3}), "elevation_rad"),
+        ] {
+            let error = labels(json!([bad])).unwrap_err();
+            assert!(error.contains(says), "{bad}: {error}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_is_accepted_lies_in_the_view(
+            position in prop::array::uniform3(-20.0..20.0f64), corners in prop::array::uniform4(-50.0..700.0f64),
+        ) {
+            let seen = json!([{"object": "7", "name": "lamp", "position": position, "box_px": corners}]);
+            for label in labels(seen).into_iter().flatten() {
+                prop_assert!(Gaze::quarter(Heading::NORTH).holds(label.heading));
+                let [x, y, width, height] = label.box_px.unwrap();
+                prop_assert!(x >= 0.0 && y >= 0.0 && width >= 0.0 && height >= 0.0);
+                prop_assert!(x + width <= 640.0 + 1e-9 && y + height <= 480.0 + 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Lines from a child: read with a bound, and taken apart.
+
+use super::fault::Fault;
+use serde::Deserialize;
+use serde_json::Value;
+use std::io::{BufRead, Read};
+
+/// Longest line of a child, bytes: an answer with a large picture in base64.
+pub(crate) const MAX_LINE_BYTES: usize = 48 << 20;
+/// Most commas and brackets in a line. Each can become a JSON value in memory, which takes far more room than its byte.
+const MAX_VALUES: usize = 1_000_000;
+/// How much of a line an error repeats, characters.
+const SHOWN_CHARS: usize = 80;
+
+/// What came out of a pipe.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Line {
+    /// A line without its end.
+    Whole(Vec<u8>),
+    /// Bytes, and then the pipe's end.
+    Half(Vec<u8>),
+    /// A line without an end in sight.
+    TooLong,
+    /// The pipe's end.
+    End,
+}
+
+/// The next line. No more than `max_bytes` of it are ever held.
+pub(crate) fn read(from: &mut impl BufRead, max_bytes: usize) -> Line {
+    let mut line = Vec::new();
+    // A pipe that cannot be read any more has ended, whatever the reason is.
+    let read = from.take(max_bytes as u64 + 1).read_until(b'\n', &mut line);
+    match line.last() {
+        _ if read.is_err() => Line::End,
+        None => Line::End,
+        Some(b'\n') => {
+            line.pop();
+            Line::Whole(line)
+        }
+        Some(_) if line.len() > max_bytes => Line::TooLong,
+        Some(_) => Line::Half(line),
+    }
+}
+
+/// What a child answered, and to which request.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Answer {
+    pub(crate) id: u64,
+    pub(crate) outcome: Result<Value, Refusal>,
+}
+
+/// A child's own error.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub(crate) struct Refusal {
+    #[serde(default)]
+    pub(crate) code: Option<String>,
+    pub(crate) message: String,
+}
+
+#[derive(Deserialize)]
+struct Wire {
+    id: u64,
+    #[serde(default)]
+    result: Option<Value>,
+    #[serde(default)]
+    error: Option<Refusal>,
+}
+
+/// Takes an answer apart.
+///
+/// # Errors
+/// When the line is no JSON object with an id and either a result or an error.
+pub(crate) fn answer(line: &[u8]) -> Result<Answer, Fault> {
+    let nonsense = |reason: String| Fault::Nonsense { reason, start: start_of(line) };
+    if line.iter().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count() > MAX_VALUES {
+        return Err(nonsense(format!("more than {MAX_VALUES} JSON values")));
+    }
+    let wire: Wire = serde_json::from_slice(line).map_err(|error| nonsense(error.to_string()))?;
+    let outcome = match (wire.result, wire.error) {
+        (Some(result), None) => Ok(result),
+        (None, Some(refusal)) => Err(refusal),
+        _ => return Err(nonsense("an answer has either `result` or `error`".into())),
+    };
+    Ok(Answer { id: wire.id, outcome })
+}
+
+/// The beginning of a line, as an error may show it.
+fn start_of(line: &[u8]) -> String {
+    let start = String::from_utf8_lossy(&line[..line.len().min(4 * SHOWN_CHARS)]);
+    plain(&start, SHOWN_CHARS)
+}
+
+/// A text without what could move a cursor or break a line, and not too long.
+pub(crate) fn plain(text: &str, max_chars: usize) -> String {
+    text.chars().filter(|c| !c.is_control()).take(max_chars).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use serde_json::json;
+    use std::io::Cursor;
+
+    #[test]
+    fn lines_are_cut_at_their_bound_and_half_lines_are_told_from_whole_ones() {
+        let mut pipe = Cursor::new(b"one\n\ntwelve chars\nhalf".to_vec());
+        assert_eq!(read(&mut pipe, 12), Line::Whole(b"one".to_vec()));
+        assert_eq!(read(&mut pipe, 12), Line::Whole(Vec::new()));
+        assert_eq!(read(&mut pipe, 12), Line::Whole(b"twelve chars".to_vec()), "the end of a line does not count");
+        assert_eq!(read(&mut pipe, 12), Line::Half(b"half".to_vec()));
+        assert_eq!(read(&mut pipe, 12), Line::End);
+        assert_eq!(read(&mut Cursor::new([b'x'; 14]), 12), Line::TooLong);
+    }
+
+    #[test]
+    fn an_answer_has_an_id_and_either_a_result_or_an_error() {
+        let good = answer(br#"{"id": 3, "result": {"scenes": []}, "more": 1}"#).unwrap();
+        assert_eq!(good, Answer { id: 3, outcome: Ok(json!({"scenes": []})) });
+        let refusal = answer(br#"{"id": 3, "error": {"message": "no"}}"#).unwrap();
+        assert_eq!(refusal.outcome.unwrap_err().message, "no");
+        for bad in [
+            &br#"{"id": 3}"#[..],
+            br#"{"id": 3, "result": {}, "error": {"message": "no"}}"#,
+            br#"{"id": -3, "result": {}}"#,
+            br#"{"id": "3", "result": {}}"#,
+            br#"{"result": {}}"#,
+            br#"[3]"#,
+            br#"{"id": 3, "result": {}} {"id": 4, "result": {}}"#,
+            b"Loading textures...",
+            b"",
+            b"\xff\xfe",
+        ] {
+            assert!(matches!(answer(bad), Err(Fault::Nonsense { .. })), "{bad:?} was taken for an answer");
+        }
+    }
+
+    #[test]
+    fn a_line_of_too_many_values_is_not_even_parsed() {
+        let mut line = br#"{"id":1,"result":["#.to_vec();
+        line.extend(b"0,".repeat(MAX_VALUES));
+        line.extend(b"0]}");
+        let error = answer(&line).unwrap_err().to_string();
+        assert!(error.contains("JSON values"), "{error}");
+    }
+
+    #[test]
+    fn what_an_error_repeats_is_short_and_harmless() {
+        let error = answer("\u{1b}[2J\u{7}".repeat(1000).as_bytes()).unwrap_err().to_string();
+        assert!(error.len() < 300 && !error.contains(char::is_control), "{error}");
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_make_the_parser_panic(line in prop::collection::vec(any::<u8>(), 0..300)) {
+            let _ = answer(&line);
+        }
+
+        #[test]
+        fn a_mutated_answer_is_read_as_an_answer_or_refused_with_a_short_reason(
+            at in 0usize..60, byte in any::<u8>(), cut in 0usize..60,
+        ) {
+            let mut line = br#"{"id": 12, "result": {"viewpoints": [{"id": "a"}]}, "x": null}"#.to_vec();
+            line[at] = byte;
+            line.truncate(line.len() - cut);
+            match answer(&line) {
+                Ok(answer) => prop_assert!(answer.outcome.is_ok(), "no mutation of one byte makes an error of it"),
+                Err(fault) => prop_assert!(fault.to_string().chars().count() < 500 && !fault.leaves_it_usable()),
+            }
+        }
+
+        #[test]
+        fn what_was_written_is_read_again(id in any::<u64>(), text in ".*") {
+            let line = serde_json::to_vec(&json!({"id": id, "result": {"name": text}})).unwrap();
+            let mut pipe = line.clone();
+            pipe.push(b'\n');
+            let Line::Whole(read) = read(&mut Cursor::new(pipe), MAX_LINE_BYTES) else { panic!("half a line") };
+            prop_assert_eq!(&read, &line);
+            prop_assert_eq!(answer(&read).unwrap(), Answer { id, outcome: Ok(json!({"name": text})) });
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Which program is a world, and how patient to be with it.
+
+use crate::matterport::read;
+use serde::Deserialize;
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
+use wayword_core::PlatformError;
+
+const MAX_FILE_BYTES: u64 = 1 << 20;
+const HINT: &str = "a world file holds a JSON object with \"command\": [PROGRAM, ARGUMENT, ...], see docs/PROCESS.md";
+/// Longest time that can be asked for, seconds.
+const MAX_WAIT_S: f64 = 86_400.0;
+/// Longest side of a picture, pixels.
+const MAX_SIDE_PX: u32 = 4096;
+
+/// A program that is a world, and what is asked of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProcessOptions {
+    /// The program.
+    pub program: PathBuf,
+    /// Its arguments.
+    pub arguments: Vec<String>,
+    /// The folder in which it runs; Wayword's own where there is none.
+    pub folder: Option<PathBuf>,
+    /// Width of pictures, pixels.
+    pub width_px: u32,
+    /// Height of pictures, pixels.
+    pub height_px: u32,
+    /// Distance between viewpoints where the graph is made here, metres.
+    pub spacing_m: f64,
+    /// How long a greeting may take: simulators start slowly.
+    pub start_within: Duration,
+    /// How long any other answer may take.
+    pub answer_within: Duration,
+    /// How often it is started again; one more each time it has answered 200 requests, but never more than this.
+    pub restarts: u32,
+}
+
+/// A world file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WorldFile {
+    command: Vec<String>,
+    #[serde(default)]
+    width_px: Option<u32>,
+    #[serde(default)]
+    height_px: Option<u32>,
+    #[serde(default)]
+    spacing_m: Option<f64>,
+    #[serde(default)]
+    start_within_s: Option<f64>,
+    #[serde(default)]
+    answer_within_s: Option<f64>,
+    #[serde(default)]
+    restarts: Option<u32>,
+}
+
+impl ProcessOptions {
+    /// A program without arguments; pictures of 640x480, viewpoints 1 m apart, 3 minutes to start, one to answer, 5 restarts.
+    #[must_use]
+    pub fn new(program: impl Into<PathBuf>) -> Self {
+        Self {
+            program: program.into(),
+            arguments: Vec::new(),
+            folder: None,
+            width_px: 640,
+            height_px: 480,
+            spacing_m: 1.0,
+            start_within: Duration::from_secs(180),
+            answer_within: Duration::from_secs(60),
+            restarts: 5,
+        }
+    }
+
+    /// The command as errors name it: a script says more than the interpreter that runs it.
+    pub(crate) fn shown(&self) -> PathBuf {
+        let script = self.arguments.first().filter(|first| Path::new(first).extension().is_some());
+        script.map_or_else(|| self.program.clone(), |script| PathBuf::from(super::line::plain(script, 200)))
+    }
+
+    /// What a file says: a world file where its name ends in `.json`, else the program itself. A world file's command runs
+    /// in the file's folder.
+    ///
+    /// # Errors
+    /// When the file is missing, or is no world file.
+    pub fn read(file: &Path) -> Result<Self, PlatformError> {
+        let wrong = |reason: String| read::wrong(file, reason, HINT);
+        if file.extension().is_none_or(|end| end != "json") {
+            let program = file.canonicalize().map_err(|error| wrong(error.to_string()))?;
+            return Ok(Self::new(program));
+        }
+        let text =
+            read::text_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
+        let world: WorldFile = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        let file = file.canonicalize().map_err(|error| wrong(error.to_string()))?;
+        world.resolved(file.parent().unwrap_or(Path::new("."))).map_err(wrong)
+    }
+}
+
+impl WorldFile {
+    fn resolved(self, folder: &Path) -> Result<ProcessOptions, String> {
+        let mut command = self.command.into_iter();
+        let program = PathBuf::from(command.next().ok_or("\"command\" is empty")?);
+        // A bare name is looked for on the PATH, a path starts from the world file.
+        let program = if program.components().count() > 1 { folder.join(program) } else { program };
+        let default = ProcessOptions::new(program);
+        Ok(ProcessOptions {
+            arguments: command.collect(),
+            folder: Some(folder.to_owned()),
+            width_px: side(self.width_px, default.width_px, "width_px")?,
+            height_px: side(self.height_px, default.height_px, "height_px")?,
+            spacing_m: within(self.spacing_m, default.spacing_m, 0.2..=10.0, "spacing_m")?,
+            start_within: wait(self.start_within_s, default.start_within, "start_within_s")?,
+            answer_within: wait(self.answer_within_s, default.answer_within, "answer_within_s")?,
+            restarts: self.restarts.unwrap_or(default.restarts),
+            ..default
+        })
+    }
+}
+
+fn side(given: Option<u32>, default: u32, name: &str) -> Result<u32, String> {
+    within(given, default, 16..=MAX_SIDE_PX, name)
+}
+
+fn wait(given_s: Option<f64>, default: Duration, name: &str) -> Result<Duration, String> {
+    within(given_s, default.as_secs_f64(), 0.01..=MAX_WAIT_S, name).map(Duration::from_secs_f64)
+}
+
+fn within<T: PartialOrd + std::fmt::Display>(
+    given: Option<T>,
+    default: T,
+    range: std::ops::RangeInclusive<T>,
+    name: &str,
+) -> Result<T, String> {
+    let value = given.unwrap_or(default);
+    let fits = range.contains(&value);
+    fits.then_some(()).map_or_else(
+        || Err(format!("\"{name}\" has to lie between {} and {}", range.start(), range.end())),
+        |()| Ok(value),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn read(text: &str) -> Result<ProcessOptions, PlatformError> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("world.json");
+        fs::write(&file, text).unwrap();
+        ProcessOptions::read(&file)
+    }
+
+    #[test]
+    fn a_world_file_names_a_command_and_runs_it_beside_itself() {
+        let options =
+            read(r#"{"command": ["python3", "world.py", "--scene", "a b"], "answer_within_s": 0.5}"#).unwrap();
+        assert_eq!(options.program, Path::new("python3"));
+        assert_eq!(options.arguments, ["world.py", "--scene", "a b"]);
+        assert_eq!(options.answer_within, Duration::from_millis(500));
+        let folder = options.folder.unwrap();
+        assert_eq!(read(r#"{"command": ["python3"]}"#).unwrap().width_px, 640);
+        let beside = read(r#"{"command": ["bin/world"]}"#).unwrap();
+        assert!(
+            beside.program.is_absolute() && beside.program.ends_with("bin/world"),
+            "{:?} {folder:?}",
+            beside.program
+        );
+    }
+
+    #[test]
+    fn what_is_no_world_file_is_refused_with_a_hint() {
+        for bad in [
+            "",
+            "[]",
+            "{}",
+            r#"{"command": []}"#,
+            r#"{"command": "python3 world.py"}"#,
+            r#"{"command": ["x"], "timeout": 3}"#,
+            r#"{"command": ["x"], "width_px": 100000}"#,
+            r#"{"command": ["x"], "answer_within_s": -1}"#,
+            r#"{"command": ["x"], "answer_within_s": 1e300}"#,
+            r#"{"command": ["x"], "spacing_m": 0}"#,
+        ] {
+            let error = read(bad).unwrap_err().to_string();
+            assert!(error.contains("world.json") && error.contains("docs/PROCESS.md"), "{bad}: {error}");
+        }
+        assert!(ProcessOptions::read(Path::new("/nowhere/world.py")).is_err());
+    }
+}

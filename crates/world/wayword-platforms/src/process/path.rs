@@ -1,0 +1,103 @@
+//! Random paths that a child draws itself.
+
+use super::{keeper::Keeper, labels::place};
+use crate::{episode_path, matterport::sample};
+use serde::Deserialize;
+use serde_json::json;
+use wayword_core::{
+    Heading, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId, path::Stop,
+};
+
+/// Most stops of a path.
+const MAX_STOPS: usize = 1000;
+/// Lengths may be off by this, metres: rounding on the way.
+const SLACK_M: f64 = 1e-3;
+
+#[derive(Deserialize)]
+struct Drawn {
+    path: Option<Walk>,
+}
+
+#[derive(Deserialize)]
+struct Walk {
+    stops: Vec<Given>,
+    #[serde(default)]
+    heading_rad: Option<f64>,
+    #[serde(default)]
+    target: Option<ObjectId>,
+}
+
+/// A viewpoint of the graph, or a place anywhere.
+#[derive(Deserialize)]
+struct Given {
+    #[serde(default)]
+    viewpoint: Option<ViewpointId>,
+    #[serde(default)]
+    position: Option<[f64; 3]>,
+    #[serde(default)]
+    level: Option<u32>,
+}
+
+/// Asks the child for a path, and holds it to what was asked for. `platform` is the child's own, for the target's name.
+pub(crate) fn drawn(
+    keeper: &Keeper,
+    platform: &dyn Platform,
+    scene: &SceneId,
+    request: &PathRequest,
+    seed: u64,
+) -> Result<Path, PlatformError> {
+    let asked = json!({
+        "scene": scene,
+        "hops": [request.hops.start(), request.hops.end()],
+        "length_m": [request.length_m.start(), request.length_m.end()],
+        // Not every language has whole numbers beyond 2^53.
+        "seed": wayword_core::seed::derive(seed, &["process path", scene.as_str()]) >> 11,
+    });
+    let Drawn { path } = keeper.ask("sample_path", &asked)?;
+    let Some(walk) = path else {
+        return Err(PlatformError::NoSuchPath { scene: scene.clone(), request: sample::in_words(request) });
+    };
+    let misfit = |reason: String| keeper.misfit("sample_path", reason);
+    if !(2..=MAX_STOPS).contains(&walk.stops.len()) {
+        return Err(misfit(format!("a path of {} stops; it has 2 to {MAX_STOPS}", walk.stops.len())));
+    }
+    let on_graph = walk.stops.iter().any(|stop| stop.viewpoint.is_some());
+    let graph = if on_graph { Some(platform.graph(scene)?) } else { None };
+    let stops: Result<Vec<Stop>, String> = walk.stops.into_iter().map(|given| given.stop(graph.as_deref())).collect();
+    let heading = walk.heading_rad.map(Heading::new).transpose().map_err(|error| misfit(error.to_string()))?;
+    let frames = Path::frames_along(stops.map_err(misfit)?, heading);
+    let mut path = Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None };
+    fits(&path, request).map_err(misfit)?;
+    if let (Some(object), Some(last)) = (&walk.target, path.frames.last()) {
+        path.target = episode_path::target(platform, scene, last, object)?;
+    }
+    Ok(path)
+}
+
+impl Given {
+    fn stop(self, graph: Option<&ViewpointGraph>) -> Result<Stop, String> {
+        match (self.viewpoint, self.position, graph) {
+            (Some(id), _, Some(graph)) => {
+                let position = graph.position(&id).ok_or_else(|| format!("viewpoint {id} is not in the graph"))?;
+                let level = graph.level(&id);
+                Ok(Stop { position, viewpoint: Some(id), level })
+            }
+            (_, Some(position), _) => {
+                let level = self.level.filter(|level| *level > 0);
+                Ok(Stop { position: place(position)?, viewpoint: None, level })
+            }
+            _ => Err("a stop has a `viewpoint` or a `position`".into()),
+        }
+    }
+}
+
+/// Whether a path is what was asked for: its length, and its hops where all its stops are viewpoints.
+fn fits(path: &Path, request: &PathRequest) -> Result<(), String> {
+    let (length_m, hops) = (path.length_m(), path.frames.len() - 1);
+    let (least, most) = (request.length_m.start() - SLACK_M, request.length_m.end() + SLACK_M);
+    let on_graph = path.frames.iter().all(|frame| frame.viewpoint.is_some());
+    if !(least..=most).contains(&length_m) || (on_graph && !request.hops.contains(&hops)) {
+        return Err(format!("a path of {hops} hops and {length_m:.3} metres, not of {}", sample::in_words(request)));
+    }
+    Ok(())
+}

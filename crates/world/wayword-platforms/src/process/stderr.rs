@@ -1,0 +1,87 @@
+//! What a child says on its standard error: passed on while it speaks, and its last words kept for errors.
+
+use super::line::plain;
+use std::{
+    collections::VecDeque,
+    io::{BufRead, BufReader, Read},
+    sync::{Arc, Mutex, PoisonError},
+};
+
+/// Lines that are kept for errors.
+const KEPT_LINES: usize = 12;
+/// Characters of a line that are passed on and kept.
+const MAX_LINE_CHARS: usize = 400;
+/// Lines of one child that are passed on. One that says more is not heard, but its last words are still kept.
+const MAX_HEARD_LINES: usize = 2000;
+
+/// Who is told each line that a child writes on its standard error; without control characters.
+pub type Hear = Arc<dyn Fn(&str) + Send + Sync>;
+
+/// The last lines of a child's standard error.
+#[derive(Clone, Default)]
+pub(crate) struct LastWords(Arc<Mutex<VecDeque<String>>>);
+
+impl LastWords {
+    /// Reads until the pipe ends.
+    pub(crate) fn listen(&self, pipe: impl Read, hear: &Hear) {
+        let mut pipe = BufReader::new(pipe);
+        let mut heard = 0;
+        loop {
+            let mut line = Vec::new();
+            // A longer line comes in pieces.
+            let read = (&mut pipe).take(4 * MAX_LINE_CHARS as u64).read_until(b'\n', &mut line);
+            if !matches!(read, Ok(1..)) {
+                return;
+            }
+            let line = plain(&String::from_utf8_lossy(&line), MAX_LINE_CHARS);
+            heard += 1;
+            if heard <= MAX_HEARD_LINES {
+                hear(&line);
+            } else if heard == MAX_HEARD_LINES + 1 {
+                hear("(it says more, which is left out)");
+            }
+            self.keep(line);
+        }
+    }
+
+    fn keep(&self, line: String) {
+        if line.trim().is_empty() {
+            return;
+        }
+        let mut lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        lines.push_back(line);
+        if lines.len() > KEPT_LINES {
+            lines.pop_front();
+        }
+    }
+
+    /// The lines, as an error ends with them; nothing where there are none.
+    pub(crate) fn in_words(&self) -> String {
+        let lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if lines.is_empty() {
+            return String::new();
+        }
+        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+        format!("; its last words: {}", lines.join(" | "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_lines_are_kept_and_the_first_ones_passed_on() {
+        let (words, heard) = (LastWords::default(), Arc::new(Mutex::new(Vec::new())));
+        let hear: Hear = {
+            let heard = Arc::clone(&heard);
+            Arc::new(move |line: &str| heard.lock().unwrap().push(line.to_owned()))
+        };
+        let said: String = (0..5000).map(|n| format!("line {n}\u{1b}[2J\n\n")).collect();
+        words.listen(said.as_bytes(), &hear);
+        let heard = heard.lock().unwrap();
+        assert_eq!((heard.len(), heard[0].as_str()), (MAX_HEARD_LINES + 1, "line 0[2J"));
+        let words = words.in_words();
+        assert!(words.contains("line 4999") && words.contains("line 4988") && !words.contains("line 4987"), "{words}");
+    }
+}
