@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""MuJoCo (pip install mujoco; tried with 4.0.0) as a world for Wayword. Without a screen: MUJOCO_GL=egl or osmesa.
+
+`mujoco_world.py MODEL.xml` serves your own models: things are bodies with a name, and one walks on the geom named
+`floor`. Without an argument it serves flat.xml, which lies beside this file.
+"""
+import functools, math, pathlib, sys  # noqa: E401
+import mujoco
+import numpy as np
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+import wayword_platform as kit  # noqa: E402
+EYE_M, REACH_M = 1.5, 0.3  # the height of the eye, and how near to anything one may stand
+FILES = {name.stem: name for name in map(pathlib.Path, sys.argv[1:] or [pathlib.Path(__file__).with_name("flat.xml")])}
+
+
+class MuJoCo(kit.OpenWorld):
+    name, has_labels = "MuJoCo", True
+
+    def scenes(self):
+        return sorted(FILES)
+
+    @functools.lru_cache(maxsize=None)
+    def load(self, scene):
+        if scene not in FILES:
+            raise kit.UnknownScene(f"there are {self.scenes()}")
+        model = mujoco.MjModel.from_xml_path(str(FILES[scene]))
+        mujoco.mj_forward(model, data := mujoco.MjData(model))
+        model.vis.global_.offwidth, model.vis.global_.offheight = 640, 480
+        return model, data, mujoco.Renderer(model, 480, 640), model.geom("floor")
+
+    def bounds(self, scene):
+        floor = self.load(scene)[3]
+        return [(*(floor.pos + side * floor.size)[:2], floor.pos[2] + EYE_M) for side in (-1, 1)]
+
+    def is_free(self, scene, place):
+        def ray(start, towards):  # how far it goes, and the geom that it meets: -1 for nothing
+            met, (model, data, _, _) = np.full((1, 1), -1, np.int32), self.load(scene)
+            return mujoco.mj_ray(model, data, np.array(start), np.array(towards), None, 1, -1, met), met[0, 0]
+        knee, turns = np.subtract(place, (0, 0, EYE_M - 0.3)), np.linspace(0, math.tau, 8, endpoint=False)
+        around = [ray(knee, (math.cos(turn), math.sin(turn), 0.0))[0] for turn in turns]
+        above_floor = ray(place, (0.0, 0.0, -1.0))[1] == self.load(scene)[3].id
+        return above_floor and not any(0 <= far_m < REACH_M for far_m in around)
+
+    def observe(self, scene, look):
+        (model, data, renderer, _), eye = self.load(scene), mujoco.MjvCamera()  # a free one, which looks at a point
+        eye.lookat = np.add(look.position, (math.sin(look.heading_rad), math.cos(look.heading_rad), 0))
+        eye.distance, eye.elevation, eye.azimuth = 1, 0, math.degrees(kit.angle_from_wayword(look.heading_rad))
+        model.vis.global_.fovy = math.degrees(look.vertical_fov_rad)
+        renderer.update_scene(data, eye)
+        picture = renderer.render() if look.picture else None
+        renderer.enable_segmentation_rendering()
+        bodies = {int(model.geom_bodyid[geom]) for geom in np.unique(renderer.render()[:, :, 0]) if geom >= 0}
+        renderer.disable_segmentation_rendering()
+        names = [(body, model.body(body).name) for body in sorted(bodies) if body > 0]
+        return kit.View(picture, [kit.Label(str(body), name, data.xipos[body]) for body, name in names if name])
+
+
+kit.serve(MuJoCo)

@@ -1,0 +1,379 @@
+"""Makes a simulator a world for Wayword: write a subclass of `World`, and `serve` it.
+
+One file, no dependencies, Python 3.9 or later. Copy it beside your own script. The protocol that it speaks is in
+docs/PROCESS.md; examples are in python/examples/.
+
+    from wayword_platform import Label, Look, View, World, serve
+
+    class MyWorld(World):
+        name = "my world"
+        has_labels = True                                 # each View lists all objects that are seen
+
+        def scenes(self):
+            return ["kitchen"]
+
+        def points(self, scene, count, seed):             # places where the eye can be
+            return [(x, y, 1.5), ...]
+
+        def walkable(self, scene, a, b):                  # whether one can walk straight from a to b
+            return True
+
+        def observe(self, scene, look):
+            return View(image=rgb_rows, labels=[Label("7", "lamp", position=(1, 2, 1))])
+
+    if __name__ == "__main__":
+        serve(MyWorld)
+
+A method that a world does not have is not offered: leave it out. While the world is served, everything that is printed
+goes to standard error, also by libraries in C: standard output carries the protocol.
+
+Wayword's frame: right-handed, z up, metres; a heading is in radians, 0 along +y, clockwise seen from above. The
+functions `wayword_from_...` and `..._from_wayword` convert; the two spaces cancel in their names.
+"""
+
+import base64
+import json
+import math
+import os
+import random
+import struct
+import sys
+import traceback
+import zlib
+from dataclasses import dataclass
+from typing import Any, Optional, Sequence
+
+PROTOCOL = 1
+FRAME = "z-up, metres, radians clockwise from +y"
+
+
+class Refused(Exception):
+    """Raise it for a request that cannot be fulfilled; the world goes on."""
+
+    code: Optional[str] = None
+
+
+class UnknownScene(Refused):
+    """There is no such scene."""
+
+    code = "unknown_scene"
+
+
+@dataclass
+class Look:
+    """What is to be seen: from where, whither, and how wide. The elevation is 0; pixels are square."""
+
+    position: tuple  # the eye, metres
+    heading_rad: float
+    horizontal_fov_rad: float
+    vertical_fov_rad: float
+    width_px: int
+    height_px: int
+    viewpoint: Optional[str] = None  # the id of the point, where the eye is at one
+    picture: bool = True  # False: nobody looks at the picture, so none has to be drawn
+
+
+@dataclass
+class Label:
+    """An object that is seen. Give the centre of its box as `position`, or else a direction."""
+
+    object: str  # its id, unique in the scene
+    name: str  # in plain words: "coffee table"
+    position: Optional[Sequence[float]] = None
+    heading_rad: Optional[float] = None
+    elevation_rad: Optional[float] = None
+    distance_m: Optional[float] = None
+    box_px: Optional[Sequence[float]] = None  # x, y of the upper left corner, width, height
+    colour: Optional[str] = None
+
+
+@dataclass
+class View:
+    """What is seen. `image` is a PNG or JPEG file as bytes, a path below the world's folder `images`, or pixels: rows
+    from the top, RGB, as a numpy array (height, width, 3) of bytes or as plain bytes of that length."""
+
+    image: Any = None
+    labels: Optional[Sequence[Label]] = None  # all objects whose centre is in the view; more do no harm
+    room: Optional[str] = None  # the room in which the eye is: "living room"
+
+
+@dataclass
+class Walk:
+    """A path of your own: stops are ids of viewpoints, or places (x, y, z) of the eye."""
+
+    stops: Sequence[Any]
+    heading_rad: Optional[float] = None  # at the start; None: towards the second stop
+    target: Optional[str] = None  # the object that the walk is for
+
+
+class World:
+    """A simulator. `scenes` and `observe` are needed, and `graph`, or `points` with `neighbours` or `walkable`.
+
+    The other methods that may be written, and what they return:
+
+    graph(scene)                             ({id: (x, y, z)}, [(id, id), ...]): viewpoints, and ways between them
+    points(scene, count, seed)               {id: (x, y, z)}, or [(x, y, z), ...] without ids: about `count` of them
+    neighbours(scene, viewpoint)             [id, ...]
+    walkable(scene, a, b)                    bool, for two places
+    sample_path(scene, hops, length_m, seed) a Walk, or None where there is none; hops and length_m are (least, most)
+    object_name(scene, object)               its name, or None
+    visible_from(scene, object)              [id, ...] of viewpoints, or None where objects are not known
+    """
+
+    name = "a world"
+    has_pictures = True  # each View has an image, if one is asked for
+    has_labels = False  # each View has labels: an empty list says that nothing is there
+    has_rooms = False  # a View may name the room
+    images: Optional[str] = None  # folder of pictures that are sent as files, absolute
+
+    def scenes(self):
+        raise NotImplementedError
+
+    def observe(self, scene, look):
+        raise NotImplementedError
+
+
+class OpenWorld(World):
+    """A world that knows whether a place is free: its points and its ways follow from that."""
+
+    def bounds(self, scene):
+        """The least and the greatest (x, y, z) at which the eye may be."""
+        raise NotImplementedError
+
+    def is_free(self, scene, place):
+        """Whether one can stand with the eye at a place."""
+        raise NotImplementedError
+
+    def points(self, scene, count, seed):
+        dice = random.Random(seed)
+        least, most = self.bounds(scene)
+        places = (tuple(dice.uniform(a, b) for a, b in zip(least, most)) for _ in range(count))
+        return [place for place in places if self.is_free(scene, place)]
+
+    def walkable(self, scene, a, b):
+        steps = max(1, math.ceil(math.dist(a, b) / 0.1))
+        way = (tuple(p + (q - p) * n / steps for p, q in zip(a, b)) for n in range(steps + 1))
+        return all(self.is_free(scene, place) for place in way)
+
+
+OPTIONAL = ("graph", "points", "neighbours", "walkable", "sample_path", "object_name", "visible_from")
+
+
+def serve(make_world):
+    """Makes the world (a subclass of World, or a function that returns one); answers until Wayword closes the pipe."""
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # from here on whatever is printed, also by C, goes to standard error
+    sys.stdout = sys.stderr
+    world = make_world()
+    for line in sys.stdin.buffer:
+        out.write(json.dumps(answer(world, json.loads(line)), allow_nan=False).encode() + b"\n")
+        out.flush()
+
+
+def answer(world, request):
+    """The answer to one request, as a dictionary."""
+    try:
+        method = METHODS.get(request["method"])
+        if method is None:
+            raise Refused(f"there is no method {request['method']!r}")
+        return {"id": request["id"], "result": method(world, request["params"])}
+    except Exception as error:
+        if not isinstance(error, Refused):
+            traceback.print_exc()
+        message = str(error) if isinstance(error, Refused) else f"{type(error).__name__}: {error}"
+        return {"id": request["id"], "error": {"code": getattr(error, "code", None), "message": message}}
+
+
+def _hello(world, params):
+    if params["protocol"] != PROTOCOL:
+        raise Refused(f"Wayword speaks version {params['protocol']}, and this kit version {PROTOCOL}")
+    offers = [name for name in OPTIONAL if hasattr(world, name)]
+    offers += [name for name in ("pictures", "labels", "rooms") if getattr(world, "has_" + name)]
+    greeting = {"protocol": PROTOCOL, "frame": FRAME, "name": world.name, "offers": offers}
+    if world.images is not None:
+        greeting["images"] = os.path.abspath(world.images)
+    return greeting
+
+
+def _graph(world, params):
+    places, edges = world.graph(params["scene"])
+    return {"viewpoints": _places(places), "edges": [[str(a), str(b)] for a, b in edges]}
+
+
+def _points(world, params):
+    return {"points": _places(world.points(params["scene"], params["count"], params["seed"]))}
+
+
+def _places(places):
+    if isinstance(places, dict):
+        return [{"id": str(name), "position": _numbers(place)} for name, place in places.items()]
+    return [{"position": _numbers(place)} for place in places]
+
+
+def _neighbours(world, params):
+    return {"viewpoints": [str(name) for name in world.neighbours(params["scene"], params["viewpoint"])]}
+
+
+def _walkable(world, params):
+    return {"walkable": [bool(world.walkable(params["scene"], tuple(a), tuple(b))) for a, b in params["pairs"]]}
+
+
+def _sample_path(world, params):
+    hops, length_m = tuple(params["hops"]), tuple(params["length_m"])
+    walk = world.sample_path(params["scene"], hops, length_m, params["seed"])
+    if walk is None:
+        return {"path": None}
+    stops = [{"viewpoint": s} if isinstance(s, str) else {"position": _numbers(s)} for s in walk.stops]
+    heading = None if walk.heading_rad is None else float(walk.heading_rad)
+    return {"path": {"stops": stops, "heading_rad": heading, "target": walk.target}}
+
+
+def _observe(world, params):
+    params = dict(params)
+    scene = params.pop("scene")
+    known = {name: params[name] for name in Look.__dataclass_fields__ if name in params}
+    look = Look(**dict(known, position=tuple(params["position"])))
+    view = world.observe(scene, look)
+    result = {"room": view.room}
+    if view.labels is not None:
+        result["labels"] = [_label(label) for label in view.labels]
+    if look.picture and view.image is not None:
+        result["image"] = _image(view.image, look.width_px, look.height_px)
+    return result
+
+
+def _label(label):
+    sent = {"object": str(label.object), "name": label.name, "colour": label.colour}
+    for name in ("position", "box_px"):
+        value = getattr(label, name)
+        sent[name] = None if value is None else _numbers(value)
+    for name in ("heading_rad", "elevation_rad", "distance_m"):
+        value = getattr(label, name)
+        sent[name] = None if value is None else float(value)
+    return sent
+
+
+def _image(image, width_px, height_px):
+    if isinstance(image, (str, os.PathLike)):
+        return {"file": os.fspath(image)}
+    shape = getattr(image, "shape", None)
+    if shape is not None:
+        if tuple(shape) != (height_px, width_px, 3) or image.dtype.itemsize != 1:
+            raise ValueError(f"{tuple(shape)} of {image.dtype} is no picture: ({height_px}, {width_px}, 3) of uint8 is")
+        image = image.tobytes()
+    image = bytes(image)
+    if not image.startswith((b"\x89PNG", b"\xff\xd8\xff")) or len(image) == width_px * height_px * 3:
+        image = png(image, width_px, height_px)
+    return {"base64": base64.b64encode(image).decode()}
+
+
+def _object_name(world, params):
+    return {"name": world.object_name(params["scene"], params["object"])}
+
+
+def _visible_from(world, params):
+    found = world.visible_from(params["scene"], params["object"])
+    return {"viewpoints": None if found is None else [str(name) for name in found]}
+
+
+METHODS = {
+    "hello": _hello,
+    "scenes": lambda world, _: {"scenes": [str(name) for name in world.scenes()]},
+    "graph": _graph,
+    "points": _points,
+    "neighbours": _neighbours,
+    "walkable": _walkable,
+    "sample_path": _sample_path,
+    "observe": _observe,
+    "object_name": _object_name,
+    "visible_from": _visible_from,
+}
+
+
+def _numbers(values):
+    return [float(value) for value in values]
+
+
+def png(rgb, width_px, height_px):
+    """A PNG file of pixels: rows from the top, RGB."""
+    stride = width_px * 3
+    if len(rgb) != stride * height_px:
+        raise ValueError(f"{width_px} x {height_px} pixels have {stride * height_px} bytes, not {len(rgb)}")
+    rows = b"".join(b"\0" + rgb[start : start + stride] for start in range(0, len(rgb), stride))
+
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    header = struct.pack(">IIBBBBB", width_px, height_px, 8, 2, 0, 0, 0)
+    body = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows, 1)) + chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + body
+
+
+# Right-handed with y up and -z ahead: OpenGL, Habitat, MiniWorld, glTF.
+
+
+def wayword_from_y_up(position):
+    x, y, z = position
+    return (x, -z, y)
+
+
+def y_up_from_wayword(position):
+    x, y, z = position
+    return (x, z, -y)
+
+
+# Left-handed with y up and z ahead: Unity, AI2-THOR, ThreeDWorld. Yaw is in degrees, clockwise from +z.
+
+
+def wayword_from_unity(position):
+    x, y, z = position
+    return (x, z, y)
+
+
+def unity_from_wayword(position):
+    return wayword_from_unity(position)
+
+
+def wayword_from_unity_yaw(yaw_deg):
+    return math.radians(yaw_deg) % math.tau
+
+
+def unity_yaw_from_wayword(heading_rad):
+    return math.degrees(heading_rad) % 360
+
+
+# Left-handed with z up, x ahead, y right, centimetres: Unreal; CARLA in metres. Yaw is in degrees, clockwise from +x.
+
+
+def wayword_from_unreal(position, metres_per_unit=0.01):
+    x, y, z = position
+    return (y * metres_per_unit, x * metres_per_unit, z * metres_per_unit)
+
+
+def unreal_from_wayword(position, metres_per_unit=0.01):
+    x, y, z = position
+    return (y / metres_per_unit, x / metres_per_unit, z / metres_per_unit)
+
+
+# Unreal's x, ahead at yaw 0, is Wayword's y, ahead at heading 0, and both turn clockwise.
+wayword_from_unreal_yaw = wayword_from_unity_yaw
+unreal_yaw_from_wayword = unity_yaw_from_wayword
+
+
+# Angles counter-clockwise: from +x (mathematics, MuJoCo, ROS, MiniWorld), and from -z (yaw about y up: Habitat).
+
+
+def wayword_from_angle(angle_rad):
+    return (math.pi / 2 - angle_rad) % math.tau
+
+
+def angle_from_wayword(heading_rad):
+    return (math.pi / 2 - heading_rad) % math.tau
+
+
+def wayword_from_yaw(yaw_rad):
+    return -yaw_rad % math.tau
+
+
+def yaw_from_wayword(heading_rad):
+    return -heading_rad % math.tau
