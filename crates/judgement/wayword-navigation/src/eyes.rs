@@ -154,3 +154,56 @@ fn onward(graph: &ViewpointGraph, from: &ViewpointId, gaze: Gaze) -> Vec<Viewpoi
     in_view.sort_by(|a, b| here.distance(position(a)).total_cmp(&here.distance(position(b))));
     in_view.into_iter().cloned().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Cross, id, scene};
+    use std::sync::atomic::Ordering;
+    use wayword_core::ModelError;
+
+    /// Says the same of every view: so many scores.
+    struct Says(Vec<f32>);
+
+    impl Grounder for Says {
+        fn name(&self) -> &str {
+            "says"
+        }
+
+        fn ground(&self, views: &[&View], _: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+            views.iter().map(|_| Ok(self.0.clone())).collect()
+        }
+    }
+
+    fn told(grounder: &Says, phrases: usize) -> Result<Sight, WalkError> {
+        let world = Cross::new(&[]);
+        Eyes::new(&world, grounder, false, &scene())?.look(&id("middle"), &vec!["a sink".to_owned(); phrases])
+    }
+
+    #[test]
+    fn each_neighbour_lies_in_the_view_towards_it() {
+        let seen = told(&Says(vec![0.5]), 1).unwrap();
+        let names = seen.views.map(|view| view.onward.iter().map(|to| to.as_str().to_owned()).collect::<Vec<_>>());
+        assert_eq!(names, [["n1"], ["e1"], ["s1"], ["w1"]]);
+    }
+
+    #[test]
+    fn a_node_is_looked_at_and_scored_once() {
+        let (world, grounder) = (Cross::new(&[]), Says(vec![0.5]));
+        let eyes = Eyes::new(&world, &grounder, false, &scene()).unwrap();
+        let phrases = ["a sink".to_owned()];
+        assert_eq!(eyes.look(&id("n1"), &phrases).unwrap(), eyes.look(&id("n1"), &phrases).unwrap());
+        assert_eq!(world.looks.load(Ordering::Relaxed), 4);
+    }
+
+    #[test]
+    fn scores_that_cannot_be_compared_are_refused() {
+        for scores in [vec![], vec![f32::NAN, 0.0], vec![0.0; 3]] {
+            let error = told(&Says(scores), 2).unwrap_err();
+            assert!(matches!(error, WalkError::Unusable { .. }) && !error.ends_run(), "{error}");
+        }
+        let world = Cross::new(&[]);
+        let nowhere = Eyes::new(&world, &Says(vec![]), false, &scene()).unwrap().look(&id("attic"), &[]);
+        assert!(matches!(nowhere, Err(WalkError::Unknown { .. })));
+    }
+}

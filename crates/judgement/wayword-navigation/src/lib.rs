@@ -12,6 +12,8 @@ mod error;
 mod eyes;
 pub mod grounders;
 pub mod swap;
+#[cfg(test)]
+mod testing;
 pub mod walk;
 
 pub use error::WalkError;

@@ -88,3 +88,65 @@ fn scored(sight: &Sight, in_hand: usize, activity: usize) -> Vec<Scored> {
     };
     sight.views.iter().map(scored).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        agents::Back,
+        grounders::{Lexical, Sees},
+        testing::{Cross, scene},
+    };
+
+    fn directions(phrases: &[&str], activity: &str) -> Directions {
+        Directions {
+            phrases: phrases.iter().map(|phrase| (*phrase).to_owned()).collect(),
+            activity: activity.to_owned(),
+        }
+    }
+
+    fn walked(things: &[(&'static str, &'static str)], directions: &Directions, parameters: &Parameters) -> Walked {
+        let (world, grounder) = (Cross::new(things), Lexical::new(Sees::Views));
+        let eyes = Eyes::new(&world, &grounder, false, &scene()).unwrap();
+        walk_by_phrases(&eyes, &Cross::start(), directions, parameters).unwrap()
+    }
+
+    fn parameters(back: Option<Back>) -> Parameters {
+        Parameters { back, ..Parameters::default_of("clip-nav", "labels/lexical") }
+    }
+
+    fn stood(walked: &Walked) -> Vec<&str> {
+        walked.steps.iter().map(|step| step.viewpoint.as_str()).collect()
+    }
+
+    #[test]
+    fn it_stops_where_its_task_is_and_points_at_the_thing() {
+        let walked = walked(&[("n2", "sink")], &directions(&[], "wipe the sink"), &parameters(None));
+        assert_eq!(stood(&walked), ["middle", "n1", "n2"]);
+        assert_eq!(walked.end, End::Stopped);
+        assert_eq!(walked.object.unwrap().as_str(), "sink");
+    }
+
+    /// What it passes on the way is in hand first, and the task counts only then.
+    #[test]
+    fn key_phrases_come_one_after_the_other() {
+        let listens = Parameters { stop_with_phrases_left: 0, ..parameters(None) };
+        let route = directions(&["past the bed"], "wipe the sink");
+        let walked = walked(&[("n2", "sink"), ("s2", "bed"), ("w2", "sink")], &route, &listens);
+        let of_bed = walked.steps.iter().position(|step| step.viewpoint.as_str() == "s2").unwrap();
+        assert!(walked.steps[..=of_bed].iter().all(|step| step.phrase == 0), "{:?}", stood(&walked));
+        assert!(walked.steps[of_bed + 1..].iter().all(|step| step.phrase == 1));
+        assert_eq!(walked.end, End::Stopped, "{:?}", stood(&walked));
+    }
+
+    #[test]
+    fn hops_back_are_hops_over_edges_and_count() {
+        let back = Some(Back { window: 2, threshold: 0.9, nodes: 2 });
+        let limited = Parameters { max_hops: 7, ..parameters(back) };
+        let walked = walked(&[], &directions(&["the bed"], "wipe the sink"), &limited);
+        assert_eq!(stood(&walked)[..5], ["middle", "n1", "n2", "n1", "middle"]);
+        assert!(matches!(walked.steps[2].choice, Choice::Back) && matches!(walked.steps[3].choice, Choice::Back));
+        assert!(walked.steps[3].views.is_empty(), "what is passed on the way back is not looked at");
+        assert_eq!((walked.steps.len(), walked.end), (8, End::Cap));
+    }
+}

@@ -1,0 +1,103 @@
+//! A world for tests: a cross of corridors, with a thing at the end of each arm.
+
+use crate::agents::Start;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
+use wayword_core::{
+    DVec3, Frame, Gaze, GroundTruth, Heading, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
+    SceneId, View, ViewpointGraph, ViewpointId,
+};
+
+/// Arms of two nodes to the north, east, south and west of `middle`: `n1`, `n2`, `e1` and so on. At the end of an arm stands its
+/// thing, which is seen from there alone; it lies farther out.
+pub(crate) struct Cross {
+    graph: Arc<ViewpointGraph>,
+    things: BTreeMap<&'static str, &'static str>,
+    pub(crate) looks: AtomicUsize,
+}
+
+const ARMS: [(&str, f64); 4] = [("n", 0.0), ("e", 90.0), ("s", 180.0), ("w", 270.0)];
+
+pub(crate) fn id(name: &str) -> ViewpointId {
+    ViewpointId::new(name).unwrap()
+}
+
+pub(crate) fn scene() -> SceneId {
+    SceneId::new("cross").unwrap()
+}
+
+impl Cross {
+    /// The things at the ends of the arms.
+    pub(crate) fn new(things: &[(&'static str, &'static str)]) -> Self {
+        let mut graph = ViewpointGraph::default();
+        graph.add(id("middle"), DVec3::ZERO, Some(1)).unwrap();
+        for (arm, deg) in ARMS {
+            let out = Heading::new(f64::to_radians(deg)).unwrap().direction();
+            let mut before = id("middle");
+            for at in 1..=2 {
+                let node = id(&format!("{arm}{at}"));
+                graph.add(node.clone(), out * 2.0 * f64::from(at), Some(1)).unwrap();
+                graph.join(&before, &node).unwrap();
+                before = node;
+            }
+        }
+        Self { graph: Arc::new(graph), things: things.iter().copied().collect(), looks: AtomicUsize::new(0) }
+    }
+
+    /// In the middle, looking north.
+    pub(crate) fn start() -> Start {
+        Start { scene: scene(), viewpoint: id("middle"), heading: Heading::NORTH }
+    }
+}
+
+impl Platform for Cross {
+    fn name(&self) -> &'static str {
+        "cross"
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        Ok(vec![scene()])
+    }
+
+    fn graph(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(Arc::clone(&self.graph))
+    }
+
+    fn sample_path(&self, _: &SceneId, _: &PathRequest, _: u64) -> Result<Path, PlatformError> {
+        panic!("nobody draws a path here")
+    }
+
+    fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.looks.fetch_add(1, Ordering::Relaxed);
+        let node = from.viewpoint.as_ref().map_or("", ViewpointId::as_str);
+        let (_, deg) = ARMS.into_iter().find(|(arm, _)| node.starts_with(arm)).unwrap_or(("", 0.0));
+        let heading = Heading::new(deg.to_radians()).unwrap();
+        let seen = self.things.get(node).filter(|_| gaze.holds(heading));
+        let label = |name: &&str| Label {
+            object: ObjectId::new(*name).unwrap(),
+            name: (*name).to_owned(),
+            heading,
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: Some(1.0),
+            position: None,
+            colour: None,
+        };
+        let truth =
+            GroundTruth { labels: seen.iter().map(|name| label(name)).collect(), lists_objects: true, room: None };
+        Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, Some(truth)))
+    }
+
+    fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
+        Ok(None)
+    }
+
+    fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        Ok(None)
+    }
+}
