@@ -48,8 +48,9 @@ pub struct Step {
     pub choice: Choice,
 }
 
-/// One of the four views of a step: north, east, south, west.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// One of the four views of a step: north, east, south, west. A list of its three values in files, of which there are many.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "(f32, f32, usize)", into = "(f32, f32, usize)")]
 pub struct Scored {
     /// How well the key phrase in hand fits it.
     pub phrase: f32,
@@ -83,4 +84,16 @@ pub enum End {
     Cap,
     /// There was nowhere to go.
     DeadEnd,
+}
+
+impl From<(f32, f32, usize)> for Scored {
+    fn from((phrase, activity, ways): (f32, f32, usize)) -> Self {
+        Self { phrase, activity, ways }
+    }
+}
+
+impl From<Scored> for (f32, f32, usize) {
+    fn from(scored: Scored) -> Self {
+        (scored.phrase, scored.activity, scored.ways)
+    }
 }
