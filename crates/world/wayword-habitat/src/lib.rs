@@ -3,8 +3,12 @@
 //! Everything that leaves this crate is in Wayword's frame (metres, z up, north is +y); files are in Habitat's.
 
 pub mod axes;
+pub mod bake;
+mod fault;
 pub mod ground;
 pub mod navmesh;
+pub mod scene;
 
+pub use fault::FileError;
 pub use ground::{Foothold, Ground, NoWay, Way};
 pub use navmesh::{NavMesh, NavMeshError, NavMeshSettings};

@@ -4,8 +4,8 @@ use super::{BvNode, DetailMesh, Grid, Header, MAX_CORNERS, NavMesh, NavMeshSetti
 
 /// `DT_NULL_LINK`.
 const NO_LINK: u32 = u32::MAX;
-/// Recast's area of walkable ground, and Habitat's flag for it.
-const WALKABLE_AREA: u8 = 63;
+/// Habitat's area and flag of walkable ground (`POLYAREA_GROUND`, `POLYFLAGS_WALK`).
+const GROUND_AREA: u8 = 0;
 const WALK_FLAG: u16 = 1;
 
 /// Polygons before they are a tile.
@@ -54,7 +54,7 @@ pub(crate) fn tile(surface: &Surface, settings: &NavMeshSettings) -> Tile {
             first_link: NO_LINK,
             flags: WALK_FLAG,
             vert_count: piece.corners.len().min(MAX_CORNERS) as u8,
-            area_and_type: WALKABLE_AREA,
+            area_and_type: GROUND_AREA,
             ..Poly::default()
         };
         for (slot, corner) in poly.verts.iter_mut().zip(&piece.corners) {

@@ -1,0 +1,253 @@
+//! Navmeshes for scenes that have none, baked as Habitat does (`PathFinder::Impl::build`, habitat-sim 0.3.3).
+
+use crate::{
+    axes::habitat_from_wayword,
+    fault::contained,
+    navmesh::{
+        MAX_CORNERS, NavMesh, NavMeshSettings,
+        build::{Piece, Surface, single_tile},
+    },
+    scene::Model,
+};
+use glam::{UVec3, Vec3};
+use rerecast::{
+    Aabb3d, AreaType, BuildContoursFlags, DetailNavmesh, HeightfieldBuilder, PolygonNavmesh, SubMesh, TriMesh,
+};
+
+/// Columns of voxels, at most: 250 m x 250 m at Habitat's 5 cm.
+const MAX_COLUMNS: f32 = 25e6;
+/// Voxels above one another, at most (Recast's spans have 13 bits).
+const MAX_LAYERS: f32 = 8191.0;
+
+/// Why no navmesh can be baked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BakeError {
+    /// A scene without a triangle.
+    #[error("the scene has no triangles: there is nothing to walk on")]
+    Empty,
+    /// A scene of which there would be too many voxels.
+    #[error(
+        "the scene is {width_m:.0} x {depth_m:.0} m wide and {height_m:.0} m high: too large to bake; give it a .navmesh"
+    )]
+    TooLarge {
+        /// Along Habitat's x.
+        width_m: f32,
+        /// Along its z.
+        depth_m: f32,
+        /// Along its y.
+        height_m: f32,
+    },
+    /// Settings that Recast cannot work with.
+    #[error("{field} is {value}: expected {wanted}")]
+    Setting {
+        /// Which one.
+        field: &'static str,
+        /// Its value.
+        value: f32,
+        /// What would do.
+        wanted: &'static str,
+    },
+    /// Recast has given up.
+    #[error("the navmesh cannot be baked: {reason}; give the scene a .navmesh")]
+    Recast {
+        /// What it says.
+        reason: String,
+    },
+}
+
+/// The navmesh of a scene.
+///
+/// # Errors
+/// [`BakeError`] where the scene is empty, too large, or more than Recast can do.
+pub fn bake(model: &Model, settings: &NavMeshSettings) -> Result<NavMesh, BakeError> {
+    let voxels = Voxels::of(settings)?;
+    let mesh = trimesh(model);
+    let bounds = mesh.compute_aabb().ok_or(BakeError::Empty)?;
+    check_size(&bounds, settings)?;
+    let recast = || voxels.polygons(mesh, bounds).map_err(|error| error.to_string());
+    let (polygons, detail) = contained(recast).map_err(|reason| BakeError::Recast { reason })?;
+    Ok(single_tile(&surface(&polygons, &detail), *settings))
+}
+
+/// The settings in voxels (`rcConfig`).
+struct Voxels {
+    settings: NavMeshSettings,
+    height: u16,
+    climb: u16,
+    radius: u16,
+    max_edge: u16,
+    least_region: u16,
+    merged_region: u16,
+}
+
+impl Voxels {
+    fn of(settings: &NavMeshSettings) -> Result<Self, BakeError> {
+        let within = |field, value: f32, low: f32, high: f32, wanted| {
+            let fits = value.is_finite() && (low..=high).contains(&value);
+            if fits { Ok(()) } else { Err(BakeError::Setting { field, value, wanted }) }
+        };
+        within("cell_size_m", settings.cell_size_m, 0.005, 10.0, "0.005 to 10 m")?;
+        within("cell_height_m", settings.cell_height_m, 0.005, 10.0, "0.005 to 10 m")?;
+        within("agent_height_m", settings.agent_height_m, 0.01, 100.0, "0.01 to 100 m")?;
+        within("agent_radius_m", settings.agent_radius_m, 0.0, 10.0, "0 to 10 m")?;
+        within("agent_max_climb_m", settings.agent_max_climb_m, 0.0, 10.0, "0 to 10 m")?;
+        within("agent_max_slope_deg", settings.agent_max_slope_deg, 0.0, 89.0, "0 to 89 degrees")?;
+        within("region_min_size", settings.region_min_size, 0.0, 255.0, "0 to 255")?;
+        within("region_merge_size", settings.region_merge_size, 0.0, 255.0, "0 to 255")?;
+        within("verts_per_poly", settings.verts_per_poly, 3.0, MAX_CORNERS as f32, "3 to 6")?;
+        // Casts saturate.
+        Ok(Self {
+            settings: *settings,
+            height: (settings.agent_height_m / settings.cell_height_m).ceil() as u16,
+            climb: (settings.agent_max_climb_m / settings.cell_height_m).floor() as u16,
+            radius: (settings.agent_radius_m / settings.cell_size_m).ceil() as u16,
+            max_edge: (settings.edge_max_len / settings.cell_size_m) as u16,
+            least_region: (settings.region_min_size * settings.region_min_size) as u16,
+            merged_region: (settings.region_merge_size * settings.region_merge_size) as u16,
+        })
+    }
+
+    fn polygons(
+        &self,
+        mut mesh: TriMesh,
+        aabb: Aabb3d,
+    ) -> Result<(PolygonNavmesh, DetailNavmesh), Box<dyn std::error::Error>> {
+        let settings = &self.settings;
+        mesh.mark_walkable_triangles(settings.agent_max_slope_deg.to_radians());
+        let (cell_size, cell_height) = (settings.cell_size_m, settings.cell_height_m);
+        let mut solid = HeightfieldBuilder { aabb, cell_size, cell_height }.build()?;
+        solid.rasterize_triangles(&mesh, self.climb)?;
+        let [obstacles, ledges, ceilings, _] = settings.switches.map(|switch| switch != 0);
+        if obstacles {
+            solid.filter_low_hanging_walkable_obstacles(self.climb);
+        }
+        if ledges {
+            solid.filter_ledge_spans(self.height, self.climb);
+        }
+        if ceilings {
+            solid.filter_walkable_low_height_spans(self.height);
+        }
+        let mut open = solid.into_compact(self.height, self.climb)?;
+        open.erode_walkable_area(self.radius);
+        open.build_distance_field();
+        open.build_regions(0, self.least_region, self.merged_region)?;
+        let flags = BuildContoursFlags::TESSELLATE_SOLID_WALL_EDGES;
+        let contours = open.build_contours(settings.edge_max_error, self.max_edge, flags);
+        let polygons = contours.into_polygon_mesh(settings.verts_per_poly as u16)?;
+        let sample_m = if settings.detail_sample_dist < 0.9 { 0.0 } else { cell_size * settings.detail_sample_dist };
+        let detail = DetailNavmesh::new(&polygons, &open, sample_m, cell_height * settings.detail_sample_max_error)?;
+        Ok((polygons, detail))
+    }
+}
+
+fn trimesh(model: &Model) -> TriMesh {
+    let mut mesh = TriMesh::default();
+    for triangle in model.triangles() {
+        let first = mesh.vertices.len() as u32;
+        mesh.vertices.extend(triangle.map(|corner| habitat_from_wayword(corner.as_dvec3()).as_vec3().to_vec3a()));
+        mesh.indices.push(UVec3::new(first, first + 1, first + 2));
+        mesh.area_types.push(AreaType::NOT_WALKABLE);
+    }
+    mesh
+}
+
+fn check_size(bounds: &Aabb3d, settings: &NavMeshSettings) -> Result<(), BakeError> {
+    let size = bounds.max - bounds.min;
+    let (across, along) = (size.x / settings.cell_size_m, size.z / settings.cell_size_m);
+    let fits = across * along <= MAX_COLUMNS
+        && across.max(along) < f32::from(u16::MAX)
+        && size.y / settings.cell_height_m <= MAX_LAYERS;
+    // Not a number is no size that fits.
+    if fits { Ok(()) } else { Err(BakeError::TooLarge { width_m: size.x, depth_m: size.z, height_m: size.y }) }
+}
+
+/// Recast's polygons as Detour takes them.
+fn surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> Surface {
+    let low = polygons.aabb.min;
+    let place = |vertex: &glam::U16Vec3| {
+        let steps = vertex.as_vec3() * Vec3::new(polygons.cell_size, polygons.cell_height, polygons.cell_size);
+        (low + steps).to_array()
+    };
+    let width = usize::from(polygons.max_vertices_per_polygon).max(1);
+    let rows = polygons.polygons.chunks_exact(width).zip(polygons.polygon_neighbors.chunks_exact(width));
+    let pieces = rows.zip(&detail.meshes).map(|((corners, neighbours), mesh)| {
+        let corners: Vec<u16> =
+            corners.iter().copied().take_while(|corner| *corner != PolygonNavmesh::NO_INDEX).collect();
+        let behind = |neighbour: &u16| match *neighbour {
+            PolygonNavmesh::NO_CONNECTION => 0,
+            other => other.wrapping_add(1),
+        };
+        let neighbours = neighbours.iter().take(corners.len()).map(behind).collect();
+        let (detail_verts, detail_tris) = detail_of(detail, mesh, corners.len());
+        Piece { corners, neighbours, detail_verts, detail_tris }
+    });
+    Surface {
+        verts: polygons.vertices.iter().map(place).collect(),
+        pieces: pieces.collect(),
+        low_m: low.to_array(),
+        high_m: polygons.aabb.max.to_array(),
+    }
+}
+
+/// The detail mesh of a polygon: vertices beyond its own corners, which come first there, and triangles with their flags.
+fn detail_of(detail: &DetailNavmesh, mesh: &SubMesh, corners: usize) -> (Vec<[f32; 3]>, Vec<[u8; 4]>) {
+    let first = mesh.base_vertex_index as usize + corners;
+    let end = mesh.base_vertex_index as usize + mesh.vertex_count as usize;
+    let verts = detail.vertices.get(first..end).unwrap_or_default().iter().map(|vertex| vertex.to_array()).collect();
+    let range = mesh.base_triangle_index as usize..(mesh.base_triangle_index + mesh.triangle_count) as usize;
+    let triangles = detail.triangles.get(range.clone()).unwrap_or_default();
+    let flags = detail.triangle_flags.get(range).unwrap_or_default();
+    (verts, triangles.iter().zip(flags).map(|([a, b, c], flag)| [*a, *b, *c, *flag]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Ground;
+    use wayword_core::DVec3;
+    use wayword_render::Mesh;
+
+    /// A floor of 6 x 4 m with a block of 2 x 1 m in its middle, as high as a table or as a step.
+    fn room(block_m: f32) -> Model {
+        let mut mesh = Mesh::default();
+        let mut quad = |corners: [[f32; 3]; 4]| {
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(corners.map(Vec3::from));
+            mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        };
+        quad([[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [6.0, 4.0, 0.0], [0.0, 4.0, 0.0]]);
+        let (low, high) = ([2.0, 1.5], [4.0, 2.5]);
+        let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
+        quad(corners.map(|[x, y]| [x, y, block_m]));
+        for side in 0..4 {
+            let ([ax, ay], [bx, by]) = (corners[side], corners[(side + 1) % 4]);
+            quad([[ax, ay, 0.0], [bx, by, 0.0], [bx, by, block_m], [ax, ay, block_m]]);
+        }
+        Model { meshes: vec![mesh], ..Model::default() }
+    }
+
+    #[test]
+    fn a_block_is_walked_around_and_the_file_reads_back() {
+        let mesh = bake(&room(0.8), &NavMeshSettings::default()).unwrap();
+        assert_eq!(NavMesh::from_bytes(&mesh.to_bytes()).unwrap(), mesh);
+        let ground = Ground::new(&mesh);
+        let islands: Vec<f64> = ground.islands_m2().collect();
+        // The floor less a border of a voxel's ledge and two of the agent's radius, and the same around the block.
+        let floor_m2 = 5.7 * 3.7 - 2.3 * 1.3;
+        assert!((islands[0] / floor_m2 - 1.0).abs() < 0.03, "{islands:?}");
+        let way = ground.geodesic(DVec3::new(1.0, 2.0, 0.0), DVec3::new(5.0, 2.1, 0.0)).unwrap();
+        let bends = &way.corners[1..way.corners.len() - 1];
+        assert!(!bends.is_empty() && bends.iter().all(|bend| bend.y > 2.5), "{way:?}");
+        assert!((4.1..4.5).contains(&way.length_m), "{way:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_baked_is_said() {
+        assert_eq!(bake(&Model::default(), &NavMeshSettings::default()), Err(BakeError::Empty));
+        let mut wide = room(0.8);
+        wide.meshes[0].positions[1].x = 9e5;
+        assert!(matches!(bake(&wide, &NavMeshSettings::default()), Err(BakeError::TooLarge { .. })));
+        let coarse = NavMeshSettings { cell_size_m: 0.0, ..NavMeshSettings::default() };
+        assert_eq!(bake(&room(0.8), &coarse).unwrap_err().to_string(), "cell_size_m is 0: expected 0.005 to 10 m");
+    }
+}

@@ -1,0 +1,63 @@
+//! What can be wrong with a file.
+
+use std::path::{Path, PathBuf};
+use wayword_core::PlatformError;
+
+/// A file that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {reason}; {hint}", file.display())]
+pub struct FileError {
+    /// Which file.
+    pub file: PathBuf,
+    /// What is wrong, with the item, line or byte.
+    pub reason: String,
+    /// What to do.
+    pub hint: &'static str,
+}
+
+impl FileError {
+    pub(crate) fn new(file: &Path, reason: impl Into<String>, hint: &'static str) -> Self {
+        Self { file: file.to_owned(), reason: reason.into(), hint }
+    }
+}
+
+impl From<FileError> for PlatformError {
+    fn from(error: FileError) -> Self {
+        Self::File { file: error.file, reason: error.reason, hint: error.hint }
+    }
+}
+
+/// A file's bytes; `None` where there is none.
+pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<Vec<u8>>, FileError> {
+    let wrong = |error: std::io::Error| FileError::new(file, error.to_string(), hint);
+    let opened = match std::fs::File::open(file) {
+        Ok(opened) => opened,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(wrong(error)),
+    };
+    let mut bytes = Vec::new();
+    // One more than allowed tells that there is more, whatever the file system says of its length.
+    std::io::Read::read_to_end(&mut std::io::Read::take(opened, most + 1), &mut bytes).map_err(wrong)?;
+    if bytes.len() as u64 > most {
+        return Err(FileError::new(file, format!("is larger than {most} bytes"), hint));
+    }
+    Ok(Some(bytes))
+}
+
+/// A file's bytes.
+pub(crate) fn bytes(file: &Path, most: u64, hint: &'static str) -> Result<Vec<u8>, FileError> {
+    bytes_if_there(file, most, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
+}
+
+/// A file's text; `None` where there is none.
+pub(crate) fn text_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<String>, FileError> {
+    let Some(bytes) = bytes_if_there(file, most, hint)? else { return Ok(None) };
+    let text = String::from_utf8(bytes);
+    text.map(Some)
+        .map_err(|error| FileError::new(file, format!("byte {}: not UTF-8", error.utf8_error().valid_up_to()), hint))
+}
+
+/// Runs somebody else's decoder, whose panics on broken input become a refusal.
+pub(crate) fn contained<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(decode)).unwrap_or_else(|_| Err("is broken".to_owned()))
+}

@@ -1,0 +1,109 @@
+//! Numbers of a glTF file: accessors (glTF 2.0, section 3.6.2).
+
+use super::asset::Asset;
+use gltf::json::{
+    Index,
+    accessor::{Accessor, ComponentType, Type},
+    validation::Checked,
+};
+
+/// The entries of an accessor, each of `N` floats; normalised integers become fractions.
+pub(super) fn floats<const N: usize>(asset: &Asset, index: Index<Accessor>) -> Result<Vec<[f32; N]>, String> {
+    let entries = Entries::of(asset, index)?;
+    let given = entries.components;
+    // Colours come with or without alpha: what is there first is taken.
+    if given < N {
+        return Err(format!("accessor {} has {given} numbers an entry, expected {N}", index.value()));
+    }
+    let mut all = Vec::with_capacity(entries.count);
+    for entry in 0..entries.count {
+        all.push(std::array::from_fn(|at| entries.float(entry, at)));
+    }
+    Ok(all)
+}
+
+/// The entries of an accessor of whole numbers, one each.
+pub(super) fn indices(asset: &Asset, index: Index<Accessor>) -> Result<Vec<u32>, String> {
+    let entries = Entries::of(asset, index)?;
+    let whole = matches!(entries.kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
+    if !whole || entries.components != 1 {
+        return Err(format!("accessor {} holds no indices", index.value()));
+    }
+    Ok((0..entries.count).map(|entry| entries.whole(entry)).collect())
+}
+
+/// Where the entries of an accessor lie: all of them within the bytes.
+struct Entries<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    count: usize,
+    components: usize,
+    kind: ComponentType,
+    is_normalised: bool,
+}
+
+impl<'a> Entries<'a> {
+    fn of(asset: &'a Asset, index: Index<Accessor>) -> Result<Self, String> {
+        let number = index.value();
+        let wrong = |reason: &str| format!("accessor {number} {reason}");
+        let accessor = asset.root.accessors.get(number).ok_or_else(|| wrong("does not exist"))?;
+        if accessor.sparse.is_some() {
+            return Err(wrong("is sparse, which Habitat does not read either"));
+        }
+        let view = accessor.buffer_view.ok_or_else(|| wrong("has no bytes"))?;
+        let (view, bytes) = asset.view(view).map_err(|reason| wrong(&reason))?;
+        let Checked::Valid(component) = accessor.component_type else { return Err(wrong("has an unknown type")) };
+        let Checked::Valid(shape) = accessor.type_ else { return Err(wrong("has an unknown shape")) };
+        let components = match shape {
+            Type::Scalar => 1,
+            Type::Vec2 => 2,
+            Type::Vec3 => 3,
+            Type::Vec4 => 4,
+            Type::Mat2 | Type::Mat3 | Type::Mat4 => return Err(wrong("holds matrices")),
+        };
+        let size = components * component.0.size();
+        let stride = view.byte_stride.map_or(size, |stride| stride.0.max(1));
+        let lies = || {
+            let start = usize::try_from(accessor.byte_offset.map_or(0, |offset| offset.0)).ok()?;
+            let count = usize::try_from(accessor.count.0).ok()?;
+            let end = match count.checked_sub(1) {
+                None => start,
+                Some(before) => start.checked_add(before.checked_mul(stride)?)?.checked_add(size)?,
+            };
+            Some((bytes.get(start..end)?, count))
+        };
+        let (bytes, count) = lies().ok_or_else(|| wrong("lies outside its view"))?;
+        // Entries on top of one another would be many more than bytes.
+        if stride < component.0.size() || count > bytes.len() {
+            return Err(wrong("has entries that overlap"));
+        }
+        Ok(Self { bytes, stride, count, components, kind: component.0, is_normalised: accessor.normalized })
+    }
+
+    fn at<const N: usize>(&self, entry: usize, component: usize) -> [u8; N] {
+        let start = entry * self.stride + component * N;
+        let mut bytes = [0; N];
+        bytes.copy_from_slice(&self.bytes[start..start + N]);
+        bytes
+    }
+
+    fn float(&self, entry: usize, component: usize) -> f32 {
+        let (value, most) = match self.kind {
+            ComponentType::F32 => return f32::from_le_bytes(self.at(entry, component)),
+            ComponentType::U8 => (f32::from(self.at::<1>(entry, component)[0]), 255.0),
+            ComponentType::I8 => (f32::from(self.at::<1>(entry, component)[0] as i8), 127.0),
+            ComponentType::U16 => (f32::from(u16::from_le_bytes(self.at(entry, component))), 65_535.0),
+            ComponentType::I16 => (f32::from(i16::from_le_bytes(self.at(entry, component))), 32_767.0),
+            ComponentType::U32 => (u32::from_le_bytes(self.at(entry, component)) as f32, 1.0),
+        };
+        if self.is_normalised { (value / most).max(-1.0) } else { value }
+    }
+
+    fn whole(&self, entry: usize) -> u32 {
+        match self.kind {
+            ComponentType::U8 => u32::from(self.at::<1>(entry, 0)[0]),
+            ComponentType::U16 => u32::from(u16::from_le_bytes(self.at(entry, 0))),
+            _ => u32::from_le_bytes(self.at(entry, 0)),
+        }
+    }
+}

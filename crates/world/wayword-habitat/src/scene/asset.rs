@@ -1,0 +1,72 @@
+//! A glTF file's document with its buffers, every reference checked when it is followed.
+
+use crate::fault::{self, FileError};
+use gltf::json::{Index, Root, buffer::View};
+use std::path::{Component, Path};
+
+const HINT: &str = "export the scene again as GLB";
+/// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
+const MAX_BYTES: u64 = 4 << 30;
+/// Extensions that a file may need: those that are understood, and those that change nothing in unlit pictures.
+const KNOWN: [&str; 4] = ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_"];
+
+/// A document and its bytes.
+pub(super) struct Asset {
+    pub(super) root: Root,
+    buffers: Vec<Vec<u8>>,
+}
+
+impl Asset {
+    pub(super) fn read(file: &Path) -> Result<Self, FileError> {
+        let wrong = |reason: String| FileError::new(file, reason, HINT);
+        let bytes = fault::bytes(file, MAX_BYTES, "take a GLB or glTF file")?;
+        // Validation refuses GOOGLE_texture_basis; what it would have checked is checked here, where it is used.
+        let gltf =
+            fault::contained(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
+                .map_err(&wrong)?;
+        let (root, mut blob) = (gltf.document.into_json(), gltf.blob);
+        let foreign = |name: &&String| !KNOWN.iter().any(|known| name.starts_with(known));
+        if let Some(name) = root.extensions_required.iter().find(foreign) {
+            let hint = "export it without compression of its geometry";
+            return Err(FileError::new(file, format!("needs the extension {name:.60}, which cannot be read"), hint));
+        }
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            let bytes = match &buffer.uri {
+                None => blob.take().ok_or_else(|| wrong(format!("buffer {index} has no bytes")))?,
+                Some(uri) => beside(file, uri).map_err(|reason| wrong(format!("buffer {index}: {reason}")))?,
+            };
+            buffers.push(bytes);
+        }
+        Ok(Self { root, buffers })
+    }
+
+    /// The bytes of a view.
+    pub(super) fn view(&self, index: Index<View>) -> Result<(&View, &[u8]), String> {
+        let number = index.value();
+        let view = self.root.buffer_views.get(number).ok_or_else(|| format!("view {number} does not exist"))?;
+        let start = view.byte_offset.map_or(0, |offset| offset.0);
+        let range = || {
+            let end = start.checked_add(view.byte_length.0)?;
+            let buffer = self.buffers.get(view.buffer.value())?;
+            buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
+        };
+        range().map(|bytes| (view, bytes)).ok_or_else(|| format!("view {number} lies outside its buffer"))
+    }
+}
+
+/// The bytes that a relative address names: a file beside, or those within the address itself.
+pub(super) fn beside(file: &Path, uri: &str) -> Result<Vec<u8>, String> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let (_, text) = data.split_once(";base64,").ok_or("a data address without base64")?;
+        return base64::Engine::decode(&base64::engine::general_purpose::STANDARD, text)
+            .map_err(|error| error.to_string());
+    }
+    let name = uri.replace("%20", " ");
+    let path = Path::new(&name);
+    if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) || name.contains(':') {
+        return Err(format!("{uri:.80?} is not a file beside the scene"));
+    }
+    let target = file.parent().unwrap_or(Path::new("")).join(path);
+    fault::bytes(&target, MAX_BYTES, HINT).map_err(|error| error.to_string())
+}

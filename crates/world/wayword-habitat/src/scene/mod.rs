@@ -1,0 +1,154 @@
+//! Scenes as Habitat reads them: GLB and glTF with their textures, turned as the stage says.
+
+mod accessor;
+mod asset;
+mod nodes;
+mod pictures;
+mod primitive;
+mod stage;
+mod studio;
+#[cfg(test)]
+mod tests;
+
+pub use stage::Stage;
+pub(crate) use stage::stem;
+
+use crate::{axes::wayword_from_habitat, fault::FileError};
+use asset::Asset;
+use glam::{DMat3, Vec3};
+use std::{collections::BTreeMap, path::Path};
+use wayword_render::{Material, Mesh, Texture};
+
+const HINT: &str = "export the scene again as GLB";
+
+/// What a scene is drawn of, in Wayword's frame.
+#[derive(Debug, Default)]
+pub struct Model {
+    /// Triangles by the surface they are made of.
+    pub meshes: Vec<Mesh>,
+    /// The surfaces.
+    pub materials: Vec<Material>,
+    /// The pictures on them.
+    pub textures: Vec<Texture>,
+}
+
+impl Model {
+    /// Reads a stage's file.
+    ///
+    /// # Errors
+    /// When it cannot be read; the message says which item of the file is wrong.
+    pub fn of(stage: &Stage) -> Result<Self, FileError> {
+        Self::read(&stage.asset, stage.habitat_from_asset)
+    }
+
+    pub(crate) fn read(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
+        let asset = Asset::read(file)?;
+        let mut reading = Reading { asset: &asset, model: Self::default(), textures: BTreeMap::new(), plain: None };
+        reading.surfaces(file)?;
+        for (number, place) in nodes::placed_meshes(&asset.root) {
+            let mesh = asset.root.meshes.get(number);
+            for (index, primitive) in mesh.iter().flat_map(|mesh| mesh.primitives.iter().enumerate()) {
+                let wrong = |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), HINT);
+                let Some(mut mesh) = primitive::read(&asset, primitive).map_err(wrong)? else { continue };
+                mesh.material = match primitive.material.map(|material| material.value()) {
+                    Some(material) if material < asset.root.materials.len() => material,
+                    _ => reading.plain(),
+                };
+                reading.finish(&mut mesh, primitive);
+                for position in &mut mesh.positions {
+                    let placed = habitat_from_asset * place.transform_point3(position.as_dvec3());
+                    *position = wayword_from_habitat(placed).as_vec3();
+                }
+                if reading.plain == Some(mesh.material) {
+                    light(&mut mesh);
+                }
+                reading.model.meshes.push(mesh);
+            }
+        }
+        Ok(reading.model)
+    }
+
+    /// Its triangles.
+    pub(crate) fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        self.meshes.iter().flat_map(|mesh| {
+            let corner = |vertex: u32| mesh.positions.get(vertex as usize).copied().unwrap_or_default();
+            mesh.triangles.iter().map(move |triangle| triangle.map(corner))
+        })
+    }
+}
+
+/// Lights a mesh without a material face by face.
+fn light(mesh: &mut Mesh) {
+    let corner = |vertex: u32| mesh.positions.get(vertex as usize).copied().unwrap_or_default();
+    let faces: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect();
+    mesh.triangles = (0..faces.len() as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    mesh.colours = faces.iter().flat_map(|[a, b, c]| [studio::light((*b - *a).cross(*c - *a)); 3]).collect();
+    mesh.positions = faces.into_iter().flatten().collect();
+}
+
+/// A model that is being read.
+struct Reading<'a> {
+    asset: &'a Asset,
+    model: Model,
+    /// Where each texture of the file has gone.
+    textures: BTreeMap<usize, usize>,
+    /// The material of what has none.
+    plain: Option<usize>,
+}
+
+impl Reading<'_> {
+    /// The file's materials with their textures. Factors are used as they stand: Habitat's unlit shader multiplies stored colours
+    /// by them (Magnum's `FlatGL`).
+    fn surfaces(&mut self, file: &Path) -> Result<(), FileError> {
+        for (number, material) in self.asset.root.materials.iter().enumerate() {
+            let surface = &material.pbr_metallic_roughness;
+            let texture = match &surface.base_color_texture {
+                None => None,
+                Some(info) => {
+                    let wrong = |reason| FileError::new(file, format!("material {number}: {reason}"), HINT);
+                    Some(self.texture(file, info.index.value()).map_err(wrong)?)
+                }
+            };
+            let base_colour =
+                surface.base_color_factor.0.map(|factor| if factor.is_finite() { factor.max(0.0) } else { 1.0 });
+            self.model.materials.push(Material { base_colour, texture, double_sided: material.double_sided });
+        }
+        Ok(())
+    }
+
+    fn texture(&mut self, file: &Path, number: usize) -> Result<usize, String> {
+        if let Some(known) = self.textures.get(&number) {
+            return Ok(*known);
+        }
+        self.model.textures.push(pictures::texture(self.asset, file, number)?);
+        let index = self.model.textures.len() - 1;
+        self.textures.insert(number, index);
+        Ok(index)
+    }
+
+    fn plain(&mut self) -> usize {
+        *self.plain.get_or_insert_with(|| {
+            self.model.materials.push(Material::default());
+            self.model.materials.len() - 1
+        })
+    }
+
+    /// Moves texture coordinates as the material says; a textured mesh without any shows the texture's corner.
+    fn finish(&self, mesh: &mut Mesh, primitive: &gltf::json::mesh::Primitive) {
+        if self.model.materials.get(mesh.material).is_none_or(|material| material.texture.is_none()) {
+            mesh.uvs = Vec::new();
+            return;
+        }
+        mesh.uvs.resize(mesh.positions.len(), glam::Vec2::ZERO);
+        let material = primitive.material.and_then(|material| self.asset.root.materials.get(material.value()));
+        let info = material.and_then(|material| material.pbr_metallic_roughness.base_color_texture.as_ref());
+        let transform = info.and_then(|info| info.extensions.as_ref()).and_then(|all| all.texture_transform.as_ref());
+        let Some(transform) = transform else { return };
+        let (sin, cos) = (libm::sinf(transform.rotation.0), libm::cosf(transform.rotation.0));
+        let ([sx, sy], [ox, oy]) = (transform.scale.0, transform.offset.0);
+        for uv in &mut mesh.uvs {
+            let (u, v) = (uv.x * sx, uv.y * sy);
+            *uv = glam::Vec2::new(cos * u + sin * v + ox, cos * v - sin * u + oy);
+        }
+    }
+}

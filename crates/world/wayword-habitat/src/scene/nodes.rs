@@ -1,0 +1,53 @@
+//! The tree of a glTF scene, flattened: which mesh lies where.
+
+use glam::{DMat4, DQuat, DVec3};
+use gltf::json::{Root, scene::Node};
+
+/// Every mesh of the scene with its place in the file's frame. A node that is met again (glTF has none) is passed over, so a
+/// circle ends.
+pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
+    let mut seen = vec![false; root.nodes.len()];
+    let first = root.scene.map_or(0, |scene| scene.value());
+    let mut open: Vec<(usize, DMat4)> = match root.scenes.get(first) {
+        Some(scene) => scene.nodes.iter().rev().map(|node| (node.value(), DMat4::IDENTITY)).collect(),
+        // A file without scenes shows all that hangs on nothing.
+        None => roots(root).into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect(),
+    };
+    let mut placed = Vec::new();
+    while let Some((index, above)) = open.pop() {
+        let Some(node) = root.nodes.get(index) else { continue };
+        if std::mem::replace(&mut seen[index], true) {
+            continue;
+        }
+        let here = above * local(node);
+        if let Some(mesh) = node.mesh {
+            placed.push((mesh.value(), here));
+        }
+        open.extend(node.children.iter().flatten().rev().map(|child| (child.value(), here)));
+    }
+    placed
+}
+
+fn roots(root: &Root) -> Vec<usize> {
+    let mut hangs = vec![false; root.nodes.len()];
+    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(hangs) = hangs.get_mut(child.value()) {
+            *hangs = true;
+        }
+    }
+    (0..hangs.len()).filter(|node| !hangs[*node]).collect()
+}
+
+fn local(node: &Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let vector = |given: Option<[f32; 3]>, default: DVec3| given.map_or(default, |v| DVec3::from(v.map(f64::from)));
+    let rotation =
+        node.rotation.map_or(DQuat::IDENTITY, |rotation| DQuat::from_array(rotation.0.map(f64::from)).normalize());
+    DMat4::from_scale_rotation_translation(
+        vector(node.scale, DVec3::ONE),
+        rotation,
+        vector(node.translation, DVec3::ZERO),
+    )
+}

@@ -1,0 +1,103 @@
+//! Textures: PNG and JPEG, and Basis as HM3D has it (`GOOGLE_texture_basis`).
+
+use super::asset::{Asset, beside};
+use crate::fault::contained;
+use basisu::{DecodeFlags, TargetFormat, Transcoder};
+use std::{io::Cursor, path::Path};
+use wayword_render::{MAX_TEXTURE_SIDE, Texture};
+
+/// Texels that any picture may have.
+const FREE_TEXELS: u64 = 1 << 20;
+/// Texels beyond, for each byte of the file: flat pictures shrink to a 300th, and nobody paints flat ones of a gigabyte.
+const TEXELS_PER_BYTE: u64 = 512;
+
+/// The texture of this number.
+pub(super) fn texture(asset: &Asset, file: &Path, number: usize) -> Result<Texture, String> {
+    let texture = asset.root.textures.get(number).ok_or_else(|| format!("texture {number} does not exist"))?;
+    let basis = texture.extensions.as_ref().and_then(|all| all.others.get("GOOGLE_texture_basis"));
+    let basis = basis.and_then(|basis| basis.get("source")).and_then(serde_json::Value::as_u64);
+    let source = basis.and_then(|source| usize::try_from(source).ok()).unwrap_or(texture.source.value());
+    let wrong = |reason: String| format!("image {source}: {reason}");
+    let image = asset.root.images.get(source).ok_or_else(|| wrong("does not exist".to_owned()))?;
+    let read;
+    let bytes = match (&image.buffer_view, &image.uri) {
+        (Some(view), _) => asset.view(*view).map_err(wrong)?.1,
+        (None, Some(uri)) => {
+            read = beside(file, uri).map_err(wrong)?;
+            &read
+        }
+        (None, None) => return Err(wrong("has no bytes".to_owned())),
+    };
+    decode(bytes).map_err(wrong)
+}
+
+/// A picture by what its first bytes say it is.
+fn decode(bytes: &[u8]) -> Result<Texture, String> {
+    // "sB", the signature of a .basis file.
+    if bytes.starts_with(b"sB") { basis(bytes) } else { common(bytes) }
+}
+
+fn check(width: u32, height: u32, bytes: usize) -> Result<(), String> {
+    let texels = u64::from(width) * u64::from(height);
+    if width.max(height) > MAX_TEXTURE_SIDE || texels > FREE_TEXELS + TEXELS_PER_BYTE * bytes as u64 {
+        return Err(format!("{width} x {height} texels in {bytes} bytes: too large"));
+    }
+    Ok(())
+}
+
+fn common(bytes: &[u8]) -> Result<Texture, String> {
+    let open = || image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string());
+    let (width, height) = open()?.into_dimensions().map_err(|error| error.to_string())?;
+    check(width, height, bytes.len())?;
+    let picture = contained(|| open()?.decode().map_err(|error| error.to_string()))?.into_rgba8();
+    let texels = picture.pixels().map(|pixel| pixel.0).collect();
+    Texture::new(picture.width(), picture.height(), texels).map_err(|error| error.to_string())
+}
+
+fn basis(bytes: &[u8]) -> Result<Texture, String> {
+    contained(|| {
+        let transcoder = Transcoder::new(bytes).map_err(|error| format!("Basis: {error:?}"))?;
+        let (width, height) = transcoder.base_dimensions();
+        check(width, height, bytes.len())?;
+        let rgba = transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE);
+        let rgba = rgba.map_err(|error| format!("Basis: {error:?}"))?;
+        Texture::new(width, height, rgba.as_chunks().0.to_vec()).map_err(|error| error.to_string())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn png(width: u32, height: u32, rgba: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+        image::ImageEncoder::write_image(encoder, rgba, width, height, image::ExtendedColorType::Rgba8).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn pngs_keep_their_texels() {
+        let texture = decode(&png(2, 1, &[1, 2, 3, 255, 4, 5, 6, 7])).unwrap();
+        assert_eq!((texture.width, texture.height, texture.texels), (2, 1, vec![[1, 2, 3, 255], [4, 5, 6, 7]]));
+    }
+
+    #[test]
+    fn what_is_far_larger_than_its_bytes_is_refused_before_it_is_unpacked() {
+        let mut bytes = png(1, 1, &[0; 4]);
+        // The width in the header, and its checksum.
+        bytes[16..20].copy_from_slice(&16_000_u32.to_be_bytes());
+        bytes[20..24].copy_from_slice(&16_000_u32.to_be_bytes());
+        let mut crc = flate2::Crc::new();
+        crc.update(&bytes[12..29]);
+        bytes[29..33].copy_from_slice(&crc.sum().to_be_bytes());
+        assert!(decode(&bytes).unwrap_err().contains("16000 x 16000 texels in"));
+    }
+
+    #[test]
+    fn what_is_no_picture_is_refused() {
+        assert!(decode(b"").is_err());
+        assert!(decode(b"sB").unwrap_err().starts_with("Basis: "));
+        assert!(decode(&[b's', b'B', 0x13, 0, 77, 0, 0xff, 0xff, 0xff, 0xff].repeat(20)).is_err());
+    }
+}

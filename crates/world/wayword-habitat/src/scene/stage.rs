@@ -1,0 +1,138 @@
+//! Stage configurations: which file is drawn, and which way is up in it.
+
+use crate::fault::{self, FileError};
+use glam::{DMat3, DVec3};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// How a stage's file lies in Habitat's frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// The GLB or glTF file.
+    pub asset: PathBuf,
+    /// From the file's frame to Habitat's (metres, y up, front is -z).
+    pub habitat_from_asset: DMat3,
+    /// The navmesh that the configuration names.
+    pub navmesh: Option<PathBuf>,
+    /// The semantic mesh that it names.
+    pub semantics: Option<PathBuf>,
+}
+
+/// What is read of a `*.stage_config.json` (Habitat's `StageAttributes`).
+#[derive(Deserialize)]
+struct Config {
+    render_asset: Option<String>,
+    up: Option<[f64; 3]>,
+    front: Option<[f64; 3]>,
+    units_to_meters: Option<f64>,
+    nav_asset: Option<String>,
+    semantic_asset: Option<String>,
+}
+
+const HINT: &str = "see Habitat's stage_config.json";
+const MAX_BYTES: u64 = 1 << 20;
+const ENDING: &str = ".stage_config.json";
+
+impl Stage {
+    /// The stage of a file: a configuration, or a GLB or glTF file, whose configuration is looked for beside it. A stage without
+    /// one has z up and y in front (`StageAttributesManager.cpp`, `setDefaultAssetNameBasedAttributes`).
+    ///
+    /// # Errors
+    /// When there is a configuration and it cannot be read.
+    pub fn of(file: &Path) -> Result<Self, FileError> {
+        let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let config = if name.ends_with(ENDING) {
+            file.to_owned()
+        } else {
+            file.with_file_name(format!("{}{ENDING}", stem(name)))
+        };
+        match fault::text_if_there(&config, MAX_BYTES, HINT)? {
+            Some(text) => Self::parse(&config, file, &text),
+            None if name.ends_with(ENDING) => Err(FileError::new(file, "there is no such file", HINT)),
+            None => Ok(Self {
+                asset: file.to_owned(),
+                habitat_from_asset: turned(DVec3::Z, DVec3::Y),
+                navmesh: None,
+                semantics: None,
+            }),
+        }
+    }
+
+    fn parse(config: &Path, file: &Path, text: &str) -> Result<Self, FileError> {
+        let wrong = |reason: String| FileError::new(config, reason, HINT);
+        let read: Config = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        let axis = |field: &str, given: Option<[f64; 3]>, default: DVec3| {
+            let axis = given.map_or(default, DVec3::from);
+            let length = axis.length();
+            let usable = length.is_finite() && length > 1e-6;
+            usable.then(|| axis / length).ok_or_else(|| wrong(format!("{field} is no direction: {axis}")))
+        };
+        let (up, front) = (axis("up", read.up, DVec3::Z)?, axis("front", read.front, DVec3::Y)?);
+        if front.cross(up).length() < 1e-6 {
+            return Err(wrong(format!("front {front} runs along up {up}")));
+        }
+        let scale = read.units_to_meters.unwrap_or(1.0);
+        if !(scale.is_finite() && (1e-6..=1e6).contains(&scale)) {
+            return Err(wrong(format!("units_to_meters is {scale}, expected a positive number")));
+        }
+        let beside = |name: &str| config.parent().unwrap_or(Path::new("")).join(name);
+        let asset = match &read.render_asset {
+            Some(name) => beside(name),
+            None if file != config => file.to_owned(),
+            None => return Err(wrong("names no render_asset".to_owned())),
+        };
+        Ok(Self {
+            asset,
+            habitat_from_asset: turned(up, front) * scale,
+            navmesh: read.nav_asset.as_deref().filter(|name| name.ends_with(".navmesh")).map(beside),
+            semantics: read.semantic_asset.as_deref().map(beside),
+        })
+    }
+}
+
+/// A file's name up to what says its format; `x.basis.glb` and `x.glb` both are `x`.
+pub(crate) fn stem(name: &str) -> &str {
+    let name =
+        [".glb", ".gltf", ".navmesh", ENDING].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(name);
+    name.strip_suffix(".basis").unwrap_or(name)
+}
+
+/// The turn that takes `up` to +y and `front` to -z.
+fn turned(up: DVec3, front: DVec3) -> DMat3 {
+    let right = front.cross(up).normalize();
+    let front = up.cross(right);
+    DMat3::from_cols(right, up, -front).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stage(text: &str) -> Result<Stage, String> {
+        Stage::parse(Path::new("a/x.stage_config.json"), Path::new("a/x.glb"), text).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_is_up_in_the_file_is_up_in_habitat() {
+        let z_up = stage("{}").unwrap();
+        assert_eq!(z_up.asset, Path::new("a/x.glb"));
+        assert_eq!(z_up.habitat_from_asset * DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 3.0, -2.0));
+        let y_up = stage(r#"{"render_asset": "y.glb", "up": [0, 1, 0], "front": [0, 0, -1], "units_to_meters": 0.5}"#)
+            .unwrap();
+        assert_eq!(y_up.asset, Path::new("a/y.glb"));
+        assert_eq!(y_up.habitat_from_asset * DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.5, 1.0, 1.5));
+    }
+
+    #[test]
+    fn axes_that_are_none_are_refused() {
+        assert!(stage(r#"{"up": [0, 0, 0]}"#).unwrap_err().contains("up is no direction"));
+        assert!(stage(r#"{"up": [0, 1, 0]}"#).unwrap_err().contains("runs along up"));
+        assert!(stage(r#"{"units_to_meters": 0}"#).unwrap_err().contains("units_to_meters is 0"));
+        assert!(stage("{").unwrap_err().starts_with("a/x.stage_config.json: "));
+    }
+
+    #[test]
+    fn stems_leave_out_the_format() {
+        assert_eq!(["a.basis.glb", "a.glb", "a.b.gltf", "a"].map(stem), ["a", "a", "a.b", "a"]);
+    }
+}

@@ -1,0 +1,133 @@
+//! Files that the tests write themselves.
+
+use super::*;
+use proptest::prelude::*;
+use serde_json::json;
+
+/// A binary glTF file of a document and its bytes.
+pub(crate) fn glb(document: &serde_json::Value, binary: &[u8]) -> Vec<u8> {
+    let mut text = document.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let mut binary = binary.to_vec();
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let mut file = b"glTF\x02\0\0\0".to_vec();
+    file.extend((28 + text.len() as u32 + binary.len() as u32).to_le_bytes());
+    for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &binary)] {
+        file.extend((chunk.len() as u32).to_le_bytes());
+        file.extend(kind);
+        file.extend(chunk);
+    }
+    file
+}
+
+/// One triangle at (0 0 0), (1 0 0), (0 1 0), textured, on a node that lies 10 m along x.
+pub(crate) fn triangle() -> (serde_json::Value, Vec<u8>) {
+    let mut bytes: Vec<u8> =
+        [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    bytes.extend([0.0_f32, 0.0, 1.0, 0.0, 0.0, 1.0].iter().flat_map(|v| v.to_le_bytes()));
+    bytes.extend([0_u16, 1, 2, 0].iter().flat_map(|v| v.to_le_bytes()));
+    let mut png = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut png);
+    image::ImageEncoder::write_image(encoder, &[9, 8, 7], 1, 1, image::ExtendedColorType::Rgb8).unwrap();
+    let image_at = bytes.len();
+    bytes.extend(&png);
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "translation": [10, 0, 0], "children": [1] }, { "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": 0 }] }],
+        "materials": [{ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 1, 1, 1], "baseColorTexture": { "index": 0 } } }],
+        "textures": [{ "source": 0 }],
+        "images": [{ "bufferView": 3, "mimeType": "image/png" }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2" },
+            { "bufferView": 2, "componentType": 5123, "count": 3, "type": "SCALAR" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": 36 },
+            { "buffer": 0, "byteOffset": 36, "byteLength": 24 },
+            { "buffer": 0, "byteOffset": 60, "byteLength": 6 },
+            { "buffer": 0, "byteOffset": image_at, "byteLength": png.len() },
+        ],
+        "buffers": [{ "byteLength": bytes.len() }],
+    });
+    (document, bytes)
+}
+
+fn read(bytes: &[u8]) -> Result<Model, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("x.glb");
+    std::fs::write(&file, bytes).unwrap();
+    Model::of(&Stage::of(&file).unwrap()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn triangles_lie_where_their_node_is_and_stand_up() {
+    let (document, bytes) = triangle();
+    let model = read(&glb(&document, &bytes)).unwrap();
+    // Without a configuration the file has z up, which is Wayword's own frame.
+    assert_eq!(
+        model.meshes[0].positions,
+        [Vec3::new(10.0, 0.0, 0.0), Vec3::new(11.0, 0.0, 0.0), Vec3::new(10.0, 1.0, 0.0)]
+    );
+    assert_eq!(model.meshes[0].triangles, [[0, 1, 2]]);
+    assert_eq!(model.materials[0].base_colour, [0.5, 1.0, 1.0, 1.0]);
+    assert_eq!(model.textures[0].texels, [[9, 8, 7, 255]]);
+    assert_eq!(model.triangles().count(), 1);
+}
+
+#[test]
+fn errors_name_the_item() {
+    let refusal = |change: fn(&mut serde_json::Value)| {
+        let (mut document, bytes) = triangle();
+        change(&mut document);
+        let error = read(&glb(&document, &bytes)).unwrap_err();
+        error.split_once("x.glb: ").unwrap().1.split_once(';').unwrap().0.to_owned()
+    };
+    assert_eq!(
+        refusal(|d| d["accessors"][0]["count"] = 4.into()),
+        "mesh 0, primitive 0: accessor 0 lies outside its view"
+    );
+    assert_eq!(
+        refusal(|d| d["accessors"][2]["bufferView"] = 9.into()),
+        "mesh 0, primitive 0: accessor 2 view 9 does not exist"
+    );
+    assert_eq!(refusal(|d| d["textures"][0]["source"] = 5.into()), "material 0: image 5: does not exist");
+    assert_eq!(
+        refusal(|d| d["bufferViews"][0]["byteLength"] = u64::MAX.into()),
+        "mesh 0, primitive 0: accessor 0 view 0 lies outside its buffer"
+    );
+    assert_eq!(
+        refusal(|d| d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"])),
+        "needs the extension KHR_draco_mesh_compression, which cannot be read"
+    );
+    assert_eq!(
+        refusal(|d| d["buffers"] = json!([{ "byteLength": 1, "uri": "../secret" }])),
+        "buffer 0: \"../secret\" is not a file beside the scene"
+    );
+}
+
+#[test]
+fn nodes_in_a_circle_come_to_an_end() {
+    let (mut document, bytes) = triangle();
+    document["nodes"][1]["children"] = json!([0, 1]);
+    assert_eq!(read(&glb(&document, &bytes)).unwrap().meshes.len(), 1);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn no_bytes_make_the_reader_fall_over(at in 0usize..2200, with: [u8; 2]) {
+        let (document, bytes) = triangle();
+        let mut file = glb(&document, &bytes);
+        let at = at % file.len();
+        for (byte, new) in file.iter_mut().skip(at).zip(with) {
+            *byte = new;
+        }
+        if let Ok(model) = read(&file) {
+            let _ = wayword_render::Scene::new(model.meshes, model.materials, model.textures);
+        }
+    }
+}
