@@ -1,6 +1,7 @@
-"""Tests of the kit: `python3 -m unittest` in this folder, or `cargo test -p wayword-platforms --test process_python`."""
+"""Tests of the kit: `python3 -m unittest` in this folder, or cargo's test `process_python`."""
 
 import base64
+import contextlib
 import io
 import json
 import math
@@ -38,7 +39,7 @@ class Room(kit.OpenWorld):
 
 
 def ask(world, method, **params):
-    return kit.answer(world, {"id": 7, "method": method, "params": params})
+    return json.loads(kit.answer(world, {"id": 7, "method": method, "params": params}))
 
 
 class Answers(unittest.TestCase):
@@ -65,14 +66,16 @@ class Answers(unittest.TestCase):
         unknown = ask(Room(), "observe", **dict(LOOK, scene="attic"))
         self.assertEqual((unknown["id"], unknown["error"]["code"]), (7, "unknown_scene"))
         self.assertIn("teleport", ask(Room(), "teleport")["error"]["message"])
-        stderr, sys.stderr = sys.stderr, io.StringIO()
-        try:
+        with contextlib.redirect_stderr(io.StringIO()) as told:
             failed = ask(Room(), "observe", **dict(LOOK, width_px=5))
-            told = sys.stderr.getvalue()
-        finally:
-            sys.stderr = stderr
         self.assertIn("30 bytes, not 24", failed["error"]["message"])
-        self.assertIn("Traceback", told)
+        self.assertIn("Traceback", told.getvalue())
+
+    def test_a_number_that_json_does_not_have_is_an_error_and_not_the_end(self):
+        world = Room()
+        world.points = lambda scene, count, seed: [(math.nan, 0, 0)]
+        with contextlib.redirect_stderr(io.StringIO()):
+            self.assertIn("ValueError", ask(world, "points", scene="room", count=1, seed=1)["error"]["message"])
 
     def test_pictures_are_told_from_pixels(self):
         png = kit.png(bytes(24), 4, 2)
@@ -124,6 +127,7 @@ class Serving(unittest.TestCase):
                     print("loading"); os.write(1, b"from C\\n")
                 def scenes(self):
                     print("asked for scenes")
+                    os.system("echo from a child; read line && echo stolen")
                     return ["a"]
             kit.serve(Noisy)
         """)
@@ -132,8 +136,9 @@ class Serving(unittest.TestCase):
         answers = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual(answers, [{"id": n, "result": {"scenes": ["a"]}} for n in (1, 2)])
         self.assertEqual(done.returncode, 0)
-        for words in ("loading", "from C", "asked for scenes"):
+        for words in ("loading", "from C", "asked for scenes", "from a child"):
             self.assertIn(words, done.stderr)
+        self.assertNotIn("stolen", done.stderr)
 
 
 if __name__ == "__main__":

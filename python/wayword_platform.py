@@ -161,27 +161,31 @@ OPTIONAL = ("graph", "points", "neighbours", "walkable", "sample_path", "object_
 
 def serve(make_world):
     """Makes the world (a subclass of World, or a function that returns one); answers until Wayword closes the pipe."""
-    out = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # from here on whatever is printed, also by C, goes to standard error
+    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    # From here on whatever is printed, also by C, goes to standard error, and nobody else reads requests.
+    os.dup2(2, 1)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     sys.stdout = sys.stderr
     world = make_world()
-    for line in sys.stdin.buffer:
-        out.write(json.dumps(answer(world, json.loads(line)), allow_nan=False).encode() + b"\n")
-        out.flush()
+    for line in requests:
+        answers.write(answer(world, json.loads(line)).encode() + b"\n")
+        answers.flush()
 
 
 def answer(world, request):
-    """The answer to one request, as a dictionary."""
+    """The answer to one request, as a line of JSON."""
     try:
         method = METHODS.get(request["method"])
         if method is None:
             raise Refused(f"there is no method {request['method']!r}")
-        return {"id": request["id"], "result": method(world, request["params"])}
+        result = method(world, request["params"])
+        return json.dumps({"id": request["id"], "result": result}, allow_nan=False)
     except Exception as error:
         if not isinstance(error, Refused):
             traceback.print_exc()
         message = str(error) if isinstance(error, Refused) else f"{type(error).__name__}: {error}"
-        return {"id": request["id"], "error": {"code": getattr(error, "code", None), "message": message}}
+        code = error.code if isinstance(error, Refused) else None
+        return json.dumps({"id": request["id"], "error": {"code": code, "message": message}})
 
 
 def _hello(world, params):

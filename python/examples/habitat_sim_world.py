@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """habitat-sim as a world for Wayword. NOT RUN by us: written against the documented API of habitat-sim 0.3.
 
-`habitat_sim_world.py apartment_1.glb skokloster-castle.glb`; each scene with its .navmesh beside it, and with its
-semantic files where labels are wanted. Wayword's own platform `habitat` reads the same files without habitat-sim.
-"""
+`habitat_sim_world.py apartment_1.glb skokloster-castle.glb`; each scene with its .navmesh, and perhaps its semantics,
+beside it. Wayword's own platform `habitat` reads the same files without habitat-sim."""
 import pathlib, sys  # noqa: E401
-import habitat_sim
-import numpy as np
+import habitat_sim, numpy as np  # noqa: E401
 from habitat_sim.utils.common import quat_from_angle_axis
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import wayword_platform as kit  # noqa: E402
@@ -15,7 +13,10 @@ FILES = {pathlib.Path(name).stem: name for name in sys.argv[1:]}
 
 
 class Habitat(kit.World):
-    name, has_labels, opened = "habitat-sim", True, (None, None)
+    name, opened = "habitat-sim", (None, None)
+
+    def __init__(self):  # without semantic files nothing is known about things, which is not to know of none
+        self.has_labels = all(len(self.sim(scene).semantic_scene.objects) > 0 for scene in FILES)
 
     def scenes(self):
         return sorted(FILES)
@@ -42,8 +43,8 @@ class Habitat(kit.World):
     def walkable(self, scene, a, b):
         way = habitat_sim.ShortestPath()
         way.requested_start, way.requested_end = (np.subtract(kit.y_up_from_wayword(p), (0, EYE_M, 0)) for p in (a, b))
-        found = self.sim(scene).pathfinder.find_path(way)
-        return found and way.geodesic_distance < 1.02 * np.linalg.norm(np.subtract(a, b))
+        self.sim(scene).pathfinder.find_path(way)  # infinitely far where there is no way
+        return way.geodesic_distance < 1.02 * np.linalg.norm(np.subtract(a, b))
 
     def observe(self, scene, look):
         sim = self.sim(scene, (look.height_px, look.width_px), round(np.degrees(look.horizontal_fov_rad), 6))
@@ -55,6 +56,5 @@ class Habitat(kit.World):
         seen = [things[number] for number in np.unique(numbers) if number in things]
         labels = [kit.Label(one.id, one.category.name(), kit.wayword_from_y_up(one.aabb.center)) for one in seen]
         return kit.View(np.ascontiguousarray(picture[:, :, :3]), labels)
-
 
 kit.serve(Habitat)

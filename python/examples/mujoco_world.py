@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""MuJoCo (pip install mujoco; tried with 4.0.0) as a world for Wayword. Without a screen: MUJOCO_GL=egl or osmesa.
+"""MuJoCo (pip install mujoco; tried with 4.0.0) as a world for Wayword. Without a screen: EGL.
 
 `mujoco_world.py MODEL.xml` serves your own models: things are bodies with a name, and one walks on the geom named
 `floor`. Without an argument it serves flat.xml, which lies beside this file.
 """
-import functools, math, pathlib, sys  # noqa: E401
-import mujoco
-import numpy as np
+import functools, math, os, pathlib, sys  # noqa: E401
+if "DISPLAY" not in os.environ:
+    os.environ.setdefault("MUJOCO_GL", "egl")
+import mujoco  # noqa: E402
+import numpy as np  # noqa: E402
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import wayword_platform as kit  # noqa: E402
 EYE_M, REACH_M = 1.5, 0.3  # the height of the eye, and how near to anything one may stand

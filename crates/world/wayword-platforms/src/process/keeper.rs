@@ -92,8 +92,7 @@ impl Keeper {
 
     /// The error for an answer that was understood, but cannot be used.
     pub(crate) fn misfit(&self, method: &'static str, reason: impl Into<String>) -> PlatformError {
-        Failed { fault: Fault::Misfit(reason.into()), method, id: None, last_words: String::new() }
-            .into_error(&self.options)
+        Failed::without_request(Fault::Misfit(reason.into()), method).into_error(&self.options)
     }
 
     /// Starts the child again if it is gone.
@@ -108,15 +107,15 @@ impl Keeper {
         if state.running.is_some() {
             return Ok(());
         }
-        let failed = |fault| Failed { fault, method: "hello", id: None, last_words: String::new() };
+        let failed = |fault| Failed::without_request(fault, "hello").into_error(&self.options);
         if state.restarts_left == 0 {
-            return Err(failed(Fault::GaveUp(state.last_fault.clone())).into_error(&self.options));
+            return Err(failed(Fault::GaveUp(state.last_fault.clone())));
         }
         state.restarts_left -= 1;
         if state.launch(&self.options, &self.hear)? != self.world {
             state.running = None;
             state.last_fault = Fault::Changed.to_string();
-            return Err(failed(Fault::Changed).into_error(&self.options));
+            return Err(failed(Fault::Changed));
         }
         Ok(())
     }
@@ -126,7 +125,7 @@ impl State {
     fn launch(&mut self, options: &ProcessOptions, hear: &Hear) -> Result<World, PlatformError> {
         let started = Running::start(options, hear).map_err(|fault| {
             self.last_fault = fault.to_string();
-            Failed { fault, method: "hello", id: None, last_words: String::new() }.into_error(options)
+            Failed::without_request(fault, "hello").into_error(options)
         })?;
         self.running = Some(started);
         let params = json!({ "protocol": PROTOCOL, "frame": FRAME });
@@ -204,6 +203,11 @@ struct Failed {
 }
 
 impl Failed {
+    /// What is not the fault of one request.
+    fn without_request(fault: Fault, method: &'static str) -> Self {
+        Self { fault, method, id: None, last_words: String::new() }
+    }
+
     fn into_error(self, options: &ProcessOptions) -> PlatformError {
         let Self { fault, method, id, last_words } = self;
         let request = id.map_or_else(|| format!("`{method}`"), |id| format!("request {id} (`{method}`)"));

@@ -1,7 +1,7 @@
 //! Pictures of a child: in base64 within its answer, or in a file of the folder that its greeting names.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
-use image::{ImageReader, Limits};
+use image::{ImageFormat, ImageReader, Limits};
 use serde::Deserialize;
 use std::{
     fs::File,
@@ -62,12 +62,16 @@ fn confined(folder: &Path, file: &Path) -> Result<Vec<u8>, String> {
 
 /// Decodes a picture of the size that was asked for. The size stands at its beginning, so one of another size costs nothing.
 pub(crate) fn decode(bytes: &[u8], (width_px, height_px): (u32, u32)) -> Result<Image, String> {
-    let reader = || ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string());
-    let (width, height) = reader()?.into_dimensions().map_err(|error| format!("`image`: {error}"))?;
+    // Decoders for other formats may be there for other purposes.
+    let format =
+        image::guess_format(bytes).ok().filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg));
+    let format = format.ok_or("`image` is neither PNG nor JPEG")?;
+    let reader = || ImageReader::with_format(Cursor::new(bytes), format);
+    let (width, height) = reader().into_dimensions().map_err(|error| format!("`image`: {error}"))?;
     if (width, height) != (width_px, height_px) {
         return Err(format!("`image` has {width} x {height} pixels, and {width_px} x {height_px} were asked for"));
     }
-    let mut reader = reader()?;
+    let mut reader = reader();
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_DECODED_BYTES);
     reader.limits(limits);

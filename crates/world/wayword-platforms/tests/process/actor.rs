@@ -83,6 +83,13 @@ impl Actor {
             "y up" => greeting["frame"] = json!("y-up"),
             "sees nothing" => greeting["offers"] = json!(["graph"]),
             "no such folder" => greeting["images"] = json!("/nowhere/at/all"),
+            "changes" => {
+                let mark = std::path::PathBuf::from(std::env::var("WAYWORD_TEST_FOLDER").unwrap()).join("was here");
+                if mark.exists() {
+                    greeting["offers"] = json!(["graph", "labels"]);
+                }
+                std::fs::write(mark, "").unwrap();
+            }
             "never greets" => return Value::Null,
             "escapes" | "leaves pictures" => greeting["images"] = json!(std::env::var("WAYWORD_TEST_FOLDER").unwrap()),
             "neighbours" => greeting["offers"] = json!(["points", "neighbours", "pictures", "labels", "rooms"]),
@@ -121,7 +128,7 @@ impl Actor {
         let id = request["id"].as_u64().unwrap();
         let mut good = json!({"id": id, "result": observation(&request["params"])});
         match self.role.as_str() {
-            "dies" => std::process::exit(3),
+            "dies" | "changes" => std::process::exit(3),
             "aborts" => std::process::abort(),
             "hangs" => hang(),
             "floods" => loop {

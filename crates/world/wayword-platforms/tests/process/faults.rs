@@ -54,7 +54,7 @@ fn an_answer_that_cannot_be_used_is_an_error_and_the_child_lives_on() {
         ("unlabelled", "no `labels`"),
         ("wrong shape", "missing field `object`"),
         ("other size", "33 x 24 pixels, and 32 x 24 were asked for"),
-        ("no picture", "`image`"),
+        ("no picture", "neither PNG nor JPEG"),
     ] {
         let platform = started(role).unwrap();
         let before = pid(&look(&platform, "good").unwrap());
@@ -128,6 +128,19 @@ fn a_greeting_that_cannot_be_used_is_refused_at_once() {
     let missing = ProcessOptions::new("/nowhere/simulator");
     let error = ProcessPlatform::start(missing, Arc::new(|_: &str| ())).err().unwrap().to_string();
     assert!(error.contains("cannot be started") && error.contains("/nowhere/simulator"), "{error}");
+}
+
+#[test]
+fn a_child_that_offers_other_things_after_a_restart_is_not_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ProcessOptions { restarts: 2, ..options("changes", folder.path()) };
+    let platform = ProcessPlatform::start(options, Arc::new(|_: &str| ())).unwrap();
+    look(&platform, "good").unwrap();
+    look(&platform, "bad").unwrap_err();
+    for says in ["offers other things than before", "offers other things than before", "not started again"] {
+        let error = look(&platform, "good").unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    }
 }
 
 #[test]
