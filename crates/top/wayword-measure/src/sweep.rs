@@ -53,7 +53,7 @@ const FIGURES: [Metric; 3] = [Metric::SuccessRate, Metric::OracleSuccessRate, Me
 pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let platform = world::open_named("matterport", Some(&flags.data))?;
     let mut episodes = episodes::read(&flags.episodes, platform.as_ref())?;
-    episodes.retain(|episode| platform.graph(&episode.scene).is_ok());
+    episodes.retain(|episode| !episode.instructions.is_empty() && platform.graph(&episode.scene).is_ok());
     episodes.shuffle(&mut rng(flags.seed, &["sweep"]));
     episodes.truncate(flags.items);
     // Scene by scene: a world keeps the last few of them ready.

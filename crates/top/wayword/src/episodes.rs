@@ -11,7 +11,7 @@ use wayword_formats::{Episode, Format, jsonl};
 /// # Errors
 /// When the file cannot be read, a scene is unknown, or an episode has neither viewpoints nor frames.
 pub fn read(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode>, Error> {
-    let mut episodes = match wayword_formats::detect(file)? {
+    let episodes = match wayword_formats::detect(file)? {
         Format::Wayword => {
             let records = jsonl::read(file)?;
             let mut episodes = jsonl::episodes(&records);
@@ -26,7 +26,6 @@ pub fn read(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode>, Error>
         }
         format => format.read(file)?,
     };
-    episodes.retain(|episode| !episode.instructions.is_empty());
     match episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         Some(blind) => Err(Error::usage(
             format!("{}: episode {} names no viewpoints, and agents walk over viewpoints", file.display(), blind.id),

@@ -47,8 +47,9 @@ pub(super) fn load(plan: &Plan, platform: &dyn Platform) -> Result<(Vec<Item>, V
         episodes.iter().map(|episode| (episode.id.clone(), episode.instructions.clone())).collect();
     let mut all: Vec<(&str, BTreeMap<String, Vec<String>>)> = Vec::new();
     for (name, source) in &plan.instructions {
-        let texts = if source.is_empty() { own.clone() } else { texts_of(source)? };
-        all.push((name, texts.into_iter().filter(|(item, _)| own.contains_key(item)).collect()));
+        let mut texts = if source.is_empty() { own.clone() } else { texts_of(source)? };
+        texts.retain(|item, texts| own.contains_key(item) && !texts.is_empty());
+        all.push((name, texts));
     }
     let in_all = |item: &str| all.iter().all(|(_, texts)| texts.contains_key(item));
     let common: BTreeSet<String> = own.keys().filter(|item| in_all(item)).cloned().collect();
