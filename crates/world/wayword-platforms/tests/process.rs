@@ -12,6 +12,7 @@ mod actor;
 mod faults;
 #[path = "process/graphs.rs"]
 mod graphs;
+#[cfg(target_os = "linux")]
 #[path = "process/lives.rs"]
 mod lives;
 #[path = "process/worlds.rs"]

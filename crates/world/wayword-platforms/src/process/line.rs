@@ -110,7 +110,8 @@ mod tests {
         assert_eq!(read(&mut pipe, 12), Line::Whole(b"twelve chars".to_vec()), "the end of a line does not count");
         assert_eq!(read(&mut pipe, 12), Line::Half(b"half".to_vec()));
         assert_eq!(read(&mut pipe, 12), Line::End);
-        assert_eq!(read(&mut Cursor::new([b'x'; 14]), 12), Line::TooLong);
+        assert_eq!(read(&mut Cursor::new(b"thirteen char\n"), 12), Line::TooLong);
+        assert_eq!(read(&mut std::io::BufReader::new(std::io::repeat(b'x')), 12), Line::TooLong);
     }
 
     #[test]

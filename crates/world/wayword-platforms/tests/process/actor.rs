@@ -18,13 +18,12 @@ pub(crate) const LAMP: [f64; 3] = [0.5, 3.0, 1.0];
 struct Actor {
     role: String,
     out: File,
-    asked: u64,
 }
 
 /// Answers until its input ends.
 pub(crate) fn play(role: &str) {
     let out = File::options().write(true).open("/dev/fd/3").unwrap();
-    let mut actor = Actor { role: role.to_owned(), out, asked: 0 };
+    let mut actor = Actor { role: role.to_owned(), out };
     for line in std::io::stdin().lock().lines() {
         let request: Value = serde_json::from_str(&line.unwrap()).unwrap();
         actor.answer(&request);
@@ -50,7 +49,6 @@ impl Actor {
     }
 
     fn answer(&mut self, request: &Value) {
-        self.asked += 1;
         let params = &request["params"];
         let result = match request["method"].as_str().unwrap() {
             "hello" => self.greeting(),
@@ -158,7 +156,7 @@ impl Actor {
             "escapes" => good["result"]["image"] = json!({"file": "../secret.png"}),
             "leaves pictures" => good["result"]["image"] = json!({"file": "view.png"}),
             "mutates" => {
-                let line = mutated(&good.to_string(), self.asked + u64::from(std::process::id()));
+                let line = mutated(&good.to_string(), id);
                 self.say(&line);
                 return;
             }
