@@ -74,3 +74,29 @@ fn annotated_paths_of_val_seen_end_where_they_should() {
     assert!((rate(0) - expected).abs() < 1e-9, "{} is not {expected}", rate(0));
     assert!((rate(1) - 1.0).abs() < 1e-12);
 }
+
+/// An agent that does not listen measures nothing: each must do better by what people wrote than by chance, and worse by the
+/// instruction of another path.
+#[test]
+fn agents_listen_to_what_people_wrote_of_val_seen() {
+    let Some(data) = data() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = common::command(&["compare", "--platform", "matterport", "--json", "--swaps", "other-path"]);
+    command.arg("--data").arg(&data).arg("--episodes").arg(data.join("reverie/REVERIE_val_seen.json"));
+    command.arg("--out").arg(folder.path().join("walked"));
+    let ran = common::run(&mut command);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found = ran.json();
+    let rate = |agent: &str| {
+        let row = found["rows"].as_array().unwrap().iter().find(|row| row["agent"] == agent).unwrap();
+        let rate = &row["figures"]["success_rate"];
+        (rate["low"].as_f64().unwrap(), rate["high"].as_f64().unwrap())
+    };
+    let chance = rate("random/10").1;
+    for agent in ["clip-nav", "seq-clip-nav", "glip-nav"] {
+        assert!(rate(agent).0 > chance, "{agent}: {:?}, chance {chance}", rate(agent));
+        let swapped = found["swaps"].as_array().unwrap().iter().find(|swapped| swapped["agent"] == agent).unwrap();
+        assert_eq!(swapped["listens"], true, "{swapped}");
+    }
+    assert_eq!(found["about"]["items"], 501);
+}
