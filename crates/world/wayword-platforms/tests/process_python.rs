@@ -99,7 +99,7 @@ fn mujoco_is_walked_and_seen() {
 fn walk(platform: &ProcessPlatform, scene: &SceneId) -> wayword_core::Path {
     let graph = platform.graph(scene).unwrap();
     assert_eq!(graph.components(), 1);
-    let request = PathRequest { hops: 2..=9, length_m: 4.0..=14.0 };
+    let request = PathRequest::default();
     let path = platform.sample_path(scene, &request, 1).unwrap();
     assert!(request.length_m.contains(&path.length_m()));
     assert_eq!(path, platform.sample_path(scene, &request, 1).unwrap());

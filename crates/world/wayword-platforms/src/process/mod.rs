@@ -5,7 +5,7 @@
 //! converts into Wayword's frame (z up, metres, radians clockwise from +y) and says so in its greeting.
 //!
 //! The child is not trusted: lines, pictures, counts and times are bounded, and one that dies, hangs, floods or sends
-//! nonsense costs the request that was under way and is started anew, a bounded number of times ([`keeper`]).
+//! nonsense costs the request that was under way and is started anew, a bounded number of times (`keeper.rs`).
 
 mod child;
 mod fault;
