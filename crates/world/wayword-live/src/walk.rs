@@ -1,6 +1,5 @@
 //! Random walks through a live world: a way between two places, with frames along it.
 
-use crate::sight::Thing;
 use rand::Rng;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{
@@ -119,11 +118,6 @@ pub(crate) fn seen_from(
         }
     }
     Ok(seen)
-}
-
-/// The name of an object among a scene's things.
-pub(crate) fn name_of<'a>(mut things: impl Iterator<Item = &'a Thing>, object: &ObjectId) -> Option<String> {
-    things.find(|thing| thing.object == *object).map(|thing| thing.name.clone())
 }
 
 /// Refuses a frame from which nothing can be looked at.

@@ -4,9 +4,12 @@
 
 use std::{collections::BTreeSet, net::SocketAddr, time::Duration};
 use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
-use wayword_live::tdw::{
-    ControllerOptions, TdwOptions, TdwPlatform,
-    stand_in::{StandIn, StandInOptions},
+use wayword_live::{
+    Pictures,
+    tdw::{
+        ControllerOptions, TdwOptions, TdwPlatform,
+        stand_in::{StandIn, StandInOptions},
+    },
 };
 use wayword_platforms::house::{Ground, HouseScene, Role, generate};
 
@@ -16,9 +19,10 @@ fn start(options: StandInOptions) -> (TdwPlatform, StandIn) {
         connect_timeout: Duration::from_secs(20),
         step_timeout: Duration::from_secs(60),
     };
-    let platform =
-        TdwPlatform::new(TdwOptions { controller, width_px: 160, height_px: 120, ..TdwOptions::default() }).unwrap();
-    let build = StandIn::start(platform.address(), options);
+    let pictures = Pictures { width_px: 160, height_px: 120, ..Pictures::default() };
+    let platform = TdwPlatform::new(TdwOptions { controller, pictures, ..TdwOptions::default() }).unwrap();
+    let address = platform.waits_at().trim_start_matches("tcp://").parse().unwrap();
+    let build = StandIn::start(address, options);
     (platform, build)
 }
 

@@ -25,7 +25,7 @@ pub use output::{
     Sensor, Transform, Version,
 };
 pub use pictures::depth_m;
-pub use platform::{TdwOptions, TdwPlatform};
+pub use platform::{Tdw, TdwOptions, TdwPlatform};
 pub use zmtp::WireError;
 
 #[cfg(test)]

@@ -1,15 +1,13 @@
 //! From a pass's bytes to pixels.
 
 use super::{error::TdwError, output::Pass};
-use image::{ImageFormat, ImageReader, Limits};
-use std::io::Cursor;
+use crate::decode;
+use image::ImageFormat;
 
-/// Longest side of a picture that is taken, pixels.
-const MAX_SIDE_PX: u32 = 8192;
 /// Near and far plane of the build's cameras, metres.
 const PLANES_M: [f32; 2] = [0.1, 100.0];
 
-/// The number of a pass in `imag`, and its name in commands.
+/// The passes that are asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Img,
@@ -17,6 +15,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
+    /// Its number in `imag`.
     pub(super) fn mask(self) -> i32 {
         match self {
             Self::Img => 1,
@@ -24,6 +23,7 @@ impl Kind {
         }
     }
 
+    /// Its name in commands.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Img => "_img",
@@ -36,26 +36,9 @@ impl Kind {
 ///
 /// # Errors
 /// When it cannot be decoded, or is not of the size that was announced with it.
-pub(super) fn rgb(pass: &Pass<'_>, kind: Kind, (width, height): (u32, u32)) -> Result<Vec<u8>, TdwError> {
-    let refused = |reason: String| TdwError::Picture { pass: kind.name(), reason };
-    if !(1..=MAX_SIDE_PX).contains(&width) || !(1..=MAX_SIDE_PX).contains(&height) {
-        return Err(refused(format!("{width} x {height} pixels: each side must lie in 1..={MAX_SIDE_PX}")));
-    }
-    let mut reader = ImageReader::new(Cursor::new(pass.bytes));
-    reader.set_format(if pass.extension == 2 { ImageFormat::Jpeg } else { ImageFormat::Png });
-    let mut limits = Limits::default();
-    (limits.max_image_width, limits.max_image_height) = (Some(width), Some(height));
-    limits.max_alloc = Some((64 << 20) + u64::from(width) * u64::from(height) * 16);
-    reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| refused(error.to_string()))?;
-    if (decoded.width(), decoded.height()) != (width, height) {
-        return Err(refused(format!(
-            "its file has {} x {} pixels: expected {width} x {height}",
-            decoded.width(),
-            decoded.height()
-        )));
-    }
-    Ok(decoded.into_rgb8().into_raw())
+pub(super) fn rgb(pass: &Pass<'_>, kind: Kind, size: (u32, u32)) -> Result<Vec<u8>, TdwError> {
+    let format = if pass.extension == 2 { ImageFormat::Jpeg } else { ImageFormat::Png };
+    decode::rgb(pass.bytes, format, size).map_err(|reason| TdwError::Picture { pass: kind.name(), reason })
 }
 
 /// Depth along the camera's forward axis from a `_depth` pass, metres, rows from the top: raw pixels with the bottom row
@@ -73,4 +56,18 @@ pub fn depth_m(bytes: &[u8], width: u32, height: u32) -> Result<Vec<f32>, TdwErr
     let metres =
         |[r, g, b]: &[u8; 3]| (f32::from(*r) + f32::from(*g) / 256.0 + f32::from(*b) / 65536.0) * (far - near) / 256.0;
     Ok(bytes.chunks_exact(row).rev().flat_map(|row| row.as_chunks().0.iter().map(metres)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_comes_with_its_bottom_row_first() {
+        let depth = depth_m(&[0, 0, 0, 1, 0, 0, /**/ 128, 0, 0, 0, 1, 0], 2, 2).unwrap();
+        let unit = 99.9 / 256.0;
+        let expected = [128.0 * unit, unit / 256.0, 0.0, unit];
+        assert!(depth.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5), "{depth:?}");
+        assert!(depth_m(&[0; 11], 2, 2).is_err() && depth_m(&[], 0, 0).is_err());
+    }
 }

@@ -6,16 +6,16 @@ use super::{
     error::TdwError,
     output::{Bounds, NavMeshPath, Occupancy, OnNavMesh, Output, Segment},
     pictures::{self, Kind},
-    scenes::Plan,
 };
 use crate::{
+    live::{Shot, Survey},
     raster::Raster,
     sight::{Palette, Thing, colour_id},
     unity::{unity_from_wayword, unity_rotation_from_heading, wayword_from_unity},
     walk::EYE_M,
 };
-use std::path::Path;
-use wayword_core::{DVec3, ViewpointGraph};
+use std::collections::BTreeMap;
+use wayword_core::{DVec3, Heading};
 use wayword_render::Camera;
 
 /// The avatar that looks.
@@ -29,21 +29,12 @@ const SNAP_M: f64 = 0.5;
 /// Questions in one list of commands.
 const BATCH: usize = 256;
 
-/// What a scene holds: surveyed once, when it is first loaded.
-#[derive(Debug)]
-pub(super) struct Survey {
-    pub(super) graph: ViewpointGraph,
-    pub(super) palette: Palette,
-}
-
 /// Loads a scene and puts the avatar into it.
 pub(super) fn load(
     controller: &mut Controller,
-    plan: &Plan,
-    package: Option<&Path>,
+    mut commands: Vec<Command>,
     (width, height): (u32, u32),
 ) -> Result<(), TdwError> {
-    let mut commands = plan.commands(package)?;
     let passes = [Kind::Img, Kind::Id].map(Kind::name).to_vec();
     commands.extend([
         Command::SetScreenSize { width, height },
@@ -72,7 +63,8 @@ pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
     raster.keep_largest_part();
     let eyes = eyes(controller, &raster.places())?;
     let graph = raster.graph(&eyes).map_err(|error| TdwError::Scene(error.to_string()))?;
-    Ok(Survey { graph, palette: palette(&answer)? })
+    // Its regions have boxes, but no names.
+    Ok(Survey { graph, raster, palette: palette(&answer)?, rooms: Vec::new() })
 }
 
 fn raster(map: &Occupancy) -> Option<Raster> {
@@ -91,7 +83,7 @@ fn palette(answer: &Response) -> Result<Palette, TdwError> {
         Output::Segmentation(segments) => Some(segments),
         _ => None,
     })?;
-    let by_id: std::collections::BTreeMap<i32, Bounds> = bounds.into_iter().map(|each| (each.id, each)).collect();
+    let by_id: BTreeMap<i32, Bounds> = bounds.into_iter().map(|each| (each.id, each)).collect();
     let thing = |segment: &Segment<'_>| {
         let points = by_id.get(&segment.id)?.points.map(|point| wayword_from_unity(point.map(f64::from)));
         let [front, _, right, _, top, _, centre] = points;
@@ -141,17 +133,11 @@ pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result
     Ok(Some(way).filter(|way| way.len() >= 2 && way.iter().all(|corner| corner.is_finite())))
 }
 
-/// A picture and the colour of each pixel's object.
-pub(super) struct Shot {
-    pub(super) rgb: Vec<u8>,
-    pub(super) ids: Vec<u32>,
-}
-
 /// Looks through a camera of the size that the scene was loaded with.
 pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot, TdwError> {
     let size = (camera.width, camera.height);
     let avatar_id = || AVATAR.to_owned();
-    let heading = wayword_core::Heading::new(camera.heading_rad).unwrap_or(wayword_core::Heading::NORTH);
+    let heading = Heading::new(camera.heading_rad).unwrap_or(Heading::NORTH);
     let [x, y, z, w] = unity_rotation_from_heading(heading);
     let field_of_view = camera.vertical_fov_rad.to_degrees();
     let answer = controller.communicate(&[

@@ -10,6 +10,7 @@ mod state;
 mod world;
 
 use super::zmtp::{Peer, Role, WireError};
+pub(crate) use pictures::{id_colour, png_file as png};
 use state::State;
 use std::{
     net::{SocketAddr, TcpStream},

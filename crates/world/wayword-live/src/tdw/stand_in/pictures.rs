@@ -16,9 +16,9 @@ pub(super) fn passes(picture: &Picture, names: &[String], png: bool, is_object: 
     let colours = || picture.ids.iter().flat_map(colour).collect::<Vec<u8>>();
     let pass = |name: &String| {
         Some(match name.as_str() {
-            "_img" if png => Pass(1, as_png(picture, &picture.rgb), 1),
+            "_img" if png => Pass(1, png_file((picture.width, picture.height), &picture.rgb), 1),
             "_img" => Pass(1, as_jpeg(picture), 2),
-            "_id" => Pass(2, as_png(picture, &colours()), 1),
+            "_id" => Pass(2, png_file((picture.width, picture.height), &colours()), 1),
             "_depth" => Pass(16, depth(picture), 1),
             _ => return None,
         })
@@ -27,17 +27,18 @@ pub(super) fn passes(picture: &Picture, names: &[String], png: bool, is_object: 
 }
 
 /// The colour of an object in the `_id` pass: another for each number, and black for what has none.
-pub(super) fn id_colour(id: u32) -> [u8; 3] {
+pub(crate) fn id_colour(id: u32) -> [u8; 3] {
     let [r, g, b, _] = id.wrapping_mul(0x009e_3779).to_le_bytes();
     [r, g, b]
 }
 
-fn as_png(picture: &Picture, rgb: &[u8]) -> Vec<u8> {
+/// RGB pixels as a PNG, quickly.
+pub(crate) fn png_file((width, height): (u32, u32), rgb: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let (compression, filter) = (codecs::png::CompressionType::Fast, codecs::png::FilterType::Sub);
     let encoder = codecs::png::PngEncoder::new_with_quality(&mut bytes, compression, filter);
     // Into memory, of a picture whose size fits its pixels: nothing can fail.
-    let _ = encoder.write_image(rgb, picture.width, picture.height, ExtendedColorType::Rgb8);
+    let _ = encoder.write_image(rgb, width, height, ExtendedColorType::Rgb8);
     bytes
 }
 

@@ -27,13 +27,18 @@ impl World {
         Self { scene: HouseScene::new(house).expect("a drawing of the house"), ground }
     }
 
+    /// What it draws.
+    pub(crate) fn house(&self) -> &HouseScene {
+        &self.scene
+    }
+
     /// Everything that has a colour of its own in the `_id` pass, by number.
-    pub(super) fn objects(&self) -> impl Iterator<Item = (u32, &Object)> {
+    pub(crate) fn objects(&self) -> impl Iterator<Item = (u32, &Object)> {
         self.scene.objects.iter().filter(|(_, object)| object.role != Role::Shell).map(|(id, object)| (*id, object))
     }
 
     /// Whether a number belongs to something that has a colour of its own.
-    pub(super) fn is_object(&self, id: u32) -> bool {
+    pub(crate) fn is_object(&self, id: u32) -> bool {
         self.scene.objects.get(&id).is_some_and(|object| object.role != Role::Shell)
     }
 

@@ -1,0 +1,282 @@
+//! What all live simulators have in common: a platform over one that runs beside us, one look at a time.
+
+use crate::{
+    raster::Raster,
+    sight::{self, Palette},
+    walk,
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+    path::PathBuf,
+    sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
+};
+use wayword_core::{
+    DVec3, Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
+    View, ViewpointGraph, ViewpointId,
+};
+use wayword_render::Camera;
+
+/// Widest gaze that one flat picture can show, radians.
+const WIDEST_RAD: f64 = 2.6;
+
+/// A simulator that runs beside us.
+pub(crate) trait Simulator: Send + fmt::Debug {
+    /// What goes wrong with it.
+    type Error: std::error::Error;
+    /// Its name, as `--platform` takes it.
+    const NAME: &'static str;
+    /// What to do when it fails.
+    const HINT: &'static str;
+
+    /// Where it is, for messages.
+    fn address(&self) -> String;
+
+    /// The scenes that it lists.
+    fn scenes(&self) -> Vec<String>;
+
+    /// How scenes are named, where this one is none.
+    fn refuses(&self, scene: &SceneId) -> Option<&'static str>;
+
+    /// Sees to it that the simulator is there with this scene in it. Cheap, where it is.
+    fn enter(&mut self, scene: &SceneId) -> Result<(), Self::Error>;
+
+    /// Asks what stands where in the scene, and where one can walk.
+    fn survey(&mut self) -> Result<Survey, Self::Error>;
+
+    /// Looks through a camera without elevation.
+    fn shoot(&mut self, camera: &Camera) -> Result<Shot, Self::Error>;
+
+    /// The corners of the shortest way between two eyes, both among them; `None` where there is none.
+    fn way(&mut self, survey: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, Self::Error>;
+
+    /// Whether the simulator is lost over an error, so that trying once more makes sense.
+    fn is_loss(error: &Self::Error) -> bool;
+}
+
+/// What a scene holds.
+#[derive(Debug)]
+pub(crate) struct Survey {
+    /// Eyes and the straight walks between them.
+    pub(crate) graph: ViewpointGraph,
+    /// The floor.
+    pub(crate) raster: Raster,
+    /// Things by their colours.
+    pub(crate) palette: Palette,
+    /// Rooms, where they have names.
+    pub(crate) rooms: Vec<Room>,
+}
+
+/// A room with a name.
+#[derive(Debug)]
+pub(crate) struct Room {
+    pub(crate) name: String,
+    /// Lower and upper corner, metres, world frame.
+    pub(crate) bounds_m: (DVec3, DVec3),
+}
+
+/// A picture, and the colour of each pixel's object as [`sight::colour_id`] has it.
+pub(crate) struct Shot {
+    pub(crate) rgb: Vec<u8>,
+    pub(crate) ids: Vec<u32>,
+}
+
+/// Size of pictures and distance of frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pictures {
+    /// Width, pixels.
+    pub width_px: u32,
+    /// Height, pixels.
+    pub height_px: u32,
+    /// Distance between two frames of a random path, metres.
+    pub interval_m: f64,
+}
+
+impl Default for Pictures {
+    fn default() -> Self {
+        Self { width_px: 640, height_px: 480, interval_m: 1.0 }
+    }
+}
+
+/// A platform over a simulator. Where the simulator is lost, it is waited for again, once, and the scene loaded anew.
+#[derive(Debug)]
+pub struct Live<S> {
+    pictures: Pictures,
+    running: Mutex<Running<S>>,
+}
+
+#[derive(Debug)]
+struct Running<S> {
+    simulator: S,
+    scenes: BTreeMap<SceneId, Arc<Scene>>,
+}
+
+/// A scene that has been surveyed.
+#[derive(Debug)]
+struct Scene {
+    survey: Survey,
+    graph: Arc<ViewpointGraph>,
+    /// The viewpoints from which each object is seen; looked for when first asked for.
+    seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
+}
+
+#[allow(private_bounds, reason = "a platform over the simulators of this crate, and no other")]
+impl<S: Simulator> Live<S> {
+    pub(crate) fn over(simulator: S, pictures: Pictures) -> Self {
+        Self { pictures, running: Mutex::new(Running { simulator, scenes: BTreeMap::new() }) }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Running<S>> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn address(&self) -> String {
+        self.lock().simulator.address()
+    }
+
+    /// Does something with the simulator while a scene is in it.
+    fn with<T>(
+        &self,
+        scene: &SceneId,
+        mut act: impl FnMut(&mut S, &Scene) -> Result<T, S::Error>,
+    ) -> Result<T, PlatformError> {
+        let mut running = self.lock();
+        if let Some(hint) = running.simulator.refuses(scene) {
+            return Err(PlatformError::UnknownScene { scene: scene.to_string(), hint: hint.to_owned() });
+        }
+        let mut attempt = || {
+            let known = running.enter(scene)?;
+            act(&mut running.simulator, &known)
+        };
+        let done = match attempt() {
+            Err(error) if S::is_loss(&error) => attempt(),
+            done => done,
+        };
+        done.map_err(|error| PlatformError::File {
+            file: PathBuf::from(running.simulator.address()),
+            reason: error.to_string(),
+            hint: S::HINT,
+        })
+    }
+
+    /// The scene, surveyed: whoever knows it already needs no simulator.
+    fn scene(&self, scene: &SceneId) -> Result<Arc<Scene>, PlatformError> {
+        if let Some(known) = self.lock().scenes.get(scene) {
+            return Ok(known.clone());
+        }
+        self.with(scene, |_, _| Ok(()))?;
+        let hint = || "its survey was lost; ask again".to_owned();
+        let lost = || PlatformError::UnknownScene { scene: scene.to_string(), hint: hint() };
+        self.lock().scenes.get(scene).cloned().ok_or_else(lost)
+    }
+
+    fn camera(&self, eye: DVec3, gaze: Gaze) -> Camera {
+        let Pictures { width_px: width, height_px: height, .. } = self.pictures;
+        let aspect = f64::from(height) / f64::from(width.max(1));
+        Camera {
+            position: eye,
+            heading_rad: gaze.heading.rad(),
+            elevation_rad: 0.0,
+            vertical_fov_rad: 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect),
+            width,
+            height,
+        }
+    }
+
+    /// The picture, what shows in it, and the room.
+    fn seen(&self, scene: &SceneId, eye: DVec3, gaze: Gaze) -> Result<(Vec<u8>, GroundTruth), PlatformError> {
+        let camera = self.camera(eye, gaze);
+        self.with(scene, |simulator, known| {
+            let Shot { rgb, ids } = simulator.shoot(&camera)?;
+            let labels = sight::labels(&camera, gaze, ids, &known.survey.palette);
+            Ok((rgb, GroundTruth { labels, lists_objects: true, room: known.survey.room(eye) }))
+        })
+    }
+}
+
+impl<S: Simulator> Running<S> {
+    fn enter(&mut self, scene: &SceneId) -> Result<Arc<Scene>, S::Error> {
+        self.simulator.enter(scene)?;
+        if let Some(known) = self.scenes.get(scene) {
+            return Ok(known.clone());
+        }
+        let survey = self.simulator.survey()?;
+        let graph = Arc::new(survey.graph.clone());
+        let known = Arc::new(Scene { survey, graph, seen_from: OnceLock::new() });
+        self.scenes.insert(scene.clone(), known.clone());
+        Ok(known)
+    }
+}
+
+impl Survey {
+    fn room(&self, eye: DVec3) -> Option<String> {
+        let holds = |room: &&Room| {
+            let (low, high) = room.bounds_m;
+            eye.cmpge(low).all() && eye.cmple(high).all()
+        };
+        self.rooms.iter().find(holds).map(|room| room.name.clone())
+    }
+}
+
+/// A scene to walk through.
+struct Walker<'a, S>(&'a Live<S>, &'a SceneId);
+
+impl<S: Simulator> walk::Walkable for Walker<'_, S> {
+    fn way(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, PlatformError> {
+        self.0.with(self.1, |simulator, known| simulator.way(&known.survey, from, to))
+    }
+
+    fn labels(&mut self, pose: Pose, gaze: Gaze) -> Result<Vec<Label>, PlatformError> {
+        self.0.seen(self.1, pose.position, gaze).map(|(_, truth)| truth.labels)
+    }
+}
+
+impl<S: Simulator> Platform for Live<S> {
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        let names = self.lock().simulator.scenes().into_iter();
+        let mut scenes: Vec<SceneId> = names.filter_map(|name| SceneId::new(name).ok()).collect();
+        scenes.sort();
+        Ok(scenes)
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.scene(scene)?.graph.clone())
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        let graph = self.graph(scene)?;
+        let eyes: Vec<DVec3> = graph.viewpoints().filter_map(|id| graph.position(id)).collect();
+        walk::path(&mut Walker(self, scene), (scene, &eyes), request, seed, self.pictures.interval_m)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        walk::check(scene, from)?;
+        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
+        let (rgb, truth) = self.seen(scene, from.pose.position, gaze)?;
+        let image = Image::new(self.pictures.width_px, self.pictures.height_px, rgb);
+        let pose = Pose::level(from.pose.position, gaze.heading);
+        // The picture was held against this size when it was decoded.
+        Ok(View::new(pose, gaze.horizontal_fov_rad, image.ok().map(Arc::new), Some(truth)))
+    }
+
+    fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        let known = self.scene(scene)?;
+        let found = known.survey.palette.values().find(|thing| thing.object == *object);
+        Ok(found.map(|thing| thing.name.clone()))
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        let known = self.scene(scene)?;
+        if known.seen_from.get().is_none() {
+            let seen = walk::seen_from(&mut Walker(self, scene), &known.graph)?;
+            // Another thread may have been faster: it found the same.
+            let _ = known.seen_from.set(seen);
+        }
+        let found = known.seen_from.get().and_then(|seen| seen.get(object)).cloned();
+        Ok(Some(found.unwrap_or_default()))
+    }
+}

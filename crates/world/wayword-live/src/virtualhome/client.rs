@@ -1,0 +1,200 @@
+//! Requests and answers, bounded in size and time.
+
+use super::{error::HomeError, graph::EnvironmentGraph};
+use crate::decode;
+use base64::{Engine, prelude::BASE64_STANDARD};
+use image::ImageFormat;
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::{Value, json};
+use std::{collections::BTreeMap, time::Duration};
+use ureq::Agent;
+
+/// Largest answer that is read, bytes: a picture of 8192 x 4096 pixels in base64.
+const LARGEST_ANSWER: u64 = 128 << 20;
+/// So much of what the simulator says stands in an error.
+const QUOTED_CHARS: usize = 200;
+
+/// A simulator at an address.
+#[derive(Debug)]
+pub struct Client {
+    agent: Agent,
+    url: String,
+    asked: u64,
+}
+
+/// Where a camera of the scene is: Unity's position, Euler angles in degrees, vertical field of view in degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "the type's documentation names each")]
+pub struct Camera {
+    pub position: [f64; 3],
+    pub rotation_deg: [f64; 3],
+    pub field_of_view_deg: f64,
+}
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// What an eye sees.
+    Normal,
+    /// Each object in its colour.
+    Instances,
+}
+
+#[derive(Debug, Deserialize)]
+struct Answer {
+    success: bool,
+    #[serde(default)]
+    message: Option<String>,
+    #[serde(default)]
+    value: Option<i64>,
+    #[serde(default)]
+    message_list: Option<Vec<String>>,
+}
+
+fn vector([x, y, z]: [f64; 3]) -> Value {
+    json!({ "x": x, "y": y, "z": z })
+}
+
+fn quoted(text: &str) -> String {
+    text.chars().take(QUOTED_CHARS).collect()
+}
+
+impl Client {
+    /// A client of the simulator at an address like `http://127.0.0.1:8080`; each answer takes at most `timeout`.
+    #[must_use]
+    pub fn new(url: impl Into<String>, timeout: Duration) -> Self {
+        let config = Agent::config_builder()
+            .http_status_as_error(false)
+            .max_redirects(0)
+            .timeout_global(Some(timeout))
+            // The simulator runs beside us: no proxy reaches it.
+            .proxy(None)
+            .build();
+        Self { agent: Agent::new_with_config(config), url: url.into(), asked: 0 }
+    }
+
+    /// Its address.
+    #[must_use]
+    pub fn url(&self) -> &str {
+        &self.url
+    }
+
+    fn post(&mut self, action: &'static str, ints: &[i64], texts: &[String]) -> Result<Answer, HomeError> {
+        self.asked += 1;
+        let mut request = json!({ "id": self.asked.to_string(), "action": action });
+        if !ints.is_empty() {
+            request["intParams"] = json!(ints);
+        }
+        if !texts.is_empty() {
+            request["stringParams"] = json!(texts);
+        }
+        let unreachable = |error: ureq::Error| HomeError::Unreachable { action, reason: error.to_string() };
+        let sent = self.agent.post(&self.url).header("content-type", "application/json").send(request.to_string());
+        let (head, mut body) = sent.map_err(unreachable)?.into_parts();
+        let body = body.with_config().limit(LARGEST_ANSWER).read_to_vec().map_err(unreachable)?;
+        if head.status != 200 {
+            let message = quoted(&String::from_utf8_lossy(&body));
+            return Err(HomeError::Status { action, status: head.status.as_u16(), message });
+        }
+        let answer: Answer = parsed(action, "an answer with `success`", &body)?;
+        if answer.success {
+            return Ok(answer);
+        }
+        Err(HomeError::Failed { action, message: quoted(&answer.message.unwrap_or_default()) })
+    }
+
+    /// Loads one of its homes, and takes away characters and cameras of before.
+    ///
+    /// # Errors
+    /// When the simulator is gone or has no such home.
+    pub fn reset(&mut self, home: u32) -> Result<(), HomeError> {
+        self.post("clear", &[home.into()], &[])?;
+        self.post("environment", &[home.into()], &[]).map(drop)
+    }
+
+    /// Everything that is in the home.
+    ///
+    /// # Errors
+    /// When the simulator is gone, or what it sends is no graph.
+    pub fn environment_graph(&mut self) -> Result<EnvironmentGraph, HomeError> {
+        let action = "environment_graph";
+        let answer = self.post(action, &[], &[])?;
+        parsed(action, "a graph of nodes with boxes", answer.message.unwrap_or_default().as_bytes())
+    }
+
+    /// How many cameras there are.
+    ///
+    /// # Errors
+    /// When the simulator is gone, or does not say.
+    pub fn camera_count(&mut self) -> Result<i64, HomeError> {
+        let action = "camera_count";
+        let missing = || HomeError::Malformed { action, expected: "`value`", reason: "found none".to_owned() };
+        self.post(action, &[], &[])?.value.ok_or_else(missing)
+    }
+
+    /// Adds a camera to the scene; it is the last of [`Client::camera_count`].
+    ///
+    /// # Errors
+    /// When the simulator is gone or refuses.
+    pub fn add_camera(&mut self, camera: &Camera) -> Result<(), HomeError> {
+        self.post("add_camera", &[], &[camera.to_json()]).map(drop)
+    }
+
+    /// Moves a camera of the scene.
+    ///
+    /// # Errors
+    /// When the simulator is gone or has no such camera.
+    pub fn update_camera(&mut self, index: i64, camera: &Camera) -> Result<(), HomeError> {
+        self.post("update_camera", &[index], &[camera.to_json()]).map(drop)
+    }
+
+    /// What a camera sees: RGB, rows from the top.
+    ///
+    /// # Errors
+    /// When the simulator is gone, or sends no picture of this size.
+    pub fn camera_image(&mut self, index: i64, mode: Mode, (width, height): (u32, u32)) -> Result<Vec<u8>, HomeError> {
+        let action = "camera_image";
+        let mode = match mode {
+            Mode::Normal => "normal",
+            Mode::Instances => "seg_inst",
+        };
+        let wanted = json!({ "mode": mode, "image_width": width, "image_height": height });
+        let answer = self.post(action, &[index], &[wanted.to_string()])?;
+        let malformed = |reason: String| HomeError::Malformed { action, expected: "a PNG in base64", reason };
+        let pictures = answer.message_list.unwrap_or_default();
+        let first = pictures.first().ok_or_else(|| malformed("found no picture".to_owned()))?;
+        let file = BASE64_STANDARD.decode(first).map_err(|error| malformed(error.to_string()))?;
+        decode::rgb(&file, ImageFormat::Png, (width, height)).map_err(malformed)
+    }
+
+    /// The colour of each object in pictures of instances, by the object's id.
+    ///
+    /// # Errors
+    /// When the simulator is gone, or what it sends are no colours.
+    pub fn instance_colors(&mut self) -> Result<BTreeMap<i64, [u8; 3]>, HomeError> {
+        let action = "instance_colors";
+        let answer = self.post(action, &[], &[])?;
+        let message = answer.message.unwrap_or_default();
+        let colours: BTreeMap<i64, [f64; 3]> = parsed(action, "three numbers by each id", message.as_bytes())?;
+        // Unity's colours are shares of one; a channel above that shows that they are bytes.
+        let scale = if colours.values().flatten().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
+        let byte = |channel: f64| (channel * scale).round().clamp(0.0, 255.0) as u8;
+        Ok(colours.into_iter().map(|(id, rgb)| (id, rgb.map(byte))).collect())
+    }
+}
+
+impl Camera {
+    fn to_json(self) -> String {
+        let Self { position, rotation_deg, field_of_view_deg } = self;
+        let fields = json!({
+            "position": vector(position),
+            "rotation": vector(rotation_deg),
+            "field_view": field_of_view_deg,
+        });
+        fields.to_string()
+    }
+}
+
+fn parsed<T: DeserializeOwned>(action: &'static str, expected: &'static str, json: &[u8]) -> Result<T, HomeError> {
+    serde_json::from_slice(json).map_err(|error| HomeError::Malformed { action, expected, reason: error.to_string() })
+}

@@ -1,0 +1,45 @@
+//! What can go wrong with VirtualHome.
+
+/// Why VirtualHome does not give what it was asked for.
+#[derive(Debug, thiserror::Error)]
+pub enum HomeError {
+    /// Nobody answers.
+    #[error("action {action}: {reason}; start the simulator with -batchmode -http-port and that port")]
+    Unreachable {
+        /// What was asked.
+        action: &'static str,
+        /// What happened.
+        reason: String,
+    },
+    /// An answer with another status than 200.
+    #[error("action {action}: the simulator answered with status {status}: {message}")]
+    Status {
+        /// What was asked.
+        action: &'static str,
+        /// The HTTP status.
+        status: u16,
+        /// The beginning of what it said.
+        message: String,
+    },
+    /// It says that it could not.
+    #[error("action {action}: the simulator could not: {message}")]
+    Failed {
+        /// What was asked.
+        action: &'static str,
+        /// The beginning of what it said.
+        message: String,
+    },
+    /// An answer that cannot be read.
+    #[error("action {action}: expected {expected}, {reason}")]
+    Malformed {
+        /// What was asked.
+        action: &'static str,
+        /// What should have come.
+        expected: &'static str,
+        /// What is wrong, and where.
+        reason: String,
+    },
+    /// A home in which one cannot walk.
+    #[error("the home's graph {0}")]
+    Floor(String),
+}

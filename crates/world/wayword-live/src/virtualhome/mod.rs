@@ -1,0 +1,18 @@
+//! VirtualHome: its HTTP protocol, and the platform on top of it.
+//!
+//! Each request is a POST of JSON with an action and its parameters, and each answer JSON too, often with more JSON as text
+//! in it. Actions and fields are those of the Python client `virtualhome` 2.3.0 (`comm_unity.py`).
+
+mod client;
+mod error;
+mod floor;
+mod graph;
+mod names;
+mod platform;
+#[cfg(feature = "stand-in")]
+pub mod stand_in;
+
+pub use client::{Camera, Client, Mode};
+pub use error::HomeError;
+pub use graph::{BoundingBox, EnvironmentGraph, Node};
+pub use platform::{VirtualHome, VirtualHomeOptions, VirtualHomePlatform};

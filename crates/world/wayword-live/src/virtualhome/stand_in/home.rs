@@ -1,0 +1,100 @@
+//! A generated house as VirtualHome tells of it.
+
+use crate::{
+    tdw::stand_in::{World, id_colour, png},
+    unity::{unity_from_wayword, wayword_from_unity},
+};
+use base64::{Engine, prelude::BASE64_STANDARD};
+use serde_json::{Map, Value, json};
+use wayword_core::DVec3;
+use wayword_platforms::house::Role;
+use wayword_render::Camera;
+
+/// Numbers of rooms begin here: above those of things.
+const FIRST_ROOM: usize = 100_000;
+
+#[derive(Debug)]
+pub(super) struct Home {
+    world: World,
+}
+
+/// A node with its box.
+fn node(id: u64, class: &str, category: &str, (low, high): (DVec3, DVec3)) -> Value {
+    let (centre, size) = (unity_from_wayword((low + high) / 2.0), unity_from_wayword(high - low));
+    json!({
+        "id": id,
+        "class_name": class.replace(' ', ""),
+        "category": category,
+        "prefab_name": format!("PRE_{id}"),
+        "obj_transform": { "position": centre, "rotation": [0.0, 0.0, 0.0, 1.0], "scale": [1.0, 1.0, 1.0] },
+        "bounding_box": { "center": centre, "size": size },
+        "properties": [],
+        "states": [],
+    })
+}
+
+impl Home {
+    pub(super) fn new(number: u64) -> Self {
+        Self { world: World::with_one_storey(number.saturating_add(1)) }
+    }
+
+    /// Rooms and things, and which thing is in which room.
+    pub(super) fn graph(&self) -> Value {
+        let house = &self.world.house().house;
+        let room_id = |room: usize| (FIRST_ROOM + room) as u64;
+        let mut nodes: Vec<Value> = house
+            .rooms
+            .iter()
+            .enumerate()
+            .map(|(index, room)| {
+                let (area, base_cm) = (room.outline, room.base_cm());
+                let low = DVec3::new(area.x0.into(), area.y0.into(), base_cm.into()) / 100.0;
+                let high = DVec3::new(area.x1.into(), area.y1.into(), (base_cm + room.height_cm).into()) / 100.0;
+                node(room_id(index), room.kind.word(), "Rooms", (low, high))
+            })
+            .collect();
+        let mut edges = Vec::new();
+        for (id, object) in self.world.objects() {
+            let opening = house.openings.iter().find(|opening| opening.id == id);
+            let (class, category) = match (opening, object.role) {
+                (Some(opening), _) if opening.is_passable() => ("doorjamb", "Doors"),
+                (_, Role::Furniture) => (object.name.as_str(), "Furniture"),
+                _ => (object.name.as_str(), "Windows"),
+            };
+            nodes.push(node(id.into(), class, category, object.bounds_m));
+            edges.push(json!({ "from_id": id, "to_id": room_id(object.room), "relation_type": "INSIDE" }));
+        }
+        json!({ "nodes": nodes, "edges": edges })
+    }
+
+    /// The colour of each thing, as shares.
+    pub(super) fn colours(&self) -> Value {
+        let colour = |id: u32| json!(id_colour(id).map(|channel| f64::from(channel) / 255.0));
+        Value::Object(self.world.objects().map(|(id, _)| (id.to_string(), colour(id))).collect::<Map<_, _>>())
+    }
+
+    /// What a camera sees, as a PNG in base64; `None` for modes that the stand-in does not have.
+    pub(super) fn picture(&self, camera: &Value, wanted: &Value) -> Option<String> {
+        let number = |value: &Value| value.as_f64();
+        let vector = |value: &Value| Some([number(&value["x"])?, number(&value["y"])?, number(&value["z"])?]);
+        let side = |name: &str| wanted[name].as_u64().unwrap_or(256).clamp(1, 4096) as u32;
+        let [pitch_deg, yaw_deg, _] = vector(&camera["rotation"])?;
+        let camera = Camera {
+            position: wayword_from_unity(vector(&camera["position"])?),
+            heading_rad: yaw_deg.to_radians(),
+            // Unity's positive rotation about its right axis looks down.
+            elevation_rad: -pitch_deg.to_radians(),
+            vertical_fov_rad: number(&camera["field_view"])?.clamp(1.0, 170.0).to_radians(),
+            width: side("image_width"),
+            height: side("image_height"),
+        };
+        let picture = self.world.house().picture(&camera).ok()?;
+        let colour = |id: &u32| if self.world.is_object(*id) { id_colour(*id) } else { [0; 3] };
+        let rgb = match wanted["mode"].as_str()? {
+            "normal" => picture.rgb,
+            "seg_inst" => picture.ids.iter().flat_map(colour).collect(),
+            _ => return None,
+        };
+        Some(BASE64_STANDARD.encode(png((camera.width, camera.height), &rgb)))
+    }
+}

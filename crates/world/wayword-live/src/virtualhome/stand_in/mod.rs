@@ -1,0 +1,121 @@
+//! A program that speaks like VirtualHome's executable and shows a generated house: what tests and demonstrations drive.
+
+mod home;
+mod http;
+
+use home::Home;
+use serde_json::{Value, json};
+use std::{
+    io,
+    net::{SocketAddr, TcpListener},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{JoinHandle, sleep, spawn},
+    time::Duration,
+};
+
+/// How often it looks whether it is to stop.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// A stand-in that runs in a thread of its own until it is dropped.
+#[derive(Debug)]
+pub struct StandIn {
+    address: SocketAddr,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl StandIn {
+    /// Starts one on a port that the system chooses. Home `n` is the first generated house with one storey from seed `n + 1`
+    /// on.
+    ///
+    /// # Errors
+    /// When there is no free port.
+    pub fn start() -> io::Result<Self> {
+        let listener = TcpListener::bind("127.0.0.1:0")?;
+        listener.set_nonblocking(true)?;
+        let address = listener.local_addr()?;
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopped = stop.clone();
+        let thread = spawn(move || {
+            let mut state = State::default();
+            while !stopped.load(Ordering::Relaxed) {
+                match listener.accept() {
+                    // Whoever breaks off a request gets no answer.
+                    Ok((stream, _)) => drop(http::serve(stream, |request| state.answer(request))),
+                    Err(_) => sleep(PAUSE),
+                }
+            }
+        });
+        Ok(Self { address, stop, thread: Some(thread) })
+    }
+
+    /// Its port.
+    #[must_use]
+    pub fn port(&self) -> u16 {
+        self.address.port()
+    }
+
+    /// Its address, as clients take it.
+    #[must_use]
+    pub fn url(&self) -> String {
+        format!("http://{}", self.address)
+    }
+}
+
+impl Drop for StandIn {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.thread.take().map(JoinHandle::join);
+    }
+}
+
+#[derive(Debug, Default)]
+struct State {
+    home: Option<Home>,
+    cameras: Vec<Value>,
+}
+
+impl State {
+    fn answer(&mut self, request: &Value) -> Value {
+        let done = self.act(request);
+        let (success, fields) =
+            done.map_or((false, json!({ "message": "it cannot do that" })), |fields| (true, fields));
+        json!({
+            "id": request["id"],
+            "success": success,
+            "message": fields["message"].as_str().unwrap_or_default(),
+            "value": fields["value"].as_i64().unwrap_or(0),
+            "message_list": fields["message_list"],
+        })
+    }
+
+    /// What an action gives: some of message, value and list; `None` where it fails.
+    fn act(&mut self, request: &Value) -> Option<Value> {
+        let int = |n: usize| request["intParams"][n].as_u64();
+        let text = || serde_json::from_str::<Value>(request["stringParams"][0].as_str()?).ok();
+        match request["action"].as_str()? {
+            "idle" | "clear" | "add_character" => {}
+            "environment" => {
+                self.home = Some(Home::new(int(0).unwrap_or(0)));
+                self.cameras.clear();
+            }
+            "environment_graph" => return Some(json!({ "message": self.home.as_ref()?.graph().to_string() })),
+            "instance_colors" => return Some(json!({ "message": self.home.as_ref()?.colours().to_string() })),
+            "camera_count" => return Some(json!({ "value": self.cameras.len() })),
+            "add_camera" => self.cameras.push(text()?),
+            "update_camera" => *self.cameras.get_mut(int(0)? as usize)? = text()?,
+            "camera_image" => {
+                let camera = |index: &Value| self.cameras.get(index.as_u64()? as usize);
+                let cameras = request["intParams"].as_array()?.iter().map(camera);
+                let wanted = text()?;
+                let pictures = cameras.map(|camera| self.home.as_ref()?.picture(camera?, &wanted));
+                return Some(json!({ "message_list": pictures.collect::<Option<Vec<String>>>()? }));
+            }
+            _ => return None,
+        }
+        Some(json!({}))
+    }
+}

@@ -1,0 +1,154 @@
+//! The platform over the stand-in executable: graph, paths, views, labels, rooms; and answers that nobody should send.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::{
+    io::{Read, Write},
+    net::TcpListener,
+    thread,
+    time::Duration,
+};
+use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
+use wayword_live::{
+    Pictures,
+    virtualhome::{Client, VirtualHomeOptions, VirtualHomePlatform, stand_in::StandIn},
+};
+use wayword_platforms::house::{Ground, HouseScene, generate};
+
+fn start() -> (VirtualHomePlatform, StandIn) {
+    let simulator = StandIn::start().unwrap();
+    let pictures = Pictures { width_px: 160, height_px: 120, ..Pictures::default() };
+    let timeout = Duration::from_secs(20);
+    (VirtualHomePlatform::new(VirtualHomeOptions { url: simulator.url(), timeout, pictures }), simulator)
+}
+
+fn scene() -> SceneId {
+    SceneId::new("home_0").unwrap()
+}
+
+/// The house that the stand-in shows as home 0.
+fn house() -> HouseScene {
+    HouseScene::new((1..).map(generate).find(|house| house.storeys == 1).unwrap()).unwrap()
+}
+
+#[test]
+fn the_graph_leads_through_doors_from_room_to_room() {
+    let (platform, _simulator) = start();
+    let graph = platform.graph(&scene()).unwrap();
+    let house = house().house;
+    let ground = Ground::of(&house);
+    let eyes: Vec<_> = graph.viewpoints().map(|id| graph.position(id).unwrap()).collect();
+    assert!(eyes.len() > 20 && graph.components() == 1, "{} viewpoints", eyes.len());
+    let rooms: std::collections::BTreeSet<_> = eyes
+        .iter()
+        .filter_map(|eye| house.room_at(eye.x, eye.y, 0.0))
+        .map(|room| (room.outline.x0, room.outline.y0))
+        .collect();
+    assert!(rooms.len() * 3 >= house.rooms.len() * 2, "{} of {} rooms", rooms.len(), house.rooms.len());
+    // The leaves of open doors are not in the graph, so a few places may lie behind one.
+    let walkable = eyes.iter().filter(|eye| ground.is_walkable(eye.with_z(0.0))).count();
+    assert!(walkable * 20 >= eyes.len() * 18, "{walkable} of {} can be stood on", eyes.len());
+}
+
+#[test]
+fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
+    let (platform, _simulator) = start();
+    let request = PathRequest { length_m: 4.0..=16.0, ..PathRequest::default() };
+    for seed in 0..2 {
+        let path = platform.sample_path(&scene(), &request, seed).unwrap();
+        assert!(request.length_m.contains(&path.length_m()));
+        assert!(path.moves().iter().all(|step| step.distance_m < 1.01));
+        let (target, last) = (path.target.clone().unwrap(), path.frames.last().unwrap());
+        assert_eq!(platform.object_name(&scene(), last, &target.object).unwrap(), Some(target.name));
+        assert_eq!(platform.sample_path(&scene(), &request, seed).unwrap(), path);
+    }
+}
+
+#[test]
+fn a_view_is_the_houses_own_with_the_names_of_things_and_room() {
+    let (platform, _simulator) = start();
+    let graph = platform.graph(&scene()).unwrap();
+    let (drawn, mut labels) = (house(), 0);
+    for id in graph.viewpoints().step_by(9) {
+        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
+        let view = platform.look(&scene(), &frame, Gaze::quarter(Heading::new(2.0).unwrap())).unwrap();
+        let camera = wayword_render::Camera {
+            position: frame.pose.position,
+            heading_rad: 2.0,
+            elevation_rad: 0.0,
+            vertical_fov_rad: 2.0 * libm::atan(0.75),
+            width: 160,
+            height: 120,
+        };
+        let picture = drawn.picture(&camera).unwrap();
+        let pixels = view.image.as_ref().unwrap().rgb();
+        let off = picture.rgb.iter().zip(pixels).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+        assert!(off < pixels.len() / 200, "{off} of {} values differ", pixels.len());
+        let truth = view.ground_truth().unwrap();
+        let eye = frame.pose.position;
+        assert_eq!(truth.room.as_deref(), drawn.house.room_at(eye.x, eye.y, 0.0).map(|room| room.kind.word()));
+        for label in &truth.labels {
+            let number: u32 = label.object.as_str().parse().unwrap();
+            let name = drawn.objects[&number].name.replace(' ', "");
+            assert!(label.name.replace(' ', "") == name, "{} is {name}", label.name);
+            assert!(picture.ids.contains(&number));
+        }
+        labels += truth.labels.len();
+    }
+    assert!(labels > 5, "{labels}");
+}
+
+#[test]
+fn a_simulator_that_is_started_anew_gets_its_home_again() {
+    let (platform, simulator) = start();
+    let graph = platform.graph(&scene()).unwrap();
+    let first = graph.viewpoints().next().unwrap().clone();
+    let frame = graph.walk(&[first], None).unwrap().remove(0);
+    let look = || platform.look(&scene(), &frame, Gaze::quarter(Heading::NORTH));
+    let before = look().unwrap();
+    // Another client takes the camera away.
+    Client::new(simulator.url(), Duration::from_secs(5)).reset(3).unwrap();
+    assert_eq!(look().unwrap().image.unwrap().rgb(), before.image.unwrap().rgb());
+}
+
+#[test]
+fn scenes_are_homes_and_a_simulator_that_is_not_there_is_named() {
+    let (platform, simulator) = start();
+    assert_eq!(platform.scenes().unwrap().len(), 50);
+    let unknown = platform.graph(&SceneId::new("home_50").unwrap()).unwrap_err().to_string();
+    assert!(unknown.contains("home_0 to home_49"), "{unknown}");
+    drop(simulator);
+    let gone = platform.graph(&scene()).unwrap_err().to_string();
+    assert!(gone.contains("http://127.0.0.1") && gone.contains("-http-port"), "{gone}");
+}
+
+/// What the client makes of an answer, whatever is asked.
+fn answered(status: &'static str, announced: usize, content: &'static str) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("http://{}", listener.local_addr().unwrap());
+    let simulator = thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let _ = stream.read(&mut [0; 4096]);
+        let _ = write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {announced}\r\n\r\n{content}");
+    });
+    let error = Client::new(url, Duration::from_secs(5)).environment_graph().unwrap_err();
+    simulator.join().unwrap();
+    error.to_string()
+}
+
+#[test]
+fn what_cannot_be_read_says_where_and_what_was_expected() {
+    let cases = [
+        ("200 OK", "{]", "expected an answer with `success`"),
+        ("200 OK", r#"{"success":true,"message":"nodes?"}"#, "expected a graph of nodes with boxes"),
+        ("200 OK", r#"{"success":true,"message":"{\"nodes\":[{\"id\":true}]}"}"#, "line 1 column 20"),
+        ("200 OK", r#"{"success":false,"message":"no home"}"#, "could not: no home"),
+        ("500 Oh", "sad", "status 500: sad"),
+    ];
+    for (status, content, expected) in cases {
+        let error = answered(status, content.len(), content);
+        assert!(error.contains(expected), "{error}");
+    }
+    let cut = answered("200 OK", usize::MAX / 2, "{");
+    assert!(cut.contains("environment_graph"), "{cut}");
+}
