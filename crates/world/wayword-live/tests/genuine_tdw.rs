@@ -5,7 +5,10 @@
 
 use serde_json::Value;
 use std::{net::SocketAddr, net::TcpListener, path::Path, process::Command};
-use wayword_live::tdw::stand_in::{StandIn, StandInOptions};
+use wayword_live::tdw::{
+    Command as TdwCommand, Controller, ControllerOptions, Frequency,
+    stand_in::{StandIn, StandInOptions},
+};
 use wayword_platforms::house::{HouseScene, Role, generate};
 
 fn drive(python: &str, version: &'static str) -> (Value, Vec<String>) {
@@ -55,6 +58,31 @@ fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
             }
         }
     }
+}
+
+/// libzmq as the build: the socket that most programs have.
+#[test]
+fn libzmq_agrees_about_the_bytes() {
+    let Ok(pythons) = std::env::var("WAYWORD_TDW_PYTHON") else {
+        println!("SKIPPED: name a Python with the package pyzmq in WAYWORD_TDW_PYTHON");
+        return;
+    };
+    let python = pythons.split(',').next().unwrap_or_default().to_owned();
+    let options = ControllerOptions { address: SocketAddr::from(([127, 0, 0, 1], 0)), ..ControllerOptions::default() };
+    let mut controller = Controller::bind(options).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/pretend_build.py");
+    let port = controller.address().port().to_string();
+    let build = std::thread::spawn(move || Command::new(python).arg(script).arg(port).output().unwrap());
+    // Its first answer is that it did not hear, its second has a megabyte, and a long list of commands is its third.
+    assert_eq!(controller.connect().unwrap().tdw, "1.13.0.0");
+    let many = vec![TdwCommand::SendSceneRegions { frequency: Frequency::Once }; 10_000];
+    assert_eq!(controller.communicate(&many).unwrap().frame_number, 2);
+    let told = String::from_utf8(build.join().unwrap().stdout).unwrap();
+    let told: Vec<(usize, Vec<String>)> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(told.len(), 3);
+    assert_eq!(told[0], told[1], "the same commands again");
+    assert_eq!(told[1].1, ["set_error_handling", "send_version"]);
+    assert!(told[2].0 > 500_000 && told[2].1[0] == "send_scene_regions");
 }
 
 fn holds(told: &Value, saved: &[String], version: &str) {

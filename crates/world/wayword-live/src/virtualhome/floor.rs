@@ -70,3 +70,78 @@ fn passage(door: (DVec3, DVec3)) -> Area {
     let along = |length: f64| -(RADIUS_M.min(length / 2.0 - CELL_M));
     if size.x >= size.y { grown(door, [along(size.x), REACH_M]) } else { grown(door, [REACH_M, along(size.y)]) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::graph::{BoundingBox, Node};
+    use super::*;
+    use proptest::prelude::*;
+
+    fn node(class_name: &str, category: &str, center: [f64; 3], size: [f64; 3]) -> Node {
+        let bounding_box = Some(BoundingBox { center, size });
+        Node { id: 0, class_name: class_name.into(), category: category.into(), bounding_box }
+    }
+
+    /// Two rooms of 4 m by 4 m with a wall between at x = 0, and a door in it; Unity's axes.
+    fn two_rooms(more: Vec<Node>) -> EnvironmentGraph {
+        let size = [4.0, 2.5, 4.0];
+        let mut nodes =
+            vec![node("kitchen", "Rooms", [-2.0, 1.25, 0.0], size), node("bedroom", "Rooms", [2.0, 1.25, 0.0], size)];
+        nodes.extend(more);
+        EnvironmentGraph { nodes }
+    }
+
+    fn door() -> Node {
+        node("doorjamb", "Doors", [0.0, 1.0, 0.0], [0.2, 2.0, 1.0])
+    }
+
+    #[test]
+    fn one_walks_from_room_to_room_through_a_door_only() {
+        let (from, to) = ([-2.0, 1.0], [2.0, 1.0]);
+        let (floor_m, raster) = raster(&two_rooms(vec![door()])).unwrap();
+        let way = raster.shortest(from, to).unwrap();
+        assert_eq!(floor_m, 0.0);
+        let crossing = way.windows(2).find(|leg| leg[0][0] < 0.0 && leg[1][0] >= 0.0).unwrap();
+        assert!(crossing.iter().all(|corner| corner[1].abs() < 0.9), "{way:?} misses the door");
+        let (_, closed) = super::raster(&two_rooms(Vec::new())).unwrap();
+        assert_eq!(closed.shortest(from, to), None);
+    }
+
+    #[test]
+    fn what_stands_in_the_way_is_gone_around_and_what_hangs_or_lies_is_not() {
+        let clear = |thing: Node| raster(&two_rooms(vec![door(), thing])).unwrap().1.is_free([2.0, 0.0]);
+        let small = [0.5, 0.05, 0.5];
+        assert!(!clear(node("coffeetable", "Furniture", [2.0, 0.25, 0.0], [0.5, 0.5, 0.5])));
+        assert!(clear(node("rug", "Decor", [2.0, 0.02, 0.0], small)));
+        assert!(clear(node("ceilinglamp", "Lamps", [2.0, 2.3, 0.0], small)));
+    }
+
+    #[test]
+    fn graphs_that_no_home_has_are_refused() {
+        let refused = |graph: &EnvironmentGraph| raster(graph).unwrap_err().to_string();
+        assert!(refused(&EnvironmentGraph::default()).contains("no room"));
+        let wide = node("hall", "Rooms", [0.0, 1.0, 0.0], [500.0, 2.0, 4.0]);
+        assert!(refused(&two_rooms(vec![wide])).contains("500 m"));
+        assert!(refused(&two_rooms(vec![door(); 5001])).contains("at most 5000"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_boxes_break_it(
+            boxes in prop::collection::vec(
+                (0..3_usize, prop::array::uniform3(-1e9..1e9f64), prop::array::uniform3(-9.0..9.0f64), any::<bool>()), 0..12,
+            ),
+        ) {
+            let kinds = [("kitchen", "Rooms"), ("doorjamb", "Doors"), ("sofa", "Furniture")];
+            let one = |(kind, center, size, near): (usize, [f64; 3], [f64; 3], bool)| {
+                let center = if near { center.map(|number| number % 10.0) } else { center };
+                node(kinds[kind].0, kinds[kind].1, center, size)
+            };
+            let graph = EnvironmentGraph { nodes: boxes.into_iter().map(one).collect() };
+            if let Ok((floor_m, raster)) = raster(&graph) {
+                prop_assert!(floor_m.is_finite());
+                prop_assert!(raster.places().iter().all(|place| raster.is_free(*place)));
+            }
+        }
+    }
+}
