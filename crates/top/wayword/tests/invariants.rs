@@ -84,7 +84,7 @@ fn no_crate_is_built_on_one_above_it() {
         ("wayword-formats", &["wayword-core"]),
         ("wayword-render", &["wayword-core"]),
         ("wayword-platforms", &["wayword-core", "wayword-formats", "wayword-render"]),
-        ("wayword-habitat", &["wayword-core", "wayword-render"]),
+        ("wayword-habitat", &["wayword-core", "wayword-platforms", "wayword-render"]),
         ("wayword-live", &["wayword-core", "wayword-platforms", "wayword-render"]),
         ("wayword-synthesis", &["wayword-core"]),
         ("wayword-metrics", &["wayword-core"]),

@@ -7,8 +7,11 @@ pub mod bake;
 mod fault;
 pub mod ground;
 pub mod navmesh;
+pub mod platform;
 pub mod scene;
+mod semantics;
 
 pub use fault::FileError;
 pub use ground::{Foothold, Ground, NoWay, Way};
 pub use navmesh::{NavMesh, NavMeshError, NavMeshSettings};
+pub use platform::{HabitatOptions, HabitatPlatform};

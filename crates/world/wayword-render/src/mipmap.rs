@@ -58,6 +58,14 @@ impl Level {
         })
     }
 
+    /// Colour of the texel that holds `uv`, repeat wrap.
+    fn nearest(&self, uv: Vec2) -> Vec3 {
+        let at = |u: f32, side: u32| (((u - floor(u)) * side as f32) as usize).min(side as usize - 1);
+        let index = self.in_row(at(uv.x, self.width)) + self.row(at(uv.y, self.height));
+        let [red, green, blue, _] = self.texels[index].to_le_bytes();
+        Vec3::new(red.into(), green.into(), blue.into())
+    }
+
     /// Colour at `uv`, 0..=255 per channel: repeat wrap, bilinear between texel centres.
     fn bilinear(&self, uv: Vec2) -> Vec3 {
         let (left, right, across) = split(uv.x, self.width);
@@ -110,13 +118,21 @@ pub(crate) struct MipMap {
     base: Level,
     /// Each half as large as the one before, the first half as large as the base.
     smaller: Vec<Level>,
+    /// Whether texels are taken as they are.
+    is_nearest: bool,
 }
 
 impl MipMap {
     /// A checked texture without its chain.
     pub(crate) fn plain(texture: &Texture) -> Self {
         let texel = |x: u32, y: u32| texture.texels[y as usize * texture.width as usize + x as usize];
-        Self { base: Level::new(texture.width, texture.height, texel), smaller: Vec::new() }
+        let base = Level::new(texture.width, texture.height, texel);
+        Self { base, smaller: Vec::new(), is_nearest: false }
+    }
+
+    /// Whether lookups blend between texels.
+    pub(crate) fn blend(&mut self, blends: bool) {
+        self.is_nearest = !blends;
     }
 
     /// Builds the levels down to one texel.
@@ -139,6 +155,9 @@ impl MipMap {
     /// Colour at `uv`, 0..=255 per channel. `footprint` gives the change of `uv` from a pixel to the next one to the
     /// right and below; it is asked only where there are levels to choose from.
     pub(crate) fn sample(&self, uv: Vec2, footprint: impl FnOnce() -> [Vec2; 2]) -> Vec3 {
+        if self.is_nearest {
+            return self.base.nearest(uv);
+        }
         if self.smaller.is_empty() {
             return self.base.bilinear(uv);
         }
@@ -190,6 +209,15 @@ mod tests {
     }
 
     #[test]
+    fn nearest_texels_are_never_blended() {
+        let mut two = map(2, 1, vec![[10, 20, 30, 255], [200, 100, 0, 255]]);
+        two.blend(false);
+        for (u, red) in [(0.0, 10.0), (0.49, 10.0), (0.51, 200.0), (0.99, 200.0), (-0.01, 200.0), (1.01, 10.0)] {
+            assert_eq!(at(&two, u, 0.3).x, red, "{u}");
+        }
+    }
+
+    #[test]
     fn the_last_row_blends_into_the_first() {
         let two = map(1, 2, vec![[0; 4], [200; 4]]);
         assert_eq!(at(&two, 0.5, 1.0), Vec3::splat(100.0));
@@ -213,9 +241,12 @@ mod tests {
 
     #[test]
     fn hostile_coordinates_stay_inside() {
-        let map = checks(4);
-        for u in [f32::MAX, f32::MIN, 1e-38, -1e-38, 8_388_609.0, -0.0, f32::NAN, f32::INFINITY] {
-            assert!(at(&map, u, -u).is_finite());
+        let mut map = checks(4);
+        for blends in [true, false] {
+            map.blend(blends);
+            for u in [f32::MAX, f32::MIN, 1e-38, -1e-38, 8_388_609.0, -0.0, f32::NAN, f32::INFINITY] {
+                assert!(at(&map, u, -u).is_finite());
+            }
         }
     }
 

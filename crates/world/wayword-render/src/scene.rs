@@ -18,6 +18,8 @@ pub enum Filter {
     /// Bilinear on the full picture, as Habitat does: exact, but fine patterns shimmer in the distance.
     #[default]
     Bilinear,
+    /// The nearest texel, unblended: for pictures whose colours are names.
+    Nearest,
     /// Between the two levels of a mip chain that fit the pixel's footprint: calm in the distance.
     Trilinear,
 }
@@ -163,8 +165,9 @@ impl Scene {
     #[must_use]
     pub fn with_filter(mut self, filter: Filter) -> Self {
         for texture in &mut self.textures {
+            texture.blend(filter != Filter::Nearest);
             match filter {
-                Filter::Bilinear => texture.drop_chain(),
+                Filter::Bilinear | Filter::Nearest => texture.drop_chain(),
                 Filter::Trilinear => texture.build_chain(),
             }
         }

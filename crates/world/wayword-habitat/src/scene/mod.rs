@@ -8,7 +8,7 @@ mod primitive;
 mod stage;
 mod studio;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use stage::Stage;
 pub(crate) use stage::stem;
@@ -59,7 +59,7 @@ impl Model {
                     let placed = habitat_from_asset * place.transform_point3(position.as_dvec3());
                     *position = wayword_from_habitat(placed).as_vec3();
                 }
-                if reading.plain == Some(mesh.material) {
+                if reading.plain == Some(mesh.material) && mesh.colours.is_empty() {
                     light(&mut mesh);
                 }
                 reading.model.meshes.push(mesh);

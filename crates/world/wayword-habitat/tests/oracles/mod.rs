@@ -1,6 +1,7 @@
 //! Where the answers of the genuine Habitat lie.
 
 #![allow(dead_code, reason = "each test binary uses a part")]
+#![allow(clippy::print_stderr, reason = "a test that is skipped says so")]
 
 use std::path::{Path, PathBuf};
 use wayword_core::DVec3;

@@ -9,14 +9,14 @@ mod house_file;
 mod labels;
 mod layout;
 mod levels;
-mod names;
+pub mod names;
 mod object_positions;
 mod photographs;
 mod platform;
 pub(crate) mod read;
 mod recent;
-mod rooms;
-pub(crate) mod sample;
+pub mod rooms;
+pub mod sample;
 mod scene;
 mod thirty_six;
 

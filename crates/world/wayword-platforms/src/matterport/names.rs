@@ -94,7 +94,8 @@ const MAX_CHARS: usize = 60;
 /// slips are gone. `None` where nothing is left.
 ///
 /// Of two names joined by a slash with spaces round it the first stands; without spaces ("stand/table") the second.
-pub(crate) fn plain(raw: &str) -> Option<String> {
+#[must_use]
+pub fn plain(raw: &str) -> Option<String> {
     let spaced: String = raw.chars().take(4 * MAX_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
     let lower = one_of_two(&spaced).to_lowercase();
     let kept: String = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '\'')).collect();
@@ -126,7 +127,8 @@ fn mended(word: &str) -> &str {
 }
 
 /// Whether a plain name is of something that one can be sent to do something with.
-pub(crate) fn is_furnishing(name: &str) -> bool {
+#[must_use]
+pub fn is_furnishing(name: &str) -> bool {
     !name.split(' ').any(|word| NO_ERRAND.contains(&word))
 }
 

@@ -52,7 +52,8 @@ fn entry(words: &[&str]) -> Result<(ViewpointId, char), String> {
 }
 
 /// The everyday word for a region's letter; `None` for what is no room that a person would name.
-pub(crate) fn name(letter: char) -> Option<&'static str> {
+#[must_use]
+pub fn name(letter: char) -> Option<&'static str> {
     Some(match letter {
         'a' => "bathroom",
         'b' => "bedroom",

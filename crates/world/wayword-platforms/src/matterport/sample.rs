@@ -72,7 +72,7 @@ fn walked(
 
 /// One of the visible objects: furnishings before parts of the building, and among these one without a namesake where
 /// there is one.
-fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
+pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     let has_namesake = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() > 1;
     let rank = |label: &Label| (!names::is_furnishing(&label.name), has_namesake(label));
     let best = labels.iter().map(rank).min()?;

@@ -1,0 +1,150 @@
+//! Which scenes a folder holds, and which of its files belong to each.
+
+use crate::{
+    fault::FileError,
+    scene::{Stage, stem},
+    semantics::SemanticFiles,
+};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+use wayword_core::SceneId;
+
+/// Folders below one another that are looked through.
+const DEPTH: usize = 4;
+/// Files and folders that are looked at, at most.
+const MAX_ENTRIES: usize = 200_000;
+const HINT: &str = "name a scene's .glb, or a folder of scenes as Habitat's datasets have them";
+
+/// The files of one scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SceneFiles {
+    /// The stage configuration, GLB or glTF.
+    pub(super) stage: PathBuf,
+}
+
+/// Every scene at a place, which is a file or a folder: the id is the file's name without what says its format, behind its
+/// folder's name where two have the same.
+pub(super) fn scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, FileError> {
+    let mut files = Vec::new();
+    if place.is_dir() {
+        collect(place, DEPTH, &mut files)?;
+    } else {
+        files.push(place.to_owned());
+    }
+    let mut by_stem: BTreeMap<(PathBuf, String), (u8, PathBuf)> = BTreeMap::new();
+    for file in files {
+        let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let Some(rank) = rank(name) else { continue };
+        let key = (file.parent().unwrap_or(Path::new("")).to_owned(), stem(name).to_owned());
+        let known = by_stem.entry(key).or_insert_with(|| (rank, file.clone()));
+        if rank < known.0 {
+            *known = (rank, file);
+        }
+    }
+    let mut scenes = BTreeMap::new();
+    for ((folder, stem), (_, stage)) in by_stem {
+        let parent = folder.file_name().and_then(|name| name.to_str()).unwrap_or("scene");
+        let names = [stem.clone(), format!("{parent}.{stem}")];
+        let free = names.into_iter().filter_map(|name| SceneId::new(name).ok()).find(|id| !scenes.contains_key(id));
+        if let Some(id) = free {
+            scenes.insert(id, SceneFiles { stage });
+        }
+    }
+    if scenes.is_empty() {
+        return Err(FileError::new(place, "holds no scene", HINT));
+    }
+    Ok(scenes)
+}
+
+/// How good a file is as a stage, the best being 0; `None` for what is none.
+fn rank(name: &str) -> Option<u8> {
+    let endings = [".stage_config.json", ".basis.glb", ".glb", ".gltf"];
+    let rank = endings.iter().position(|ending| name.ends_with(ending))? as u8;
+    (!name.contains(".semantic.")).then_some(rank)
+}
+
+fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), FileError> {
+    let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), HINT);
+    let mut entries = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(wrong)?.take(MAX_ENTRIES) {
+        entries.push(entry.map_err(wrong)?.path());
+    }
+    entries.sort();
+    for entry in entries {
+        if files.len() >= MAX_ENTRIES {
+            break;
+        }
+        if !entry.is_dir() {
+            files.push(entry);
+        } else if depth > 0 {
+            collect(&entry, depth - 1, files)?;
+        }
+    }
+    Ok(())
+}
+
+impl SceneFiles {
+    /// The navmesh that lies with the scene.
+    pub(super) fn navmesh(&self, stage: &Stage) -> Option<PathBuf> {
+        let own = self.beside(&[".basis.navmesh", ".navmesh"]);
+        stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
+    }
+
+    /// The semantic files that lie with it.
+    pub(super) fn semantics(&self, stage: &Stage) -> SemanticFiles {
+        let there = |ending: &str| self.beside(&[ending]).into_iter().find(|file| file.is_file());
+        let mesh = stage.semantics.clone().filter(|file| file.is_file()).or_else(|| there(".semantic.glb"));
+        SemanticFiles {
+            painted: mesh.zip(there(".semantic.txt")),
+            numbered: there("_semantic.ply").zip(there(".house")),
+        }
+    }
+
+    fn beside(&self, endings: &[&str]) -> Vec<PathBuf> {
+        let name = self.stage.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        endings.iter().map(|ending| self.stage.with_file_name(format!("{}{ending}", stem(name)))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_are_found_with_what_belongs_to_them() {
+        let folder = tempfile::tempdir().unwrap();
+        for file in [
+            "hm3d/00800-a/a.basis.glb",
+            "hm3d/00800-a/a.glb",
+            "hm3d/00800-a/a.basis.navmesh",
+            "hm3d/00800-a/a.semantic.glb",
+            "hm3d/00800-a/a.semantic.txt",
+            "mp3d/b/b.glb",
+            "mp3d/b/b.house",
+            "mp3d/b/b_semantic.ply",
+            "other/b.glb",
+            "other/notes.txt",
+        ] {
+            let file = folder.path().join(file);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, "").unwrap();
+        }
+        let scenes = scenes(folder.path()).unwrap();
+        assert_eq!(scenes.keys().map(SceneId::as_str).collect::<Vec<_>>(), ["a", "b", "other.b"]);
+        let files = &scenes[&SceneId::new("a").unwrap()];
+        assert!(files.stage.ends_with("a.basis.glb"));
+        let stage = Stage::of(&files.stage).unwrap();
+        assert!(files.navmesh(&stage).unwrap().ends_with("a.basis.navmesh"));
+        assert!(files.semantics(&stage).painted.unwrap().1.ends_with("a.semantic.txt"));
+        let matterport = &scenes[&SceneId::new("b").unwrap()];
+        assert!(matterport.semantics(&Stage::of(&matterport.stage).unwrap()).numbered.is_some());
+    }
+
+    #[test]
+    fn a_folder_without_scenes_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(scenes(folder.path()).unwrap_err().to_string().contains("holds no scene"));
+    }
+}

@@ -1,0 +1,129 @@
+//! One scene, read and made ready.
+
+use super::{HabitatOptions, files::SceneFiles};
+use crate::{
+    axes::EYE_M,
+    bake::bake,
+    fault::{self, FileError},
+    ground::{Ground, viewpoint_graph},
+    navmesh::{NavMesh, NavMeshSettings},
+    scene::{Model, Stage},
+    semantics::{self, Semantics},
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{Arc, OnceLock},
+};
+use wayword_core::{
+    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
+    ViewpointGraph, ViewpointId,
+};
+use wayword_render::{Camera, RenderError, Scene, render};
+
+const MAX_NAVMESH: u64 = 1 << 30;
+const NAVMESH_HINT: &str = "remove it, and the scene's ground is baked instead";
+const DRAW_HINT: &str = "export the scene again as GLB";
+
+/// A scene with its ground.
+#[derive(Debug)]
+pub(super) struct Home {
+    pub(super) id: SceneId,
+    scene: Scene,
+    pub(super) navmesh: NavMesh,
+    pub(super) ground: Ground,
+    pub(super) graph: Arc<ViewpointGraph>,
+    pub(super) semantics: Option<Semantics>,
+    /// The viewpoints from which each object is seen; looked for when first asked for.
+    seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
+}
+
+impl Home {
+    pub(super) fn build(id: &SceneId, files: &SceneFiles, options: &HabitatOptions) -> Result<Self, PlatformError> {
+        let stage = Stage::of(&files.stage)?;
+        let model = Model::of(&stage)?;
+        let navmesh = match options.navmesh.clone().or_else(|| files.navmesh(&stage)) {
+            Some(file) => {
+                let bytes = fault::bytes(&file, MAX_NAVMESH, NAVMESH_HINT)?;
+                NavMesh::from_bytes(&bytes).map_err(|error| FileError::new(&file, error.to_string(), NAVMESH_HINT))?
+            }
+            None => bake(&model, &NavMeshSettings::default())
+                .map_err(|error| FileError::new(&stage.asset, error.to_string(), "or choose another scene"))?,
+        };
+        let semantics = semantics::load(&files.semantics(&stage), stage.habitat_from_asset)?;
+        let scene = Scene::new(model.meshes, model.materials, model.textures);
+        let scene = scene.map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
+        let ground = Ground::new(&navmesh);
+        let graph = viewpoint_graph(&ground, 0).map_err(|source| PlatformError::Graph { scene: id.clone(), source })?;
+        let (id, graph) = (id.clone(), Arc::new(graph));
+        Ok(Self { id, scene, navmesh, ground, graph, semantics, seen_from: OnceLock::new() })
+    }
+
+    /// What is seen from an eye; the picture where one is wanted, labels where the scene has semantics.
+    pub(super) fn view(&self, eye: DVec3, gaze: Gaze, size: [u32; 2], pictured: bool) -> Result<View, PlatformError> {
+        let camera = camera(eye, gaze, size);
+        let image = pictured.then(|| self.image(&camera)).transpose()?;
+        let truth = match &self.semantics {
+            Some(semantics) => Some(GroundTruth {
+                labels: semantics.labels(&camera, gaze).map_err(|error| self.refused(&error))?,
+                lists_objects: true,
+                room: semantics.room(eye).map(str::to_owned),
+            }),
+            None => None,
+        };
+        Ok(View::new(Pose::level(eye, gaze.heading), gaze.horizontal_fov_rad, image, truth))
+    }
+
+    fn image(&self, camera: &Camera) -> Result<Arc<Image>, PlatformError> {
+        let picture = render(&self.scene, camera).map_err(|error| self.refused(&error))?;
+        let image = Image::new(picture.width, picture.height, picture.rgb);
+        image.map(Arc::new).map_err(|error| self.refused(&error))
+    }
+
+    fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
+        PlatformError::UnknownScene { scene: self.id.to_string(), hint: error.to_string() }
+    }
+
+    /// Everything visible around a place, in small pictures.
+    pub(super) fn labels_around(&self, eye: DVec3) -> Result<Vec<Label>, PlatformError> {
+        let Some(semantics) = &self.semantics else { return Ok(Vec::new()) };
+        let quarters = Gaze::around(Heading::NORTH).into_iter();
+        let labels = quarters.map(|gaze| semantics.labels(&camera(eye, gaze, [320, 240]), gaze));
+        let labels: Result<Vec<Vec<Label>>, RenderError> = labels.collect();
+        Ok(labels.map_err(|error| self.refused(&error))?.into_iter().flatten().collect())
+    }
+
+    /// The viewpoints from which each object is seen.
+    pub(super) fn seen_from(&self) -> Result<&BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
+        if let Some(seen_from) = self.seen_from.get() {
+            return Ok(seen_from);
+        }
+        let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
+        for viewpoint in self.graph.viewpoints() {
+            let eye = self.graph.position(viewpoint).unwrap_or_default();
+            for label in self.labels_around(eye)? {
+                seen_from.entry(label.object).or_default().insert(viewpoint.clone());
+            }
+        }
+        Ok(self.seen_from.get_or_init(|| seen_from))
+    }
+
+    /// Refuses frames that do not stand on the ground.
+    pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
+        let eye = frame.pose.position;
+        if self.ground.nearest(eye - DVec3::Z * EYE_M).is_some() {
+            return Ok(());
+        }
+        let place = format!("{:.2} {:.2} {:.2}", eye.x, eye.y, eye.z);
+        let named = frame.viewpoint.clone().map_or_else(|| ViewpointId::new(place), Ok);
+        Err(named.map_or_else(
+            |_| PlatformError::NotAViewpoint { scene: self.id.clone() },
+            |viewpoint| PlatformError::UnknownViewpoint { scene: self.id.clone(), viewpoint },
+        ))
+    }
+}
+
+fn camera(eye: DVec3, gaze: Gaze, [width, height]: [u32; 2]) -> Camera {
+    let aspect = f64::from(height) / f64::from(width.max(1));
+    let vertical_fov_rad = 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect);
+    Camera { position: eye, heading_rad: gaze.heading.rad(), elevation_rad: 0.0, vertical_fov_rad, width, height }
+}

@@ -1,0 +1,137 @@
+//! Habitat's scenes as a platform.
+
+mod files;
+mod home;
+mod sample;
+#[cfg(test)]
+mod tests;
+
+use crate::navmesh::NavMesh;
+use files::SceneFiles;
+use home::Home;
+use std::{
+    collections::{BTreeMap, BTreeSet, VecDeque},
+    path::{Path as FilePath, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
+};
+
+/// Scenes that are kept ready at a time: one of HM3D takes some hundred MB.
+const READY: usize = 2;
+/// Widest gaze that one flat picture can show, radians.
+const WIDEST_RAD: f64 = 2.6;
+
+/// Scenes as Habitat reads them.
+#[derive(Debug)]
+pub struct HabitatPlatform {
+    options: HabitatOptions,
+    scenes: BTreeMap<SceneId, SceneFiles>,
+    ready: Mutex<VecDeque<Arc<Home>>>,
+}
+
+/// What can be chosen about the platform.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HabitatOptions {
+    /// Width of pictures, pixels.
+    pub width_px: u32,
+    /// Height of pictures, pixels.
+    pub height_px: u32,
+    /// Distance between two frames of a random path at most, metres.
+    pub interval_m: f64,
+    /// A navmesh for the scene, where it does not lie beside it.
+    pub navmesh: Option<PathBuf>,
+}
+
+impl Default for HabitatOptions {
+    fn default() -> Self {
+        Self { width_px: 640, height_px: 480, interval_m: 1.0, navmesh: None }
+    }
+}
+
+impl HabitatPlatform {
+    /// The scenes at a place: one file (`.glb`, `.gltf`, `.stage_config.json`), or a folder of them, such as HM3D's, Matterport3D's
+    /// or Gibson's. With each belong the navmesh and the semantic files beside it; a scene without a navmesh has one baked.
+    ///
+    /// # Errors
+    /// When there is no scene, or the folder cannot be read.
+    pub fn open(place: &FilePath, options: HabitatOptions) -> Result<Self, PlatformError> {
+        Ok(Self { options, scenes: files::scenes(place)?, ready: Mutex::new(VecDeque::new()) })
+    }
+
+    /// The navmesh of a scene, as its file has it or as it was baked: [`NavMesh::to_bytes`] gives a file that Habitat reads.
+    ///
+    /// # Errors
+    /// When there is no such scene or its files cannot be read.
+    pub fn navmesh(&self, scene: &SceneId) -> Result<NavMesh, PlatformError> {
+        Ok(self.home(scene)?.navmesh.clone())
+    }
+
+    fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
+        let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
+        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        let home = match ready.iter().position(|home| home.id == *scene).and_then(|at| ready.remove(at)) {
+            Some(home) => home,
+            None => Arc::new(Home::build(scene, files, &self.options)?),
+        };
+        ready.push_front(home.clone());
+        ready.truncate(READY);
+        Ok(home)
+    }
+
+    fn unknown(&self, scene: &SceneId) -> PlatformError {
+        let some: Vec<&str> = self.scenes.keys().take(3).map(SceneId::as_str).collect();
+        PlatformError::UnknownScene {
+            scene: scene.to_string(),
+            hint: format!("there are {}: {} ...", self.scenes.len(), some.join(", ")),
+        }
+    }
+
+    fn seen(&self, scene: &SceneId, from: &Frame, gaze: Gaze, pictured: bool) -> Result<View, PlatformError> {
+        let home = self.home(scene)?;
+        home.check(from)?;
+        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
+        home.view(from.pose.position, gaze, [self.options.width_px, self.options.height_px], pictured)
+    }
+}
+
+impl Platform for HabitatPlatform {
+    fn name(&self) -> &'static str {
+        "habitat"
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        Ok(self.scenes.keys().cloned().collect())
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.home(scene)?.graph.clone())
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        sample::path(&*self.home(scene)?, request, seed, self.options.interval_m)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.seen(scene, from, gaze, true)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.seen(scene, from, gaze, false)
+    }
+
+    fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        let home = self.home(scene)?;
+        let thing = home.semantics.as_ref().and_then(|semantics| semantics.named(object));
+        Ok(thing.and_then(|thing| thing.name.clone()))
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        let home = self.home(scene)?;
+        if home.semantics.is_none() {
+            return Ok(None);
+        }
+        Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
+    }
+}

@@ -1,0 +1,131 @@
+//! The platform on a scene that the tests write themselves: a floor of 8 x 8 m with a red box on it, without a navmesh.
+
+use super::*;
+use crate::scene::tests::glb;
+use serde_json::json;
+use wayword_core::Heading;
+
+/// A quad as two triangles.
+fn quad(out: &mut Vec<[f32; 3]>, corners: [[f32; 3]; 4]) {
+    out.extend([0, 1, 2, 0, 2, 3].map(|corner: usize| corners[corner]));
+}
+
+fn boxed() -> Vec<Vec<[f32; 3]>> {
+    let (mut floor, mut thing) = (Vec::new(), Vec::new());
+    quad(&mut floor, [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0], [0.0, 8.0, 0.0]]);
+    let corners = [[3.0, 3.0], [5.0, 3.0], [5.0, 5.0], [3.0, 5.0]];
+    quad(&mut thing, corners.map(|[x, y]| [x, y, 1.8]));
+    for side in 0..4 {
+        let ([ax, ay], [bx, by]) = (corners[side], corners[(side + 1) % 4]);
+        quad(&mut thing, [[ax, ay, 0.0], [bx, by, 0.0], [bx, by, 1.8], [ax, ay, 1.8]]);
+    }
+    vec![floor, thing]
+}
+
+/// The scene as a GLB with colours at the vertices.
+fn file(colours: [[u8; 4]; 2]) -> Vec<u8> {
+    let (mut bytes, mut views, mut accessors, mut primitives) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (positions, colour) in boxed().iter().zip(colours) {
+        let count = positions.len();
+        let mut view = |data: Vec<u8>| {
+            views.push(json!({ "buffer": 0, "byteOffset": bytes.len(), "byteLength": data.len() }));
+            bytes.extend(data);
+            views.len() - 1
+        };
+        let place = view(positions.iter().flatten().flat_map(|number| number.to_le_bytes()).collect());
+        let paint = view(colour.repeat(count));
+        accessors.push(json!({ "bufferView": place, "componentType": 5126, "count": count, "type": "VEC3" }));
+        accessors.push(
+            json!({ "bufferView": paint, "componentType": 5121, "normalized": true, "count": count, "type": "VEC4" }),
+        );
+        let last = accessors.len() - 1;
+        primitives.push(json!({ "attributes": { "POSITION": last - 1, "COLOR_0": last }, "material": 0 }));
+    }
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": primitives }],
+        "materials": [{}],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{ "byteLength": bytes.len() }],
+    });
+    glb(&document, &bytes)
+}
+
+fn folder(has_labels: bool) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let paint = file([[90, 90, 90, 255], [200, 10, 10, 255]]);
+    std::fs::write(folder.path().join("yard.glb"), &paint).unwrap();
+    if has_labels {
+        std::fs::write(folder.path().join("yard.semantic.glb"), &paint).unwrap();
+        let text = "HM3D Semantic Annotations\n1,5A5A5A,\"floor\",0\n2,C80A0A,\"toy_box\",0\n";
+        std::fs::write(folder.path().join("yard.semantic.txt"), text).unwrap();
+    }
+    folder
+}
+
+fn platform(has_labels: bool) -> (HabitatPlatform, SceneId) {
+    let folder = folder(has_labels);
+    let platform = HabitatPlatform::open(
+        folder.path(),
+        HabitatOptions { width_px: 160, height_px: 120, ..HabitatOptions::default() },
+    )
+    .unwrap();
+    let scene = platform.scenes().unwrap().remove(0);
+    // Read while the folder is there; what is ready stays so.
+    platform.graph(&scene).unwrap();
+    (platform, scene)
+}
+
+#[test]
+fn paths_over_baked_ground_lead_around_what_stands_there() {
+    let (platform, scene) = platform(true);
+    let request = PathRequest { length_m: 4.0..=9.0, ..PathRequest::default() };
+    for seed in 0..20 {
+        let path = platform.sample_path(&scene, &request, seed).unwrap();
+        assert_eq!(path, platform.sample_path(&scene, &request, seed).unwrap());
+        assert!((4.0..=9.0).contains(&path.length_m()));
+        for frame in &path.frames {
+            let eye = frame.pose.position;
+            assert!(!((3.0..5.0).contains(&eye.x) && (3.0..5.0).contains(&eye.y)), "{eye} stands in the box");
+            assert!(platform.look(&scene, frame, Gaze::quarter(frame.pose.heading)).unwrap().image.is_some());
+        }
+        let target = path.target.unwrap();
+        assert_eq!((target.object.as_str(), target.name.as_str()), ("2", "toy box"));
+    }
+}
+
+#[test]
+fn views_show_the_scene_and_label_it() {
+    let (platform, scene) = platform(true);
+    let pose = wayword_core::Pose::level(wayword_core::DVec3::new(4.0, 0.8, 1.5), Heading::NORTH);
+    let frame = Frame { pose, viewpoint: None, level: None };
+    let view = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap();
+    let image = view.image.unwrap();
+    let middle = 3 * (60 * 160 + 80);
+    assert_eq!(image.rgb()[middle..middle + 3], [200, 10, 10]);
+    let behind = platform.look_without_picture(&scene, &frame, Gaze::quarter(Heading::NORTH.turned(3.0))).unwrap();
+    assert!(behind.image.is_none());
+    let object = ObjectId::new("2").unwrap();
+    assert_eq!(platform.object_name(&scene, &frame, &object).unwrap().as_deref(), Some("toy box"));
+    assert!(!platform.visible_from(&scene, &object).unwrap().unwrap().is_empty());
+    let away =
+        Frame { pose: wayword_core::Pose::level(wayword_core::DVec3::new(90.0, 0.0, 1.5), Heading::NORTH), ..frame };
+    assert!(matches!(
+        platform.look(&scene, &away, Gaze::quarter(Heading::NORTH)),
+        Err(PlatformError::UnknownViewpoint { .. })
+    ));
+}
+
+#[test]
+fn without_semantics_nothing_is_known() {
+    let (platform, scene) = platform(false);
+    assert_eq!(platform.visible_from(&scene, &ObjectId::new("2").unwrap()).unwrap(), None);
+    let path = platform.sample_path(&scene, &PathRequest::default(), 3).unwrap();
+    assert_eq!(path.target, None);
+    assert!(NavMesh::from_bytes(&platform.navmesh(&scene).unwrap().to_bytes()).is_ok());
+    let elsewhere = platform.graph(&SceneId::new("attic").unwrap()).unwrap_err().to_string();
+    assert_eq!(elsewhere, "there is no scene attic: there are 1: yard ...");
+}

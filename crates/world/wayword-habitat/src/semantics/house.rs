@@ -1,0 +1,112 @@
+//! `.house` files of Matterport3D as Habitat uses them: the names of the objects of a semantic mesh, and where rooms are.
+//!
+//! Format: Matterport3D's `data_organization.md`. Read here: `R` regions with their boxes, `O` objects, `C` categories.
+
+use super::{Region, Thing};
+use std::collections::BTreeMap;
+use wayword_core::{DVec3, ObjectId};
+
+/// Largest number of an object that is kept: the mesh's numbers are 16 or 32 bits wide, the list has as many places.
+const MAX_OBJECT: usize = 1 << 20;
+
+/// What the file tells; an object's number is its place.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct House {
+    pub(super) things: Vec<Thing>,
+    pub(super) regions: Vec<Region>,
+}
+
+pub(super) fn parse(text: &str) -> Result<House, String> {
+    if !text.starts_with("ASCII") {
+        return Err("line 1: does not begin with ASCII".to_owned());
+    }
+    let mut house = House::default();
+    let mut categories: BTreeMap<i64, &str> = BTreeMap::new();
+    let mut objects: BTreeMap<usize, i64> = BTreeMap::new();
+    for (number, line) in text.lines().enumerate().skip(1) {
+        let words: Vec<&str> = line.split_whitespace().take(32).collect();
+        let record = Record { words: &words };
+        let read = || -> Result<(), String> {
+            match words.first().copied() {
+                Some("R") => house.regions.push(record.region()?),
+                Some("O") => {
+                    let object: usize = record.number(1)?;
+                    if object > MAX_OBJECT {
+                        return Err(format!("column 2: {object} is too large"));
+                    }
+                    objects.insert(object, record.number(3)?);
+                }
+                Some("C") => {
+                    categories.insert(record.number(1)?, record.word(3)?);
+                }
+                _ => {}
+            }
+            Ok(())
+        };
+        let mut read = read;
+        read().map_err(|reason| format!("line {}: {reason}", number + 1))?;
+    }
+    let last = objects.keys().next_back().map_or(0, |last| last + 1);
+    for object in 0..last {
+        let name = objects.get(&object).and_then(|category| categories.get(category)).copied().unwrap_or_default();
+        let id = ObjectId::new(object.to_string()).map_err(|error| error.to_string())?;
+        house.things.push(Thing::new(id, name));
+    }
+    Ok(house)
+}
+
+/// The words of a line.
+struct Record<'a, 'b> {
+    words: &'b [&'a str],
+}
+
+impl<'a> Record<'a, '_> {
+    fn word(&self, column: usize) -> Result<&'a str, String> {
+        let count = self.words.len();
+        self.words.get(column).copied().ok_or_else(|| format!("has {count} columns; column {} is missing", column + 1))
+    }
+
+    fn number<T: std::str::FromStr>(&self, column: usize) -> Result<T, String> {
+        let word = self.word(column)?;
+        word.parse().map_err(|_| format!("column {}: {word:.20?} is no number", column + 1))
+    }
+
+    fn place(&self, column: usize) -> Result<DVec3, String> {
+        let place = DVec3::new(self.number(column)?, self.number(column + 1)?, self.number(column + 2)?);
+        if place.is_finite() { Ok(place) } else { Err(format!("column {}: is no place", column + 1)) }
+    }
+
+    /// `R index level 0 0 label px py pz xlo ylo zlo xhi yhi zhi height ...`
+    fn region(&self) -> Result<Region, String> {
+        let letter = self.word(5)?.chars().next().unwrap_or('Z');
+        Ok(Region { low: self.place(9)?, high: self.place(12)?, letter })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "ASCII 1.1\n\
+        R 0 0 0 0 k 0 0 0 -1 -2 0 3 4 2.5 2.5 0 0 0\n\
+        O 1 0 9 1 1 0.5 1 0 0 0 1 0 1 1 1 0 0 0 0 0 0 0 0\n\
+        C 9 3 coffee#table 5 table 0 0 0 0 0\n";
+
+    #[test]
+    fn objects_are_found_by_their_number() {
+        let house = parse(TEXT).unwrap();
+        let names: Vec<_> = house.things.iter().map(|thing| thing.name.as_deref()).collect();
+        assert_eq!(names, [None, Some("coffee table")]);
+        assert_eq!(
+            house.regions,
+            [Region { low: DVec3::new(-1.0, -2.0, 0.0), high: DVec3::new(3.0, 4.0, 2.5), letter: 'k' }]
+        );
+    }
+
+    #[test]
+    fn errors_name_the_line_and_the_column() {
+        assert_eq!(parse("ply").unwrap_err(), "line 1: does not begin with ASCII");
+        assert_eq!(parse("ASCII\nO 0 0").unwrap_err(), "line 2: has 3 columns; column 4 is missing");
+        assert_eq!(parse("ASCII\nO 9999999999 0 0").unwrap_err(), "line 2: column 2: 9999999999 is too large");
+    }
+}

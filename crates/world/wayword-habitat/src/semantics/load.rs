@@ -1,0 +1,135 @@
+//! Reading what a scene has of semantic files.
+
+use super::{Semantics, Thing, hm3d, house, ply};
+use crate::{
+    axes::wayword_from_habitat,
+    fault::{self, FileError},
+    scene::Model,
+};
+use glam::{DMat3, Vec2, Vec3};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+use wayword_render::{Filter, Material, Mesh, Scene, Texture};
+
+const MAX_TEXT: u64 = 64 << 20;
+const MAX_MESH: u64 = 4 << 30;
+const HM3D_HINT: &str = "take it again from HM3D's semantic annotations";
+const MATTERPORT_HINT: &str = "take it again from Matterport3D for Habitat";
+
+/// The id of triangles whose colour in the picture says what they are.
+pub(super) const PAINTED: u32 = u32::MAX;
+
+/// Where a scene's semantic files would be.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct SemanticFiles {
+    /// HM3D's painted mesh, and what the colours mean.
+    pub(crate) painted: Option<(PathBuf, PathBuf)>,
+    /// Matterport3D's mesh with numbered faces, and what the numbers mean.
+    pub(crate) numbered: Option<(PathBuf, PathBuf)>,
+}
+
+/// Reads them; `None` where a scene has none.
+pub(crate) fn load(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<Option<Semantics>, FileError> {
+    if let Some((mesh, text)) = &files.painted {
+        return painted(mesh, text, habitat_from_asset).map(Some);
+    }
+    match &files.numbered {
+        Some((mesh, text)) => numbered(mesh, text, habitat_from_asset).map(Some),
+        None => Ok(None),
+    }
+}
+
+fn text(file: &Path, hint: &'static str) -> Result<String, FileError> {
+    fault::text_if_there(file, MAX_TEXT, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
+}
+
+fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result<Semantics, FileError> {
+    let hm3d::Annotations { mut things, by_colour } =
+        hm3d::parse(&text(annotations, HM3D_HINT)?).map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
+    let model = Model::read(mesh, habitat_from_asset)?;
+    let mut meshes = Vec::new();
+    for each in model.meshes {
+        let texture = model.materials.get(each.material).and_then(|material| material.texture);
+        let texture = texture.and_then(|texture| model.textures.get(texture));
+        let colour = |corners: [u32; 3]| match texture {
+            Some(texture) => Some(texel(texture, middle(&each.uvs, corners))),
+            // Vertices are painted: a triangle is what its first corner is.
+            None => each.colours.get(corners[0] as usize).map(|all| all.map(|factor| (factor * 255.0 + 0.5) as u8)),
+        };
+        let thing = |corners: [u32; 3]| colour(corners).and_then(|colour| by_colour.get(&colour)).copied();
+        let told: Vec<Told> = each.triangles.iter().map(|corners| (*corners, thing(*corners))).collect();
+        measure(&each.positions, &told, &mut things);
+        match texture {
+            Some(_) => meshes.push(Mesh { id: PAINTED, colours: Vec::new(), ..each }),
+            None => meshes.extend(by_thing(&each.positions, &told)),
+        }
+    }
+    // Colours stand in the picture as they are in the file.
+    let bare = |material: Material| Material { base_colour: [1.0; 4], ..material };
+    let mut materials: Vec<Material> = model.materials.into_iter().map(bare).collect();
+    materials.push(Material::default());
+    let plain = materials.len() - 1;
+    for each in meshes.iter_mut().filter(|each| each.id != PAINTED) {
+        each.material = plain;
+    }
+    let scene = Scene::new(meshes, materials, model.textures);
+    let scene = scene.map_err(|error| FileError::new(mesh, error.to_string(), HM3D_HINT))?;
+    Ok(Semantics { scene: scene.with_filter(Filter::Nearest), by_colour, things, regions: Vec::new() })
+}
+
+fn numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<Semantics, FileError> {
+    let house::House { mut things, regions } = house::parse(&text(house, MATTERPORT_HINT)?)
+        .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
+    let wrong = |reason: String| FileError::new(mesh, reason, MATTERPORT_HINT);
+    let faces = ply::parse(&fault::bytes(mesh, MAX_MESH, MATTERPORT_HINT)?).map_err(wrong)?;
+    let place = |position: &Vec3| wayword_from_habitat(habitat_from_asset * position.as_dvec3()).as_vec3();
+    let positions: Vec<Vec3> = faces.positions.iter().map(place).collect();
+    let thing = |object: u32| Some(object as usize).filter(|object| *object < things.len());
+    let told: Vec<Told> = faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
+    measure(&positions, &told, &mut things);
+    let meshes = by_thing(&positions, &told);
+    // Scans are seen from inside alone, and their faces' winding is not to be relied on.
+    let material = Material { double_sided: true, ..Material::default() };
+    let scene = Scene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
+    Ok(Semantics { scene, by_colour: BTreeMap::new(), things, regions })
+}
+
+/// A triangle and the thing that it belongs to.
+type Told = ([u32; 3], Option<usize>);
+
+/// Widens the boxes of things by their triangles.
+fn measure(positions: &[Vec3], told: &[Told], things: &mut [Thing]) {
+    for (corners, thing) in told {
+        if let Some(thing) = thing.and_then(|thing| things.get_mut(thing)) {
+            let places = corners.iter().filter_map(|corner| positions.get(*corner as usize));
+            places.for_each(|place| thing.include(place.as_dvec3()));
+        }
+    }
+}
+
+/// A mesh for each thing, its id the thing's number and one more; triangles of none get 0.
+fn by_thing(positions: &[Vec3], told: &[Told]) -> Vec<Mesh> {
+    let mut parts: BTreeMap<u32, Mesh> = BTreeMap::new();
+    for (corners, thing) in told {
+        let id = thing.map_or(0, |thing| thing as u32 + 1);
+        let part = parts.entry(id).or_insert_with(|| Mesh { id, ..Mesh::default() });
+        let first = part.positions.len() as u32;
+        part.positions.extend(corners.map(|corner| positions.get(corner as usize).copied().unwrap_or_default()));
+        part.triangles.push([first, first + 1, first + 2]);
+    }
+    parts.into_values().collect()
+}
+
+fn middle(uvs: &[Vec2], corners: [u32; 3]) -> Vec2 {
+    corners.iter().filter_map(|corner| uvs.get(*corner as usize)).copied().sum::<Vec2>() / 3.0
+}
+
+/// The texel that holds a place.
+fn texel(texture: &Texture, uv: Vec2) -> [u8; 3] {
+    let at = |u: f32, side: u32| ((u - u.floor()) * side as f32) as u32;
+    let (x, y) = (at(uv.x, texture.width).min(texture.width - 1), at(uv.y, texture.height).min(texture.height - 1));
+    let [red, green, blue, _] = texture.texels[(y * texture.width + x) as usize];
+    [red, green, blue]
+}

@@ -1,0 +1,85 @@
+//! What is what in a scene: semantic meshes, told by what the pixels show.
+
+mod hm3d;
+mod house;
+mod labels;
+mod load;
+mod ply;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use load::{SemanticFiles, load};
+
+use std::collections::BTreeMap;
+use wayword_core::{DVec3, ObjectId};
+use wayword_platforms::matterport::{names, rooms};
+use wayword_render::{Camera, Picture, RenderError, Scene, render};
+
+/// An object of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Thing {
+    pub(crate) id: ObjectId,
+    /// In plain words; `None` for parts of the building and what the annotators could not name.
+    pub(crate) name: Option<String>,
+    /// The box around its triangles, metres; `None` where it has none.
+    bounds: Option<(DVec3, DVec3)>,
+}
+
+impl Thing {
+    fn new(id: ObjectId, raw: &str) -> Self {
+        let name = names::plain(raw).filter(|name| names::is_furnishing(name));
+        Self { id, name, bounds: None }
+    }
+
+    fn include(&mut self, place: DVec3) {
+        let (low, high) = self.bounds.unwrap_or((place, place));
+        self.bounds = Some((low.min(place), high.max(place)));
+    }
+}
+
+/// A room: a box with the letter of its kind.
+#[derive(Clone, Debug, PartialEq)]
+struct Region {
+    low: DVec3,
+    high: DVec3,
+    letter: char,
+}
+
+/// A scene whose surfaces are names.
+#[derive(Debug)]
+pub(crate) struct Semantics {
+    scene: Scene,
+    /// Number of the thing of each colour, where surfaces are painted.
+    by_colour: BTreeMap<[u8; 3], usize>,
+    things: Vec<Thing>,
+    regions: Vec<Region>,
+}
+
+impl Semantics {
+    /// The picture whose ids are the numbers of things, and one more: 0 is nothing.
+    fn picture(&self, camera: &Camera) -> Result<Picture, RenderError> {
+        let mut picture = render(&self.scene, camera)?;
+        let painted = picture.rgb.as_chunks::<3>().0;
+        for (id, colour) in picture.ids.iter_mut().zip(painted).filter(|(id, _)| **id == load::PAINTED) {
+            *id = self.by_colour.get(colour).map_or(0, |thing| *thing as u32 + 1);
+        }
+        Ok(picture)
+    }
+
+    fn thing(&self, id: u32) -> Option<&Thing> {
+        self.things.get((id as usize).checked_sub(1)?)
+    }
+
+    /// An object by its id.
+    pub(crate) fn named(&self, object: &ObjectId) -> Option<&Thing> {
+        self.things.iter().find(|thing| thing.id == *object)
+    }
+
+    /// The word for the room in which a place lies: the smallest box that holds it.
+    pub(crate) fn room(&self, place: DVec3) -> Option<&'static str> {
+        let holds = |region: &&Region| region.low.cmple(place).all() && region.high.cmpge(place).all();
+        let size = |region: &Region| (region.high - region.low).element_product();
+        let inside = self.regions.iter().filter(holds).min_by(|a, b| size(a).total_cmp(&size(b)))?;
+        rooms::name(inside.letter)
+    }
+}
