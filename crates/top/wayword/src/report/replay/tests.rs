@@ -149,7 +149,7 @@ fn hostile_walks_do_no_harm() {
     walk.steps[0].phrase = usize::MAX;
     walk.steps[1].views[0].phrase = f32::INFINITY;
     walk.steps[1].views[1].phrase = f32::NAN;
-    let extra = walk.steps[2].views[0].clone();
+    let extra = walk.steps[2].views[0];
     walk.steps[2].views = vec![extra; 90];
     walk.steps[3].viewpoint = id("nowhere");
     walk.steps.extend(vec![walk.steps[4].clone(); 500]);
