@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::{collections::BTreeSet, net::SocketAddr, time::Duration};
-use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
+use wayword_core::{Gaze, Heading, ObjectId, PathRequest, Platform, SceneId};
 use wayword_live::{
     Pictures,
     tdw::{
@@ -11,7 +11,7 @@ use wayword_live::{
         stand_in::{StandIn, StandInOptions},
     },
 };
-use wayword_platforms::house::{Ground, HouseScene, Role, generate};
+use wayword_platforms::house::{Ground, HouseOptions, HousePlatform, HouseScene, Role, generate};
 
 fn start(options: StandInOptions) -> (TdwPlatform, StandIn) {
     let controller = ControllerOptions {
@@ -97,6 +97,28 @@ fn a_view_is_the_houses_own_and_its_labels_are_what_the_pixels_show() {
         labels += truth.labels.len();
     }
     assert!(labels > 5, "{labels}");
+}
+
+/// The built-in platform knows the same house from within: what it labels, the pixels and boxes that came over the socket
+/// must tell as well.
+#[test]
+fn labels_are_those_of_the_built_in_platform() {
+    let (platform, _build) = start(StandInOptions::default());
+    let seed = (1..).find(|seed| generate(*seed).storeys == 1).unwrap();
+    let within = HousePlatform::new(HouseOptions { width_px: 160, height_px: 120, ..HouseOptions::default() });
+    let graph = platform.graph(&scene()).unwrap();
+    let mut labels = 0;
+    for id in graph.viewpoints().step_by(5) {
+        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
+        let told = |platform: &dyn Platform, scene: &SceneId| -> BTreeSet<(ObjectId, String)> {
+            let view = platform.look(scene, &frame, Gaze::quarter(Heading::new(4.0).unwrap())).unwrap();
+            view.ground_truth().unwrap().labels.iter().map(|label| (label.object.clone(), label.name.clone())).collect()
+        };
+        let ours = told(&platform, &scene());
+        assert_eq!(ours, told(&within, &HousePlatform::scene_of(seed).unwrap()));
+        labels += ours.len();
+    }
+    assert!(labels > 10, "{labels}");
 }
 
 #[test]

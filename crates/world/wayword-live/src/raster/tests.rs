@@ -25,6 +25,12 @@ fn a_way_leads_through_the_door_and_no_wall() {
 }
 
 #[test]
+fn nobody_squeezes_between_two_corners_that_touch() {
+    assert_eq!(drawn(&[".#", "#."]).shortest([0.0, 0.5], [0.5, 0.0]), None);
+    assert!(drawn(&[".#", ".."]).shortest([0.0, 0.5], [0.5, 0.0]).is_some());
+}
+
+#[test]
 fn pockets_are_no_ground() {
     let mut raster = drawn(&["...#.", "...##", "...#."]);
     assert!(raster.is_free([2.0, 0.0]));
