@@ -26,8 +26,6 @@ pub(crate) trait Simulator: Send + fmt::Debug {
     type Error: std::error::Error;
     /// Its name, as `--platform` takes it.
     const NAME: &'static str;
-    /// What to do when it fails.
-    const HINT: &'static str;
 
     /// Where it is, for messages.
     fn address(&self) -> String;
@@ -49,6 +47,9 @@ pub(crate) trait Simulator: Send + fmt::Debug {
 
     /// The corners of the shortest way between two eyes, both among them; `None` where there is none.
     fn way(&mut self, survey: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, Self::Error>;
+
+    /// What to do about an error.
+    fn hint(error: &Self::Error) -> &'static str;
 
     /// Whether the simulator is lost over an error, so that trying once more makes sense.
     fn is_loss(error: &Self::Error) -> bool;
@@ -155,7 +156,7 @@ impl<S: Simulator> Live<S> {
         done.map_err(|error| PlatformError::File {
             file: PathBuf::from(running.simulator.address()),
             reason: error.to_string(),
-            hint: S::HINT,
+            hint: S::hint(&error),
         })
     }
 

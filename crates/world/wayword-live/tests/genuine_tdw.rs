@@ -4,9 +4,14 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use serde_json::Value;
-use std::{net::SocketAddr, net::TcpListener, path::Path, process::Command};
+use std::{
+    net::{SocketAddr, TcpListener},
+    path::{Path, PathBuf},
+    process::Command,
+};
+use wayword_core::Platform;
 use wayword_live::tdw::{
-    Command as TdwCommand, Controller, ControllerOptions, Frequency,
+    Command as TdwCommand, Controller, ControllerOptions, Frequency, TdwOptions, TdwPlatform,
     stand_in::{StandIn, StandInOptions},
 };
 use wayword_platforms::house::{HouseScene, Role, generate};
@@ -56,6 +61,30 @@ fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
                     told["seen"].as_array().unwrap().len()
                 );
             }
+        }
+    }
+}
+
+/// Every floor plan with every layout, as the package's own lists have them.
+#[test]
+fn furniture_of_the_genuine_package_can_be_placed() {
+    let Ok(pythons) = std::env::var("WAYWORD_TDW_PYTHON") else {
+        println!("SKIPPED: name a Python with the package tdw in WAYWORD_TDW_PYTHON");
+        return;
+    };
+    for python in pythons.split(',') {
+        let folder = "import tdw, os; print(os.path.dirname(tdw.__file__))";
+        let folder = Command::new(python).args(["-c", folder]).output().unwrap().stdout;
+        let package = Some(PathBuf::from(String::from_utf8(folder).unwrap().trim()));
+        let controller =
+            ControllerOptions { address: SocketAddr::from(([127, 0, 0, 1], 0)), ..ControllerOptions::default() };
+        let platform = TdwPlatform::new(TdwOptions { controller, package, ..TdwOptions::default() }).unwrap();
+        let address = platform.waits_at().trim_start_matches("tcp://").parse().unwrap();
+        let _build = StandIn::start(address, StandInOptions::default());
+        let scenes = platform.scenes().unwrap();
+        assert_eq!(scenes.len(), 12 * 3 + 1);
+        for scene in &scenes {
+            assert!(platform.graph(scene).unwrap().len() > 20, "{scene}");
         }
     }
 }

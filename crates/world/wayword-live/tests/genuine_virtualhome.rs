@@ -18,7 +18,7 @@ fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
         );
         return;
     };
-    let simulator = StandIn::start().unwrap();
+    let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/drive_virtualhome.py");
     let driven = Command::new(&python).arg(script).arg(simulator.port().to_string()).output().unwrap();
     let (out, err) = (String::from_utf8_lossy(&driven.stdout), String::from_utf8_lossy(&driven.stderr));

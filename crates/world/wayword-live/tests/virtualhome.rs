@@ -16,7 +16,7 @@ use wayword_live::{
 use wayword_platforms::house::{Ground, HouseScene, generate};
 
 fn start() -> (VirtualHomePlatform, StandIn) {
-    let simulator = StandIn::start().unwrap();
+    let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
     let pictures = Pictures { width_px: 160, height_px: 120, ..Pictures::default() };
     let timeout = Duration::from_secs(20);
     (VirtualHomePlatform::new(VirtualHomeOptions { url: simulator.url(), timeout, pictures }), simulator)

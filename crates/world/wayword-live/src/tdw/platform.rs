@@ -57,7 +57,6 @@ impl TdwPlatform {
 impl Simulator for Tdw {
     type Error = TdwError;
     const NAME: &'static str = "tdw";
-    const HINT: &'static str = "the live build must run and stay connected";
 
     fn address(&self) -> String {
         format!("tcp://{}", self.controller.address())
@@ -98,6 +97,14 @@ impl Simulator for Tdw {
 
     fn way(&mut self, _: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, TdwError> {
         session::way(&mut self.controller, from, to)
+    }
+
+    fn hint(error: &TdwError) -> &'static str {
+        match error {
+            TdwError::Scene(_) => "choose another scene",
+            TdwError::Bind { .. } | TdwError::NoBuild { .. } => "the live build runs beside Wayword and connects to it",
+            _ => "restart the build, or look into its Player.log",
+        }
     }
 
     fn is_loss(error: &TdwError) -> bool {

@@ -155,10 +155,12 @@ fn read<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
     let refused = |reason: String| {
         TdwError::Scene(format!("{}: {reason}; is this the folder of the Python package tdw?", file.display()))
     };
-    let mut text = Vec::new();
-    let opened = File::open(file).and_then(|file| file.take(MAX_FILE_BYTES).read_to_end(&mut text));
+    let mut text = String::new();
+    let opened = File::open(file).and_then(|file| file.take(MAX_FILE_BYTES).read_to_string(&mut text));
     opened.map_err(|error| refused(error.to_string()))?;
-    serde_json::from_slice(&text).map_err(|error| refused(error.to_string()))
+    // Python writes numbers that JSON does not have; the package's lists hold a few.
+    let text = text.replace(": NaN", ": null");
+    serde_json::from_str(&text).map_err(|error| refused(error.to_string()))
 }
 
 impl Furniture {
@@ -258,7 +260,9 @@ mod tests {
         let urls = r#"{"Linux":"u","Darwin":"u","Windows":"u"}"#;
         write(
             "metadata_libraries/models_core.json",
-            &format!(r#"{{"records":{{"sofa_a":{{"urls":{urls},"scale_factor":1.0,"wcategory":"sofa"}}}}}}"#),
+            &format!(
+                r#"{{"records":{{"sofa_a":{{"urls":{urls},"physics_quality": NaN,"scale_factor":1.0,"wcategory":"sofa"}}}}}}"#
+            ),
         );
         let commands = plan("floorplan_1a_0").unwrap().commands(Some(package.path())).unwrap();
         let Command::AddObject { category, position, id, .. } = &commands[1] else { panic!("{commands:?}") };

@@ -96,7 +96,6 @@ fn rooms(graph: &EnvironmentGraph) -> Vec<Room> {
 impl Simulator for VirtualHome {
     type Error = HomeError;
     const NAME: &'static str = "virtualhome";
-    const HINT: &'static str = "the simulator must run and stay reachable";
 
     fn address(&self) -> String {
         self.client.url().to_owned()
@@ -152,6 +151,14 @@ impl Simulator for VirtualHome {
     fn way(&mut self, survey: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, HomeError> {
         let way = survey.raster.shortest([from.x, from.y], [to.x, to.y]);
         Ok(way.map(|corners| corners.into_iter().map(|[x, y]| DVec3::new(x, y, from.z)).collect()))
+    }
+
+    fn hint(error: &HomeError) -> &'static str {
+        match error {
+            HomeError::Floor(_) => "choose another home",
+            HomeError::Unreachable { .. } => "the simulator runs beside Wayword",
+            _ => "restart the simulator, or look into its log",
+        }
     }
 
     fn is_loss(error: &HomeError) -> bool {

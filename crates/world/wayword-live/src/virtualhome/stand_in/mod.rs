@@ -28,13 +28,13 @@ pub struct StandIn {
 }
 
 impl StandIn {
-    /// Starts one on a port that the system chooses. Home `n` is the first generated house with one storey from seed `n + 1`
+    /// Starts one that listens at an address; port 0 lets the system choose. Home `n` is the first generated house with one storey from seed `n + 1`
     /// on.
     ///
     /// # Errors
-    /// When there is no free port.
-    pub fn start() -> io::Result<Self> {
-        let listener = TcpListener::bind("127.0.0.1:0")?;
+    /// When the port is taken.
+    pub fn start(address: SocketAddr) -> io::Result<Self> {
+        let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
         let stop = Arc::new(AtomicBool::new(false));
