@@ -43,6 +43,11 @@ impl<'a> Item<'a> {
         value.ok_or_else(|| self.wrong(field, "it is missing", "the format demands it"))
     }
 
+    /// A field that is left where it is.
+    pub(crate) fn look(&self, field: &str) -> Option<&Value> {
+        self.fields.get(field)
+    }
+
     pub(crate) fn take_optional(&mut self, field: &str) -> Option<Value> {
         self.fields.shift_remove(field)
     }

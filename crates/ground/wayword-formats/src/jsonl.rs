@@ -1,9 +1,10 @@
 //! Wayword's own format: JSON Lines, one instruction each, whatever platform its path lies on.
 //!
 //! A line has `format` ("wayword/1"), `platform`, `split`, `path` (a core path with its frames) and the fields of a core
-//! instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`. Unknown fields are kept.
+//! instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`. `path_id` names the path in its dataset, where several
+//! items may share it. Unknown fields are kept.
 
-use crate::{Episode, FormatError, Item, input, limits, output, tally::Tally};
+use crate::{Episode, FormatError, Item, input, item, limits, output, tally::Tally};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use std::{
@@ -14,6 +15,8 @@ use wayword_core::{Instruction, Path, SceneId};
 
 /// What `format` says.
 const FORMAT: &str = "wayword/1";
+/// Says which path of a dataset an item lies on.
+const PATH_ID: &str = "path_id";
 
 /// One instruction for one path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,6 +63,13 @@ impl Record {
     #[must_use]
     pub fn new(platform: impl Into<String>, path: Path, instruction: Instruction) -> Self {
         Self { format: FORMAT, platform: platform.into(), split: None, path, instruction, extra: Map::new() }
+    }
+
+    /// Name of its path in the dataset that it was made over, where several items may lie on one path: its field `path_id`, else
+    /// the path's own name.
+    #[must_use]
+    pub fn path_id(&self) -> String {
+        self.extra.get(PATH_ID).and_then(item::name_of).unwrap_or_else(|| self.path.id.clone())
     }
 }
 
@@ -116,7 +126,8 @@ pub fn episodes(records: &[Record]) -> Vec<Episode> {
     for record in records {
         let place = *places.entry((&record.platform, &record.path.id)).or_insert_with(|| {
             let split = record.split.map(|split| split.name().to_owned());
-            episodes.push(Episode { split, ..Episode::from_path(&record.path, Vec::new()) });
+            let path_id = record.path_id();
+            episodes.push(Episode { split, path_id, ..Episode::from_path(&record.path, Vec::new()) });
             episodes.len() - 1
         });
         episodes[place].instructions.push(record.instruction.text.clone());
@@ -133,6 +144,9 @@ fn take_record(item: &mut Item<'_>) -> Result<Record, FormatError> {
     let path = take_path(item)?;
     let platform = item.take("platform")?;
     let platform = item.name("platform", &platform)?;
+    if let Some(path_id) = item.look(PATH_ID) {
+        item.name(PATH_ID, path_id)?;
+    }
     let split = item.take_optional("split").map(|split| item.parsed("split", split)).transpose()?;
     let instruction = take_instruction(item, path.frames.len())?;
     Ok(Record { split, ..Record::new(platform, path, instruction) })

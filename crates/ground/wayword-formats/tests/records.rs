@@ -128,3 +128,29 @@ fn records_come_to_one_episode_per_path() {
     assert_eq!(episodes[0].instructions, ["Walk to the door and stop.", "Go to the door"]);
     assert_eq!(episodes[0].viewpoints.len(), 2);
 }
+
+#[test]
+fn items_on_one_path_of_a_dataset_keep_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("records.jsonl");
+    let record = |(item, path_id): (&str, Option<Value>)| {
+        let mut record = common::items(Format::Wayword)[0].clone();
+        record["path"]["id"] = json!(item);
+        if let Some(path_id) = path_id {
+            record["path_id"] = path_id;
+        }
+        record
+    };
+    let write = |items: Vec<(&str, Option<Value>)>| {
+        let items: Vec<Value> = items.into_iter().map(record).collect();
+        std::fs::write(&file, common::text(Format::Wayword, &items)).unwrap();
+    };
+    write(vec![("12_3", Some(json!("12"))), ("12_4", Some(json!(12))), ("13_5", None)]);
+    let path_ids: Vec<_> = Format::Wayword.read(&file).unwrap().into_iter().map(|episode| episode.path_id).collect();
+    assert_eq!(path_ids, ["12", "12", "13_5"]);
+    for bad in [json!("../12"), json!("x".repeat(129)), json!(1.5), json!(null), json!(["12"])] {
+        write(vec![("12_3", Some(bad.clone()))]);
+        let refused = jsonl::read(&file).unwrap_err().to_string();
+        assert!(refused.contains("line 1 (id 12_3): field \"path_id\": expected a whole number"), "{bad}: {refused}");
+    }
+}
