@@ -15,8 +15,10 @@ use wayword_core::DVec3;
 const WELD_M: f64 = 1e-3;
 /// And when their heights differ by less than this, metres.
 const SAME_STOREY_M: f64 = 0.5;
-/// A bend lies this near to its vertex, metres: the search rounds by millimetres.
-const BEND_M: f64 = 0.02;
+/// A bend lies this near to its vertex, metres.
+const BEND_M: f32 = 0.02;
+/// The search rounds by so much, metres (`lands_on` in its `instance.rs`).
+const NOISE_M: f32 = 3e-3;
 
 /// An island made ready for the search.
 #[derive(Debug)]
@@ -66,17 +68,12 @@ impl Maze {
             .map(|polygon| polygon.vertices.as_slice())
             .collect();
         let mut bends = Vec::new();
-        // The way goes through the polygons in their order, so a bend lies in none before that of the last one.
         let mut reached = 0;
         for bend in path.path.split_last().map_or(&[][..], |(_, before)| before) {
-            let found = rings.iter().enumerate().skip(reached).find_map(|(at, ring)| {
-                let off =
-                    |vertex: &u32| layer.vertices.get(*vertex as usize).map_or(f32::MAX, |v| v.coords.distance(*bend));
-                let vertex = ring.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-                (f64::from(off(vertex)) < BEND_M).then_some((at, *vertex))
-            });
-            let (at, vertex) = found?;
-            reached = at;
+            let (at, vertex) = bend_of(layer, &rings, reached, *bend).or_else(|| bend_of(layer, &rings, 0, *bend))?;
+            // The way leaves a bend through the last of the polygons around it, so the next bend lies in none before.
+            let around = rings.iter().skip(at + 1).take_while(|ring| ring.contains(&vertex)).count();
+            reached = at + around;
             let place = self.places.get(vertex as usize)?;
             if bends.last() != Some(place) {
                 bends.push(*place);
@@ -112,6 +109,17 @@ impl Maze {
         let (Some(a), Some(b)) = (ring(a), ring(b)) else { return false };
         a.iter().filter(|vertex| b.contains(vertex)).count() >= 2
     }
+}
+
+/// The vertex at which a way bends, and the polygon there: of the polygons that the way goes through from `first` on, the first
+/// that has it. A vertex of another storey may lie as near, but not in a polygon that comes as early.
+fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2) -> Option<(usize, u32)> {
+    let off = |vertex: u32| layer.vertices.get(vertex as usize).map_or(f32::MAX, |vertex| vertex.coords.distance(bend));
+    let nearest = |ring: &&[u32]| ring.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)));
+    let near =
+        || rings.iter().enumerate().skip(first).filter_map(|(at, ring)| nearest(ring).map(|vertex| (at, vertex)));
+    let least = near().map(|(_, vertex)| off(vertex)).fold(BEND_M, f32::min);
+    near().find(|(_, vertex)| off(*vertex) <= (least + NOISE_M).min(BEND_M))
 }
 
 /// The polygons' outlines over common vertices, with a vertex at both ends of every door.

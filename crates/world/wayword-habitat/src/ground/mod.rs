@@ -3,6 +3,8 @@
 //! All in Wayword's frame. What counts as ground is what Habitat's `PathFinder` takes for it (habitat-sim 0.3.3,
 //! `PathFinder.cpp`): polygons without area are left out, islands are what can be reached over shared edges.
 
+#[cfg(test)]
+mod exact;
 mod frames;
 mod geodesic;
 mod islands;

@@ -92,6 +92,35 @@ fn a_place_under_another_floor_is_reached_by_the_ramp() {
 }
 
 #[test]
+fn a_way_bends_twice_at_places_above_one_another() {
+    // Two rings, and stairs beside them that turn back: who goes from one to the place above goes around both holes alike.
+    let mut polygons = ring();
+    polygons.extend(ring().into_iter().map(|polygon| polygon.into_iter().map(|[x, y, _]| [x, y, 3.0]).collect()));
+    let ramp =
+        |x: f32, from: f32, to: f32| vec![[x, 1.0, from], [x + 1.0, 1.0, from], [x + 1.0, 2.0, to], [x, 2.0, to]];
+    polygons.push(slab([3.0, 4.0], [0.0, 1.0], 0.0));
+    polygons.push(ramp(3.0, 0.0, 1.5));
+    polygons.push(slab([3.0, 4.0], [2.0, 3.0], 1.5));
+    polygons.push(slab([4.0, 5.0], [2.0, 3.0], 1.5));
+    polygons.push(ramp(4.0, 3.0, 1.5));
+    polygons.push(slab([4.0, 5.0], [0.0, 1.0], 3.0));
+    polygons.push(slab([3.0, 4.0], [0.0, 1.0], 3.0));
+    let ground = Ground::new(&paved(&polygons));
+    let way = ground.geodesic(at(0.5, 1.5, 0.0), at(0.5, 1.5, 3.0)).unwrap();
+    for bend in [at(1.0, 1.0, 0.0), at(1.0, 1.0, 3.0)] {
+        assert!(way.corners.contains(&bend), "{way:?}");
+    }
+    let back = ground.geodesic(at(0.5, 1.5, 3.0), at(0.5, 1.5, 0.0)).unwrap();
+    assert!((way.length_m - back.length_m).abs() < 1e-6, "{way:?} {back:?}");
+}
+
+#[test]
+fn who_stands_a_step_above_the_ground_stands_on_it() {
+    let ground = Ground::new(&paved(&[slab([0.0, 1.0], [0.0, 1.0], 0.0), slab([1.05, 2.0], [0.0, 1.0], 0.15)]));
+    assert_eq!(ground.nearest(at(0.97, 0.5, 0.15)).unwrap().place, at(0.97, 0.5, 0.0));
+}
+
+#[test]
 fn ground_that_is_not_joined_cannot_be_reached() {
     let apart = vec![slab([0.0, 1.0], [0.0, 1.0], 0.0), slab([3.0, 5.0], [0.0, 1.0], 0.0)];
     let ground = Ground::new(&paved(&apart));
@@ -100,6 +129,23 @@ fn ground_that_is_not_joined_cannot_be_reached() {
     let far = at(0.5, 9.0, 0.0);
     assert_eq!(ground.geodesic(far, at(4.0, 0.5, 0.0)), Err(NoWay::OffGround(far)));
     assert!(ground.nearest(at(f64::NAN, 0.0, 0.0)).is_none());
+}
+
+#[test]
+fn polygons_wound_the_other_way_keep_their_neighbours() {
+    let clockwise: Vec<Vec<[f32; 3]>> = ring().into_iter().map(|polygon| polygon.into_iter().rev().collect()).collect();
+    for polygons in [ring(), clockwise] {
+        let ground = Ground::new(&paved(&polygons));
+        for polygon in &ground.polygons {
+            for (corner, next) in polygon.edges() {
+                // Of every edge inside the ring, the middle lies on two polygons.
+                let middle = (corner.place + next.place) / 2.0;
+                let on = ground.polygons.iter().filter(|other| other.holds(middle)).count();
+                assert_eq!(corner.neighbour.is_some(), on == 2, "{middle}");
+                assert!(corner.neighbour.is_none_or(|other| ground.polygons[other].holds(middle)));
+            }
+        }
+    }
 }
 
 #[test]

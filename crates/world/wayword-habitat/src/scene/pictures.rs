@@ -66,8 +66,30 @@ fn basis(bytes: &[u8]) -> Result<Texture, String> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// 16 x 16 texels in ETC1S: the left half red, the right half green above blue. Made with the reference encoder
+    /// (basis_universal 1.16) of a picture of our own, in base64.
+    const ETC1S: &str = "c0ITAE0AvwSIAAAAIxABAAABAAAAEQAAAAAAAAAAAAAAAAAAAAAAAwBkAAAALwAAAwCTAAAADQAAoAAAAC8AAABNAAAAAAAAAAAAAAAAAAAA\
+    ABAAEAAEAAQAzwAAAAYAAADe6CBA3AABAAAASF6Q3QUwJQAAAAAAgGQHPAATAgQAAAAAyAEZACYABAAAAACQYjwDBAAAAKiqqqpSVVVVBRTA\
+    hAABAAAAALJBBoAJAAAAAAAQZCXA1IABAABhABaonNwJEABMAAAAAAAAIIAA43s0aJ4G";
+
+    /// The bytes of that file.
+    pub(crate) fn etc1s() -> Vec<u8> {
+        base64::Engine::decode(&base64::engine::general_purpose::STANDARD, ETC1S).unwrap()
+    }
+
+    #[test]
+    fn basis_files_are_unpacked() {
+        let texture = decode(&etc1s()).unwrap();
+        assert_eq!((texture.width, texture.height), (16, 16));
+        for (x, y, expected) in [(2, 8, [200, 40, 40]), (13, 2, [40, 200, 40]), (13, 13, [40, 40, 200])] {
+            let [red, green, blue, _] = texture.texels[16 * y + x];
+            let off = [red, green, blue].iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max().unwrap();
+            assert!(off <= 12, "({x}, {y}) is {red} {green} {blue}");
+        }
+    }
 
     fn png(width: u32, height: u32, rgba: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::new();

@@ -79,6 +79,20 @@ fn triangles_lie_where_their_node_is_and_stand_up() {
 }
 
 #[test]
+fn textures_of_hm3d_are_found_where_their_extension_says() {
+    let (mut document, mut bytes) = triangle();
+    let basis = super::pictures::tests::etc1s();
+    document["bufferViews"][3] = json!({ "buffer": 0, "byteOffset": bytes.len(), "byteLength": basis.len() });
+    bytes.extend(basis);
+    document["buffers"][0]["byteLength"] = bytes.len().into();
+    document["images"][0]["mimeType"] = "image/x-basis".into();
+    document["textures"][0] = json!({ "extensions": { "GOOGLE_texture_basis": { "source": 0 } } });
+    document["extensionsRequired"] = json!(["GOOGLE_texture_basis", "KHR_materials_unlit"]);
+    let model = read(&glb(&document, &bytes)).unwrap();
+    assert_eq!((model.textures[0].width, model.textures[0].height), (16, 16));
+}
+
+#[test]
 fn errors_name_the_item() {
     let refusal = |change: fn(&mut serde_json::Value)| {
         let (mut document, bytes) = triangle();
