@@ -1,7 +1,6 @@
 //! Sets of instructions by name: a run folder or a dataset file, by item.
 
-use crate::{cli::By, error::Error, run::file};
-use serde_json::Value;
+use crate::{cli::By, episodes, error::Error, run::file};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
@@ -66,7 +65,7 @@ struct Said {
 fn of_episodes(file: &Path) -> Result<Vec<Said>, Error> {
     let mut all = Vec::new();
     for episode in wayword_formats::read(file)? {
-        let path = format!("{}/{}", episode.scene, episode.path_id);
+        let path = episodes::cluster(&episode);
         let said = |text| Said { item: episode.id.clone(), path: path.clone(), text };
         all.extend(episode.instructions.into_iter().map(said));
     }
@@ -90,7 +89,6 @@ fn of_records(file: &Path, style: Option<&str>) -> Result<Vec<Said>, Error> {
 }
 
 fn of_record(record: Record) -> Said {
-    let path_id = record.extra.get("path_id").and_then(Value::as_str).unwrap_or(&record.path.id);
-    let path = format!("{}/{path_id}", record.path.scene);
+    let path = episodes::path_name(&record.path.scene, &record.path_id());
     Said { item: record.path.id, path, text: record.instruction.text }
 }

@@ -152,9 +152,7 @@ fn join(item: &mut Episode, other: Episode) {
 fn episode(record: &Record, with_provenance: bool) -> Episode {
     let mut episode =
         Episode::from_path(&record.path, vec![record.instruction.text.clone()]).on_floor_of(&record.path, EYE_HEIGHT_M);
-    if let Some(path_id) = record.extra.get("path_id").and_then(Value::as_str) {
-        path_id.clone_into(&mut episode.path_id);
-    }
+    episode.path_id = record.path_id();
     if with_provenance {
         episode.extra.insert("wayword".into(), json!([about(record)]));
     }
