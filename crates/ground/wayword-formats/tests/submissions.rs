@@ -10,7 +10,7 @@ use std::{fs, io::Write, path::Path};
 use wayword_core::{Heading, ObjectId, SceneId, ViewpointId};
 use wayword_formats::{
     Episode,
-    submission::{Posed, Problems, Submitted, instr_id, read, write},
+    submission::{Posed, Problems, Reading, Submitted, instr_id, read, write},
 };
 
 fn in_file<T>(contents: impl AsRef<[u8]>, look: impl FnOnce(&Path) -> T) -> T {
@@ -20,13 +20,20 @@ fn in_file<T>(contents: impl AsRef<[u8]>, look: impl FnOnce(&Path) -> T) -> T {
     look(&file)
 }
 
+/// All of a file with which nothing is wrong.
+fn whole(file: &Path) -> Vec<Submitted> {
+    let Reading { submitted, flawed, problems, is_whole } = read(file);
+    assert!(problems.told.is_empty() && flawed.is_empty() && is_whole, "{problems:?} {flawed:?}");
+    submitted
+}
+
 fn good(items: &Value) -> Vec<Submitted> {
-    in_file(items.to_string(), |file| read(file).unwrap())
+    in_file(items.to_string(), whole)
 }
 
 /// The problems of a file, without its name.
 fn problems(contents: impl AsRef<[u8]>) -> Vec<String> {
-    let Problems { told, untold } = in_file(contents, |file| read(file).unwrap_err()).0;
+    let Problems { told, untold } = in_file(contents, read).problems;
     assert_eq!(untold, 0);
     let bare = |text: String| text.split_once("submission.json: ").unwrap().1.to_owned();
     told.iter().map(|problem| bare(problem.to_string())).collect()
@@ -67,7 +74,7 @@ fn directions_may_be_absent_and_places_may_come_together() {
 fn gzip_is_told_by_its_bytes() {
     let mut zipped = GzEncoder::new(Vec::new(), Compression::fast());
     zipped.write_all(br#"[{"instr_id": "1_0", "trajectory": [["hall", 0, 0]]}]"#).unwrap();
-    let found = in_file(zipped.finish().unwrap(), |file| read(file).unwrap());
+    let found = in_file(zipped.finish().unwrap(), whole);
     assert_eq!(found[0].trajectory, [place("hall")]);
 }
 
@@ -105,6 +112,25 @@ fn all_problems_are_told() {
 }
 
 #[test]
+fn what_could_be_read_stands_beside_what_is_wrong() {
+    let items = json!([
+        {"instr_id": "1_0", "trajectory": ["hall", 5, "door"]},
+        {"instr_id": "1_1", "trajectory": ["hall"]},
+        {"instr_id": "1_1", "trajectory": []},
+        {"instr_id": "1_0", "trajectory": ["hall"]},
+        {"instr_id": "1_2", "trajectory": ["hall"], "predObjId": [1]},
+        {"trajectory": ["hall"]},
+        {"instr_id": "1_3", "trajectory": ["door"]},
+    ]);
+    let names = |reading: &Reading| reading.submitted.iter().map(|item| item.instr_id.clone()).collect::<Vec<_>>();
+    let reading = in_file(items.to_string(), read);
+    assert_eq!(names(&reading), ["1_1", "1_3"]);
+    assert_eq!((reading.flawed.as_slice(), reading.is_whole), (["1_0".to_owned(), "1_2".to_owned()].as_slice(), true));
+    let broken = in_file(items.to_string().replace("{\"trajectory\"", "{"), read);
+    assert_eq!((names(&broken), broken.is_whole), (vec!["1_1".to_owned()], false));
+}
+
+#[test]
 fn what_was_wrong_before_the_file_broke_off_is_told_too() {
     let found = problems(r#"[{"instr_id": "1_0"}, {"instr_id": "1_1", "trajectory": [["hall", 0"#);
     assert_eq!(found.len(), 2, "{found:?}");
@@ -114,16 +140,14 @@ fn what_was_wrong_before_the_file_broke_off_is_told_too() {
 #[test]
 fn a_thousand_problems_are_told_and_the_others_counted() {
     let items: Vec<Value> = (0..1_500).map(|n| json!({"instr_id": format!("{n}_0")})).collect();
-    let refused = in_file(Value::from(items).to_string(), |file| read(file).unwrap_err());
-    assert_eq!((refused.0.told.len(), refused.0.untold), (1_000, 500));
-    let told = refused.to_string();
-    assert_eq!((told.lines().count(), told.lines().last()), (1_001, Some("and 500 more")));
+    let problems = in_file(Value::from(items).to_string(), read).problems;
+    assert_eq!((problems.told.len(), problems.untold, problems.count()), (1_000, 500, 1_500));
 }
 
 #[test]
 fn a_file_that_is_not_there_is_refused() {
-    let refused = read(Path::new("nowhere/submission.json")).unwrap_err();
-    assert!(refused.to_string().starts_with("nowhere/submission.json: cannot open it"), "{refused}");
+    let Reading { problems, is_whole, .. } = read(Path::new("nowhere/submission.json"));
+    assert!(problems.told[0].to_string().starts_with("nowhere/submission.json: cannot open it") && !is_whole);
 }
 
 #[test]
@@ -169,7 +193,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(format!("submission.json{ending}"));
         write(&file, &all).unwrap();
-        prop_assert_eq!(read(&file).unwrap(), all);
+        prop_assert_eq!(whole(&file), all);
         prop_assert_eq!(fs::read(&file).unwrap().starts_with(&[0x1f, 0x8b]), !ending.is_empty());
     }
 }
@@ -215,10 +239,11 @@ fn the_reader_survives_damage() {
             }
         }
         in_file(&bytes, |file| {
-            if let Err(error) = read(file) {
+            let problems = read(file).problems;
+            if problems.count() > 0 {
                 refused += 1;
                 let file = file.display().to_string();
-                for problem in error.0.told.iter().map(ToString::to_string) {
+                for problem in problems.told.iter().map(ToString::to_string) {
                     assert!(problem.starts_with(&file), "does not name its file: {problem:.2000}");
                     assert!(problem.len() < 600, "rambles: {problem:.2000}");
                 }

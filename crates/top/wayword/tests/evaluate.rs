@@ -231,12 +231,34 @@ fn gzip_and_bare_viewpoints_are_read() {
         item.as_object_mut().unwrap().shift_remove("predObjId");
     }
     let plain = building.write("plain.json", Value::from(submitted).to_string());
-    submission::write(&building.path("submission.json.gz"), &submission::read(&plain).unwrap()).unwrap();
+    submission::write(&building.path("submission.json.gz"), &submission::read(&plain).submitted).unwrap();
     assert!(fs::read(building.path("submission.json.gz")).unwrap().starts_with(&[0x1f, 0x8b]));
     let bare = report(&evaluate_file(&building, "plain.json", R2R, &["--json"]));
     let found = report(&evaluate_file(&building, "submission.json.gz", R2R, &["--json"]));
     is(mean(&found["rules"][0]["figures"], "success_rate"), 1.0);
     assert_eq!(found["rules"], bare["rules"]);
+}
+
+#[test]
+fn records_over_a_dataset_are_clustered_by_its_paths() {
+    let building = Building::new();
+    let ran = building.generate("run", &["--episodes", EPISODES, "--style", "reverie"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let mut records = building.lines("run/instructions.jsonl");
+    for (place, record) in records.iter_mut().enumerate() {
+        record["path_id"] = if place % 2 == 0 { json!(7) } else { json!("8") };
+    }
+    building.write("records.jsonl", records.iter().map(|record| format!("{record}\n")).collect::<String>());
+    let walk = |record: &Value| {
+        let frames = record["path"]["frames"].as_array().unwrap().iter();
+        let trajectory: Vec<Value> = frames.map(|frame| json!([frame["viewpoint"]])).collect();
+        json!({"instr_id": format!("{}_0", record["path"]["id"].as_str().unwrap()), "trajectory": trajectory})
+    };
+    let submitted: Vec<Value> = records.iter().map(walk).collect();
+    let found = report(&evaluate(&building, &submitted, "records.jsonl", &["--json", "--per-item", "scores.jsonl"]));
+    assert_eq!((&found["items"], &found["paths"]), (&json!(ITEMS), &json!(2)));
+    assert_eq!(found["rules"][0]["figures"]["spl"]["clusters"], 2);
+    assert!(building.lines("scores.jsonl")[1]["path"].as_str().unwrap().ends_with("/8"));
 }
 
 /// What is told of a submission that is refused: instruction and problem.
@@ -290,12 +312,15 @@ fn every_problem_is_told_and_nothing_is_scored() {
 fn a_malformed_file_is_told_item_by_item() {
     let building = Building::new();
     let mut submitted = annotated(&building, R2R);
+    let second = submitted[1]["instr_id"].as_str().unwrap().to_owned();
     submitted[1]["instr_id"] = submitted[0]["instr_id"].clone();
     submitted[5]["trajectory"] = json!([]);
     submitted[7].as_object_mut().unwrap().shift_remove("trajectory");
     let found = problems(&evaluate(&building, &submitted, R2R, &["--json"]));
     let told: Vec<&str> = found.iter().map(|(_, problem)| problem.as_str()).collect();
-    assert_eq!(told.len(), 3, "{told:#?}");
+    assert_eq!(told.len(), 4, "{told:#?}");
+    let is_missing = |(id, problem): &(String, String)| *id == second && problem.contains("is missing");
+    assert!(is_missing(&found[3]), "{found:#?}");
     for (told, parts) in told.iter().zip([["item 1", "earlier item"], ["item 5", "empty"], ["item 7", "missing"]]) {
         assert!(parts.iter().all(|part| told.contains(part)) && told.contains("submission.json"), "{told}");
     }
@@ -330,4 +355,81 @@ fn episodes_without_viewpoints_are_refused() {
     );
     let ran = evaluate(&building, &annotated(&building, R2R), "vlnce.json", &[]);
     assert!(ran.refused().contains("no viewpoints") && ran.err.contains("hint:"), "{ran:?}");
+}
+
+#[test]
+fn what_is_wrong_with_form_and_way_is_told_together() {
+    let building = Building::new();
+    let mut submitted = annotated(&building, R2R);
+    let names: Vec<String> = submitted.iter().map(|item| item["instr_id"].as_str().unwrap().to_owned()).collect();
+    submitted[0]["trajectory"] = json!([5]);
+    submitted[2]["trajectory"].as_array_mut().unwrap().reverse();
+    submitted[4]["trajectory"].as_array_mut().unwrap().remove(2);
+    submitted[6]["instr_id"] = json!("999_0");
+    submitted[8]["instr_id"] = json!("998_0");
+    submitted[8]["trajectory"] = json!([]);
+    let found = problems(&evaluate(&building, &submitted, R2R, &["--json"]));
+    let expected = [
+        ("", "item 0"),
+        ("", "item 8"),
+        ("999_0", "no such instruction"),
+        ("998_0", "no such instruction"),
+        (names[2].as_str(), "starts at"),
+        (&names[4], "no edge"),
+        (&names[6], "missing"),
+        (&names[8], "missing"),
+    ];
+    assert_eq!(found.len(), expected.len(), "{found:#?}");
+    for ((id, problem), (expected_id, part)) in found.iter().zip(expected) {
+        assert!(id == expected_id && problem.contains(part), "{id}: {problem}: {part:?} of {expected_id:?} expected");
+    }
+    let whole = Value::from(submitted).to_string();
+    building.write("cut.json", &whole[..whole.len() - 2]);
+    let found = problems(&evaluate_file(&building, "cut.json", R2R, &["--json"]));
+    assert!(found.iter().any(|(_, problem)| problem.contains("EOF")), "{found:#?}");
+    assert!(found.iter().any(|(id, problem)| *id == names[2] && problem.contains("starts at")), "{found:#?}");
+    assert!(!found.iter().any(|(_, problem)| problem.contains("missing")), "{found:#?}");
+}
+
+#[test]
+fn figures_of_instructions_never_take_the_place_of_an_input() {
+    let building = Building::new();
+    let submitted = annotated(&building, R2R);
+    let before = fs::read(building.path(R2R)).unwrap();
+    fs::create_dir(building.path("other")).unwrap();
+    for (per_item, input) in [
+        ("submission.json", "submission.json"),
+        ("other/../submission.json", "submission.json"),
+        ("data/../data/r2r/R2R_val_seen.json", R2R),
+    ] {
+        let ran = evaluate(&building, &submitted, R2R, &["--per-item", per_item]);
+        let told = format!("--per-item would overwrite {input}");
+        assert!(ran.refused().contains(&told) && ran.err.contains("hint:"), "{ran:?}");
+        let kept = fs::read(building.path("submission.json")).unwrap();
+        assert_eq!(kept, Value::from(submitted.clone()).to_string().into_bytes());
+        assert_eq!(fs::read(building.path(R2R)).unwrap(), before);
+    }
+    for _ in 0..2 {
+        assert_eq!(evaluate(&building, &submitted, R2R, &["--per-item", "scores.jsonl"]).code, Some(0));
+    }
+}
+
+#[test]
+fn a_limit_takes_the_first_items_alone() {
+    let building = Building::new();
+    let mut submitted = annotated(&building, R2R);
+    submitted[8]["trajectory"].as_array_mut().unwrap().reverse();
+    submitted.pop();
+    assert_eq!(evaluate(&building, &submitted, R2R, &[]).code, Some(1));
+    let found = report(&evaluate(&building, &submitted, R2R, &["--limit", "3", "--json"]));
+    let numbers = ["instructions", "items", "limit", "left_out"].map(|name| found[name].as_u64().unwrap());
+    assert_eq!(numbers, [6, 3, 3, 13]);
+    let shown = evaluate(&building, &submitted, R2R, &["--limit", "3"]);
+    let told = format!("only the first 3 items of {R2R} count; 13 trajectories for later ones are left out");
+    assert!(shown.out.lines().nth(1).is_some_and(|line| line == told), "{shown:?}");
+    let alone = report(&evaluate(&building, &submitted[..6], R2R, &["--limit", "3", "--json"]));
+    assert_eq!((&alone["rules"], &alone["left_out"]), (&found["rules"], &json!(0)));
+    submitted[12]["instr_id"] = json!("999_0");
+    assert_eq!(problems(&evaluate(&building, &submitted, R2R, &["--limit", "3", "--json"])).len(), 1);
+    assert_eq!(evaluate(&building, &submitted, R2R, &["--limit", "0"]).code, Some(2));
 }

@@ -8,8 +8,8 @@
 mod problems;
 mod reading;
 
-pub use problems::{Problems, Refused};
-pub use reading::read;
+pub use problems::Problems;
+pub use reading::{Reading, read};
 
 use crate::{Episode, FormatError, item, output};
 use serde_json::{Value, json};

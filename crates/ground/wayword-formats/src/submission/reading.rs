@@ -1,6 +1,6 @@
 //! A submission as it is read: item by item, and on after what is wrong.
 
-use super::{Posed, Problems, Refused, Submitted};
+use super::{Posed, Problems, Submitted};
 use crate::{FormatError, Item, input, item, limits};
 use serde_json::Value;
 use std::{collections::BTreeSet, path::Path};
@@ -9,12 +9,23 @@ use wayword_core::{Heading, ViewpointId};
 /// An item's name is its episode's with the place of the instruction behind it.
 const INSTR_ID_BYTES: usize = limits::NAME_BYTES + 21;
 
-/// Reads a submission, plain or gzip.
-///
-/// # Errors
-/// With everything that is wrong: an item that lacks a field or has it wrong, or a name that was given before. Only where the
-/// file cannot be read further (it is no JSON, a field comes twice, it is too large) does the list end there.
-pub fn read(file: &Path) -> Result<Vec<Submitted>, Refused> {
+/// What could be read of a submission, and what is wrong with the rest.
+#[derive(Debug)]
+pub struct Reading {
+    /// The items with which nothing is wrong, in the order of the file.
+    pub submitted: Vec<Submitted>,
+    /// The names of the other items, where they have one of their own, in the order of the file.
+    pub flawed: Vec<String>,
+    /// Everything that is wrong: an item that lacks a field or has it wrong, or a name that was given before; and why the file
+    /// could not be read further, where it could not.
+    pub problems: Problems,
+    /// Whether the file was read to its end. Not where it is no JSON, a field comes twice, or it is too large.
+    pub is_whole: bool,
+}
+
+/// Reads a submission, plain or gzip, and on after what is wrong.
+#[must_use]
+pub fn read(file: &Path) -> Reading {
     let mut reader = Reader::default();
     let read = input::each_value(file, |place, value| {
         match Item::new(file, place, value) {
@@ -23,14 +34,15 @@ pub fn read(file: &Path) -> Result<Vec<Submitted>, Refused> {
         }
         Ok(())
     });
-    reader.problems.good(read);
-    if reader.problems.told.is_empty() { Ok(reader.submitted) } else { Err(Refused(reader.problems)) }
+    let is_whole = reader.problems.good(read).is_some();
+    Reading { submitted: reader.submitted, flawed: reader.flawed, problems: reader.problems, is_whole }
 }
 
 /// What a file has given so far.
 #[derive(Default)]
 struct Reader {
     submitted: Vec<Submitted>,
+    flawed: Vec<String>,
     problems: Problems,
     names: BTreeSet<String>,
     poses: usize,
@@ -40,22 +52,23 @@ impl Reader {
     /// Takes an item with all its problems. An error ends the reading.
     fn take(&mut self, mut item: Item<'_>) -> Result<(), FormatError> {
         let name = self.name(&mut item);
+        let before = self.problems.count();
         let trajectory = self.trajectory(&mut item);
         let object = item.take_optional("predObjId").filter(|object| !object.is_null());
         let object = object.map(|object| item.object("predObjId", &object)).transpose();
         let object = self.problems.good(object);
-        if !self.problems.told.is_empty() {
-            // What is refused anyway is not kept.
-            self.submitted.clear();
-            return Ok(());
-        }
-        if let (Some(instr_id), Some(trajectory), Some(object)) = (name, trajectory, object) {
-            self.poses += trajectory.len();
-            if self.poses > limits::POSES_KEPT {
-                let problem = "its trajectories have more than 4,000,000 entries, more than is kept in memory";
-                return Err(FormatError::document(item.file(), problem, "split it into parts"));
+        let is_flawed = self.problems.count() > before;
+        match (name, trajectory, object) {
+            (Some(instr_id), Some(trajectory), Some(object)) if !is_flawed => {
+                self.poses += trajectory.len();
+                if self.poses > limits::POSES_KEPT {
+                    let problem = "its trajectories have more than 4,000,000 entries, more than is kept in memory";
+                    return Err(FormatError::document(item.file(), problem, "split it into parts"));
+                }
+                self.submitted.push(Submitted { instr_id, trajectory, object });
             }
-            self.submitted.push(Submitted { instr_id, trajectory, object });
+            (Some(name), ..) => self.flawed.push(name),
+            (None, ..) => {}
         }
         Ok(())
     }

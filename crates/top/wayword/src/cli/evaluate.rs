@@ -16,8 +16,8 @@ Examples:
       What `wayword compare` left of its agents' walks.
 
 A submission is a JSON list of {\"instr_id\": \"ID_PLACE\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
-plain or gzip; one item for every instruction. If anything is wrong with it, all that is wrong is told, nothing is scored, and the
-exit code is 1.")]
+plain or gzip; one item for every instruction. If anything is wrong with it, nothing is scored, all that is wrong is told
+(20 problems on a screen, --json more), and the exit code is 1.")]
 pub struct Evaluate {
     /// The trajectories, as the evaluators of R2R and REVERIE take them.
     #[arg(value_name = "SUBMISSION")]
@@ -34,6 +34,10 @@ pub struct Evaluate {
     /// Where to put the figures of each instruction, one JSON object per line.
     #[arg(long, value_name = "FILE")]
     pub per_item: Option<PathBuf>,
+    /// Only the first so many items of the episodes, as `wayword compare --limit` walks them; trajectories for later ones are left
+    /// out.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub limit: Option<u32>,
     /// Resamples of the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,

@@ -30,6 +30,11 @@ pub(super) struct Report {
     instructions: usize,
     items: usize,
     paths: usize,
+    /// The items that count at most: the first of the episodes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limit: Option<u32>,
+    /// Trajectories for later items than these.
+    left_out: usize,
     /// Instructions for which an object was named.
     objects_named: usize,
     /// What the intervals cover. They are clustered by path.
@@ -60,7 +65,7 @@ struct Figure {
 }
 
 impl Report {
-    pub(super) fn new(args: &Evaluate, scored: &[Scored<'_>], rules: &[Rule], drawn: Drawn) -> Self {
+    pub(super) fn new(args: &Evaluate, scored: &[Scored<'_>], left_out: usize, rules: &[Rule], drawn: Drawn) -> Self {
         let has_objects = scored.iter().any(|scored| scored.score.grounding.is_some());
         let by_rule = |rule: &Rule| ByRule {
             rule: *rule,
@@ -73,6 +78,8 @@ impl Report {
             instructions: scored.len(),
             items: scored.iter().map(|scored| scored.item).collect::<BTreeSet<_>>().len(),
             paths: scored.iter().map(|scored| &scored.path).collect::<BTreeSet<_>>().len(),
+            limit: args.limit,
+            left_out,
             objects_named: scored.iter().filter(|scored| scored.names_object).count(),
             level: LEVEL,
             drawn,
@@ -116,6 +123,13 @@ impl fmt::Display for Report {
             "{}: {} instructions of {} items on {} paths",
             self.submission, self.instructions, self.items, self.paths
         )?;
+        if let Some(limit) = self.limit {
+            writeln!(
+                f,
+                "only the first {limit} items of {} count; {} trajectories for later ones are left out",
+                self.episodes, self.left_out
+            )?;
+        }
         for ByRule { words, figures, .. } in &self.rules {
             writeln!(f, "\nsuccess: {words}")?;
             table(f, figures)?;

@@ -1,12 +1,12 @@
 //! What was handed in, held against the episodes: all of it is scored, or all that is wrong is told.
 
-use super::refusal::Problem;
+use super::refusal::{Problem, Problems};
 use crate::{demands::Demands, episodes, error::Error};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_formats::{
     Episode,
-    submission::{Submitted, instr_id},
+    submission::{Reading, Submitted, instr_id},
 };
 use wayword_metrics::{Score, Trajectory, score};
 
@@ -25,31 +25,47 @@ pub(super) struct Scored<'e> {
     pub(super) score: Score,
 }
 
-/// Scores every instruction, in the order of the episodes. Where anything is wrong: all problems, in that order too.
+/// All that counts of a submission, scored.
+#[derive(Debug)]
+pub(super) struct All<'e> {
+    /// In the order of the episodes.
+    pub(super) scored: Vec<Scored<'e>>,
+    /// Trajectories for items beyond the limit.
+    pub(super) left_out: usize,
+}
+
+/// Scores every instruction of `episodes`. What was handed in for the items `beyond` these is left out. Where anything is wrong: all
+/// problems, of the file and then in the order of the episodes.
 ///
 /// # Errors
 /// When a scene cannot be read.
 pub(super) fn score_all<'e>(
     episodes: &'e [Episode],
-    submitted: Vec<Submitted>,
+    beyond: &[Episode],
+    reading: Reading,
     demands: &Demands<'_>,
-) -> Result<Result<Vec<Scored<'e>>, Vec<Problem>>, Error> {
-    let mut problems = unknown(episodes, &submitted);
+) -> Result<Result<All<'e>, Problems>, Error> {
+    let mut problems = Problems::of_file(&reading.problems);
+    unknown(episodes, beyond, &reading, &mut problems);
+    let Reading { submitted, flawed, is_whole, .. } = reading;
+    let flawed: BTreeSet<String> = flawed.into_iter().collect();
     let mut by_id: BTreeMap<String, Submitted> =
         submitted.into_iter().map(|submitted| (submitted.instr_id.clone(), submitted)).collect();
-    let mut all = Vec::new();
+    let mut scored = Vec::new();
     for episode in episodes {
         let (distances, demand) = demands.of(episode)?;
-        for place in places(episode) {
-            let instr_id = instr_id(episode, place);
+        for instr_id in names(episode) {
             let Some(submitted) = by_id.remove(&instr_id) else {
-                problems.push(Problem::new(instr_id, "it is missing: every instruction needs a trajectory"));
+                // What was handed in wrongly is not missing, and what follows where the file broke off may not be.
+                if is_whole && !flawed.contains(&instr_id) {
+                    problems.add(|| Problem::new(instr_id, "it is missing: every instruction needs a trajectory"));
+                }
                 continue;
             };
             let viewpoints = submitted.trajectory.into_iter().map(|posed| posed.viewpoint).collect();
             let trajectory = Trajectory { viewpoints, object: submitted.object };
             match score(&distances, &demand, &trajectory) {
-                Ok(score) => all.push(Scored {
+                Ok(score) => scored.push(Scored {
                     instr_id,
                     item: &episode.id,
                     path: episodes::cluster(episode),
@@ -57,26 +73,29 @@ pub(super) fn score_all<'e>(
                     score,
                 }),
                 Err(wrong) => {
-                    problems.extend(wrong.iter().map(|wrong| Problem::new(instr_id.clone(), wrong.to_string())));
+                    for wrong in wrong {
+                        problems.add(|| Problem::new(instr_id.clone(), wrong.to_string()));
+                    }
                 }
             }
         }
     }
-    Ok(if problems.is_empty() { Ok(all) } else { Err(problems) })
+    // What nobody asked for and is not unknown either.
+    let all = All { scored, left_out: by_id.len() };
+    Ok(if problems.count() == 0 { Ok(all) } else { Err(problems) })
 }
 
-/// Trajectories for instructions that the episodes don't have, in the order of the submission.
-fn unknown(episodes: &[Episode], submitted: &[Submitted]) -> Vec<Problem> {
-    let ids_of = |episode| places(episode).map(move |place| instr_id(episode, place));
-    let known: BTreeSet<String> = episodes.iter().flat_map(ids_of).collect();
-    let is_unknown = |submitted: &&Submitted| !known.contains(&submitted.instr_id);
-    let told = |submitted: &Submitted| {
-        Problem::new(submitted.instr_id.clone(), "the episodes have no such instruction: check the split, and the ids")
-    };
-    submitted.iter().filter(is_unknown).map(told).collect()
+/// Trajectories for instructions that the file of episodes doesn't have, in the order of the submission.
+fn unknown(episodes: &[Episode], beyond: &[Episode], reading: &Reading, problems: &mut Problems) {
+    let known: BTreeSet<String> = episodes.iter().chain(beyond).flat_map(names).collect();
+    let handed_in = reading.submitted.iter().map(|submitted| &submitted.instr_id).chain(&reading.flawed);
+    for instr_id in handed_in.filter(|instr_id| !known.contains(*instr_id)) {
+        let problem = "the episodes have no such instruction: check the split, and the ids";
+        problems.add(|| Problem::new(instr_id.clone(), problem));
+    }
 }
 
-/// The places of an item's instructions.
-fn places(episode: &Episode) -> std::ops::Range<usize> {
-    0..episode.instructions.len()
+/// The names of an item's instructions.
+fn names(episode: &Episode) -> impl Iterator<Item = String> {
+    (0..episode.instructions.len()).map(move |place| instr_id(episode, place))
 }

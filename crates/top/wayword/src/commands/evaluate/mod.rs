@@ -14,40 +14,50 @@ use crate::{
     world,
 };
 use figures::{Drawn, Report};
-use handed_in::{Scored, score_all};
-use refusal::{Problem, Refusal};
-use std::path::Path;
+use handed_in::{All, Scored, score_all};
+use refusal::Refusal;
+use std::{fs, path::Path};
 use wayword_formats::submission;
 use wayword_metrics::Rule;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
+    refuse_to_overwrite(args)?;
     let platform = world::open_named(args.world.platform.as_deref().unwrap_or("house"), args.world.data.as_deref())?;
     let episodes = episodes::read(&args.episodes, platform.as_ref())?;
-    let submitted = match submission::read(&args.submission) {
-        Ok(submitted) => submitted,
-        Err(submission::Refused(problems)) => {
-            let told = problems.told.iter().map(|problem| Problem::of_file(&problem.to_string())).collect();
-            return refuse(Refusal::new(&args.submission, told, problems.untold), output);
+    let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
+    let (episodes, beyond) = episodes.split_at(limit);
+    let reading = submission::read(&args.submission);
+    let All { scored, left_out } = match score_all(episodes, beyond, reading, &Demands::new(platform.as_ref()))? {
+        Ok(all) => all,
+        Err(problems) => {
+            let refusal = Refusal::new(&args.submission, problems);
+            output.data(&refusal, &refusal);
+            return Err(refusal.into_error());
         }
-    };
-    let scored = match score_all(&episodes, submitted, &Demands::new(platform.as_ref()))? {
-        Ok(scored) => scored,
-        Err(problems) => return refuse(Refusal::new(&args.submission, problems, 0), output),
     };
     let rules = rules(args, &scored)?;
     if let Some(file) = &args.per_item {
         write_each(file, &scored)?;
     }
     let drawn = Drawn { resamples: args.resamples as usize, seed: args.seed };
-    let report = Report::new(args, &scored, &rules, drawn);
+    let report = Report::new(args, &scored, left_out, &rules, drawn);
     output.data(&report, &report);
     Ok(Exit::Done)
 }
 
-/// Tells what is wrong; nothing is scored.
-fn refuse(refusal: Refusal, output: &Output) -> Result<Exit, Error> {
-    output.data(&refusal, &refusal);
-    Err(refusal.into_error())
+/// The figures of each instruction must not take the place of what they are made from, by whatever name.
+fn refuse_to_overwrite(args: &Args) -> Result<(), Error> {
+    let Some(Ok(per_item)) = args.per_item.as_ref().map(fs::canonicalize) else {
+        // What is not there yet is no input.
+        return Ok(());
+    };
+    for input in [&args.submission, &args.episodes] {
+        if fs::canonicalize(input).is_ok_and(|input| input == per_item) {
+            let problem = format!("--per-item would overwrite {}, which is to be read", input.display());
+            return Err(Error::usage(problem, "give --per-item a file of its own"));
+        }
+    }
+    Ok(())
 }
 
 /// The rules that are asked for and can be applied.

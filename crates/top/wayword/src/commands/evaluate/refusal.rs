@@ -3,6 +3,7 @@
 use crate::error::Error;
 use serde::Serialize;
 use std::{fmt, path::Path};
+use wayword_formats::submission;
 
 /// Problems that are shown on a screen.
 const SHOWN: usize = 20;
@@ -17,14 +18,22 @@ pub(super) struct Problem {
     problem: String,
 }
 
+/// What is wrong, as far as it is kept.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Problems {
+    #[serde(rename = "problems")]
+    told: Vec<Problem>,
+    /// How many more there are than are told.
+    untold: usize,
+}
+
 /// A submission that is not scored.
 #[derive(Debug, Serialize)]
 pub(super) struct Refusal {
     submission: String,
     scored: usize,
-    problems: Vec<Problem>,
-    /// How many more there are than are told.
-    untold: usize,
+    #[serde(flatten)]
+    problems: Problems,
 }
 
 impl Problem {
@@ -32,35 +41,51 @@ impl Problem {
         Self { instr_id: Some(instr_id), problem: problem.into() }
     }
 
-    pub(super) fn of_file(problem: &str) -> Self {
+    fn of_file(problem: &str) -> Self {
         Self { instr_id: None, problem: problem.to_owned() }
     }
 }
 
-impl Refusal {
-    pub(super) fn new(submission: &Path, mut problems: Vec<Problem>, untold: usize) -> Self {
-        let untold = untold + problems.len().saturating_sub(KEPT);
-        problems.truncate(KEPT);
-        Self { submission: submission.display().to_string(), scored: 0, problems, untold }
+impl Problems {
+    /// What is wrong with the file itself.
+    pub(super) fn of_file(found: &submission::Problems) -> Self {
+        let told = found.told.iter().map(|problem| Problem::of_file(&problem.to_string())).collect();
+        Self { told, untold: found.untold }
     }
 
-    fn all(&self) -> usize {
-        self.problems.len() + self.untold
+    /// Takes one; beyond the limit it is only counted, and not even made.
+    pub(super) fn add(&mut self, problem: impl FnOnce() -> Problem) {
+        if self.told.len() < KEPT {
+            self.told.push(problem());
+        } else {
+            self.untold += 1;
+        }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.told.len() + self.untold
+    }
+}
+
+impl Refusal {
+    pub(super) fn new(submission: &Path, problems: Problems) -> Self {
+        Self { submission: submission.display().to_string(), scored: 0, problems }
     }
 
     /// What ends the program.
     pub(super) fn into_error(self) -> Error {
-        let problems = if self.all() == 1 { "1 problem".to_owned() } else { format!("{} problems", self.all()) };
+        let count = self.problems.count();
+        let problems = if count == 1 { "1 problem".to_owned() } else { format!("{count} problems") };
         Error::usage(
             format!("{}: {problems}; nothing was scored", self.submission),
-            "mend what is told; --json tells all of it",
+            "mend what is told; --json tells more of it",
         )
     }
 }
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Problem { instr_id, problem } in self.problems.iter().take(SHOWN) {
+        for Problem { instr_id, problem } in self.problems.told.iter().take(SHOWN) {
             // A file's keys are quoted, and may hold what a terminal obeys.
             let problem = problem.replace(char::is_control, "\u{fffd}");
             match instr_id {
@@ -68,9 +93,26 @@ impl fmt::Display for Refusal {
                 None => writeln!(f, "{problem}")?,
             }
         }
-        match self.all().saturating_sub(SHOWN) {
+        match self.problems.count().saturating_sub(SHOWN) {
             0 => Ok(()),
             more => writeln!(f, "and {more} more"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn problems_beyond_the_limit_are_counted_and_never_made() {
+        let (mut problems, mut made) = (Problems::default(), 0);
+        for _ in 0..KEPT + 5 {
+            problems.add(|| {
+                made += 1;
+                Problem::new(String::new(), "it is missing")
+            });
+        }
+        assert_eq!((problems.told.len(), problems.untold, problems.count(), made), (KEPT, 5, KEPT + 5, KEPT));
     }
 }
