@@ -24,8 +24,8 @@ pub(crate) struct Flags {
     /// Episodes to learn from: a train split, never one that is judged on.
     #[arg(long)]
     episodes: PathBuf,
-    /// labels or labels/lexical.
-    #[arg(long, default_value = "labels/lexical")]
+    /// Who scores views.
+    #[arg(long, default_value = "labels/lexical", value_parser = ["labels", "labels/lexical"])]
     grounder: String,
     /// The sentence encoder of `labels`.
     #[arg(long, default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]

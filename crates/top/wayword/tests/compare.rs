@@ -12,8 +12,10 @@ const REVERIE: &str = "data/reverie/REVERIE_val_seen.json";
 const R2R: &str = "data/r2r/R2R_val_seen.json";
 
 fn compare(building: &Building, episodes: &str, args: &[&str]) -> Ran {
-    let mut all =
-        vec!["compare", "--platform", "matterport", "--data", "data", "--episodes", episodes, "--resamples", "200"];
+    let mut all = vec!["compare", "--platform", "matterport", "--data", "data", "--episodes", episodes];
+    if !args.contains(&"--resamples") {
+        all.extend(["--resamples", "200"]);
+    }
     if !args.contains(&"--grounder") {
         all.extend(["--grounder", "labels/lexical"]);
     }
@@ -140,6 +142,8 @@ fn what_agents_decide_by_can_be_changed_by_name() {
         ("[clip-nav]\nstop = 1\n", "unknown field"),
         ("[glip-nav]\nmax_hops = 3\n", "no agent named glip-nav walks"),
         ("[clip-nav]\nmax_hops = 5000\n", "at most 1000"),
+        ("[clip-nav]\nstop_threshold = nan\n", "a finite number"),
+        ("[clip-nav.back]\nwindow = 3\nthreshold = 0.1\nnodes = 1\n", "never goes back"),
         ("clip-nav = 3\n", "are a table"),
     ] {
         fs::write(building.path("p.toml"), text).unwrap();
@@ -158,6 +162,11 @@ fn what_makes_no_sense_is_refused_and_leaves_no_folder() {
         (vec!["--instructions", "ours"], "that names no set"),
         (vec!["--instructions", "original", "--instructions", "original"], "comes twice"),
         (vec!["--instructions", "ours=run"], "several styles"),
+        (vec!["--instructions", "none=run#reverie"], "that names no set"),
+        (vec!["--instructions", "..=run#reverie"], "that names no set"),
+        (vec!["--instructions", "a=run#r2r", "--instructions", "A=run#reverie"], "comes twice"),
+        (vec!["--swaps", "none,directions"], "none beside others"),
+        (vec!["--swaps", "sentences,sentences"], "a swap twice"),
         (vec!["--grounder", "magic"], "there is no such grounder"),
         (vec!["--grounder", "hf/openai/clip-vit-base-patch32"], "no GLIP network"),
         (vec!["--rule", "visible", "--episodes", R2R], "names no object"),
@@ -196,4 +205,51 @@ fn generated_houses_can_be_walked_by_their_own_instructions() {
     ]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     assert_eq!(rate(&comparison(&building), "oracle", None), 1.0);
+}
+
+/// What no walk could mend is told before any walk, with its place.
+#[test]
+fn an_episode_that_does_not_fit_its_scene_is_refused_before_anybody_walks() {
+    let building = Building::new();
+    let mut items: Vec<Value> = serde_json::from_str(&fs::read_to_string(building.r2r()).unwrap()).unwrap();
+    items[1]["path"][2] = "nowhere".into();
+    building.write("bad.json", serde_json::to_string(&items).unwrap());
+    let ran = compare(&building, "bad.json", &[]);
+    let told = ran.refused();
+    assert!(told.contains("bad.json") && told.contains("nowhere") && !building.path("walked").exists(), "{told}");
+}
+
+#[test]
+fn texts_of_several_styles_are_not_mixed() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let mixed = compare(&building, "run/instructions.jsonl", &[]);
+    assert!(mixed.refused().contains("several styles"), "{mixed:?}");
+    let apart = ["--instructions", "short=run#reverie", "--instructions", "long=run#r2r", "--swaps", "none"];
+    assert_eq!(compare(&building, "run/instructions.jsonl", &apart).code, Some(0));
+    let found = comparison(&building);
+    assert_eq!(found["sets"][0]["texts"], found["about"]["items"]);
+    // Items of one path are one cluster, whatever file they are read from.
+    let (items, paths) = (found["about"]["items"].as_u64().unwrap(), found["about"]["paths"].as_u64().unwrap());
+    let of_dataset: Vec<Value> = serde_json::from_str(&fs::read_to_string(building.reverie()).unwrap()).unwrap();
+    let distinct: std::collections::BTreeSet<String> =
+        of_dataset.iter().map(|item| item["path_id"].to_string()).collect();
+    assert_eq!((items, paths), (of_dataset.len() as u64, distinct.len() as u64));
+}
+
+#[test]
+fn a_page_is_made_of_what_was_compared_or_not_at_all() {
+    let building = Building::new();
+    assert_eq!(compare(&building, R2R, &["--swaps", "none"]).code, Some(0));
+    let report = || building.wayword(&["report", "--run", "walked"]);
+    assert_eq!(report().code, Some(0));
+    let episodes = fs::read_to_string(building.r2r()).unwrap();
+    fs::write(building.r2r(), format!("{episodes} ")).unwrap();
+    assert!(report().refused().contains("it has changed"));
+    fs::write(building.r2r(), episodes).unwrap();
+    fs::remove_file(building.path("walked/comparison.json")).unwrap();
+    assert!(report().refused().contains("not finished"));
+    // The rule can be changed: no walk hangs on it.
+    let ran = compare(&building, R2R, &["--swaps", "none", "--rule", "distance", "--resamples", "300"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
 }

@@ -96,7 +96,7 @@ fn agents_listen_to_what_people_wrote_of_val_seen() {
     for agent in ["clip-nav", "seq-clip-nav", "glip-nav"] {
         assert!(rate(agent).0 > chance, "{agent}: {:?}, chance {chance}", rate(agent));
         let swapped = found["swaps"].as_array().unwrap().iter().find(|swapped| swapped["agent"] == agent).unwrap();
-        assert_eq!(swapped["listens"], true, "{swapped}");
+        assert_eq!(swapped["listening"], "shown", "{swapped}");
     }
     assert_eq!(found["about"]["items"], 501);
 }

@@ -1,4 +1,4 @@
-//! Floors, which read nothing, and ceilings, which know what no agent is told. Without them a figure cannot be read.
+//! Floors, which read nothing, and those who know what no agent is told. Without them a figure cannot be read.
 
 use super::{Start, Walked};
 use crate::{
@@ -7,7 +7,6 @@ use crate::{
     walk::{Choice, End, Step},
 };
 use rand::{Rng, seq::IndexedRandom};
-use std::collections::BTreeSet;
 use wayword_core::{Gaze, Heading, Platform, ViewpointGraph, ViewpointId};
 use wayword_synthesis::lexicon::same_room;
 
@@ -37,12 +36,12 @@ pub fn oracle(graph: &ViewpointGraph, start: &Start, goal: &ViewpointId) -> Resu
     to(graph, start, goal)
 }
 
-/// The shortest path to the nearest node whose room is one of `rooms`, by the platform's labels; the start alone where there is
-/// none. It knows the map and every room, and reads nothing but rooms.
+/// The shortest path to the nearest node of a room, by the platform's labels; the start alone where there is none. It knows the map
+/// and every room, and reads nothing but the room's name.
 ///
 /// # Errors
 /// When the world cannot be looked at.
-pub fn nearest_room(platform: &dyn Platform, start: &Start, rooms: &[String]) -> Result<Walked, WalkError> {
+pub fn nearest_room(platform: &dyn Platform, start: &Start, wanted: Option<&str>) -> Result<Walked, WalkError> {
     let graph = platform.graph(&start.scene)?;
     let distances = graph.distances_from(&start.viewpoint).map_err(|_| unknown(start, &start.viewpoint))?;
     let mut near: Vec<(&ViewpointId, f64)> = distances.into_iter().collect();
@@ -51,7 +50,7 @@ pub fn nearest_room(platform: &dyn Platform, start: &Start, rooms: &[String]) ->
         let frame = frame_at(&graph, &start.scene, viewpoint)?;
         let view = platform.look_without_picture(&start.scene, &frame, Gaze::quarter(Heading::NORTH))?;
         let room = view.ground_truth().and_then(|truth| truth.room.as_deref());
-        if room.is_some_and(|room| rooms.iter().any(|wanted| same_room(room, wanted))) {
+        if room.zip(wanted).is_some_and(|(room, wanted)| same_room(room, wanted)) {
             return to(&graph, start, viewpoint);
         }
     }
@@ -93,10 +92,9 @@ fn follow(
     Walked { steps, end: End::Stopped, object: None }
 }
 
-/// The rooms that an instruction names, each once.
+/// The room that an instruction names last: those before it are left or passed.
 #[must_use]
-pub fn rooms_in(text: &str) -> Vec<String> {
-    let places = crate::directions::places(text);
-    let rooms: BTreeSet<String> = places.into_iter().filter(|place| place.is_room).map(|place| place.name).collect();
-    rooms.into_iter().collect()
+pub fn last_room_in(text: &str) -> Option<String> {
+    let rooms = crate::directions::places(text).into_iter().filter(|place| place.is_room);
+    rooms.map(|place| place.name).next_back()
 }

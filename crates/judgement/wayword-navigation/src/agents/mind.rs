@@ -3,6 +3,9 @@
 //! CLIP-Nav (arXiv 2211.16649, section 3): the key phrase in hand is held against four views; the best view's nearest neighbour
 //! is next; a phrase that fits well enough gives way to the next one; an activity that fits well enough ends the walk.
 //! Seq-CLIP-Nav goes back where the mean of the last scores is too low.
+//!
+//! Left open by the papers and decided here: the phrase in hand when it looks also chooses the view, and only then gives way; going
+//! back keeps the phrases that were done; of views that tie in score and angle the later by the compass is taken.
 
 use super::Parameters;
 use crate::eyes::{Seen, Sight};

@@ -5,7 +5,7 @@ mod mind;
 mod parameters;
 mod phrases;
 
-pub use floors::{nearest_room, oracle, random, rooms_in, straight};
+pub use floors::{last_room_in, nearest_room, oracle, random, straight};
 pub use parameters::{Back, Parameters};
 pub use phrases::walk_by_phrases;
 

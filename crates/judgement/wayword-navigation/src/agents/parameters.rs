@@ -17,7 +17,7 @@ pub struct Parameters {
     pub stop_with_phrases_left: usize,
     /// Most hops, those back included.
     pub max_hops: usize,
-    /// Of the neighbours only those are taken that were stood at least often.
+    /// Only those neighbours are taken at which it has stood the fewest times.
     pub shun_visited: bool,
     /// Going back; `None` for an agent that never does.
     pub back: Option<Back>,

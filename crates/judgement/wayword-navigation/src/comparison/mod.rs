@@ -36,6 +36,9 @@ pub struct About {
     pub grounder: String,
     /// The same for agents that walk by a detector.
     pub detector: String,
+    /// The sentence encoder behind `labels`, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub encoder: Option<String>,
     /// Who takes instructions apart.
     pub splitter: String,
     /// The rule that the table's figures go by.
@@ -50,6 +53,10 @@ pub struct About {
     pub items: usize,
     /// Paths on which those items lie: items on one path are not independent.
     pub paths: usize,
+    /// Items that every set has and that no agent walked, because a model failed on one of their texts.
+    pub failed: usize,
+    /// Whether the parameters are the defaults and were swept for this grounder.
+    pub swept: bool,
     /// The agents' parameters, by agent and name.
     pub parameters: BTreeMap<String, BTreeMap<String, String>>,
     /// Version of Wayword.
@@ -79,7 +86,9 @@ pub enum Kind {
     Floor,
     /// It reads.
     Agent,
-    /// It knows what no agent is told.
+    /// It knows what no agent is told: the map, the labels of rooms.
+    Informed,
+    /// It knows the goal.
     Ceiling,
 }
 
@@ -124,9 +133,24 @@ pub struct Swapped {
     /// By the original texts less by the swapped ones, on the same items and texts: positive where the agent listens to what was
     /// swapped.
     pub lost: Difference,
-    /// Whether the whole interval of the lost success rate is above 0.
-    pub listens: bool,
+    /// What that says.
+    pub listening: Listening,
 }
+
+/// Whether an agent listens to what was swapped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Listening {
+    /// The whole interval of the lost success rate is above 0.
+    Shown,
+    /// It is not: that the agent does not listen is not shown either.
+    NotShown,
+    /// The swap changed texts on fewer than [`FEWEST_PATHS`] paths, too few for an interval that means anything.
+    TooFew,
+}
+
+/// On fewer paths an interval that draws paths says nothing.
+pub const FEWEST_PATHS: usize = 20;
 
 #[cfg(test)]
 mod tests;

@@ -31,6 +31,12 @@ impl Results {
         (self.clusters.len(), self.clusters.values().collect::<BTreeSet<_>>().len())
     }
 
+    /// Whether an item was walked.
+    #[must_use]
+    pub fn has(&self, item: &str) -> bool {
+        self.clusters.contains_key(item)
+    }
+
     /// The texts by which an agent walked.
     pub(super) fn texts(&self, agent: &str, set: &str) -> Texts {
         let scores = self.of(agent, set).into_iter().flatten();

@@ -1,6 +1,6 @@
 //! From scores to the table: means over items, intervals clustered by path, differences item by item.
 
-use super::{About, Comparison, Difference, Kind, Results, Row, Set, Swapped, results::Texts};
+use super::{About, Comparison, Difference, FEWEST_PATHS, Kind, Listening, Results, Row, Set, Swapped, results::Texts};
 use crate::swap::Swap;
 use std::collections::BTreeMap;
 use wayword_metrics::{Estimate, McNemar, Metric, clustered_interval};
@@ -71,7 +71,11 @@ impl Table<'_> {
         let set = swapped_set(first, swap);
         let texts = self.results.texts(&walker.name, &set);
         let lost = self.difference(&walker.name, (first, Some(&texts)), (&set, None));
-        let listens = lost.figures.get(&Metric::SuccessRate).is_some_and(|lost| lost.low > 0.0);
+        let listening = match lost.figures.get(&Metric::SuccessRate) {
+            Some(lost) if lost.clusters >= FEWEST_PATHS && lost.low > 0.0 => Listening::Shown,
+            Some(lost) if lost.clusters >= FEWEST_PATHS => Listening::NotShown,
+            _ => Listening::TooFew,
+        };
         let count = |texts: &Texts| texts.values().map(|texts| texts.len()).sum();
         Swapped {
             agent: walker.name.clone(),
@@ -80,7 +84,7 @@ impl Table<'_> {
             texts: count(&self.results.texts(&walker.name, first)),
             figures: self.figures(&walker.name, &set, None),
             lost,
-            listens,
+            listening,
         }
     }
 

@@ -39,6 +39,7 @@ fn about() -> About {
         episodes: "e.json".into(),
         grounder: "labels".into(),
         detector: "labels/detector".into(),
+        encoder: None,
         splitter: "rules".into(),
         rule: Rule::Distance,
         level: 0.95,
@@ -46,6 +47,8 @@ fn about() -> About {
         seed: 0,
         items: 4,
         paths: 2,
+        failed: 0,
+        swept: true,
         parameters: BTreeMap::new(),
         wayword: "0".into(),
     }
@@ -113,14 +116,25 @@ fn a_swap_is_held_against_the_very_texts_that_it_changed() {
     let lost = swapped.lost.figures[&Metric::SuccessRate];
     assert_eq!((lost.mean, lost.values), (0.5, 2));
     assert_eq!((swapped.lost.mcnemar.only_first, swapped.lost.mcnemar.only_second), (1, 0));
-    assert!(!swapped.listens, "two paths, one of which loses nothing, show nothing");
+    assert_eq!(swapped.listening, Listening::TooFew, "two paths show nothing");
+}
+
+/// Of 30 items on as many paths, so many lose their success by the swap.
+fn after_losing(losers: usize, paths: usize) -> Listening {
+    let mut results = Results::default();
+    let swapped = swapped_set("original", Swap::OtherPath);
+    for item in 0..30 {
+        let (name, path) = (item.to_string(), (item % paths).to_string());
+        results.add(&walk("reader", "original", &name, 0), &path, score(true));
+        results.add(&walk("reader", &swapped, &name, 0), &path, score(item >= losers));
+    }
+    compared(&results, &[Swap::OtherPath]).swaps[0].listening
 }
 
 #[test]
-fn who_always_loses_by_a_swap_listens() {
-    let mut results = results();
-    for item in ["b", "c", "d"] {
-        results.add(&walk("reader", &swapped_set("original", Swap::OtherPath), item, 0), "", score(false));
-    }
-    assert!(compared(&results, &[Swap::OtherPath]).swaps[0].listens);
+fn who_loses_by_a_swap_on_many_paths_listens() {
+    assert_eq!(after_losing(30, 30), Listening::Shown);
+    assert_eq!(after_losing(15, 30), Listening::Shown);
+    assert_eq!(after_losing(1, 30), Listening::NotShown);
+    assert_eq!(after_losing(30, FEWEST_PATHS - 1), Listening::TooFew);
 }

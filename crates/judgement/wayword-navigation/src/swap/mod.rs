@@ -7,7 +7,7 @@ mod sentences;
 mod sides;
 
 use serde::{Deserialize, Serialize};
-use std::{fmt, str::FromStr};
+use std::fmt;
 
 pub use elsewhere::{Candidate, other_path};
 
@@ -23,14 +23,6 @@ pub enum Swap {
     Sentences,
     /// The instruction of another path of the same building, with another goal.
     OtherPath,
-}
-
-/// A name that no swap has.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no swap {name:?}: name one of {}", Swap::ALL.map(Swap::name).join(", "))]
-pub struct UnknownSwap {
-    /// The name.
-    pub name: String,
 }
 
 impl Swap {
@@ -52,15 +44,6 @@ impl Swap {
 impl fmt::Display for Swap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
-    }
-}
-
-impl FromStr for Swap {
-    type Err = UnknownSwap;
-
-    fn from_str(name: &str) -> Result<Self, UnknownSwap> {
-        let unknown = || UnknownSwap { name: name.to_owned() };
-        Self::ALL.into_iter().find(|swap| swap.name() == name).ok_or_else(unknown)
     }
 }
 
@@ -89,14 +72,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_read_back_and_are_those_in_files() {
+    fn names_are_those_in_files() {
         for swap in Swap::ALL {
-            assert_eq!(swap.to_string().parse(), Ok(swap));
             assert_eq!(serde_json::to_value(swap).unwrap(), swap.name());
         }
-        assert!(
-            "left".parse::<Swap>().unwrap_err().to_string().ends_with("directions, landmarks, sentences, other-path")
-        );
     }
 
     #[test]

@@ -68,8 +68,8 @@ pub struct Compare {
     #[arg(long, value_name = "FILE")]
     pub parameters: Option<PathBuf>,
     /// Only the first so many items.
-    #[arg(long, value_name = "N")]
-    pub limit: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub limit: Option<u32>,
     /// Resamples of the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,

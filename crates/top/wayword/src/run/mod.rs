@@ -192,7 +192,7 @@ pub(crate) fn config_of<S: DeserializeOwned>(folder: &Path) -> Result<S, Error> 
     toml::from_str(&text).map_err(|error| {
         Error::usage(
             format!("{}: {}", path.display(), error.to_string().trim()),
-            "it was written by another version: use another run folder",
+            "it was written by another command or another version: use another folder",
         )
     })
 }

@@ -64,7 +64,7 @@ impl Agent {
         let (kind, reads) = match self {
             Self::Phrases { .. } => (Kind::Agent, true),
             Self::Random(_) | Self::Straight(_) => (Kind::Floor, false),
-            Self::NearestRoom => (Kind::Ceiling, true),
+            Self::NearestRoom => (Kind::Informed, true),
             Self::Oracle => (Kind::Ceiling, false),
         };
         Walker { name: self.name(), kind, reads }
@@ -122,7 +122,17 @@ fn changed(default: &Parameters, own: toml::Value) -> Result<Parameters, String>
     }
     let parameters: Parameters =
         toml::Value::Table(table).try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
-    let Back { window, .. } = parameters.back.unwrap_or(Back { window: 1, threshold: 0.0, nodes: 0 });
+    let Back { window, threshold, .. } = parameters.back.unwrap_or(Back { window: 1, threshold: 0.0, nodes: 0 });
+    let thresholds = [parameters.phrase_threshold, parameters.stop_threshold, threshold];
     let is_sane = parameters.max_hops <= 1000 && (1..=1000).contains(&window);
-    if is_sane { Ok(parameters) } else { Err("max_hops is at most 1000, and back.window from 1 to 1000".to_owned()) }
+    if !is_sane {
+        return Err("max_hops is at most 1000, and back.window from 1 to 1000".to_owned());
+    }
+    if thresholds.iter().any(|threshold| !threshold.is_finite()) {
+        return Err("a threshold is a finite number".to_owned());
+    }
+    if default.back.is_none() && parameters.back.is_some() {
+        return Err("this agent never goes back: seq-clip-nav does".to_owned());
+    }
+    Ok(parameters)
 }

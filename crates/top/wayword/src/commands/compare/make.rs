@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use wayword_core::{Platform, rng};
 use wayword_navigation::{
     Eyes, WalkError,
-    agents::{Walked, nearest_room, oracle, random, rooms_in, straight, walk_by_phrases},
+    agents::{Walked, last_room_in, nearest_room, oracle, random, straight, walk_by_phrases},
     comparison::UNREAD,
     directions::{Directions, Splitter},
     walk::Walk,
@@ -25,6 +25,25 @@ pub(super) struct Crew<'a> {
 }
 
 impl Crew<'_> {
+    /// Agent, set and place of the text of every walk for an item, in the order in which they are made.
+    pub(super) fn names(&self, item: &Item) -> Vec<(String, String, usize)> {
+        let of_agent = |agent: &Agent| {
+            let read = |swapped_too: bool| {
+                let told = item.told.iter().filter(|told| swapped_too || !told.is_swapped);
+                told.map(|told| (told.set.clone(), told.index)).collect::<Vec<_>>()
+            };
+            let unread = |walks| (0..walks).map(|index| (UNREAD.to_owned(), index)).collect();
+            let places = match agent {
+                Agent::Phrases { .. } => read(true),
+                Agent::NearestRoom => read(false),
+                Agent::Random(_) => unread(RANDOM_WALKS),
+                Agent::Straight(_) | Agent::Oracle => unread(1),
+            };
+            places.into_iter().map(|(set, index)| (agent.name(), set, index)).collect::<Vec<_>>()
+        };
+        self.agents.iter().flat_map(of_agent).collect()
+    }
+
     /// Every agent's walks for an item, in the order of agents, sets and texts.
     ///
     /// # Errors
@@ -46,7 +65,7 @@ impl Crew<'_> {
                 }
                 Agent::NearestRoom => {
                     for told in item.told.iter().filter(|told| !told.is_swapped) {
-                        let walked = nearest_room(self.platform, &item.start, &rooms_in(&told.text))?;
+                        let walked = nearest_room(self.platform, &item.start, last_room_in(&told.text).as_deref())?;
                         walks.push(walk(agent, item, told, None, walked));
                     }
                 }

@@ -46,14 +46,20 @@ pub(crate) mod file {
     pub(super) const SUBMISSIONS: &str = "submissions";
 }
 
+/// So many items that fail, and none that does not, end the work.
+const FRUITLESS: usize = 20;
+
 /// Items between two flushes to the disk.
 const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let plan = Plan::of(args)?;
     let platform = world::open_named(&plan.platform, plan.data.as_deref())?;
-    let (items, sets) = sets::load(&plan, platform.as_ref())?;
-    let judge = Judge::new(&items, platform.as_ref(), plan.rule)?;
+    let (items, sizes) = sets::load(&plan, platform.as_ref())?;
+    let judge = Judge::new(&plan, &items, platform.as_ref(), args.rule.map(Into::into))?;
+    if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
+        output.say(format_args!("success is judged by distance: item {item} names no object whose place is known"));
+    }
     let job = splitter::job(args, &plan)?;
     Calls::rehearse(&job.settings, &job.service, &job.providers)?;
     let grounders = Grounders::open(&plan, output)?;
@@ -76,7 +82,13 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
         output.say(format_args!("models: {}", calls.spent()));
     }
     let gathered = Gathered::of(&args.out, &judge)?;
-    let comparison = score::comparison(&plan, &crew, sets, &judge, &gathered.results);
+    if gathered.results.extent().0 == 0 {
+        let problem = "no item could be walked: a model failed on every one of them";
+        return Err(Error::usage(problem, "see what it said above; the same command tries again"));
+    }
+    let sets = sets::described(&plan, &items, &sizes, |item| gathered.results.has(item));
+    let extent = (args.resamples as usize, failed);
+    let comparison = score::comparison(&plan, &crew, sets, &judge, &gathered.results, extent);
     outputs::write(&args.out, &comparison, &gathered)?;
     let page = args.out.join(run::file::REPORT);
     page::write(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
@@ -94,8 +106,11 @@ fn walk_all(
     output: &Output,
 ) -> Result<usize, Error> {
     let mut walks = Journal::open(&folder.join(file::WALKS), key_of)?;
-    let last = |item: &Item| crew.agents.last().map(|agent| last_key(agent, item)).unwrap_or_default();
-    let left: Vec<&Item> = items.iter().filter(|item| !walks.has(&last(item))).collect();
+    let is_done = |item: &&Item| {
+        let mut names = crew.names(item).into_iter();
+        names.all(|(agent, set, text_index)| walks.has(&key(&agent, &set, &item.episode.id, text_index as u64)))
+    };
+    let left: Vec<&Item> = items.iter().filter(|item| !is_done(item)).collect();
     if left.len() < items.len() {
         output.say(format_args!("continuing: {} of {} items are done", items.len() - left.len(), items.len()));
     }
@@ -106,7 +121,7 @@ fn walk_all(
     let bar = output.progress(items.len(), "items");
     bar.set_position((items.len() - left.len()) as u64);
     bar.reset_eta();
-    let (mut failed, mut unflushed) = (0, 0);
+    let (mut walked, mut failed, mut unflushed) = (0, 0, 0);
     let workers = calls.map_or_else(cores, Calls::workers);
     in_order(
         &left,
@@ -115,7 +130,12 @@ fn walk_all(
         |item, made| {
             bar.inc(1);
             match made {
-                Ok(made) => made.iter().try_for_each(|walk| walks.append(walk))?,
+                Ok(made) => {
+                    walked += 1;
+                    made.iter().try_for_each(|walk| walks.append(walk))?;
+                }
+                // Nobody answers: the others would wait for the same.
+                Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == FRUITLESS => return Err(error.into()),
                 Err(error) if is_of_item(&error) => {
                     failed += 1;
                     output.say(format_args!("item {}: {error}", item.episode.id));
@@ -148,9 +168,4 @@ fn key_of(line: &serde_json::Value) -> Option<String> {
 
 fn key(agent: &str, set: &str, item: &str, text_index: u64) -> String {
     format!("{agent}\n{set}\n{item}\n{text_index}")
-}
-
-/// The key of an item's last walk: where it is, all of them are.
-fn last_key(agent: &Agent, item: &Item) -> String {
-    key(&agent.name(), wayword_navigation::comparison::UNREAD, &item.episode.id, 0)
 }

@@ -19,9 +19,10 @@ use wayword_core::{Platform, SceneId, ViewpointGraph, ViewpointId};
 use wayword_metrics::{Metric, Score};
 use wayword_navigation::{comparison::Comparison, walk::Walk};
 
-/// Whether a folder holds a comparison that was finished.
+/// Whether a folder holds a comparison, finished or not.
 pub(in crate::commands) fn is_comparison(folder: &Path) -> bool {
-    folder.join(file::COMPARISON).is_file()
+    let kept: Result<toml::Table, Error> = run::config_of(folder);
+    kept.is_ok_and(|kept| kept.contains_key("agents"))
 }
 
 /// Writes the page of a comparison as its folder holds it; it needs the world and the episodes, not the sets of instructions.
@@ -31,6 +32,14 @@ pub(in crate::commands) fn is_comparison(folder: &Path) -> bool {
 pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<Written, Error> {
     let plan: Plan = run::config_of(folder)?;
     let path = folder.join(file::COMPARISON);
+    if !path.is_file() {
+        let problem = format!("{} holds a comparison that was not finished", folder.display());
+        return Err(Error::usage(problem, "give the command that began it again"));
+    }
+    if plan.inputs.get("episodes") != Some(&run::hash_of_file(&plan.episodes)?) {
+        let problem = format!("{} is not the file that was compared on: it has changed", plan.episodes.display());
+        return Err(Error::usage(problem, "bring it back as it was, or compare anew in another folder"));
+    }
     let found: Comparison = serde_json::from_str(&text_file::read(&path, "read the comparison")?).map_err(|error| {
         Error::usage(format!("{}: {error}", path.display()), "run `wayword compare` with the same --out again")
     })?;
@@ -39,7 +48,7 @@ pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usiz
     episodes.truncate(plan.limit.unwrap_or(usize::MAX));
     let items: Vec<_> = episodes.into_iter().map(|episode| sets::item(episode, &[])).collect();
     // Not asked for by the rule: items that no set has may not be fit for it, and nobody walks them.
-    let mut judge = Judge::new(&items, platform.as_ref(), None)?;
+    let mut judge = Judge::new(&plan, &items, platform.as_ref(), None)?;
     judge.rule = found.about.rule;
     write(folder, out, &found, &judge, platform.as_ref(), most)
 }

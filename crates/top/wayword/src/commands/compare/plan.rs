@@ -1,18 +1,23 @@
 //! What a comparison was asked for: kept in its folder, so that it is continued as it was begun.
 
-use crate::{cli::Compare, error::Error, run::hash_of_file};
+use crate::{
+    cli::{Compare, SwapName},
+    error::Error,
+    run::hash_of_file,
+};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
-use wayword_metrics::Rule;
-use wayword_navigation::{agents::Parameters, swap::Swap};
+use wayword_navigation::{agents::Parameters, comparison::UNREAD, swap::Swap};
 
 /// A comparison as it was asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Plan {
+    /// Of the walks: those of another are not continued.
+    pub(crate) format: u32,
     /// The platform's name.
     pub(crate) platform: String,
     /// Folder of its data.
@@ -34,16 +39,11 @@ pub(crate) struct Plan {
     /// Where that model is reached, where not at its provider's own address.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) base_url: Option<String>,
-    /// What counts as success; decided by the items where nobody says.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) rule: Option<Rule>,
     /// Swaps of the first set.
     pub(crate) swaps: Vec<Swap>,
     /// Only so many items.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limit: Option<usize>,
-    /// Resamples of the intervals.
-    pub(crate) resamples: usize,
     /// Seed of everything random.
     pub(crate) seed: u64,
     /// What the agents decide by.
@@ -51,6 +51,9 @@ pub(crate) struct Plan {
     /// Hashes of the files that are read; a comparison is not continued with others.
     pub(crate) inputs: BTreeMap<String, String>,
 }
+
+/// Format of the walks, and of what agents make of what they see.
+const FORMAT: u32 = 1;
 
 /// The set of the episodes' own instructions.
 pub(super) const ORIGINAL: &str = "original";
@@ -66,7 +69,8 @@ impl Plan {
         let mut inputs = BTreeMap::from([("episodes".to_owned(), hash_of_file(&args.episodes)?)]);
         for set in asked {
             let (name, source) = named(set)?;
-            if instructions.iter().any(|(other, _)| *other == name) {
+            // Submissions are named by their set, and not every file system tells cases apart.
+            if instructions.iter().any(|(other, _)| other.to_lowercase() == name.to_lowercase()) {
                 return Err(Error::usage(format!("--instructions: {name} comes twice"), "give each set its own name"));
             }
             if !source.is_empty() {
@@ -76,19 +80,18 @@ impl Plan {
         }
         let parameters = super::agents::parameters(&args.agents, &args.grounder, args.parameters.as_deref())?;
         Ok(Self {
+            format: FORMAT,
             platform: args.world.platform.clone().unwrap_or_else(|| "house".to_owned()),
-            data: args.world.data.clone(),
-            episodes: args.episodes.clone(),
+            data: args.world.data.as_deref().map(absolute).transpose()?,
+            episodes: absolute(&args.episodes)?,
             instructions,
             agents: args.agents.clone(),
             grounder: args.grounder.clone(),
             encoder: (args.grounder == "labels").then(|| args.encoder.clone()),
             split: args.split.clone(),
             base_url: args.base_url.clone(),
-            rule: args.rule.map(Into::into),
-            swaps: args.swaps.iter().filter_map(|swap| swap.swap()).collect(),
-            limit: args.limit,
-            resamples: args.resamples as usize,
+            swaps: swaps(&args.swaps)?,
+            limit: args.limit.map(|limit| limit as usize),
             seed: args.seed,
             parameters,
             inputs,
@@ -96,17 +99,35 @@ impl Plan {
     }
 }
 
+/// Whether a set can be called so: a file is named after it, and some names mean something else.
+fn is_name(name: &str) -> bool {
+    let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let is_taken = [ORIGINAL, UNREAD].contains(&name.to_lowercase().as_str());
+    name.starts_with(char::is_alphanumeric) && name.chars().all(is_plain) && !is_taken
+}
+
+/// The swaps that were asked for; `none` stands alone.
+fn swaps(asked: &[SwapName]) -> Result<Vec<Swap>, Error> {
+    let swaps: Vec<Swap> = asked.iter().filter_map(|swap| swap.swap()).collect();
+    let is_twice = (1..swaps.len()).any(|at| swaps[..at].contains(&swaps[at]));
+    if is_twice || (swaps.len() < asked.len() && asked.len() > 1) {
+        return Err(Error::usage("--swaps names a swap twice, or none beside others", "name each once, or none alone"));
+    }
+    Ok(swaps)
+}
+
+/// A path that means the same wherever the folder is reported from.
+fn absolute(path: &Path) -> Result<PathBuf, Error> {
+    std::path::absolute(path).map_err(Error::io(path, "find"))
+}
+
 /// A set as it is typed: its name and its source.
 fn named(set: &str) -> Result<(String, String), Error> {
     if set == ORIGINAL {
         return Ok((set.to_owned(), String::new()));
     }
-    let is_name =
-        |name: &str| !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_' | '.'));
     match set.split_once('=') {
-        Some((name, source)) if is_name(name) && name != ORIGINAL && !source.is_empty() => {
-            Ok((name.to_owned(), source.to_owned()))
-        }
+        Some((name, source)) if is_name(name) && !source.is_empty() => Ok((name.to_owned(), source.to_owned())),
         _ => Err(Error::usage(
             format!("--instructions {set}: that names no set"),
             "write original, or NAME=RUN#STYLE, as in --instructions central=runs/central#reverie",

@@ -12,6 +12,7 @@ use std::{collections::BTreeMap, path::Path, sync::Arc};
 use wayword_core::Platform;
 use wayword_metrics::{Demand, Distances, Rule, Score, Trajectory, score};
 use wayword_navigation::{
+    agents::Parameters,
     comparison::{About, Comparison, Results, Set, Walker, compare},
     walk::Walk,
 };
@@ -26,6 +27,10 @@ pub(super) struct Judge<'a> {
     clusters: BTreeMap<&'a str, String>,
     /// What counts as success.
     pub(super) rule: Rule,
+    /// Whether agents can name an object at all.
+    names_objects: bool,
+    /// The first item that names no object whose place is known.
+    pub(super) without_object: Option<&'a str>,
 }
 
 impl<'a> Judge<'a> {
@@ -33,11 +38,22 @@ impl<'a> Judge<'a> {
     ///
     /// # Errors
     /// When a scene cannot be read, or the rule cannot be applied.
-    pub(super) fn new(items: &'a [Item], platform: &dyn Platform, rule: Option<Rule>) -> Result<Self, Error> {
+    pub(super) fn new(
+        plan: &Plan,
+        items: &'a [Item],
+        platform: &dyn Platform,
+        rule: Option<Rule>,
+    ) -> Result<Self, Error> {
         let all = Demands::new(platform);
         let mut demands = BTreeMap::new();
         for item in items {
-            demands.insert(item.episode.id.as_str(), all.of(&item.episode)?);
+            let (distances, demand) = all.of(&item.episode)?;
+            if let Some(unknown) = demand.reference.iter().find(|viewpoint| !distances.has(viewpoint)) {
+                let (file, id) = (plan.episodes.display(), &item.episode.id);
+                let problem = format!("{file}: episode {id}: scene {} has no viewpoint {unknown}", item.episode.scene);
+                return Err(Error::usage(problem, "take episodes and graphs of one release"));
+            }
+            demands.insert(item.episode.id.as_str(), (distances, demand));
         }
         let blind = items.iter().find(|item| demands[item.episode.id.as_str()].1.visible_from.is_none());
         let rule = match (rule, blind) {
@@ -50,7 +66,10 @@ impl<'a> Judge<'a> {
             (None, None) => Rule::Visible,
         };
         let clusters = items.iter().map(|item| (item.episode.id.as_str(), episodes::cluster(&item.episode))).collect();
-        Ok(Self { demands, clusters, rule })
+        // What goes by labels can name an object; what looks at pictures cannot.
+        let names_objects = plan.grounder.starts_with("labels");
+        let without_object = blind.map(|item| item.episode.id.as_str());
+        Ok(Self { demands, clusters, rule, names_objects, without_object })
     }
 
     /// Hands every walk of a folder on, with its score and its item's demand.
@@ -68,10 +87,13 @@ impl<'a> Judge<'a> {
             let Some((distances, demand)) = self.demands.get(walk.item.as_str()) else { return Ok(()) };
             let viewpoints = walk.steps.iter().map(|step| step.viewpoint.clone()).collect();
             let trajectory = Trajectory { viewpoints, object: walk.object.clone() };
-            let score = score(distances, demand, &trajectory).map_err(|problems| {
+            let mut score = score(distances, demand, &trajectory).map_err(|problems| {
                 let problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
                 line.broken(problems.join("; "))
             })?;
+            if walk.directions.is_none() || !self.names_objects {
+                score.grounding = None;
+            }
             take(walk, score, demand)
         })
     }
@@ -89,6 +111,7 @@ pub(super) fn comparison(
     sets: Vec<Set>,
     judge: &Judge<'_>,
     results: &Results,
+    (resamples, failed): (usize, usize),
 ) -> Comparison {
     let (items, paths) = results.extent();
     let about = About {
@@ -96,16 +119,27 @@ pub(super) fn comparison(
         episodes: last_part(&plan.episodes.to_string_lossy()),
         grounder: crew.grounders.views.name().to_owned(),
         detector: crew.grounders.boxes.name().to_owned(),
+        encoder: plan.encoder.clone(),
         splitter: crew.splitter.name().to_owned(),
         rule: judge.rule,
         level: LEVEL,
-        resamples: plan.resamples,
+        resamples,
         seed: plan.seed,
         items,
         paths,
+        failed,
+        swept: is_swept(plan),
         parameters: plan.parameters.iter().map(|(agent, of)| (agent.clone(), of.named())).collect(),
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
     };
     let walkers: Vec<Walker> = crew.agents.iter().map(Agent::walker).collect();
     compare(about, sets, &walkers, &plan.swaps, results)
+}
+
+/// Whether the agents decide by defaults that were swept for their grounder.
+fn is_swept(plan: &Plan) -> bool {
+    let has_sweep =
+        plan.grounder == "labels/lexical" || plan.encoder.as_deref().is_some_and(|encoder| encoder != "words");
+    let is_default = |(agent, of): (&String, &Parameters)| *of == Parameters::default_of(agent, &plan.grounder);
+    has_sweep && plan.parameters.iter().all(is_default)
 }

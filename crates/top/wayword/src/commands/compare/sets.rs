@@ -36,43 +36,51 @@ pub(super) struct Told {
     pub(super) is_swapped: bool,
 }
 
-/// The common items, and what there is to say of each set.
+/// The common items, and how many items each set has by itself.
 ///
 /// # Errors
 /// When a set cannot be read, or the sets have no item in common.
-pub(super) fn load(plan: &Plan, platform: &dyn Platform) -> Result<(Vec<Item>, Vec<Set>), Error> {
+pub(super) fn load(plan: &Plan, platform: &dyn Platform) -> Result<(Vec<Item>, Vec<usize>), Error> {
     let mut episodes = episodes::read(&plan.episodes, platform)?;
     episodes.truncate(plan.limit.unwrap_or(usize::MAX));
-    let own: BTreeMap<String, Vec<String>> =
-        episodes.iter().map(|episode| (episode.id.clone(), episode.instructions.clone())).collect();
+    let ids: BTreeSet<String> = episodes.iter().map(|episode| episode.id.clone()).collect();
     let mut all: Vec<(&str, BTreeMap<String, Vec<String>>)> = Vec::new();
     for (name, source) in &plan.instructions {
-        let mut texts = if source.is_empty() { own.clone() } else { texts_of(source)? };
-        texts.retain(|item, texts| own.contains_key(item) && !texts.is_empty());
+        // The episodes' own texts are read as any set is: those of several styles are not mixed.
+        let source = if source.is_empty() { plan.episodes.to_string_lossy().into_owned() } else { source.clone() };
+        let mut texts = texts_of(&source)?;
+        texts.retain(|item, texts| ids.contains(item) && !texts.is_empty());
         all.push((name, texts));
     }
-    let in_all = |item: &str| all.iter().all(|(_, texts)| texts.contains_key(item));
-    let common: BTreeSet<String> = own.keys().filter(|item| in_all(item)).cloned().collect();
-    if common.is_empty() {
+    episodes.retain(|episode| all.iter().all(|(_, texts)| texts.contains_key(&episode.id)));
+    if episodes.is_empty() {
         let problem = "the sets of instructions and the episodes have no item in common";
         return Err(Error::usage(problem, "items are matched by id: give runs over the same --episodes"));
     }
-    let sets = all.iter().zip(&plan.instructions).map(|((name, texts), (_, source))| {
-        let of_common = || texts.iter().filter(|(item, _)| common.contains(*item)).flat_map(|(_, texts)| texts);
-        let words: usize = of_common().map(|text| word_count(text)).sum();
-        Set {
-            name: (*name).to_owned(),
-            source: last_part(if source.is_empty() { plan.episodes.to_str().unwrap_or_default() } else { source }),
-            texts: of_common().count(),
-            left_out: texts.len() - common.len(),
-            words: words as f64 / of_common().count().max(1) as f64,
-        }
-    });
-    let sets = sets.collect();
-    episodes.retain(|episode| common.contains(&episode.id));
+    let sizes = all.iter().map(|(_, texts)| texts.len()).collect();
     let mut items: Vec<Item> = episodes.into_iter().map(|episode| item(episode, &all)).collect();
     add_swaps(&mut items, plan, platform)?;
-    Ok((items, sets))
+    Ok((items, sizes))
+}
+
+/// What there is to say of each set, over the items that were walked.
+pub(super) fn described(plan: &Plan, items: &[Item], sizes: &[usize], is_walked: impl Fn(&str) -> bool) -> Vec<Set> {
+    let describe = |((name, source), size): (&(String, String), &usize)| {
+        let told = || {
+            let walked = items.iter().filter(|item| is_walked(&item.episode.id));
+            walked.flat_map(|item| &item.told).filter(|told| told.set == *name)
+        };
+        let words: usize = told().map(|told| word_count(&told.text)).sum();
+        let source = if source.is_empty() { plan.episodes.to_string_lossy().into_owned() } else { source.clone() };
+        Set {
+            name: name.clone(),
+            source: last_part(&source),
+            texts: told().count(),
+            left_out: size - items.len(),
+            words: words as f64 / told().count().max(1) as f64,
+        }
+    };
+    plan.instructions.iter().zip(sizes).map(describe).collect()
 }
 
 fn texts_of(source: &str) -> Result<BTreeMap<String, Vec<String>>, Error> {

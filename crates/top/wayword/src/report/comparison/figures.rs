@@ -1,9 +1,9 @@
 //! Figures as tables have them, and the lines that hold them: the same for every format.
 
 use std::{collections::BTreeMap, fmt};
-use wayword_metrics::{Estimate, Metric};
+use wayword_metrics::{Estimate, McNemar, Metric};
 use wayword_navigation::{
-    comparison::{Comparison, Kind, Row, Swapped},
+    comparison::{Comparison, Kind, Listening, Row, Swapped},
     swap::Swap,
 };
 
@@ -58,8 +58,12 @@ fn rounded(metric: Metric, value: f64) -> String {
 }
 
 /// A p as people write it.
-fn p(p: f64) -> String {
-    if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") }
+fn p(test: &McNemar) -> String {
+    match test.p {
+        _ if test.only_first + test.only_second == 0 => "-".to_owned(),
+        p if p < 0.001 => "< 0.001".to_owned(),
+        p => format!("{p:.3}"),
+    }
 }
 
 /// A line of a table.
@@ -69,7 +73,7 @@ pub(super) struct Line<'a> {
     pub(super) kind: Kind,
     /// Whether it is the agent's first line.
     pub(super) opens: bool,
-    /// Whether the agent is as good with another path's instruction.
+    /// Whether the agent is not shown to do worse with another path's instruction.
     pub(super) is_deaf: bool,
     /// The set, or the swap.
     pub(super) label: String,
@@ -92,13 +96,14 @@ impl Line<'_> {
         let kind = match self.kind {
             Kind::Floor => ", floor",
             Kind::Agent => "",
+            Kind::Informed => ", knows the map",
             Kind::Ceiling => ", ceiling",
         };
         format!("{}{}{kind}", self.agent, if self.is_deaf { DEAF } else { "" })
     }
 }
 
-/// Stands beside an agent that is as good with another path's instruction.
+/// Stands beside an agent that is not shown to do worse with another path's instruction.
 pub(super) const DEAF: &str = "†";
 /// The label of an agent that reads no set.
 pub(super) const READS_NOTHING: &str = "reads nothing";
@@ -117,7 +122,7 @@ pub(super) fn differences(comparison: &Comparison) -> Vec<Line<'_>> {
     opened(comparison.rows.iter().filter_map(|row| {
         let difference = row.against_first.as_ref()?;
         let mcnemar = difference.mcnemar;
-        let beside = vec![mcnemar.only_first.to_string(), mcnemar.only_second.to_string(), p(mcnemar.p)];
+        let beside = vec![mcnemar.only_first.to_string(), mcnemar.only_second.to_string(), p(&mcnemar)];
         Some(of_row(comparison, row, &difference.figures, beside))
     }))
 }
@@ -133,8 +138,13 @@ pub(super) fn swaps(comparison: &Comparison) -> Vec<Line<'_>> {
         figures: &swapped.lost.figures,
         beside: vec![
             format!("{} of {}", swapped.changed, swapped.texts),
-            p(swapped.lost.mcnemar.p),
-            if swapped.listens { "yes" } else { "not shown" }.to_owned(),
+            p(&swapped.lost.mcnemar),
+            match swapped.listening {
+                Listening::Shown => "yes",
+                Listening::NotShown => "not shown",
+                Listening::TooFew => "too few paths",
+            }
+            .to_owned(),
         ],
     }))
 }
@@ -168,7 +178,7 @@ fn opened<'a>(lines: impl Iterator<Item = Line<'a>>) -> Vec<Line<'a>> {
 
 /// The agents that are not shown to do worse with another path's instruction.
 pub(super) fn deaf(comparison: &Comparison) -> impl Iterator<Item = &Swapped> {
-    other_path(comparison).filter(|swapped| !swapped.listens)
+    other_path(comparison).filter(|swapped| swapped.listening == Listening::NotShown)
 }
 
 /// What another path's instruction does to each agent.

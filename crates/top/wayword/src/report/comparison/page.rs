@@ -115,7 +115,7 @@ fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]
         let class = match line.kind {
             Kind::Floor => "floor",
             Kind::Agent => return None,
-            Kind::Ceiling => "ceiling",
+            Kind::Informed | Kind::Ceiling => "ceiling",
         };
         let figure = line.figure(Metric::SuccessRate)?;
         let by = if line.label == READS_NOTHING { String::new() } else { format!(" by {}", line.label) };

@@ -5,7 +5,7 @@ use crate::report::replay::tests::{Town, replay};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{Estimate, McNemar, Metric, Rule};
 use wayword_navigation::{
-    comparison::{About, Difference, Kind, Row, Set, Swapped},
+    comparison::{About, Difference, Kind, Listening, Row, Set, Swapped},
     swap::Swap,
 };
 
@@ -37,7 +37,7 @@ fn row(agent: &str, kind: Kind, set: Option<&str>, sr: f64, less: Option<f64>) -
     Row { agent: agent.into(), kind, set: set.map(str::to_owned), figures: figures(sr, 0.021), against_first }
 }
 
-fn swapped(agent: &str, swap: Swap, lost: f64, listens: bool) -> Swapped {
+fn swapped(agent: &str, swap: Swap, lost: f64, listening: Listening) -> Swapped {
     Swapped {
         agent: agent.into(),
         swap,
@@ -45,7 +45,7 @@ fn swapped(agent: &str, swap: Swap, lost: f64, listens: bool) -> Swapped {
         texts: 1_504,
         figures: figures(0.05, 0.02),
         lost: difference(lost, 0.015),
-        listens,
+        listening,
     }
 }
 
@@ -60,8 +60,9 @@ fn comparison() -> Comparison {
         about: About {
             platform: "matterport".into(),
             episodes: "episodes_val.json".into(),
-            grounder: "labels (hf/encoder)".into(),
-            detector: "labels (hf/encoder), boxes".into(),
+            grounder: "labels".into(),
+            detector: "labels/detector".into(),
+            encoder: Some("some-encoder".into()),
             splitter: "rules".into(),
             rule: Rule::Visible,
             level: 0.95,
@@ -69,6 +70,8 @@ fn comparison() -> Comparison {
             seed: 0,
             items: 501,
             paths: 126,
+            failed: 2,
+            swept: true,
             parameters: BTreeMap::from([("clip-nav".to_owned(), parameters)]),
             wayword: "0.0.0".into(),
         },
@@ -79,13 +82,14 @@ fn comparison() -> Comparison {
             row("glip-nav", agent, Some("original"), 0.17, None),
             row("glip-nav", agent, Some("central"), 0.12, Some(-0.05)),
             row("random/5", Kind::Floor, None, 0.012, None),
+            row("nearest-room", Kind::Informed, None, 0.25, None),
             row("oracle", Kind::Ceiling, None, 0.97, None),
         ],
         swaps: vec![
-            swapped("clip-nav", Swap::Directions, 0.0, false),
-            swapped("clip-nav", Swap::OtherPath, 0.004, false),
-            swapped("glip-nav", Swap::Directions, -0.003, false),
-            swapped("glip-nav", Swap::OtherPath, 0.1, true),
+            swapped("clip-nav", Swap::Directions, 0.0, Listening::NotShown),
+            swapped("clip-nav", Swap::OtherPath, 0.004, Listening::NotShown),
+            swapped("glip-nav", Swap::Directions, -0.003, Listening::TooFew),
+            swapped("glip-nav", Swap::OtherPath, 0.1, Listening::Shown),
         ],
     }
 }
@@ -155,8 +159,10 @@ fn every_form_says_what_has_to_be_known() {
             "mean over its texts",
             "ground truth, not perception",
             "the GLIP network is not in this program",
-            "as good with another path",
-            "its rows say nothing about the instructions",
+            "not shown to do worse with another path",
+            "nothing about the instructions can be read from its rows",
+            "encoded by some-encoder",
+            "2 items could not be walked",
         ] {
             assert!(text.contains(told), "{told} is not in {text}");
         }
@@ -170,8 +176,11 @@ fn every_form_says_what_has_to_be_known() {
 fn an_agent_that_listens_is_not_called_deaf_and_one_that_was_not_tried_is_named() {
     let mut comparison = comparison();
     let warnings = told::warnings(&comparison);
-    assert!(warnings.len() == 1 && warnings[0].starts_with("† clip-nav: as good"), "{warnings:?}");
+    assert!(warnings.len() == 1 && warnings[0].starts_with("† clip-nav: not shown to do worse"), "{warnings:?}");
     assert!(told::listeners(&comparison)[0].starts_with("glip-nav listens"));
+    comparison.swaps[1].listening = Listening::TooFew;
+    let warnings = told::warnings(&comparison);
+    assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav: not tried"), "{warnings:?}");
     comparison.swaps.clear();
     let warnings = told::warnings(&comparison);
     assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav, glip-nav: not tried"), "{warnings:?}");

@@ -2,7 +2,7 @@
 
 use super::figures::{DEAF, Figure, deaf, name, other_path};
 use wayword_metrics::{Metric, Rule};
-use wayword_navigation::comparison::{About, Comparison, Kind, Set, Swapped};
+use wayword_navigation::comparison::{About, Comparison, FEWEST_PATHS, Kind, Listening, Set, Swapped};
 
 /// What was compared, and on how much.
 pub(super) fn subject(about: &About) -> String {
@@ -41,21 +41,23 @@ pub(super) fn set(set: &Set) -> String {
 /// What comes before anything else: whose rows say nothing, and why.
 pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
     let lost = |swapped: &Swapped| {
-        let figures = &swapped.lost.figures;
-        figures.get(&Metric::SuccessRate).map_or_else(
-            || "no text could be swapped".to_owned(),
-            |lost| format!("it costs {} points of SR", Figure::of(Metric::SuccessRate, lost)),
-        )
+        let lost = swapped.lost.figures.get(&Metric::SuccessRate);
+        lost.map_or_else(String::new, |lost| {
+            let paths = count(lost.clusters, "path");
+            format!(" (it costs {} points of SR on {paths})", Figure::of(Metric::SuccessRate, lost))
+        })
     };
     let told = |swapped: &Swapped| {
         format!(
-            "{DEAF} {}: as good with another path's instruction: its rows say nothing about the instructions ({}).",
+            "{DEAF} {}: not shown to do worse with another path's instruction{}: nothing about the instructions can be read from its rows.",
             name(&swapped.agent),
             lost(swapped)
         )
     };
     let mut warnings: Vec<String> = deaf(comparison).map(told).collect();
-    let is_tested = |agent: &str| other_path(comparison).any(|swapped| swapped.agent == agent);
+    let is_tested = |agent: &str| {
+        other_path(comparison).any(|swapped| swapped.agent == agent && swapped.listening != Listening::TooFew)
+    };
     let mut untested: Vec<String> = Vec::new();
     for row in comparison.rows.iter().filter(|row| row.kind == Kind::Agent && !is_tested(&row.agent)) {
         let agent = name(&row.agent);
@@ -66,7 +68,7 @@ pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
     if !untested.is_empty() {
         let agents = untested.join(", ");
         warnings.push(format!(
-            "{agents}: not tried with another path's instruction: whether the rows say anything about the instructions is not known."
+            "{agents}: not tried with another path's instruction on at least {FEWEST_PATHS} paths: whether the rows say anything about the instructions is not known."
         ));
     }
     warnings
@@ -75,9 +77,11 @@ pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
 /// Who is shown to listen, and by how much.
 pub(super) fn listeners(comparison: &Comparison) -> Vec<String> {
     let told = |swapped: &Swapped| {
-        let lost = swapped.lost.figures.get(&Metric::SuccessRate).filter(|_| swapped.listens)?;
+        let lost = swapped.lost.figures.get(&Metric::SuccessRate).filter(|_| swapped.listening == Listening::Shown)?;
         let lost = Figure::of(Metric::SuccessRate, lost);
-        Some(format!("{} listens: another path's instruction costs it {lost} points of SR.", name(&swapped.agent)))
+        let paths = count(swapped.lost.figures.get(&Metric::SuccessRate)?.clusters, "path");
+        let agent = name(&swapped.agent);
+        Some(format!("{agent} listens: another path's instruction costs it {lost} points of SR on {paths}."))
     };
     other_path(comparison).filter_map(told).collect()
 }
@@ -120,7 +124,10 @@ fn of_table(comparison: &Comparison) -> Vec<String> {
     notes.extend(grounding(comparison));
     notes.push(format!("Instructions are taken apart by {}.", name(&about.splitter)));
     if comparison.rows.iter().any(|row| row.kind != Kind::Agent) {
-        notes.push("Floors know nothing and read nothing; ceilings know what no agent is told.".to_owned());
+        notes.push(
+            "Floors know nothing and read nothing; who knows the map knows every room's label too, and reads the room; the ceiling knows the goal."
+                .to_owned(),
+        );
     }
     notes
 }
@@ -148,7 +155,25 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
     let about = &comparison.about;
     let nature = |grounder: &str| if grounder.starts_with("labels") { ": ground truth, not perception" } else { "" };
     let detects = |agent: &str| agent.starts_with("glip");
-    let mut told = vec![format!("Views are scored by {}{}.", name(&about.grounder), nature(&about.grounder))];
+    let encoder =
+        about.encoder.as_deref().map_or_else(String::new, |encoder| format!(", encoded by {}", name(encoder)));
+    let mut told = vec![format!("Views are scored by {}{encoder}{}.", name(&about.grounder), nature(&about.grounder))];
+    if about.grounder.starts_with("labels") && about.rule == Rule::Visible {
+        told.push(
+            "The labels that score views are those by which the target counts as visible: success is easier to tell here than with eyes."
+                .to_owned(),
+        );
+    }
+    told.push(match about.swept {
+        true => "What agents decide by was swept on REVERIE's train split.".to_owned(),
+        false => "What agents decide by was not swept for this grounder: read its rows with care.".to_owned(),
+    });
+    if about.failed > 0 {
+        told.push(format!(
+            "{} could not be walked, since a model failed on one of their texts.",
+            count(about.failed, "item")
+        ));
+    }
     if comparison.rows.iter().any(|row| detects(&row.agent)) {
         told.push(format!(
             "GLIP-Nav walks by a label detector ({}{}); the GLIP network is not in this program.",
