@@ -57,7 +57,7 @@ pub(super) fn score_all<'e>(
         for instr_id in names(episode) {
             let Some(submitted) = by_id.remove(&instr_id) else {
                 // What was handed in wrongly is not missing, and what follows where the file broke off may not be.
-                if is_whole || !flawed.contains(&instr_id) {
+                if is_whole && !flawed.contains(&instr_id) {
                     problems.add(|| Problem::new(instr_id, "it is missing: every instruction needs a trajectory"));
                 }
                 continue;

@@ -21,7 +21,7 @@ use wayword_formats::submission;
 use wayword_metrics::Rule;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
-    if false { refuse_to_overwrite(args)?; }
+    refuse_to_overwrite(args)?;
     let platform = world::open_named(args.world.platform.as_deref().unwrap_or("house"), args.world.data.as_deref())?;
     let episodes = episodes::read(&args.episodes, platform.as_ref())?;
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
