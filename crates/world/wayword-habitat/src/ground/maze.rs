@@ -15,9 +15,9 @@ use wayword_core::DVec3;
 const WELD_M: f64 = 1e-3;
 /// And when their heights differ by less than this, metres.
 const SAME_STOREY_M: f64 = 0.5;
-/// A bend lies this near to its vertex, metres.
-const BEND_M: f32 = 0.02;
-/// The search rounds by so much, metres (`lands_on` in its `instance.rs`).
+/// A bend lies this near to its vertex, metres: mostly within millimetres, but rounding adds up.
+const BEND_M: f32 = 0.1;
+/// Two bends that lie apart by no more than this may be one, metres (`lands_on` in the search's `instance.rs`).
 const NOISE_M: f32 = 3e-3;
 
 /// An island made ready for the search.
@@ -56,8 +56,22 @@ impl Maze {
         Some(Self { mesh, origin, places: outlines.places, numbers })
     }
 
-    /// Where the shortest way between two places of the island bends.
+    /// Where the shortest way between two places of the island bends. The search rounds, and in a narrow place can miss a way that it
+    /// finds from the other end: so it is asked from both, and the shorter one is taken.
     pub(super) fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
+        let there = self.searched(start, end);
+        let mut back = self.searched(end, start);
+        if let Some(back) = &mut back {
+            back.reverse();
+        }
+        let length_m = |bends: &Vec<DVec3>| {
+            let places: Vec<DVec3> = [&[start.place], bends.as_slice(), &[end.place]].concat();
+            places.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>()
+        };
+        there.into_iter().chain(back).min_by(|a, b| length_m(a).total_cmp(&length_m(b)))
+    }
+
+    fn searched(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         let (from, to) = (self.coords(start)?, self.coords(end)?);
         let path = self.mesh.path(from, to)?;
         let layer = self.mesh.layers.first()?;
@@ -70,7 +84,8 @@ impl Maze {
         let mut bends = Vec::new();
         let mut reached = 0;
         for bend in path.path.split_last().map_or(&[][..], |(_, before)| before) {
-            let (at, vertex) = bend_of(layer, &rings, reached, *bend).or_else(|| bend_of(layer, &rings, 0, *bend))?;
+            let later = bend_of(layer, &rings, reached, *bend, BEND_M);
+            let (at, vertex) = later.or_else(|| bend_of(layer, &rings, 0, *bend, f32::MAX))?;
             // The way leaves a bend through the last of the polygons around it, so the next bend lies in none before.
             let around = rings.iter().skip(at + 1).take_while(|ring| ring.contains(&vertex)).count();
             reached = at + around;
@@ -111,15 +126,15 @@ impl Maze {
     }
 }
 
-/// The vertex at which a way bends, and the polygon there: of the polygons that the way goes through from `first` on, the first
-/// that has it. A vertex of another storey may lie as near, but not in a polygon that comes as early.
-fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2) -> Option<(usize, u32)> {
+/// The vertex at which a way bends, at most so many metres off, and the polygon there: of the polygons that the way goes through
+/// from `first` on, the first that has it. A vertex of another storey may lie as near, but not in a polygon that comes as early.
+fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2, most_m: f32) -> Option<(usize, u32)> {
     let off = |vertex: u32| layer.vertices.get(vertex as usize).map_or(f32::MAX, |vertex| vertex.coords.distance(bend));
     let nearest = |ring: &&[u32]| ring.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)));
     let near =
         || rings.iter().enumerate().skip(first).filter_map(|(at, ring)| nearest(ring).map(|vertex| (at, vertex)));
-    let least = near().map(|(_, vertex)| off(vertex)).fold(BEND_M, f32::min);
-    near().find(|(_, vertex)| off(*vertex) <= (least + NOISE_M).min(BEND_M))
+    let least = near().map(|(_, vertex)| off(vertex)).fold(f32::MAX, f32::min);
+    near().find(|(_, vertex)| off(*vertex) <= least + NOISE_M && off(*vertex) <= most_m)
 }
 
 /// The polygons' outlines over common vertices, with a vertex at both ends of every door.

@@ -1,5 +1,7 @@
 //! Navmeshes for scenes that have none, baked as Habitat does (`PathFinder::Impl::build`, habitat-sim 0.3.3).
 
+mod contours;
+
 use crate::{
     axes::habitat_from_wayword,
     fault::contained,
@@ -10,9 +12,7 @@ use crate::{
     scene::Model,
 };
 use glam::{UVec3, Vec3};
-use rerecast::{
-    Aabb3d, AreaType, BuildContoursFlags, DetailNavmesh, HeightfieldBuilder, PolygonNavmesh, SubMesh, TriMesh,
-};
+use rerecast::{Aabb3d, AreaType, DetailNavmesh, HeightfieldBuilder, PolygonNavmesh, SubMesh, TriMesh};
 
 /// Columns of voxels, at most: 250 m x 250 m at Habitat's 5 cm.
 const MAX_COLUMNS: f32 = 25e6;
@@ -131,9 +131,7 @@ impl Voxels {
         open.erode_walkable_area(self.radius);
         open.build_distance_field();
         open.build_regions(0, self.least_region, self.merged_region)?;
-        let flags = BuildContoursFlags::TESSELLATE_SOLID_WALL_EDGES;
-        let contours = open.build_contours(settings.edge_max_error, self.max_edge, flags);
-        let polygons = contours.into_polygon_mesh(settings.verts_per_poly as u16)?;
+        let polygons = contours::polygons(&open, self)?;
         let sample_m = if settings.detail_sample_dist < 0.9 { 0.0 } else { cell_size * settings.detail_sample_dist };
         let detail = DetailNavmesh::new(&polygons, &open, sample_m, cell_height * settings.detail_sample_max_error)?;
         Ok((polygons, detail))

@@ -1,0 +1,44 @@
+//! From regions to polygons, mending what cannot be cut into triangles.
+
+use super::Voxels;
+use rerecast::{BuildContoursFlags, CompactHeightfield, Contour, ContourSet, PolygonNavmesh};
+
+/// Shares of the error that borders are simplified with, for contours that the whole of it has spoilt.
+const FINER: [f32; 3] = [0.5, 0.25, 0.0];
+
+/// The polygons of all regions. Simplifying a border can make it cross itself. Recast then warns and keeps the triangles that it
+/// has cut until then (`rcBuildPolyMesh`); rerecast gives up. Here such a contour is simplified less, which changes nothing at
+/// the edges to other regions, as those are never simplified; and only what cannot be mended so is left out.
+pub(super) fn polygons(
+    open: &CompactHeightfield,
+    voxels: &Voxels,
+) -> Result<PolygonNavmesh, Box<dyn std::error::Error>> {
+    let settings = &voxels.settings;
+    let corners = settings.verts_per_poly as u16;
+    let build = |share: f32| {
+        let flags = BuildContoursFlags::TESSELLATE_SOLID_WALL_EDGES;
+        open.build_contours(settings.edge_max_error * share, voxels.max_edge, flags)
+    };
+    let mut set = build(1.0);
+    if let Ok(polygons) = set.clone().into_polygon_mesh(corners) {
+        return Ok(polygons);
+    }
+    let finer = FINER.map(build);
+    let contours = std::mem::take(&mut set.contours);
+    let is_sound = |contour: &Contour| alone(&set, contour).into_polygon_mesh(corners).is_ok();
+    let mended = contours.into_iter().enumerate().filter_map(|(at, contour)| {
+        if is_sound(&contour) {
+            return Some(contour);
+        }
+        let others = finer.iter().filter_map(|set| set.contours.get(at));
+        others.filter(|other| other.region == contour.region).find(|other| is_sound(other)).cloned()
+    });
+    let contours = mended.collect();
+    set.contours = contours;
+    Ok(set.into_polygon_mesh(corners)?)
+}
+
+/// A set of one contour.
+fn alone(set: &ContourSet, contour: &Contour) -> ContourSet {
+    ContourSet { contours: vec![contour.clone()], ..set.clone() }
+}
