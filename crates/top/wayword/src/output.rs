@@ -28,6 +28,11 @@ fn tame(text: &str) -> String {
     tamed
 }
 
+/// A line of a child process, beside this program's own talk.
+pub(crate) fn pass_on(line: &str) {
+    eprintln!("{}", tame(line));
+}
+
 impl Output {
     /// `json`: data as JSON; `quiet`: no talk, no progress.
     #[must_use]

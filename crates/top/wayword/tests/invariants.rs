@@ -94,7 +94,9 @@ fn no_crate_is_built_on_one_above_it() {
             &[
                 "wayword-core",
                 "wayword-formats",
+                "wayword-habitat",
                 "wayword-ledger",
+                "wayword-live",
                 "wayword-local",
                 "wayword-metrics",
                 "wayword-navigation",

@@ -34,6 +34,7 @@ impl Doctor {
         Asked {
             platform: self.world.platform.clone(),
             data: self.world.data.clone(),
+            at: self.world.at.clone(),
             roles: self.roles.clone(),
             service: self.service.clone(),
             ..Asked::default()

@@ -94,6 +94,8 @@ pub enum Command {
     Ledger(Ledger),
     /// Models that run in this program: what is on this machine, and how to get more.
     Models(Models),
+    /// The worlds that there are: what each needs and offers.
+    Platforms,
     /// Save a generated house as glTF with its navigation data.
     House(House),
     /// Print shell completions.
@@ -118,12 +120,16 @@ pub struct Demo {
 /// Which world, and where its data lies.
 #[derive(Debug, Clone, Default, Args)]
 pub struct World {
-    /// The world: house (generated, built in) or matterport. [default: house]
+    /// The world: house (generated, built in), matterport, habitat, tdw, virtualhome or process; `wayword platforms` lists what each
+    /// needs. [default: house]
     #[arg(long)]
     pub platform: Option<String>,
-    /// Folder of the world's data.
-    #[arg(long, value_name = "DIR")]
+    /// Folder or file of the world's data.
+    #[arg(long, value_name = "PATH")]
     pub data: Option<PathBuf>,
+    /// Address of a world that runs: HOST:PORT for tdw, a URL for virtualhome.
+    #[arg(long, value_name = "ADDRESS")]
+    pub at: Option<String>,
 }
 
 /// `wayword generate`.
@@ -220,6 +226,7 @@ impl Generate {
         Asked {
             platform: self.world.platform.clone(),
             data: self.world.data.clone(),
+            at: self.world.at.clone(),
             episodes: self.episodes.clone(),
             paths: self.paths,
             scan: self.scan.clone(),

@@ -57,6 +57,7 @@ impl Perceive {
         Asked {
             platform: self.world.platform.clone(),
             data: self.world.data.clone(),
+            at: self.world.at.clone(),
             episodes: self.episodes.clone(),
             scan: self.scan.clone(),
             questions: self.questions,

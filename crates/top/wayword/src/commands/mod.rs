@@ -15,6 +15,7 @@ mod house;
 mod ledger;
 mod models;
 mod perceive;
+mod platforms;
 mod report;
 mod similarity;
 
@@ -48,6 +49,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         #[cfg(feature = "remote")]
         Command::Ledger(args) => ledger::run(&args, output),
         Command::Models(args) => models::run(&args, output),
+        Command::Platforms => platforms::run(output),
         Command::House(args) => house::run(&args, output),
         Command::Completions { shell } => completions::run(shell),
     }

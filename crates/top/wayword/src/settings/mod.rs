@@ -19,10 +19,12 @@ pub use service::{Providers, Service};
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Asked {
-    /// `house` or `matterport`.
+    /// Its name: see `wayword platforms`.
     pub platform: Option<String>,
-    /// Folder of the platform's data.
+    /// Folder or file of the platform's data.
     pub data: Option<PathBuf>,
+    /// Address of a platform that runs.
+    pub at: Option<String>,
     /// Dataset file whose paths are walked.
     pub episodes: Option<PathBuf>,
     /// Number of random paths.
@@ -63,11 +65,14 @@ pub struct Asked {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// `house` or `matterport`.
+    /// Its name: see `wayword platforms`.
     pub platform: String,
     /// Folder of the platform's data.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub data: Option<PathBuf>,
+    /// Address of a platform that runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<String>,
     /// Dataset file whose paths are walked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub episodes: Option<PathBuf>,
@@ -173,6 +178,7 @@ impl Asked {
         Self {
             platform: self.platform.or(file.platform),
             data: self.data.or(file.data),
+            at: self.at.or(file.at),
             episodes: self.episodes.or(file.episodes.filter(|_| !has_paths)),
             paths: self.paths.or(file.paths.filter(|_| !has_episodes)),
             scan: self.scan.or(file.scan),
@@ -241,6 +247,7 @@ impl Asked {
         Ok(Settings {
             platform: self.platform.unwrap_or_else(|| "house".into()),
             data: self.data,
+            at: self.at,
             episodes: self.episodes,
             paths,
             scan: self.scan.unwrap_or_default(),

@@ -54,7 +54,7 @@ const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let plan = Plan::of(args)?;
-    let platform = world::open_named(&plan.platform, plan.data.as_deref())?;
+    let platform = world::open_named(&plan.platform, plan.data.as_deref(), plan.at.as_deref())?;
     let (items, sizes) = sets::load(&plan, platform.as_ref())?;
     let judge = Judge::new(&plan, &items, platform.as_ref(), args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {

@@ -43,7 +43,7 @@ pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usiz
     let found: Comparison = serde_json::from_str(&text_file::read(&path, "read the comparison")?).map_err(|error| {
         Error::usage(format!("{}: {error}", path.display()), "run `wayword compare` with the same --out again")
     })?;
-    let platform = world::open_named(&plan.platform, plan.data.as_deref())?;
+    let platform = world::open_named(&plan.platform, plan.data.as_deref(), plan.at.as_deref())?;
     let mut episodes = episodes::read(&plan.episodes, platform.as_ref())?;
     episodes.truncate(plan.limit.unwrap_or(usize::MAX));
     let items: Vec<_> = episodes.into_iter().map(|episode| sets::item(episode, &[])).collect();

@@ -23,6 +23,9 @@ pub(crate) struct Plan {
     /// Folder of its data.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) data: Option<PathBuf>,
+    /// Address of a platform that runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) at: Option<String>,
     /// The items.
     pub(crate) episodes: PathBuf,
     /// Sets of instructions: name and source, in order; no source for the episodes' own.
@@ -83,6 +86,7 @@ impl Plan {
             format: FORMAT,
             platform: args.world.platform.clone().unwrap_or_else(|| "house".to_owned()),
             data: args.world.data.as_deref().map(absolute).transpose()?,
+            at: args.world.at.clone(),
             episodes: absolute(&args.episodes)?,
             instructions,
             agents: args.agents.clone(),

@@ -1,49 +1,12 @@
-//! Opens platforms, and remembers views so that each is made once per path.
+//! Remembers views, so that each is made once per path.
 
-use crate::{error::Error, settings::Settings};
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::Path as FilePath,
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
     Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
 };
-use wayword_platforms::{house::HousePlatform, matterport::Matterport};
-
-/// The platforms that this build knows.
-pub const PLATFORMS: [&str; 2] = ["house", "matterport"];
-
-/// Opens the platform that the settings name.
-///
-/// # Errors
-/// When there is none of that name, or its data cannot be opened.
-pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
-    open_named(&settings.platform, settings.data.as_deref())
-}
-
-/// Opens a platform by its name, with the folder of its data.
-///
-/// # Errors
-/// When there is none of that name, or its data cannot be opened.
-pub fn open_named(name: &str, data: Option<&FilePath>) -> Result<Box<dyn Platform>, Error> {
-    match name {
-        "house" => Ok(Box::new(HousePlatform::default())),
-        "matterport" => {
-            let data = data.ok_or_else(|| {
-                Error::usage(
-                    "platform matterport needs --data",
-                    "name the folder that holds connectivity/, and what else you have of the dataset",
-                )
-            })?;
-            Ok(Box::new(Matterport::open(data)?))
-        }
-        other => Err(Error::usage(
-            format!("there is no platform {other:?}"),
-            format!("name one of: {}", PLATFORMS.join(", ")),
-        )),
-    }
-}
 
 /// A platform that remembers the views it has given: perception, evidence and report look at the same ones.
 pub struct Remembering<'a> {

@@ -1,0 +1,114 @@
+//! Opens platforms by their names.
+
+#[cfg(not(feature = "habitat"))]
+#[path = "no_habitat.rs"]
+mod habitat;
+#[cfg(feature = "habitat")]
+mod habitat;
+#[cfg(not(feature = "live"))]
+#[path = "no_live.rs"]
+mod live;
+#[cfg(feature = "live")]
+mod live;
+mod remembering;
+
+use crate::{error::Error, output, settings::Settings};
+use std::{path::Path, sync::Arc};
+use wayword_core::Platform;
+use wayword_platforms::{house::HousePlatform, matterport::Matterport, process::ProcessPlatform};
+
+pub use remembering::Remembering;
+
+/// A platform, as people are told of it.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Listed {
+    /// Its name, as `--platform` takes it.
+    pub name: &'static str,
+    /// What it is.
+    pub what: &'static str,
+    /// What it needs.
+    pub needs: &'static str,
+    /// What it offers.
+    pub offers: &'static str,
+    /// Whether this build has it.
+    pub is_here: bool,
+}
+
+/// All platforms, in this build or not.
+pub const PLATFORMS: [Listed; 6] = [
+    Listed {
+        name: "house",
+        what: "generated homes, built in",
+        needs: "nothing",
+        offers: "pictures, labels, rooms, floors",
+        is_here: true,
+    },
+    Listed {
+        name: "matterport",
+        what: "Matterport3D's buildings, from files",
+        needs: "--data DIR with connectivity/ (README.md tells what else is used)",
+        offers: "rooms, floors; labels with REVERIE's boxes or .house files; pictures with photographs",
+        is_here: true,
+    },
+    Listed {
+        name: "process",
+        what: "any simulator in any language, as a child process (docs/PROCESS.md)",
+        needs: "--data FILE: a world file, or the program itself",
+        offers: "what the child says it does",
+        is_here: true,
+    },
+    Listed {
+        name: "habitat",
+        what: "AI Habitat's scenes, without Habitat",
+        needs: "--data FILE or DIR: .glb, .gltf or .stage_config.json, with the .navmesh beside it or baked",
+        offers: "pictures, geodesic paths; labels with semantic files",
+        is_here: cfg!(feature = "habitat"),
+    },
+    Listed {
+        name: "tdw",
+        what: "ThreeDWorld: waits for a build to connect",
+        needs: "a TDW build started with -port 1071, or another as in --at 127.0.0.1:1072; --data PACKAGE for furnished floor plans",
+        offers: "pictures, labels",
+        is_here: cfg!(feature = "live"),
+    },
+    Listed {
+        name: "virtualhome",
+        what: "VirtualHome's executable, while it runs",
+        needs: "its HTTP address, as in --at http://127.0.0.1:8080 (the default)",
+        offers: "pictures, labels, rooms",
+        is_here: cfg!(feature = "live"),
+    },
+];
+
+/// Opens the platform that the settings name.
+///
+/// # Errors
+/// When there is none of that name, or its data cannot be opened.
+pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
+    open_named(&settings.platform, settings.data.as_deref(), settings.at.as_deref())
+}
+
+/// Opens a platform by its name, with the folder or file of its data, or the address of one that runs.
+///
+/// # Errors
+/// When there is none of that name in this build, or its data cannot be opened.
+pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<Box<dyn Platform>, Error> {
+    let data = || data.ok_or_else(|| no_data(name));
+    match name {
+        "house" => Ok(Box::new(HousePlatform::default())),
+        "matterport" => Ok(Box::new(Matterport::open(data()?)?)),
+        "process" => Ok(Box::new(ProcessPlatform::open(data()?, Arc::new(output::pass_on))?)),
+        "habitat" => habitat::open(data()?),
+        "tdw" => live::tdw(data().ok(), at),
+        "virtualhome" => live::virtualhome(at),
+        other => Err(Error::usage(
+            format!("there is no platform {other:?}"),
+            format!("name one of: {}", PLATFORMS.map(|platform| platform.name).join(", ")),
+        )),
+    }
+}
+
+fn no_data(name: &str) -> Error {
+    let needs = PLATFORMS.into_iter().find(|platform| platform.name == name).map_or("", |platform| platform.needs);
+    Error::usage(format!("platform {name} needs --data"), format!("it needs {needs}"))
+}
