@@ -6,10 +6,13 @@ mod oracles;
 
 use wayword_core::{DVec3, Path, rng};
 use wayword_habitat::{
-    Ground, NavMesh,
-    axes::{EYE_M, forward_from_habitat_rotation},
+    Ground, NavMesh, NavMeshSettings,
+    axes::{EYE_M, forward_from_habitat_rotation, wayword_from_habitat},
+    bake::bake,
     ground::{stops_along, viewpoint_graph},
+    scene::Model,
 };
+use wayword_render::Mesh;
 
 #[test]
 fn every_navmesh_of_habitat_is_written_back_byte_for_byte() {
@@ -82,6 +85,39 @@ fn geodesics_and_area_agree_with_habitats_path_finder() {
         let way = ground.geodesic(oracles::place(&path["start"]), oracles::place(&path["end"])).unwrap();
         let length_m = path["geodesic"].as_f64().unwrap();
         println!("{} of {length_m} m", way.length_m);
+        assert!((way.length_m / length_m - 1.0).abs() < 0.01, "{way:?}");
+    }
+}
+
+/// The boxes of the oracle's scene, as its README gives them: low and high corner in Habitat's frame.
+const BOXES: [[[f32; 3]; 2]; 3] =
+    [[[-5.0, -0.1, -4.0], [5.0, 0.0, 4.0]], [[-0.1, 0.0, -4.0], [0.1, 2.5, 2.8]], [[2.0, 0.0, -1.0], [3.0, 1.0, 1.0]]];
+
+/// A box, its faces outwards, in Wayword's frame.
+fn solid([low, high]: [[f32; 3]; 2]) -> Mesh {
+    let corner = |n: usize| {
+        let at = |axis: usize| f64::from([low, high][n >> axis & 1][axis]);
+        wayword_from_habitat(DVec3::new(at(0), at(1), at(2))).as_vec3()
+    };
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() }
+}
+
+#[test]
+fn a_navmesh_baked_with_the_default_settings_is_habitats() {
+    let Some(folder) = oracles::folder() else { return };
+    let folder = folder.join("habitat_navmesh");
+    let model = Model { meshes: BOXES.map(solid).to_vec(), ..Model::default() };
+    let ground = Ground::new(&bake(&model, &NavMeshSettings::default()).unwrap());
+    let rooms = oracles::json(&folder.join("rooms.json"));
+    let area_m2 = rooms["area"].as_f64().unwrap();
+    println!("baked area {} of {area_m2} m2", ground.area_m2());
+    assert!((ground.area_m2() / area_m2 - 1.0).abs() < 0.03);
+    for path in rooms["paths"].as_array().unwrap() {
+        let way = ground.geodesic(oracles::place(&path["start"]), oracles::place(&path["end"])).unwrap();
+        let length_m = path["geodesic"].as_f64().unwrap();
+        println!("baked {} of {length_m} m", way.length_m);
         assert!((way.length_m / length_m - 1.0).abs() < 0.01, "{way:?}");
     }
 }

@@ -153,3 +153,26 @@ fn numbered_faces_have_the_names_of_their_house() {
     let lamp = semantics.named(&ObjectId::new("1").unwrap()).unwrap();
     assert_eq!(lamp.bounds, Some((DVec3::new(0.2_f32.into(), 3.0, 0.5), DVec3::new(1.5, 3.0, 2.5))));
 }
+
+#[test]
+fn real_house_files_are_read() {
+    let data = std::env::var_os("WAYWORD_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data"),
+        std::path::PathBuf::from,
+    );
+    for scan in ["GdvgFV5R1Z5", "gZ6f7yhEvPG"] {
+        let file = data.join(format!("matterport/v1/scans/{scan}/house_segmentations/{scan}.house"));
+        let Ok(text) = std::fs::read_to_string(&file) else {
+            eprintln!("SKIPPED: no {} (set WAYWORD_DATA)", file.display());
+            continue;
+        };
+        let house = super::house::parse(&text).unwrap();
+        let objects = text.lines().filter(|line| line.starts_with("O ")).count();
+        let regions = text.lines().filter(|line| line.starts_with("R ")).count();
+        assert_eq!((house.things.len(), house.regions.len()), (objects, regions));
+        let named = house.things.iter().filter(|thing| thing.name.is_some()).count();
+        // One of the two lists none.
+        assert!(objects == 0 || (objects / 10..objects).contains(&named), "{named} of {objects} have names");
+        assert!(house.regions.iter().all(|region| region.low.cmple(region.high).all()));
+    }
+}
