@@ -6,13 +6,12 @@ use super::{Region, Thing};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, ObjectId};
 
-/// Largest number of an object that is kept: the mesh's numbers are 16 or 32 bits wide, the list has as many places.
-const MAX_OBJECT: usize = 1 << 20;
-
-/// What the file tells; an object's number is its place.
+/// What the file tells.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct House {
     pub(super) things: Vec<Thing>,
+    /// Place of the thing of each number, by which the mesh names it.
+    pub(super) by_number: BTreeMap<u32, usize>,
     pub(super) regions: Vec<Region>,
 }
 
@@ -20,21 +19,17 @@ pub(super) fn parse(text: &str) -> Result<House, String> {
     if !text.starts_with("ASCII") {
         return Err("line 1: does not begin with ASCII".to_owned());
     }
-    let mut house = House::default();
+    let mut regions = Vec::new();
     let mut categories: BTreeMap<i64, &str> = BTreeMap::new();
-    let mut objects: BTreeMap<usize, i64> = BTreeMap::new();
+    let mut objects: BTreeMap<u32, i64> = BTreeMap::new();
     for (number, line) in text.lines().enumerate().skip(1) {
         let words: Vec<&str> = line.split_whitespace().take(32).collect();
         let record = Record { words: &words };
-        let read = || -> Result<(), String> {
+        let mut read = || -> Result<(), String> {
             match words.first().copied() {
-                Some("R") => house.regions.push(record.region()?),
+                Some("R") => regions.push(record.region()?),
                 Some("O") => {
-                    let object: usize = record.number(1)?;
-                    if object > MAX_OBJECT {
-                        return Err(format!("column 2: {object} is too large"));
-                    }
-                    objects.insert(object, record.number(3)?);
+                    objects.insert(record.number(1)?, record.number(3)?);
                 }
                 Some("C") => {
                     categories.insert(record.number(1)?, record.word(3)?);
@@ -43,14 +38,13 @@ pub(super) fn parse(text: &str) -> Result<House, String> {
             }
             Ok(())
         };
-        let mut read = read;
         read().map_err(|reason| format!("line {}: {reason}", number + 1))?;
     }
-    let last = objects.keys().next_back().map_or(0, |last| last + 1);
-    for object in 0..last {
-        let name = objects.get(&object).and_then(|category| categories.get(category)).copied().unwrap_or_default();
-        let id = ObjectId::new(object.to_string()).map_err(|error| error.to_string())?;
-        house.things.push(Thing::new(id, name));
+    let mut house = House { regions, ..House::default() };
+    for (number, category) in objects {
+        let id = ObjectId::new(number.to_string()).map_err(|error| error.to_string())?;
+        house.by_number.insert(number, house.things.len());
+        house.things.push(Thing::new(id, categories.get(&category).copied().unwrap_or_default()));
     }
     Ok(house)
 }
@@ -96,7 +90,7 @@ mod tests {
     fn objects_are_found_by_their_number() {
         let house = parse(TEXT).unwrap();
         let names: Vec<_> = house.things.iter().map(|thing| thing.name.as_deref()).collect();
-        assert_eq!(names, [None, Some("coffee table")]);
+        assert_eq!((names.as_slice(), house.by_number.get(&1)), (&[Some("coffee table")][..], Some(&0)));
         assert_eq!(
             house.regions,
             [Region { low: DVec3::new(-1.0, -2.0, 0.0), high: DVec3::new(3.0, 4.0, 2.5), letter: 'k' }]
@@ -107,6 +101,6 @@ mod tests {
     fn errors_name_the_line_and_the_column() {
         assert_eq!(parse("ply").unwrap_err(), "line 1: does not begin with ASCII");
         assert_eq!(parse("ASCII\nO 0 0").unwrap_err(), "line 2: has 3 columns; column 4 is missing");
-        assert_eq!(parse("ASCII\nO 9999999999 0 0").unwrap_err(), "line 2: column 2: 9999999999 is too large");
+        assert_eq!(parse("ASCII\nO 9999999999 0 0").unwrap_err(), "line 2: column 2: \"9999999999\" is no number");
     }
 }

@@ -80,13 +80,13 @@ fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result
 }
 
 fn numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<Semantics, FileError> {
-    let house::House { mut things, regions } = house::parse(&text(house, MATTERPORT_HINT)?)
+    let house::House { mut things, by_number, regions } = house::parse(&text(house, MATTERPORT_HINT)?)
         .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
     let wrong = |reason: String| FileError::new(mesh, reason, MATTERPORT_HINT);
     let faces = ply::parse(&fault::bytes(mesh, MAX_MESH, MATTERPORT_HINT)?).map_err(wrong)?;
     let place = |position: &Vec3| wayword_from_habitat(habitat_from_asset * position.as_dvec3()).as_vec3();
     let positions: Vec<Vec3> = faces.positions.iter().map(place).collect();
-    let thing = |object: u32| Some(object as usize).filter(|object| *object < things.len());
+    let thing = |object: u32| by_number.get(&object).copied();
     let told: Vec<Told> = faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
     measure(&positions, &told, &mut things);
     let meshes = by_thing(&positions, &told);
