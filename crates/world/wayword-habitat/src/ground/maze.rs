@@ -6,6 +6,7 @@
 //! known by their polygon.
 
 use super::{Foothold, polygon::Polygon};
+use crate::fault::contained;
 use glam::{DVec2, Vec2};
 use polyanya::{Mesh, Vertex};
 use std::collections::{BTreeMap, BTreeSet};
@@ -49,7 +50,8 @@ impl Maze {
             .iter()
             .zip(&outlines.rings)
             .map(|(polygon, ring)| polyanya::Polygon::new(ring.clone(), one_way(polygon)));
-        let mut mesh = Mesh::new(vertices, pieces.collect()).ok()?;
+        let pieces = pieces.collect();
+        let mut mesh = contained(|| Mesh::new(vertices, pieces).map_err(|error| error.to_string())).ok()?;
         let heights = outlines.places.iter().map(|place| place.z as f32).collect();
         mesh.layers.first_mut()?.set_heights(heights).ok()?;
         mesh.set_search_delta(1e-3);
@@ -73,7 +75,7 @@ impl Maze {
 
     fn searched(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         let (from, to) = (self.coords(start)?, self.coords(end)?);
-        let path = self.mesh.path(from, to)?;
+        let path = contained(|| Ok(self.mesh.path(from, to))).ok()??;
         let layer = self.mesh.layers.first()?;
         let rings: Vec<&[u32]> = path
             .polygons()

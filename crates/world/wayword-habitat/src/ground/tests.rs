@@ -199,6 +199,24 @@ fn the_viewpoint_graph_reaches_every_floor() {
 
 proptest! {
     #[test]
+    fn no_navmesh_makes_a_walk_fall_over(at in 0usize..2400, with: [u8; 2], seed: u64) {
+        let mut bytes = paved(&two_storeys()).to_bytes();
+        let at = at % bytes.len();
+        for (byte, new) in bytes.iter_mut().skip(at).zip(with) {
+            *byte = new;
+        }
+        if let Ok(mesh) = NavMesh::from_bytes(&bytes) {
+            let ground = Ground::new(&mesh);
+            let mut rng = rng(seed, &["test"]);
+            let [a, b] = [0; 2].map(|island| ground.random_place(island, &mut rng).map(|foothold| foothold.place));
+            if let (Some(a), Some(b)) = (a, b) {
+                let _ = ground.geodesic(a, b);
+                let _ = ground.nearest(a);
+            }
+        }
+    }
+
+    #[test]
     fn random_places_lie_on_the_ground(seed: u64) {
         let ground = Ground::new(&paved(&two_storeys()));
         let mut rng = rng(seed, &["test"]);
