@@ -1,0 +1,66 @@
+//! Worlds by their names: listed, refused with what is missing, and walked from end to end over stand-ins of live simulators.
+
+#![cfg(feature = "live")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, Ran};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use wayword_live::{tdw, virtualhome};
+
+/// A port that nobody has.
+fn free_port() -> SocketAddr {
+    TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
+}
+
+/// Instructions for two random paths, all of which pass their checks.
+fn generate(building: &Building, platform: &str, scene: &str, at: &str) -> Ran {
+    let world = ["generate", "--platform", platform, "--at", at, "--scan", scene];
+    let ran = building.wayword(&[&world[..], &["--paths", "2", "--style", "r2r", "--out", platform]].concat());
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(building.records(platform).len(), 2);
+    ran
+}
+
+#[test]
+fn every_world_is_listed_with_what_it_needs() {
+    let listed = Building::new().wayword(&["platforms", "--json"]).json();
+    let names: Vec<&str> = listed.as_array().unwrap().iter().map(|world| world["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["house", "matterport", "process", "habitat", "tdw", "virtualhome"]);
+    for world in listed.as_array().unwrap() {
+        assert!(world["is_here"] == true && !world["needs"].as_str().unwrap().is_empty(), "{world}");
+    }
+}
+
+#[test]
+fn what_is_missing_is_told() {
+    let building = Building::new();
+    for (args, told) in [
+        (&["--platform", "habitat"][..], "needs --data"),
+        (&["--platform", "process"], "needs --data"),
+        (&["--platform", "process", "--data", "nothing.json"], "nothing.json"),
+        (&["--platform", "habitat", "--data", "nowhere"], "nowhere"),
+        (&["--platform", "tdw", "--at", "here"], "--at here"),
+        (&["--platform", "virtualhome", "--at", "here"], "--at here"),
+        (&["--platform", "moon"], "virtualhome"),
+    ] {
+        let ran = building.wayword(&[&["generate", "--paths", "1", "--out", "run"], args].concat());
+        assert!(ran.refused().contains(told), "{args:?}: {ran:?}");
+        assert!(!building.path("run").exists(), "{args:?}");
+    }
+}
+
+#[test]
+fn a_build_that_connects_can_be_walked_through() {
+    let (building, address) = (Building::new(), free_port());
+    let _build = tdw::stand_in::StandIn::start(address, tdw::stand_in::StandInOptions::default());
+    generate(&building, "tdw", "floorplan_1a", &address.to_string());
+}
+
+#[test]
+fn an_executable_that_answers_can_be_walked_through() {
+    let (building, address) = (Building::new(), free_port());
+    let _executable = virtualhome::stand_in::StandIn::start(address).unwrap();
+    generate(&building, "virtualhome", "home_0", &format!("http://{address}"));
+}
