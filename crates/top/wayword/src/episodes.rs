@@ -6,7 +6,7 @@ use wayword_core::{Platform, SceneId, ViewpointGraph, ViewpointId};
 use wayword_formats::{Episode, Format, jsonl};
 
 /// Reads a file's episodes. A path of a continuous world, whose frames lie between viewpoints, is told by the viewpoints nearest to
-/// its frames.
+/// its frames, by straight line: two in a row need not be joined, and one may lie behind a wall.
 ///
 /// # Errors
 /// When the file cannot be read, a scene is unknown, or an episode has neither viewpoints nor frames.

@@ -66,7 +66,9 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     fs::create_dir_all(&args.out).map_err(Error::io(&args.out, "make the folder"))?;
     let _lock = run::lock(&args.out)?;
     run::keep_config(&args.out, &plan)?;
-    let calls = Calls::open(&job.settings, &job.service, &job.providers, &run::id_of(&args.out, "compare")?, output)?;
+    // Without a model nothing is spent, and the same comparison gives the same folder byte for byte.
+    let id = if job.settings.roles.models().is_empty() { String::new() } else { run::id_of(&args.out, "compare")? };
+    let calls = Calls::open(&job.settings, &job.service, &job.providers, &id, output)?;
     let splitter = splitter::splitter(&plan.split, calls.as_ref())?;
     let agents = Agent::all(&plan.parameters, &plan.agents);
     let crew = Crew {
@@ -87,8 +89,8 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
         return Err(Error::usage(problem, "see what it said above; the same command tries again"));
     }
     let sets = sets::described(&plan, &items, &sizes, |item| gathered.results.has(item));
-    let extent = (args.resamples as usize, failed);
-    let comparison = score::comparison(&plan, &crew, sets, &judge, &gathered.results, extent);
+    let (resamples, results) = (args.resamples as usize, &gathered.results);
+    let comparison = score::comparison(&plan, &crew, sets, &judge, results, (resamples, failed));
     outputs::write(&args.out, &comparison, &gathered)?;
     let page = args.out.join(run::file::REPORT);
     page::write(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
