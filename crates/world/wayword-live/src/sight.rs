@@ -1,13 +1,9 @@
 //! Labels from what the pixels of a picture show.
 
-use std::{cmp::Reverse, collections::BTreeMap};
+use std::collections::BTreeMap;
 use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
-use wayword_render::{Camera, Picture, Visible, visible_objects};
+use wayword_render::{Camera, Picture, Visible, evident_objects};
 
-/// An object counts from this share of the picture's pixels on, as in the built-in house.
-const LEAST_SHARE: f64 = 0.0015;
-/// And if at least this share of its box shows, as far as that lies within the picture.
-const LEAST_SHOWN: f64 = 0.22;
 /// Always there, so never worth a label.
 const SHELL: [&str; 6] = ["floor", "wall", "walls", "ceiling", "character", "door jamb"];
 
@@ -57,14 +53,11 @@ pub(crate) fn colour_id([r, g, b]: [u8; 3]) -> u32 {
 pub(crate) fn labels(camera: &Camera, gaze: Gaze, ids: Vec<u32>, palette: &Palette) -> Vec<Label> {
     let depth_m = vec![0.0; ids.len()];
     let picture = Picture { width: camera.width, height: camera.height, rgb: Vec::new(), depth_m, ids };
-    let least = f64::from(camera.width) * f64::from(camera.height) * LEAST_SHARE;
-    let mut seen: Vec<Visible> =
-        visible_objects(&picture).into_iter().filter(|each| f64::from(each.pixels) >= least).collect();
-    seen.sort_by_key(|each| (Reverse(each.pixels), each.id));
+    let seen = evident_objects(&picture);
     let told = seen.iter().filter_map(|each| {
         let thing = palette.get(&each.id)?;
-        let shows = shown(camera, thing, each).is_none_or(|share| share >= LEAST_SHOWN);
-        shows.then(|| label(camera, each, thing)).flatten()
+        let is_sliver = each.is_sliver(camera, &thing.corners);
+        (!is_sliver).then(|| label(camera, each, thing)).flatten()
     });
     told.filter(|label| gaze.holds(label.heading)).collect()
 }
@@ -82,19 +75,6 @@ fn label(camera: &Camera, seen: &Visible, thing: &Thing) -> Option<Label> {
         position: Some(thing.centre),
         colour: None,
     })
-}
-
-/// Share of a thing's box, as far as it lies in the picture, that the box of its visible pixels covers. None where the
-/// thing reaches behind the eye.
-fn shown(camera: &Camera, thing: &Thing, seen: &Visible) -> Option<f64> {
-    let corners = thing.corners.iter().map(|corner| camera.project(*corner)).collect::<Option<Vec<_>>>()?;
-    let side = |value: fn(&(f64, f64, f64)) -> f64, end: u32| {
-        let values = corners.iter().map(value);
-        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-        (high.min(f64::from(end)) - low.max(0.0)).max(1.0)
-    };
-    let (width, height) = (side(|corner| corner.0, camera.width), side(|corner| corner.1, camera.height));
-    Some(f64::from(seen.bbox[2]) * f64::from(seen.bbox[3]) / (width * height))
 }
 
 #[cfg(test)]

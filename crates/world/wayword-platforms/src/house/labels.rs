@@ -4,26 +4,19 @@ use super::{
     objects::{Object, Role},
     scene::HouseScene,
 };
-use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
-use wayword_render::{Camera, Picture, Visible, visible_objects};
-
-/// An object counts from this share of the picture's pixels on: at 640 x 480, a patch of 21 x 21.
-const LEAST_SHARE: f64 = 0.0015;
-/// And if at least this share of its box shows, as far as that lies within the picture.
-const LEAST_SHOWN: f64 = 0.22;
+use wayword_core::{Gaze, Heading, Label, ObjectId};
+use wayword_render::{Camera, Picture, Visible, box_corners, evident_objects};
 
 /// Labels of what is visible, largest first: furniture, doors, windows and stairs whose box's middle lies within the gaze.
 ///
 /// What is hidden behind something else does not count, nor what only a sliver is seen of.
 pub(super) fn labels(scene: &HouseScene, camera: &Camera, gaze: Gaze, picture: &Picture) -> Vec<Label> {
-    let least = f64::from(picture.width) * f64::from(picture.height) * LEAST_SHARE;
-    let mut seen: Vec<Visible> =
-        visible_objects(picture).into_iter().filter(|each| f64::from(each.pixels) >= least).collect();
-    seen.sort_by_key(|each| (std::cmp::Reverse(each.pixels), each.id));
+    let seen = evident_objects(picture);
     let told = seen.iter().filter_map(|each| {
         let object = scene.objects.get(&each.id).filter(|object| object.role != Role::Shell)?;
-        let shows = shown(camera, object, each).is_none_or(|share| share >= LEAST_SHOWN);
-        shows.then(|| label(camera, each, object)).flatten()
+        let (low, high) = object.bounds_m;
+        let is_sliver = each.is_sliver(camera, &box_corners(low, high));
+        (!is_sliver).then(|| label(camera, each, object)).flatten()
     });
     told.filter(|label| gaze.holds(label.heading)).collect()
 }
@@ -44,26 +37,11 @@ fn label(camera: &Camera, seen: &Visible, object: &Object) -> Option<Label> {
     })
 }
 
-/// Share of an object's box, as far as it lies in the picture, that the box of its visible pixels covers. None where the
-/// object reaches behind the eye.
-fn shown(camera: &Camera, object: &Object, seen: &Visible) -> Option<f64> {
-    let (low, high) = object.bounds_m;
-    let corner =
-        |n: usize| DVec3::new([low.x, high.x][n & 1], [low.y, high.y][n >> 1 & 1], [low.z, high.z][n >> 2 & 1]);
-    let corners = (0..8).map(|n| camera.project(corner(n))).collect::<Option<Vec<_>>>()?;
-    let side = |values: &mut dyn Iterator<Item = f64>, end: u32| {
-        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-        (high.min(f64::from(end)) - low.max(0.0)).max(1.0)
-    };
-    let width = side(&mut corners.iter().map(|(x, _, _)| *x), camera.width);
-    let height = side(&mut corners.iter().map(|(_, y, _)| *y), camera.height);
-    Some(f64::from(seen.bbox[2]) * f64::from(seen.bbox[3]) / (width * height))
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::{catalogue::Kind, generate, model::House};
     use super::*;
+    use wayword_core::DVec3;
 
     fn names(house: House, eye: DVec3, heading_rad: f64) -> Vec<String> {
         let scene = HouseScene::new(house).unwrap();

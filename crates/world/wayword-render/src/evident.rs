@@ -1,0 +1,85 @@
+//! What shows so much of itself in a picture that somebody would name it.
+
+use crate::{Camera, Picture, Visible, visible_objects};
+use glam::DVec3;
+use std::cmp::Reverse;
+
+/// An id counts from this share of the picture's pixels on: at 640 x 480, a patch of 21 x 21.
+const LEAST_SHARE: f64 = 0.0015;
+/// And if the box of its pixels covers at least this share of its own, as far as that lies within the picture.
+const LEAST_SHOWN: f64 = 0.22;
+
+/// The ids that show on enough pixels to be named, the largest first.
+#[must_use]
+pub fn evident_objects(picture: &Picture) -> Vec<Visible> {
+    let least = f64::from(picture.width) * f64::from(picture.height) * LEAST_SHARE;
+    let mut seen: Vec<Visible> =
+        visible_objects(picture).into_iter().filter(|each| f64::from(each.pixels) >= least).collect();
+    seen.sort_by_key(|each| (Reverse(each.pixels), each.id));
+    seen
+}
+
+impl Visible {
+    /// Whether only a sliver shows of a thing whose box has these corners (metres, world frame). Of a thing that reaches behind the
+    /// eye that cannot be told, and it is none.
+    #[must_use]
+    pub fn is_sliver(&self, camera: &Camera, corners: &[DVec3; 8]) -> bool {
+        self.shown(camera, corners).is_some_and(|share| share < LEAST_SHOWN)
+    }
+
+    /// Share of a box, as far as it lies in the picture, that the box of the visible pixels covers.
+    fn shown(&self, camera: &Camera, corners: &[DVec3; 8]) -> Option<f64> {
+        let corners = corners.iter().map(|corner| camera.project(*corner)).collect::<Option<Vec<_>>>()?;
+        let side = |value: fn(&(f64, f64, f64)) -> f64, end: u32| {
+            let values = corners.iter().map(value);
+            let (low, high) =
+                values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+            (high.min(f64::from(end)) - low.max(0.0)).max(1.0)
+        };
+        let (width, height) = (side(|corner| corner.0, camera.width), side(|corner| corner.1, camera.height));
+        Some(f64::from(self.bbox[2]) * f64::from(self.bbox[3]) / (width * height))
+    }
+}
+
+/// The corners of a box along the axes.
+#[must_use]
+pub fn box_corners(low: DVec3, high: DVec3) -> [DVec3; 8] {
+    std::array::from_fn(|n| {
+        DVec3::new([low.x, high.x][n & 1], [low.y, high.y][n >> 1 & 1], [low.z, high.z][n >> 2 & 1])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box half a metre wide, so far ahead, whose pixels fill so many of 160 columns.
+    fn is_sliver(ahead_m: f64, columns: u32) -> bool {
+        let camera = Camera {
+            position: DVec3::ZERO,
+            heading_rad: 0.0,
+            elevation_rad: 0.0,
+            vertical_fov_rad: 2.0 * libm::atan(0.75),
+            width: 160,
+            height: 120,
+        };
+        let (centre, half) = (DVec3::Y * ahead_m, DVec3::splat(0.25));
+        let seen = Visible { id: 5, pixels: columns * 20, bbox: [70, 50, columns, 20], nearest_m: 1.0, median_m: 1.0 };
+        seen.is_sliver(&camera, &box_corners(centre - half, centre + half))
+    }
+
+    #[test]
+    fn too_little_of_a_box_is_a_sliver_and_what_reaches_behind_the_eye_is_none() {
+        assert!(!is_sliver(2.0, 20) && is_sliver(2.0, 4));
+        assert!(!is_sliver(0.1, 4));
+    }
+
+    #[test]
+    fn what_shows_on_too_few_pixels_is_not_evident_and_the_largest_comes_first() {
+        // 0.0015 of 40 x 50 pixels are three.
+        let ids: Vec<u32> = (0..2000).map(|n| [7, 7, 0, 8, 8, 8, 0, 9, 9, 9, 9].get(n).copied().unwrap_or(0)).collect();
+        let picture = Picture { width: 40, height: 50, rgb: Vec::new(), depth_m: vec![1.0; 2000], ids };
+        let found: Vec<u32> = evident_objects(&picture).iter().map(|seen| seen.id).collect();
+        assert_eq!(found, [9, 8]);
+    }
+}
