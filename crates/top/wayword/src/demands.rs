@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use std::sync::Arc;
-use wayword_core::Platform;
+use wayword_core::{Platform, SceneId};
 use wayword_formats::Episode;
 use wayword_metrics::{Atlas, Demand, Distances};
 
@@ -19,12 +19,20 @@ impl<'a> Demands<'a> {
         Self { platform, atlas: Atlas::new(platform) }
     }
 
+    /// The distances of a scene.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn distances(&self, scene: &SceneId) -> Result<Arc<Distances>, Error> {
+        Ok(self.atlas.scene(scene)?)
+    }
+
     /// What an episode demands, and the distances of its scene.
     ///
     /// # Errors
     /// When the scene cannot be read.
     pub fn of(&self, episode: &Episode) -> Result<(Arc<Distances>, Demand), Error> {
-        let distances = self.atlas.scene(&episode.scene)?;
+        let distances = self.distances(&episode.scene)?;
         let visible = episode.target_object.as_ref().map(|object| self.platform.visible_from(&episode.scene, object));
         let demand = Demand {
             reference: episode.viewpoints.clone(),

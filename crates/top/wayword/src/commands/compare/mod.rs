@@ -13,6 +13,7 @@ mod splitter;
 use crate::{
     calls::Calls,
     cli::Compare,
+    demands::Demands,
     error::{Error, Exit},
     in_order::in_order,
     output::Output,
@@ -55,8 +56,9 @@ const FLUSH: usize = 16;
 pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let plan = Plan::of(args)?;
     let platform = world::open_named(&plan.platform, plan.data.as_deref(), plan.at.as_deref())?;
-    let (items, sizes) = sets::load(&plan, platform.as_ref())?;
-    let judge = Judge::new(&plan, &items, platform.as_ref(), args.rule.map(Into::into))?;
+    let demands = Demands::new(platform.as_ref());
+    let (items, sizes) = sets::load(&plan, platform.as_ref(), &demands)?;
+    let judge = Judge::new(&plan, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!("success is judged by distance: item {item} names no object whose place is known"));
     }

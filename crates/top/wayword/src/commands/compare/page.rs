@@ -2,6 +2,7 @@
 
 use super::{file, plan::Plan, score::Judge, sets};
 use crate::{
+    demands::Demands,
     episodes,
     error::Error,
     report::{
@@ -48,7 +49,7 @@ pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usiz
     episodes.truncate(plan.limit.unwrap_or(usize::MAX));
     let items: Vec<_> = episodes.into_iter().map(|episode| sets::item(episode, &[])).collect();
     // Not asked for by the rule: items that no set has may not be fit for it, and nobody walks them.
-    let mut judge = Judge::new(&plan, &items, platform.as_ref(), None)?;
+    let mut judge = Judge::new(&plan, &items, &Demands::new(platform.as_ref()), None)?;
     judge.rule = found.about.rule;
     write(folder, out, &found, &judge, platform.as_ref(), most)
 }

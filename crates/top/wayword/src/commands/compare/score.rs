@@ -9,7 +9,6 @@ use super::{
 };
 use crate::{demands::Demands, episodes, error::Error, run::lines};
 use std::{collections::BTreeMap, path::Path, sync::Arc};
-use wayword_core::Platform;
 use wayword_metrics::{Demand, Distances, Rule, Score, Trajectory, score};
 use wayword_navigation::{
     agents::Parameters,
@@ -38,13 +37,7 @@ impl<'a> Judge<'a> {
     ///
     /// # Errors
     /// When a scene cannot be read, or the rule cannot be applied.
-    pub(super) fn new(
-        plan: &Plan,
-        items: &'a [Item],
-        platform: &dyn Platform,
-        rule: Option<Rule>,
-    ) -> Result<Self, Error> {
-        let all = Demands::new(platform);
+    pub(super) fn new(plan: &Plan, items: &'a [Item], all: &Demands<'_>, rule: Option<Rule>) -> Result<Self, Error> {
         let mut demands = BTreeMap::new();
         for item in items {
             let (distances, demand) = all.of(&item.episode)?;

@@ -1,11 +1,11 @@
 //! Sets of instructions, brought together item by item.
 
 use super::plan::{Plan, last_part};
-use crate::{cli::By, episodes, error::Error, texts};
+use crate::{cli::By, demands::Demands, episodes, error::Error, texts};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::Platform;
 use wayword_formats::Episode;
-use wayword_metrics::{Atlas, Distances};
+use wayword_metrics::Distances;
 use wayword_navigation::{
     agents::Start,
     comparison::{Set, swapped_set},
@@ -40,7 +40,11 @@ pub(super) struct Told {
 ///
 /// # Errors
 /// When a set cannot be read, or the sets have no item in common.
-pub(super) fn load(plan: &Plan, platform: &dyn Platform) -> Result<(Vec<Item>, Vec<usize>), Error> {
+pub(super) fn load(
+    plan: &Plan,
+    platform: &dyn Platform,
+    demands: &Demands<'_>,
+) -> Result<(Vec<Item>, Vec<usize>), Error> {
     let mut episodes = episodes::read(&plan.episodes, platform)?;
     episodes.truncate(plan.limit.unwrap_or(usize::MAX));
     let ids: BTreeSet<String> = episodes.iter().map(|episode| episode.id.clone()).collect();
@@ -59,7 +63,7 @@ pub(super) fn load(plan: &Plan, platform: &dyn Platform) -> Result<(Vec<Item>, V
     }
     let sizes = all.iter().map(|(_, texts)| texts.len()).collect();
     let mut items: Vec<Item> = episodes.into_iter().map(|episode| item(episode, &all)).collect();
-    add_swaps(&mut items, plan, platform)?;
+    add_swaps(&mut items, plan, demands)?;
     Ok((items, sizes))
 }
 
@@ -108,14 +112,13 @@ pub(super) fn item(episode: Episode, sets: &[(&str, BTreeMap<String, Vec<String>
 }
 
 /// Adds each text of the first set in every swap that changes it.
-fn add_swaps(items: &mut [Item], plan: &Plan, platform: &dyn Platform) -> Result<(), Error> {
+fn add_swaps(items: &mut [Item], plan: &Plan, demands: &Demands<'_>) -> Result<(), Error> {
     let Some((first, _)) = plan.instructions.first() else { return Ok(()) };
     let of_first: Vec<Vec<String>> = items
         .iter()
         .map(|item| item.told.iter().filter(|told| told.set == *first).map(|told| told.text.clone()).collect())
         .collect();
-    let elsewhere =
-        if plan.swaps.contains(&Swap::OtherPath) { other_items(items, plan, platform)? } else { Vec::new() };
+    let elsewhere = if plan.swaps.contains(&Swap::OtherPath) { other_items(items, plan, demands)? } else { Vec::new() };
     for (at, item) in items.iter_mut().enumerate() {
         for swap in &plan.swaps {
             for (index, text) in of_first[at].iter().enumerate() {
@@ -135,11 +138,10 @@ fn add_swaps(items: &mut [Item], plan: &Plan, platform: &dyn Platform) -> Result
 }
 
 /// For each item, one of the same scene on another path whose goal is another; none where the scene has none.
-fn other_items(items: &[Item], plan: &Plan, platform: &dyn Platform) -> Result<Vec<Option<usize>>, Error> {
-    let atlas = Atlas::new(platform);
+fn other_items(items: &[Item], plan: &Plan, demands: &Demands<'_>) -> Result<Vec<Option<usize>>, Error> {
     let mut distances: BTreeMap<&wayword_core::SceneId, std::sync::Arc<Distances>> = BTreeMap::new();
     for item in items {
-        distances.insert(&item.episode.scene, atlas.scene(&item.episode.scene)?);
+        distances.insert(&item.episode.scene, demands.distances(&item.episode.scene)?);
     }
     let candidates: Vec<Candidate> = items
         .iter()
