@@ -34,7 +34,7 @@ pub use image::Image;
 pub use instruction::{Instruction, Mention, MentionKind, Provenance};
 pub use label::Label;
 pub use model::{Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling};
-pub use motion::{Climb, Move, Turn};
+pub use motion::{Climb, Motion, Move, Turn};
 pub use path::{Distinction, Frame, Path, Target};
 pub use platform::{PathRequest, Platform, PlatformError};
 pub use pose::Pose;

@@ -3,6 +3,26 @@
 use crate::{Pose, heading::Side};
 use serde::{Deserialize, Serialize};
 
+/// Whether anything is known of how the walker moved.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// The frames' poses are those of the walk.
+    #[default]
+    Known,
+    /// The frames are in the order of the walk and nothing else is known: their poses stand for nothing. No turn, distance,
+    /// length, floor or map may be told of such a path.
+    Unknown,
+}
+
+impl Motion {
+    /// Whether poses mean something.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        *self == Self::Known
+    }
+}
+
 /// From one frame to the next: first a turn on the spot, then a walk.
 ///
 /// The first move of a path holds the opening turn, from the episode's heading to the first hop.

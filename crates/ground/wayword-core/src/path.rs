@@ -1,6 +1,6 @@
 //! A walk through a scene: frames in order, and what it is for.
 
-use crate::{Heading, Move, ObjectId, Pose, SceneId, Side, ViewpointId};
+use crate::{Heading, Motion, Move, ObjectId, Pose, SceneId, Side, ViewpointId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +26,9 @@ pub struct Path {
     pub scene: SceneId,
     /// At least one frame. The first looks along the episode's heading, every later one along the hop just made.
     pub frames: Vec<Frame>,
+    /// Whether the frames' poses mean anything.
+    #[serde(default, skip_serializing_if = "Motion::is_known")]
+    pub motion: Motion,
     /// What the walker is to do something with at the end, where that is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<Target>,
@@ -92,16 +95,20 @@ impl Path {
             .collect()
     }
 
-    /// The moves between its frames: one fewer than frames; move `i` turns at frame `i` and walks to frame `i + 1`.
+    /// The moves between its frames: one fewer than frames; move `i` turns at frame `i` and walks to frame `i + 1`. None
+    /// where the motion is unknown.
     #[must_use]
     pub fn moves(&self) -> Vec<Move> {
+        if !self.motion.is_known() {
+            return Vec::new();
+        }
         self.frames.windows(2).map(|pair| Move::between(&pair[0].pose, &pair[1].pose)).collect()
     }
 
-    /// Its length, metres.
+    /// Its length, metres; `None` where the motion is unknown.
     #[must_use]
-    pub fn length_m(&self) -> f64 {
-        self.moves().iter().map(|step| step.distance_m).sum()
+    pub fn length_m(&self) -> Option<f64> {
+        self.motion.is_known().then(|| self.moves().iter().map(|step| step.distance_m).sum())
     }
 }
 
@@ -129,6 +136,7 @@ mod tests {
             id: "p".into(),
             scene: SceneId::new("s").unwrap(),
             frames: Path::frames_along(stops, start),
+            motion: Motion::Known,
             target: None,
         }
     }
@@ -139,7 +147,7 @@ mod tests {
         let path = path(vec![stop(0.0, 0.0, 0.0), stop(0.0, 2.0, 0.0), stop(2.0, 2.0, 0.0)], Some(south));
         let turns: Vec<_> = path.moves().iter().map(|step| step.turn_rad.to_degrees().round()).collect();
         assert_eq!(turns, [180.0, 90.0]);
-        assert!((path.length_m() - 4.0).abs() < 1e-12);
+        assert!((path.length_m().unwrap() - 4.0).abs() < 1e-12);
     }
 
     #[test]
@@ -153,5 +161,18 @@ mod tests {
     fn a_hop_straight_up_keeps_the_heading() {
         let path = path(vec![stop(0.0, 0.0, 0.0), stop(1.0, 0.0, 0.0), stop(1.0, 0.0, 3.0)], None);
         assert_eq!(path.frames[1].pose.heading, path.frames[2].pose.heading);
+    }
+
+    #[test]
+    fn of_an_unknown_motion_there_are_neither_moves_nor_a_length() {
+        let known = path(vec![stop(0.0, 0.0, 0.0), stop(2.0, 0.0, 0.0)], None);
+        let unknown = Path { motion: Motion::Unknown, ..known.clone() };
+        assert_eq!((unknown.moves(), unknown.length_m()), (Vec::new(), None));
+        assert_eq!(known.length_m(), Some(2.0));
+        // Files of paths with poses are what they were before.
+        assert!(!serde_json::to_string(&known).unwrap().contains("motion"));
+        let text = serde_json::to_string(&unknown).unwrap();
+        assert!(text.contains(r#""motion":"unknown""#), "{text}");
+        assert_eq!(serde_json::from_str::<Path>(&text).unwrap(), unknown);
     }
 }

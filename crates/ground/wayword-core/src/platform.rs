@@ -107,6 +107,14 @@ impl Default for PathRequest {
     }
 }
 
+impl PathRequest {
+    /// Whether a path is as long as was asked for. One whose length is unknown is not.
+    #[must_use]
+    pub fn allows_length_of(&self, path: &Path) -> bool {
+        path.length_m().is_some_and(|length_m| self.length_m.contains(&length_m))
+    }
+}
+
 /// A world cannot give what it was asked for.
 #[derive(Debug, thiserror::Error)]
 pub enum PlatformError {

@@ -5,7 +5,7 @@
 
 use serde_json::{Value, json};
 use std::{path::Path, process::Command};
-use wayword_core::{DVec3, Heading, ObjectId, SceneId, Target, ViewpointId, path::Stop};
+use wayword_core::{DVec3, Heading, Motion, ObjectId, SceneId, Target, ViewpointId, path::Stop};
 use wayword_formats::{Episode, Format, r2r, read, reverie, rxr, vlnce, write_sidecar};
 
 const EYE_HEIGHT_M: f64 = 1.5;
@@ -22,6 +22,7 @@ fn path(id: &str, object: Option<&str>) -> wayword_core::Path {
         id: id.to_owned(),
         scene: SceneId::new("house1").unwrap(),
         frames: wayword_core::Path::frames_along(stops, Some(Heading::new(1.0).unwrap())),
+        motion: Motion::Known,
         target: object.map(|object| Target { object, name: "plant".into(), told_by: Vec::new(), has_namesake: false }),
     }
 }

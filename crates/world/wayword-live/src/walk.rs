@@ -3,7 +3,7 @@
 use rand::Rng;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{
-    DVec3, Frame, Gaze, Heading, Label, ObjectId, Path, PathRequest, PlatformError, Pose, SceneId, Target,
+    DVec3, Frame, Gaze, Heading, Label, Motion, ObjectId, Path, PathRequest, PlatformError, Pose, SceneId, Target,
     ViewpointGraph, ViewpointId, path::Stop, rng,
 };
 
@@ -52,8 +52,9 @@ pub(crate) fn path(
         }
         let Some(way) = world.way(from, to)? else { continue };
         let frames = Path::frames_along(stops(&way, interval_m), None);
-        let mut path = Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None };
-        if !request.length_m.contains(&path.length_m()) {
+        let mut path =
+            Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
+        if !request.allows_length_of(&path) {
             continue;
         }
         let Some(last) = path.frames.last() else { continue };

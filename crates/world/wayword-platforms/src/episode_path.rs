@@ -1,7 +1,7 @@
 //! An episode of a dataset as a [`Path`] through a world.
 
 use wayword_core::{
-    Frame, Gaze, Heading, Label, ObjectId, Path, Platform, PlatformError, SceneId, Target, ViewpointId,
+    Frame, Gaze, Heading, Label, Motion, ObjectId, Path, Platform, PlatformError, SceneId, Target, ViewpointId,
 };
 
 /// The path that an episode walks: frames over `viewpoints`, the first looking along `heading`, and its target by `object`.
@@ -25,7 +25,7 @@ pub fn path_of(
         (Some(object), Some(last)) => target(platform, scene, last, object)?,
         _ => None,
     };
-    Ok(Path { id: id.into(), scene: scene.clone(), frames, target })
+    Ok(Path { id: id.into(), scene: scene.clone(), frames, motion: Motion::Known, target })
 }
 
 /// Everything that is visible from a frame, in the order ahead, right, behind, left.

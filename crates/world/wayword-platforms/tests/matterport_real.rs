@@ -165,7 +165,7 @@ fn random_paths_end_at_a_visible_target() {
                 continue;
             }
         };
-        assert!((4..=7).contains(&path.moves().len()) && (5.0..=20.0).contains(&path.length_m()));
+        assert!((4..=7).contains(&path.moves().len()) && (5.0..=20.0).contains(&path.length_m().unwrap()));
         let around = labels_around(&platform, scene, path.frames.last().unwrap()).unwrap();
         targets +=
             usize::from(path.target.is_some_and(|target| around.iter().any(|label| label.object == target.object)));

@@ -48,7 +48,8 @@ struct Shown {
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for walk in &self.walks {
-            writeln!(f, "{}: {:.1} m in {} frames", walk.path.id, walk.path.length_m(), walk.path.frames.len())?;
+            let length = walk.path.length_m().map_or_else(String::new, |length_m| format!("{length_m:.1} m in "));
+            writeln!(f, "{}: {length}{} frames", walk.path.id, walk.path.frames.len())?;
             let moves = walk.path.moves();
             for (at, observation) in walk.observations.iter().enumerate() {
                 let then = moves.get(at).map_or(String::new(), motion);

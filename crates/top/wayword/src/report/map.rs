@@ -84,8 +84,11 @@ const MOST_SPAN_M: f64 = 2_000.0;
 const MOST_NODES: usize = 4_000;
 
 impl MapView {
-    /// The map of the first `frames` frames, or `None` where their positions make no map.
+    /// The map of the first `frames` frames, or `None` where their positions are not known or make no map.
     pub(super) fn new(path: &Path, map: &Map, frames: usize) -> Option<Self> {
+        if !path.motion.is_known() {
+            return None;
+        }
         let stops: Vec<DVec3> = path.frames.iter().take(frames).map(|frame| frame.pose.position).collect();
         let start = path.frames.first()?.pose.heading;
         Self::draw(map, &Trail { stops: &stops, start, backs: &[], annotated: &[], is_numbered_once: false })
@@ -263,7 +266,7 @@ fn spots(trail: &Trail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{Frame, Pose, SceneId};
+    use wayword_core::{Frame, Motion, Pose, SceneId};
 
     fn path(stops: &[[f64; 3]]) -> Path {
         let frame = |[x, y, z]: &[f64; 3]| Frame {
@@ -275,6 +278,7 @@ mod tests {
             id: "p".into(),
             scene: SceneId::new("s").unwrap(),
             frames: stops.iter().map(frame).collect(),
+            motion: Motion::Known,
             target: None,
         }
     }

@@ -22,7 +22,8 @@ pub(super) struct ItemView {
     pub(super) anchor: String,
     id: String,
     scene: String,
-    length_m: String,
+    /// Metres; none where the recording has no poses.
+    length_m: Option<String>,
     target: Option<String>,
     levels: Option<String>,
     map: Option<MapView>,
@@ -51,14 +52,16 @@ impl ItemView {
         let (path, anchor) = (&record.walk.path, anchor(number));
         let shown = path.frames.len().min(MOST_FRAMES);
         let map = MapView::new(path, &record.walk.map, shown);
-        let length_m = format!("{:.1}", path.length_m());
+        let length_m = path.length_m().map(|length_m| format!("{length_m:.1}"));
         Self {
             number,
             id: path.id.clone(),
             scene: path.scene.to_string(),
             target: path.target.as_ref().map(target_words),
             levels: levels(path.frames.iter().filter_map(|frame| frame.level)),
-            map_words: format!("Map of the walk from frame 1 to frame {shown}, {length_m} m, north up"),
+            map_words: length_m.as_ref().map_or_else(String::new, |length_m| {
+                format!("Map of the walk from frame 1 to frame {shown}, {length_m} m, north up")
+            }),
             length_m,
             map,
             map_radius: RADIUS,

@@ -7,8 +7,8 @@ use crate::{
 };
 use std::collections::BTreeSet;
 use wayword_core::{
-    Caption, Check, DVec3, Exchange, Finding, Gaze, Heading, Instruction, Mention, MentionKind, Path as WalkPath,
-    Provenance, SceneId, Sighting, Target, Verdict, Where, Witness, path::Stop,
+    Caption, Check, DVec3, Exchange, Finding, Gaze, Heading, Instruction, Mention, MentionKind, Motion,
+    Path as WalkPath, Provenance, SceneId, Sighting, Target, Verdict, Where, Witness, path::Stop,
 };
 use wayword_formats::jsonl::Record;
 use wayword_synthesis::walk::{Look, Observation};
@@ -27,6 +27,7 @@ fn path(id: &str) -> WalkPath {
         id: id.into(),
         scene: SceneId::new("made-up").unwrap(),
         frames: WalkPath::frames_along(vec![stop(0.0, 0.0), stop(0.0, 3.0), stop(2.0, 3.0)], None),
+        motion: Motion::Known,
         target: Some(target),
     }
 }

@@ -5,7 +5,7 @@ use crate::{
     walk::{Observation, Walk},
     writer::Complaint,
 };
-use wayword_core::{Check, DVec3, Distinction, Finding, ObjectId, Path, SceneId, Target, Verdict, path::Stop};
+use wayword_core::{Check, DVec3, Distinction, Finding, Motion, ObjectId, Path, SceneId, Target, Verdict, path::Stop};
 
 fn transcript() -> Vec<Exchange> {
     [
@@ -28,7 +28,8 @@ fn walk() -> Walk {
         told_by: vec![Distinction::NextTo { neighbour: "bed".into() }],
         has_namesake: true,
     };
-    let path = Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, target: Some(target) };
+    let path =
+        Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: Some(target) };
     let summaries =
         ["A hallway with a picture.", "A hallway with a plant.", "Some stairs.", "A bedroom with a bed and two lamps."];
     Walk::new(path, summaries.map(|summary| Observation { summary: summary.into(), ..Observation::default() }).to_vec())

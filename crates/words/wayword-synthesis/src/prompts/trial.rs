@@ -8,7 +8,7 @@ use crate::{
     writer::{Brief, Complaint},
 };
 use wayword_core::{
-    Check, DVec3, Exchange, Finding, ObjectId, Path, SceneId, Sighting, Target, Verdict, Witness, path::Stop,
+    Check, DVec3, Exchange, Finding, Motion, ObjectId, Path, SceneId, Sighting, Target, Verdict, Witness, path::Stop,
 };
 
 pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
@@ -45,6 +45,7 @@ fn walk() -> Option<Walk> {
         id: "trial".to_owned(),
         scene: SceneId::new("trial").ok()?,
         frames: Path::frames_along(vec![stop(0.0), stop(2.0)], None),
+        motion: Motion::Known,
         target: Some(target),
     };
     let seen = |summary: &str| Observation { summary: summary.to_owned(), ..Observation::default() };

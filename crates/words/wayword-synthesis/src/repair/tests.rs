@@ -7,7 +7,7 @@ use crate::{
     writer::RulesWriter,
 };
 use std::sync::Mutex;
-use wayword_core::{Caption, DVec3, Gaze, Path, SceneId, Sighting, Where, Witness, path::Stop};
+use wayword_core::{Caption, DVec3, Gaze, Motion, Path, SceneId, Sighting, Where, Witness, path::Stop};
 
 /// A writer that says what it was told to say, in order, and counts the complaints that it heard.
 struct Scripted {
@@ -44,6 +44,7 @@ fn along(places: &[(f64, f64)], things: &[&str]) -> Walk {
         id: "p".into(),
         scene: SceneId::new("s").unwrap(),
         frames: Path::frames_along(places.iter().map(stop).collect(), None),
+        motion: Motion::Known,
         target: None,
     };
     let seen = |name: &str| Sighting {

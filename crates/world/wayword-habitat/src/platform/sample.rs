@@ -3,7 +3,7 @@
 use super::home::Home;
 use crate::ground::stops_along;
 use rand::Rng;
-use wayword_core::{DVec3, Path, PathRequest, PlatformError, SceneId, rng};
+use wayword_core::{DVec3, Motion, Path, PathRequest, PlatformError, SceneId, rng};
 use wayword_platforms::matterport::sample::target;
 
 /// So many pairs of places are tried.
@@ -24,8 +24,9 @@ pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f6
         }
         let Ok(way) = home.ground.geodesic(from, to) else { continue };
         let frames = Path::frames_along(stops_along(&home.ground, &way, interval_m), None);
-        let mut path = Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None };
-        let Some(last) = path.frames.last().filter(|_| request.length_m.contains(&path.length_m())) else { continue };
+        let mut path =
+            Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
+        let Some(last) = path.frames.last().filter(|_| request.allows_length_of(&path)) else { continue };
         if home.semantics.is_none() {
             return Ok(path);
         }

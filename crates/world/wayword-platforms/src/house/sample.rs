@@ -2,8 +2,8 @@
 
 use super::{dice::Dice, graph::EYE_M, ground::Way, objects::Role, platform::Home};
 use wayword_core::{
-    DVec3, Label, Path, PathRequest, PlatformError, Pose, SceneId, Target, ViewpointGraph, ViewpointId, path::Stop,
-    seed::derive,
+    DVec3, Label, Motion, Path, PathRequest, PlatformError, Pose, SceneId, Target, ViewpointGraph, ViewpointId,
+    path::Stop, seed::derive,
 };
 
 /// So many pairs of places are tried.
@@ -39,8 +39,9 @@ pub(super) fn path(
             continue;
         };
         let frames = Path::frames_along(stops(&way, interval_m), None);
-        let mut path = Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None };
-        if !request.length_m.contains(&path.length_m()) {
+        let mut path =
+            Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
+        if !request.allows_length_of(&path) {
             continue;
         }
         let Some(last) = path.frames.last() else {

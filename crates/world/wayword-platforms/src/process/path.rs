@@ -5,7 +5,8 @@ use crate::{episode_path, matterport::sample};
 use serde::Deserialize;
 use serde_json::json;
 use wayword_core::{
-    Heading, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId, path::Stop,
+    Heading, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId,
+    path::Stop,
 };
 
 /// Most stops of a path.
@@ -66,7 +67,8 @@ pub(crate) fn drawn(
     let stops: Result<Vec<Stop>, String> = walk.stops.into_iter().map(|given| given.stop(graph.as_deref())).collect();
     let heading = walk.heading_rad.map(Heading::new).transpose().map_err(|error| misfit(error.to_string()))?;
     let frames = Path::frames_along(stops.map_err(misfit)?, heading);
-    let mut path = Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None };
+    let mut path =
+        Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
     fits(&path, request).map_err(misfit)?;
     if let (Some(object), Some(last)) = (&walk.target, path.frames.last()) {
         path.target = episode_path::target(platform, scene, last, object)?;
@@ -93,7 +95,8 @@ impl Given {
 
 /// Whether a path is what was asked for: its length, and its hops where all its stops are viewpoints.
 fn fits(path: &Path, request: &PathRequest) -> Result<(), String> {
-    let (length_m, hops) = (path.length_m(), path.frames.len() - 1);
+    let Some(length_m) = path.length_m() else { return Err("a path of unknown length".into()) };
+    let hops = path.frames.len() - 1;
     let (least, most) = (request.length_m.start() - SLACK_M, request.length_m.end() + SLACK_M);
     let on_graph = path.frames.iter().all(|frame| frame.viewpoint.is_some());
     if !(least..=most).contains(&length_m) || (on_graph && !request.hops.contains(&hops)) {

@@ -26,6 +26,6 @@ fn places_and_ways_make_a_graph_that_keeps_to_the_door() {
     }
     let request = PathRequest { hops: 3..=7, length_m: 5.0..=10.0 };
     let path = platform.sample_path(&scene("good"), &request, 1).unwrap();
-    assert!(request.length_m.contains(&path.length_m()));
+    assert!(request.allows_length_of(&path));
     assert_eq!(path.target.unwrap().name, "lamp");
 }

@@ -20,7 +20,7 @@ fn a_world_is_listed_walked_and_seen() {
     assert!(Arc::ptr_eq(&graph, &platform.graph(&good).unwrap()), "a scene's graph is asked for once");
     let path = platform.sample_path(&good, &request(), 3).unwrap();
     assert_eq!(path, platform.sample_path(&good, &request(), 3).unwrap());
-    assert!(request().length_m.contains(&path.length_m()));
+    assert!(request().allows_length_of(&path));
     let view = look(&platform, "good").unwrap();
     let image = view.image.as_ref().unwrap();
     assert_eq!((image.width_px(), image.height_px(), &image.rgb()[..3]), (32, 24, &[10, 200, 30][..]));
@@ -64,7 +64,7 @@ fn a_world_may_draw_its_own_paths_and_is_held_to_the_request() {
     assert_eq!(path, drawn("draws viewpoints", &request()).unwrap(), "the seed that is sent is the same");
     // Hops are not asked of a walk over open ground.
     let path = drawn("draws places", &request()).unwrap();
-    assert!((path.length_m() - 5.0).abs() < 1e-12 && path.frames[1].level == Some(1));
+    assert!((path.length_m().unwrap() - 5.0).abs() < 1e-12 && path.frames[1].level == Some(1));
     let long = PathRequest { length_m: 6.0..=7.0, ..request() };
     for (role, request, says) in [
         ("draws viewpoints", &long, "4.000 metres, not of 2 to 3 hops and 6 to 7 metres"),
