@@ -1,5 +1,6 @@
 //! Six pictures around a point, and views sampled from them as the Matterport3D simulator does.
 
+use crate::bilinear::bilinear;
 use crate::camera::check_fov;
 use crate::picture::{RenderError, check_finite, check_size};
 use glam::{DMat3, Vec3};
@@ -111,23 +112,9 @@ impl CubeMap {
 }
 
 impl Face {
-    /// Bilinear between pixel centres, clamped at the edges.
     fn bilinear(&self, u: f32, v: f32) -> Vec3 {
         let side = self.side_px as usize;
-        let split = |coordinate: f32| {
-            let position = (coordinate * side as f32 - 0.5).clamp(0.0, (side - 1) as f32);
-            let index = position as usize;
-            (index, (index + 1).min(side - 1), position - index as f32)
-        };
-        let (left, right, across) = split(u);
-        let (above, below, down) = split(v);
-        let at = |x: usize, y: usize| {
-            let i = 3 * (y * side + x);
-            Vec3::new(f32::from(self.rgb[i]), f32::from(self.rgb[i + 1]), f32::from(self.rgb[i + 2]))
-        };
-        let top = at(left, above) + (at(right, above) - at(left, above)) * across;
-        let bottom = at(left, below) + (at(right, below) - at(left, below)) * across;
-        top + (bottom - top) * down
+        bilinear(&self.rgb, [side, side], [u * side as f32, v * side as f32])
     }
 }
 

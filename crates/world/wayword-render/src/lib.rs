@@ -29,6 +29,7 @@
 //! ```
 
 mod background;
+mod bilinear;
 mod camera;
 mod clip;
 mod cluster;
@@ -36,12 +37,14 @@ mod cubemap;
 mod evident;
 mod mesh;
 mod mipmap;
+mod panorama;
 mod picture;
 mod raster;
 mod render;
 mod scene;
 mod setup;
 mod shade;
+mod storey;
 mod texture;
 mod top_down;
 mod view;
@@ -52,9 +55,11 @@ pub use camera::Camera;
 pub use cubemap::{CubeMap, CubeMapError, Face, sample_view};
 pub use evident::{box_corners, evident_objects};
 pub use mesh::{Material, Mesh};
+pub use panorama::{Panorama, PanoramaError, Quarter, panorama};
 pub use picture::{MAX_SIDE_PX, Picture, RenderError};
 pub use render::render;
 pub use scene::{Filter, MAX_COORDINATE_M, MAX_TRIANGLES, Scene, SceneError};
+pub use storey::storey;
 pub use texture::{MAX_TEXTURE_SIDE, Texture, TextureError};
 pub use top_down::top_down;
 pub use visibility::{Visible, visible_objects};
