@@ -8,6 +8,7 @@
 
 pub mod caption;
 pub mod encoder;
+pub mod from_above;
 pub mod graph;
 pub mod heading;
 pub mod id;
@@ -26,6 +27,7 @@ pub mod view;
 
 pub use caption::{Answer, Answerer, Ask, Caption, Exchange, Sighting, Trouble, Where, Witness};
 pub use encoder::{Grounder, TextEncoder};
+pub use from_above::FromAbove;
 pub use glam::DVec3;
 pub use graph::{Route, ViewpointGraph};
 pub use heading::{Compass, Heading, Side};

@@ -1,6 +1,6 @@
 //! What a world must offer.
 
-use crate::{Frame, Gaze, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, graph::GraphError};
+use crate::{Frame, FromAbove, Gaze, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, graph::GraphError};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeSet, ops::RangeInclusive, path::PathBuf, sync::Arc};
 
@@ -44,6 +44,15 @@ pub trait Platform: Send + Sync {
         self.look(scene, from, gaze)
     }
 
+    /// A storey (the lowest is 1) straight from above, without what lies over the heads there; `None` where the platform has no
+    /// such picture, or no such storey.
+    ///
+    /// # Errors
+    /// When there is no such scene or its data cannot be read.
+    fn look_down(&self, _scene: &SceneId, _level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        Ok(None)
+    }
+
     /// The name of an object that an episode gives by its id, whether or not it can be seen from the frame.
     ///
     /// # Errors
@@ -80,6 +89,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         (**self).look_without_picture(scene, from, gaze)
+    }
+
+    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        (**self).look_down(scene, level)
     }
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

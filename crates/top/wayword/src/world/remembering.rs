@@ -5,7 +5,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
+    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
 };
 
 /// A platform that remembers the views it has given: perception, evidence and report look at the same ones.
@@ -69,6 +69,10 @@ impl Platform for Remembering<'_> {
             self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
         }
         Ok(view)
+    }
+
+    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        self.platform.look_down(scene, level)
     }
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

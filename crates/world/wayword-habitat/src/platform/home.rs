@@ -15,10 +15,10 @@ use std::{
     sync::{Arc, OnceLock},
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
+    DVec3, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
     ViewpointGraph, ViewpointId,
 };
-use wayword_render::{Camera, RenderError, Scene, render};
+use wayword_render::{Camera, RenderError, Scene, render, storey};
 
 const MAX_NAVMESH: u64 = 1 << 30;
 const NAVMESH_HINT: &str = "remove it, and the scene's ground is baked instead";
@@ -71,6 +71,11 @@ impl Home {
             None => None,
         };
         Ok(View::new(Pose::level(eye, gaze.heading), gaze.horizontal_fov_rad, image, truth))
+    }
+
+    /// A storey from above, around its viewpoints.
+    pub(super) fn look_down(&self, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        storey(&self.scene, &self.graph, level).map_err(|error| self.refused(&error))
     }
 
     fn image(&self, camera: &Camera) -> Result<Arc<Image>, PlatformError> {

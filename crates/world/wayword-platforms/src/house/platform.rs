@@ -14,7 +14,7 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
+    DVec3, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
     SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
@@ -143,16 +143,19 @@ impl Home {
             width,
             height,
         };
-        let refused = |reason: String| PlatformError::UnknownScene { scene: self.id.to_string(), hint: reason };
-        let picture = self.scene.picture(&camera).map_err(|error| refused(error.to_string()))?;
+        let picture = self.scene.picture(&camera).map_err(|error| self.refused(&error))?;
         let truth = GroundTruth {
             lists_objects: true,
             labels: labels(&self.scene, &camera, gaze, &picture),
             room: self.room_seen(pose.position, gaze.heading),
         };
-        let image = Image::new(width, height, picture.rgb).map_err(|error| refused(error.to_string()))?;
+        let image = Image::new(width, height, picture.rgb).map_err(|error| self.refused(&error))?;
         let pose = Pose::level(pose.position, gaze.heading);
         Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
+    }
+
+    fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
+        PlatformError::UnknownScene { scene: self.id.to_string(), hint: error.to_string() }
     }
 
     fn room_name(&self, eye: DVec3) -> Option<String> {
@@ -237,6 +240,11 @@ impl Platform for HousePlatform {
         home.check(from)?;
         let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
         home.view(from.pose, gaze, (self.options.width_px, self.options.height_px))
+    }
+
+    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        let home = self.home(scene)?;
+        home.scene.look_down(&home.graph, level).map_err(|error| home.refused(&error))
     }
 
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

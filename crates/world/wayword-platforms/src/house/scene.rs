@@ -6,7 +6,8 @@ use super::{
     objects::{self, Object},
 };
 use std::collections::BTreeMap;
-use wayword_render::{Background, Camera, Filter, Picture, RenderError, Scene, SceneError, render};
+use wayword_core::{FromAbove, ViewpointGraph};
+use wayword_render::{Background, Camera, Filter, Picture, RenderError, Scene, SceneError, render, storey};
 
 /// A house with its drawing and the meaning of the numbers in its pictures.
 #[derive(Debug)]
@@ -37,5 +38,13 @@ impl HouseScene {
     /// When the camera's numbers are not usable.
     pub fn picture(&self, camera: &Camera) -> Result<Picture, RenderError> {
         render(&self.scene, camera)
+    }
+
+    /// A storey (the lowest is 1) from above, around its viewpoints; `None` where there are none.
+    ///
+    /// # Errors
+    /// When the viewpoints lie too far apart for a picture.
+    pub fn look_down(&self, graph: &ViewpointGraph, level: u32) -> Result<Option<FromAbove>, RenderError> {
+        storey(&self.scene, graph, level)
     }
 }
