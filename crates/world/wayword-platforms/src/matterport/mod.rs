@@ -14,7 +14,6 @@ mod object_positions;
 mod photographs;
 mod platform;
 pub(crate) mod read;
-mod recent;
 pub mod rooms;
 pub mod sample;
 mod scene;

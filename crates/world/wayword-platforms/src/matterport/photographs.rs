@@ -7,8 +7,8 @@ use super::{
     thirty_six::ThirtySix,
 };
 use glam::DMat3;
-use image::{ImageReader, Limits};
-use std::{io::Cursor, path::Path};
+use crate::files;
+use std::path::Path;
 use wayword_core::{Gaze, Image, PlatformError, SceneId};
 use wayword_render::{CubeMap, Face, sample_view};
 
@@ -18,10 +18,6 @@ const HEIGHT_PX: u32 = 480;
 const MAX_FOV_RAD: f64 = 2.8;
 
 const MAX_FILE_BYTES: u64 = 32 << 20;
-/// Longest side of a decoded picture: a strip of six faces of 2048 pixels.
-const MAX_SIDE_PX: u32 = 6 * 2048;
-/// The most memory that decoding one picture may take, bytes.
-const MAX_DECODED_BYTES: u64 = 256 << 20;
 const HINT: &str = "take the picture again from Matterport3D, or move it away to work from labels alone";
 
 /// What a viewpoint was photographed as.
@@ -88,14 +84,5 @@ pub(crate) fn decode(file: &Path) -> Result<Image, PlatformError> {
     let wrong = |reason: String| read::wrong(file, reason, HINT);
     let bytes =
         read::bytes_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("is missing from its set".into()))?;
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE_PX);
-    limits.max_image_height = Some(MAX_SIDE_PX);
-    limits.max_alloc = Some(MAX_DECODED_BYTES);
-    let mut reader =
-        ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| wrong(error.to_string()))?;
-    reader.limits(limits);
-    let picture =
-        reader.decode().map_err(|error| wrong(format!("is no picture that can be read: {error}")))?.into_rgb8();
-    Image::new(picture.width(), picture.height(), picture.into_raw()).map_err(|error| wrong(error.to_string()))
+    files::picture(&bytes).map_err(wrong)
 }

@@ -7,10 +7,10 @@ use super::{
     layout::Layout,
     object_positions::{self, ObjectPositions},
     photographs::Photographs,
-    recent::Recent,
     sample,
     scene::{Everywhere, Scene},
 };
+use crate::recent::Recent;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,

@@ -1,47 +1,11 @@
-//! Files from outside, read with a bound, and the words for what is wrong with them.
+//! Values of JSON files from outside, and the words for what is wrong with them.
 
 use serde_json::Value;
-use std::{
-    fs::File,
-    io::{ErrorKind, Read},
-    path::Path,
-};
-use wayword_core::PlatformError;
+
+pub(crate) use crate::files::{bytes_if_there, text_if_there, wrong};
 
 /// Numbers beyond this are no place in a building, metres.
 const MAX_COORDINATE_M: f64 = 1e6;
-
-/// An error about a file.
-pub(crate) fn wrong(file: &Path, reason: impl Into<String>, hint: &'static str) -> PlatformError {
-    PlatformError::File { file: file.to_owned(), reason: reason.into(), hint }
-}
-
-/// The bytes of a file, at most `max_bytes` of them; `None` where there is no such file.
-pub(crate) fn bytes_if_there(
-    file: &Path,
-    max_bytes: u64,
-    hint: &'static str,
-) -> Result<Option<Vec<u8>>, PlatformError> {
-    let opened = match File::open(file) {
-        Ok(opened) => opened,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(wrong(file, error.to_string(), hint)),
-    };
-    let mut bytes = Vec::new();
-    opened.take(max_bytes + 1).read_to_end(&mut bytes).map_err(|error| wrong(file, error.to_string(), hint))?;
-    if bytes.len() as u64 > max_bytes {
-        return Err(wrong(file, format!("has more than {max_bytes} bytes, which no such file has"), hint));
-    }
-    Ok(Some(bytes))
-}
-
-/// The text of a file, at most `max_bytes` of it; `None` where there is no such file.
-pub(crate) fn text_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<String>, PlatformError> {
-    let Some(bytes) = bytes_if_there(file, max_bytes, hint)? else {
-        return Ok(None);
-    };
-    String::from_utf8(bytes).map(Some).map_err(|_| wrong(file, "is not text in UTF-8", hint))
-}
 
 /// A finite coordinate of plausible size, or the words for what is wrong with it.
 pub(crate) fn coordinate(number: f64) -> Result<f64, String> {

@@ -6,18 +6,23 @@ use std::{
 };
 
 /// The last few values that were made, by key; the one that was not asked for longest is forgotten first.
-pub(crate) struct Recent<K, V> {
+pub struct Recent<K, V> {
     capacity: usize,
     kept: Mutex<VecDeque<(K, Arc<V>)>>,
 }
 
 impl<K: PartialEq, V> Recent<K, V> {
-    pub(crate) fn new(capacity: usize) -> Self {
+    /// Nothing remembered yet.
+    #[must_use]
+    pub fn new(capacity: usize) -> Self {
         Self { capacity, kept: Mutex::new(VecDeque::new()) }
     }
 
     /// The value of a key, made if it is not remembered. Two threads that ask at once may both make it.
-    pub(crate) fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
+    ///
+    /// # Errors
+    /// When it cannot be made.
+    pub fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
         if let Some(value) = self.recall(&key) {
             return Ok(value);
         }

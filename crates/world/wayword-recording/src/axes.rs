@@ -1,0 +1,142 @@
+//! How others write poses down, and how they are turned into Wayword's: metres, z up, north is +y.
+
+use serde::Deserialize;
+use std::f64::consts::FRAC_PI_2;
+use wayword_core::{DVec3, Heading};
+
+/// Which way is up in the world of a recording's poses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum World {
+    /// z up, as in ROS (REP 103) and most trackers.
+    ZUp,
+    /// y up, as in ARKit and OpenGL.
+    YUp,
+    /// y down, as in worlds that begin as the first camera's frame (ORB-SLAM, COLMAP).
+    YDown,
+}
+
+/// What the orientation of a pose is that of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Body {
+    /// A robot: x ahead, y left, z up (REP 103).
+    Robot,
+    /// A camera's optical frame: z ahead, x right, y down (REP 103; TUM RGB-D).
+    Optical,
+    /// A camera of OpenGL: -z ahead, x right, y up (NeRF's `transforms.json`).
+    OpenGl,
+}
+
+/// How the poses of a recording are to be read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Axes {
+    pub(crate) world: World,
+    pub(crate) body: Body,
+    /// How far the camera looks to the right of what `body` has ahead, radians.
+    pub(crate) mount_rad: f64,
+}
+
+impl Axes {
+    /// z up.
+    pub(crate) const fn of(body: Body) -> Self {
+        Self { world: World::ZUp, body, mount_rad: 0.0 }
+    }
+
+    /// A position in Wayword's frame.
+    pub(crate) fn wayword_from_recorded(self, recorded: DVec3) -> DVec3 {
+        let DVec3 { x, y, z } = recorded;
+        match self.world {
+            World::ZUp => recorded,
+            World::YUp => DVec3::new(x, -z, y),
+            World::YDown => DVec3::new(x, z, -y),
+        }
+    }
+
+    /// Where the camera looks, in the horizontal plane of Wayword's frame, by a quaternion (x, y, z, w); `None` where it looks
+    /// straight up or down, or the quaternion is none.
+    pub(crate) fn heading(self, recorded_from_body: [f64; 4]) -> Option<Heading> {
+        self.heading_along(rotated(recorded_from_body, self.ahead())?)
+    }
+
+    /// The same by a rotation's columns.
+    pub(crate) fn heading_by_columns(self, recorded_from_body: [DVec3; 3]) -> Option<Heading> {
+        let [x, y, z] = recorded_from_body;
+        let ahead = self.ahead();
+        self.heading_along(x * ahead.x + y * ahead.y + z * ahead.z)
+    }
+
+    /// The same by a yaw: radians counter-clockwise from the recorded +x, as ROS has it.
+    pub(crate) fn heading_by_yaw(self, yaw_rad: f64) -> Option<Heading> {
+        Heading::new(FRAC_PI_2 - yaw_rad + self.mount_rad).ok()
+    }
+
+    /// What the body has ahead, in its own frame.
+    fn ahead(self) -> DVec3 {
+        match self.body {
+            Body::Robot => DVec3::X,
+            Body::Optical => DVec3::Z,
+            Body::OpenGl => DVec3::NEG_Z,
+        }
+    }
+
+    fn heading_along(self, recorded: DVec3) -> Option<Heading> {
+        let heading = Heading::towards(DVec3::ZERO, self.wayword_from_recorded(recorded))?;
+        Some(heading.turned(self.mount_rad))
+    }
+}
+
+/// A vector turned by a quaternion (x, y, z, w), which need not be of length 1.
+fn rotated([x, y, z, w]: [f64; 4], vector: DVec3) -> Option<DVec3> {
+    let length = libm::sqrt(x * x + y * y + z * z + w * w);
+    if !(length.is_finite() && length > 1e-6) {
+        return None;
+    }
+    let (axis, w) = (DVec3::new(x, y, z) / length, w / length);
+    let cross = 2.0 * axis.cross(vector);
+    Some(vector + w * cross + axis.cross(cross))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_1_SQRT_2;
+
+    fn deg(axes: Axes, quaternion: [f64; 4]) -> f64 {
+        axes.heading(quaternion).unwrap().deg().round()
+    }
+
+    #[test]
+    fn a_robot_without_rotation_looks_along_x_which_is_east() {
+        assert_eq!(deg(Axes::of(Body::Robot), [0.0, 0.0, 0.0, 1.0]), 90.0);
+        // A quarter counter-clockwise about z: along y, which is north.
+        let left = [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2];
+        assert_eq!(deg(Axes::of(Body::Robot), left) % 360.0, 0.0);
+        let sideways = Axes { mount_rad: 90_f64.to_radians(), ..Axes::of(Body::Robot) };
+        assert_eq!(deg(sideways, left), 90.0);
+    }
+
+    #[test]
+    fn an_optical_frame_that_lies_like_the_robot_looks_the_same_way() {
+        // optical from robot: x right = -y, y down = -z, z ahead = x.
+        let optical = [-0.5, 0.5, -0.5, 0.5];
+        assert_eq!(deg(Axes::of(Body::Optical), optical), 90.0);
+    }
+
+    #[test]
+    fn a_camera_of_a_world_with_y_up_looks_north_without_rotation() {
+        let axes = Axes { world: World::YUp, ..Axes::of(Body::OpenGl) };
+        assert_eq!(deg(axes, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
+        assert_eq!(axes.wayword_from_recorded(DVec3::new(1.0, 2.0, -3.0)), DVec3::new(1.0, 3.0, 2.0));
+        let axes = Axes { world: World::YDown, ..Axes::of(Body::Optical) };
+        assert_eq!(deg(axes, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
+        assert_eq!(axes.wayword_from_recorded(DVec3::new(1.0, -2.0, 3.0)), DVec3::new(1.0, 3.0, 2.0));
+    }
+
+    #[test]
+    fn straight_up_is_no_heading() {
+        let up = [0.0, -FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2];
+        assert_eq!(Axes::of(Body::Robot).heading(up), None);
+        assert_eq!(Axes::of(Body::Robot).heading([0.0; 4]), None);
+    }
+}

@@ -1,0 +1,80 @@
+//! How sharp a picture is, and how much it differs from another.
+
+use wayword_core::Image;
+
+/// Size of the small grey picture by which pictures are compared, pixels.
+const WIDE: usize = 32;
+const HIGH: usize = 24;
+/// Width at which sharpness is measured, pixels at least: motion blur is wide, and noise of single pixels is no sharpness.
+const MEASURED_PX: usize = 320;
+/// Variance that a picture of one colour gets from its noise, levels squared.
+const NOISE: f64 = 25.0;
+
+/// What has been seen of a picture.
+#[derive(Debug, Clone)]
+pub(super) struct Look {
+    /// Variance of the Laplacian over that of the picture: how much of what there is to see is edges.
+    pub(super) sharpness: f64,
+    small: Vec<f32>,
+}
+
+impl Look {
+    /// Looks at a picture.
+    pub(super) fn at(image: &Image) -> Self {
+        let (width, height) = (image.width_px() as usize, image.height_px() as usize);
+        let step = (width / MEASURED_PX).max(1);
+        let grey = shrunk(image, (width / step).max(1), (height / step).max(1));
+        let sharpness = variance(&laplacian(&grey, (width / step).max(1))) / (variance(&grey) + NOISE);
+        Self { sharpness, small: shrunk(image, WIDE, HIGH) }
+    }
+
+    /// Mean absolute difference, levels of 255.
+    pub(super) fn difference(&self, other: &Self) -> f64 {
+        let sum: f32 = self.small.iter().zip(&other.small).map(|(a, b)| (a - b).abs()).sum();
+        f64::from(sum) / self.small.len() as f64
+    }
+}
+
+/// The picture in grey at another size: each pixel the mean of those that it covers.
+fn shrunk(image: &Image, wide: usize, high: usize) -> Vec<f32> {
+    let (width, height) = (image.width_px() as usize, image.height_px() as usize);
+    let span =
+        |at: usize, of: usize, from: usize| (at * from / of, ((at + 1) * from / of).max(at * from / of + 1).min(from));
+    let mut shrunk = Vec::with_capacity(wide * high);
+    for y in 0..high {
+        let (top, bottom) = span(y, high, height);
+        for x in 0..wide {
+            let (left, right) = span(x, wide, width);
+            let mut sum = 0_u32;
+            for row in top..bottom {
+                let pixels = &image.rgb()[3 * (row * width + left)..3 * (row * width + right)];
+                // Green is seen twice as well as red and blue.
+                sum += pixels
+                    .chunks_exact(3)
+                    .map(|p| u32::from(p[0]) + 2 * u32::from(p[1]) + u32::from(p[2]))
+                    .sum::<u32>();
+            }
+            let count = ((bottom - top) * (right - left)).max(1);
+            shrunk.push(sum as f32 / (4 * count) as f32);
+        }
+    }
+    shrunk
+}
+
+fn laplacian(grey: &[f32], width: usize) -> Vec<f32> {
+    let height = grey.len() / width;
+    let mut edges = Vec::with_capacity(grey.len());
+    for y in 1..height.saturating_sub(1) {
+        for x in 1..width.saturating_sub(1) {
+            let at = y * width + x;
+            edges.push(grey[at - 1] + grey[at + 1] + grey[at - width] + grey[at + width] - 4.0 * grey[at]);
+        }
+    }
+    edges
+}
+
+fn variance(values: &[f32]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().map(|value| f64::from(*value)).sum::<f64>() / count;
+    values.iter().map(|value| (f64::from(*value) - mean).powi(2)).sum::<f64>() / count
+}

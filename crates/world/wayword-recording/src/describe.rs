@@ -1,0 +1,100 @@
+//! What a user says about a recording in a file of its own: `recording.toml` in a folder, `NAME.toml` beside `NAME.mp4`.
+
+use crate::axes::{Axes, Body, World};
+use serde::Deserialize;
+use std::path::Path;
+use wayword_core::PlatformError;
+use wayword_platforms::files;
+
+const MAX_FILE_BYTES: u64 = 1 << 20;
+pub(crate) const HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";
+
+/// What a user says about a recording; everything has a default.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct Description {
+    /// Horizontal field of view of the camera, degrees.
+    pub(crate) horizontal_fov_deg: Option<f64>,
+    /// The camera, where there are several: a ROS topic, or a feature of a LeRobot dataset.
+    pub(crate) camera: Option<String>,
+    /// Where poses are: a ROS topic, a feature of a LeRobot dataset, or a file beside the pictures.
+    pub(crate) poses: Option<String>,
+    /// Which way is up in the world of the poses.
+    pub(crate) world: Option<World>,
+    /// What the orientation of a pose is that of.
+    pub(crate) orientation: Option<Body>,
+    /// How far the camera looks to the right of what `orientation` has ahead, degrees.
+    pub(crate) mount_deg: Option<f64>,
+    /// Pictures per second, where they have no times.
+    pub(crate) pictures_per_s: Option<f64>,
+    /// Distance between frames, metres, where there are poses.
+    pub(crate) interval_m: Option<f64>,
+    /// Time between frames, seconds, where there are none.
+    pub(crate) interval_s: Option<f64>,
+}
+
+impl Description {
+    /// Reads a description; the default where there is no such file.
+    ///
+    /// # Errors
+    /// When it is not TOML, says what is unknown, or a number is out of bounds.
+    pub(crate) fn read(file: &Path) -> Result<Self, PlatformError> {
+        let Some(text) = files::text_if_there(file, MAX_FILE_BYTES, HINT)? else { return Ok(Self::default()) };
+        let described: Self = toml::from_str(&text).map_err(|error| files::wrong(file, error.to_string(), HINT))?;
+        for (name, number, bounds) in [
+            ("horizontal_fov_deg", described.horizontal_fov_deg, 10.0..=160.0),
+            ("mount_deg", described.mount_deg, -360.0..=360.0),
+            ("pictures_per_s", described.pictures_per_s, 1e-4..=1e4),
+            ("interval_m", described.interval_m, 0.05..=100.0),
+            ("interval_s", described.interval_s, 0.01..=3600.0),
+        ] {
+            if let Some(number) = number.filter(|number| !bounds.contains(number)) {
+                let reason = format!("{name} = {number} lies outside of {} to {}", bounds.start(), bounds.end());
+                return Err(files::wrong(file, reason, HINT));
+            }
+        }
+        Ok(described)
+    }
+
+    /// How poses are to be read, where their format has orientations of `usual` in a world with z up.
+    pub(crate) fn axes(&self, usual: Axes) -> Axes {
+        Axes {
+            world: self.world.unwrap_or(usual.world),
+            body: self.orientation.unwrap_or(usual.body),
+            mount_rad: self.mount_deg.map_or(usual.mount_rad, f64::to_radians),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Description, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("recording.toml");
+        std::fs::write(&file, text).unwrap();
+        Description::read(&file).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_is_said_wins_over_what_is_usual() {
+        let described = read("world = \"y-up\"\norientation = \"open-gl\"\nmount_deg = 90").unwrap();
+        let axes = described.axes(Axes::of(Body::Robot));
+        assert_eq!((axes.world, axes.body), (World::YUp, Body::OpenGl));
+        assert!((axes.mount_rad.to_degrees() - 90.0).abs() < 1e-9);
+        assert_eq!(Description::default().axes(Axes::of(Body::Optical)), Axes::of(Body::Optical));
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_refused_by_name() {
+        assert!(read("interval_m = 0").unwrap_err().contains("interval_m = 0"));
+        assert!(read("horizontal_fov_deg = nan").unwrap_err().contains("horizontal_fov_deg"));
+        assert!(read("interval = 1").unwrap_err().contains("interval"));
+    }
+
+    #[test]
+    fn without_a_file_nothing_is_said() {
+        assert_eq!(Description::read(Path::new("/nowhere/recording.toml")).unwrap(), Description::default());
+    }
+}

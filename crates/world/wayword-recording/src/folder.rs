@@ -1,0 +1,271 @@
+//! A folder of pictures, with poses in a file beside them or without any.
+
+use crate::{
+    describe::{Description, HINT},
+    open::{entries, scene_of, unknown},
+    poses,
+    reel::{Recording, Reel, Source, Take},
+};
+use std::{
+    cmp::Ordering,
+    path::{Component, Path, PathBuf},
+};
+use wayword_core::{PlatformError, SceneId};
+use wayword_platforms::files;
+
+/// Subfolders in which datasets keep their pictures.
+const WITHIN: [&str; 4] = ["rgb", "images", "color", "frames"];
+/// TUM's list of pictures with their times.
+const LIST: &str = "rgb.txt";
+const MAX_LIST_BYTES: u64 = 64 << 20;
+const MAX_PICTURE_BYTES: u64 = 64 << 20;
+const PICTURE_HINT: &str = "take the picture out, or give a whole one";
+
+/// A folder of pictures.
+pub(crate) struct Folder {
+    scene: SceneId,
+    root: PathBuf,
+    /// Where the pictures are, and those in it.
+    pictures: PathBuf,
+    names: Vec<String>,
+}
+
+impl Folder {
+    /// The recording in a folder; `None` where it holds no pictures.
+    ///
+    /// # Errors
+    /// When the folder cannot be read.
+    pub(crate) fn open(root: &Path) -> Result<Option<Self>, PlatformError> {
+        let places = std::iter::once(root.to_owned()).chain(WITHIN.map(|name| root.join(name)));
+        for pictures in places.filter(|place| place.is_dir()) {
+            let mut names = entries(&pictures)?;
+            names.retain(|name| is_picture(name));
+            if !names.is_empty() {
+                return Ok(Some(Self { scene: scene_of(root)?, root: root.to_owned(), pictures, names }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else one after
+    /// another.
+    fn timed(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
+        let list = self.root.join(LIST);
+        if let Some(text) = files::text_if_there(&list, MAX_LIST_BYTES, HINT)? {
+            return listed(&text, &self.root)
+                .map_err(|reason| files::wrong(&list, reason, "expected lines of `time file`"));
+        }
+        let named: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
+        let timed = |(at, name): (usize, &String)| {
+            let time_s = named.as_ref().map_or(at as f64 / pictures_per_s, |times| times[at]);
+            (time_s, self.pictures.join(name))
+        };
+        Ok(self.names.iter().enumerate().map(timed).collect())
+    }
+}
+
+impl Source for Folder {
+    fn scenes(&self) -> Vec<SceneId> {
+        vec![self.scene.clone()]
+    }
+
+    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
+        if *scene != self.scene {
+            return Err(unknown(scene));
+        }
+        let described = Description::read(&self.root.join("recording.toml"))?;
+        let mut timed = self.timed(described.pictures_per_s.unwrap_or(1.0))?;
+        timed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (times_s, files) = timed.into_iter().unzip();
+        let reel = Pictures { times_s, files };
+        let poses = poses::beside(&self.root, &described)?;
+        let track = poses.map(|file| poses::track(&file, &described, &reel.times_s, &|number| reel.name(number)));
+        Ok(Recording { track: track.transpose()?, reel: Box::new(reel), horizontal_fov_rad: None, described })
+    }
+}
+
+/// The pictures of a folder.
+struct Pictures {
+    times_s: Vec<f64>,
+    files: Vec<PathBuf>,
+}
+
+impl Reel for Pictures {
+    fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    fn name(&self, number: usize) -> String {
+        let name = self.files.get(number).and_then(|file| file.file_name());
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    }
+
+    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
+        for number in wanted {
+            let Some(file) = self.files.get(*number) else { continue };
+            let wrong = |reason: String| files::wrong(file, reason, PICTURE_HINT);
+            let bytes = files::bytes_if_there(file, MAX_PICTURE_BYTES, PICTURE_HINT)?;
+            let bytes = bytes.ok_or_else(|| wrong("there is no such file".to_owned()))?;
+            take(*number, files::picture(&bytes).map_err(wrong)?)?;
+        }
+        Ok(())
+    }
+}
+
+/// Lines of `time file`; files lie below the folder.
+fn listed(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
+    let lines = text.lines().enumerate().filter(|(_, line)| {
+        let line = line.trim();
+        !line.is_empty() && !line.starts_with('#')
+    });
+    let read = lines.map(|(at, line)| {
+        let (time, file) =
+            line.trim().split_once([' ', '\t']).ok_or_else(|| format!("line {}: only one word", at + 1))?;
+        let time_s: f64 =
+            time.parse().ok().filter(|time_s: &f64| time_s.is_finite()).ok_or_else(|| {
+                format!("line {}: {:?} is no time", at + 1, time.chars().take(40).collect::<String>())
+            })?;
+        let file = Path::new(file.trim());
+        if !file.components().all(|part| matches!(part, Component::Normal(_))) {
+            return Err(format!("line {}: the file does not lie below the folder", at + 1));
+        }
+        Ok((time_s, root.join(file)))
+    });
+    read.collect()
+}
+
+fn is_picture(name: &str) -> bool {
+    let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    // macOS leaves "._x.jpg" beside "x.jpg" on foreign disks.
+    !name.starts_with('.') && ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+/// The time that a picture's name is: `1305031102.175304.png` in seconds, `1403636579763555584.png` in nanoseconds. Names that
+/// count (`000012.png`) are no times.
+fn time_of(name: &str) -> Option<f64> {
+    let stem = Path::new(name).file_stem()?.to_str()?;
+    let digits = stem.bytes().all(|byte| byte.is_ascii_digit());
+    let number: f64 = stem.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0)?;
+    let per_s = match (digits, stem.len()) {
+        (false, _) => 1.0,
+        (true, 10) => 1.0,
+        (true, 13) => 1e3,
+        (true, 16) => 1e6,
+        (true, 19) => 1e9,
+        _ => return None,
+    };
+    Some(number / per_s)
+}
+
+/// The order of names in which numbers count as numbers.
+pub(crate) fn in_order(a: &str, b: &str) -> Ordering {
+    let (mut left, mut right) = (a.as_bytes(), b.as_bytes());
+    while let (Some(x), Some(y)) = (left.first(), right.first()) {
+        let order = if x.is_ascii_digit() && y.is_ascii_digit() {
+            let (x, y) = (leading_number(&mut left), leading_number(&mut right));
+            // Without leading zeros the longer number is the greater.
+            x.len().cmp(&y.len()).then_with(|| x.cmp(y))
+        } else {
+            let order = x.cmp(y);
+            (left, right) = (&left[1..], &right[1..]);
+            order
+        };
+        if order != Ordering::Equal {
+            return order;
+        }
+    }
+    left.len().cmp(&right.len()).then_with(|| a.cmp(b))
+}
+
+/// Takes the digits at the beginning off; returns them without leading zeros.
+fn leading_number<'a>(text: &mut &'a [u8]) -> &'a [u8] {
+    let end = text.iter().position(|byte| !byte.is_ascii_digit()).unwrap_or(text.len());
+    let (number, rest) = text.split_at(end);
+    *text = rest;
+    let zeros = number.iter().position(|digit| *digit != b'0').unwrap_or(number.len());
+    &number[zeros..]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{Rgb, RgbImage};
+    use proptest::prelude::*;
+
+    /// A folder with pictures whose red is their number.
+    fn folder(names: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for (at, name) in names.iter().enumerate() {
+            let file = folder.path().join(name);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            RgbImage::from_pixel(4, 3, Rgb([at as u8, 0, 0])).save(file).unwrap();
+        }
+        folder
+    }
+
+    fn open(folder: &Path) -> Recording {
+        let source = Folder::open(folder).unwrap().unwrap();
+        source.open(&source.scenes()[0]).unwrap()
+    }
+
+    #[test]
+    fn pictures_come_as_people_count_them() {
+        let folder = folder(&["f10.png", "f2.png", "notes/f3.png"]);
+        std::fs::write(folder.path().join("notes.txt"), "no picture").unwrap();
+        let recording = open(folder.path());
+        assert_eq!(recording.reel.times_s(), [0.0, 1.0]);
+        assert_eq!([0, 1].map(|at| recording.reel.name(at)), ["f2.png", "f10.png"]);
+        let mut reds = Vec::new();
+        let take = &mut |at, image: wayword_core::Image| {
+            reds.push((at, image.rgb()[0]));
+            Ok(())
+        };
+        recording.reel.pictures(&[0, 1], take).unwrap();
+        assert_eq!(reds, [(0, 1), (1, 0)]);
+        assert!(recording.track.is_none());
+    }
+
+    #[test]
+    fn names_that_are_times_are_times() {
+        let stamped = folder(&["rgb/1305031102.175304.png", "rgb/1305031102.211214.png"]);
+        let recording = open(stamped.path());
+        assert!((recording.reel.times_s()[1] - 1_305_031_102.211_214).abs() < 1e-6);
+        assert_eq!(time_of("1403636579763555584.png"), Some(1_403_636_579.763_555_6));
+        assert_eq!(time_of("000012.png"), None);
+    }
+
+    #[test]
+    fn a_list_of_tum_tells_times_and_files_below_the_folder() {
+        let folder = folder(&["rgb/a.png", "rgb/b.png"]);
+        std::fs::write(folder.path().join("rgb.txt"), "# time file\n5.5 rgb/b.png\n6.5 rgb/a.png\n").unwrap();
+        let recording = open(folder.path());
+        assert_eq!(recording.reel.times_s(), [5.5, 6.5]);
+        assert_eq!(recording.reel.name(0), "b.png");
+        for bad in ["1 ../x.png", "1 /etc/x.png", "x rgb/a.png", "1"] {
+            assert!(listed(bad, Path::new("/tmp")).unwrap_err().contains("line 1"), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_broken_picture_is_named() {
+        let folder = folder(&["1.png"]);
+        std::fs::write(folder.path().join("2.png"), "no picture").unwrap();
+        let error = open(folder.path()).reel.pictures(&[1], &mut |_, _| Ok(())).unwrap_err().to_string();
+        assert!(error.contains("2.png") && error.contains("neither PNG nor JPEG"), "{error}");
+    }
+
+    #[test]
+    fn a_folder_without_pictures_is_no_recording() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(Folder::open(folder.path()).unwrap().is_none());
+    }
+
+    proptest! {
+        #[test]
+        fn the_order_of_names_is_one(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
+            names.sort_by(|a, b| in_order(a, b));
+            prop_assert_ne!(in_order(&names[0], &names[2]), Ordering::Greater);
+            prop_assert_eq!(in_order(&names[0], &names[1]), in_order(&names[1], &names[0]).reverse());
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Finds out what kind of recording lies under a path.
+
+#[cfg(any(feature = "lerobot", feature = "mcap", feature = "video"))]
+use crate::describe::Description;
+use crate::{
+    folder::{self, Folder},
+    reel::{Recording, Source},
+};
+use std::path::Path;
+use wayword_core::{PlatformError, SceneId};
+use wayword_platforms::files;
+
+const HINT: &str = "give a folder of pictures, a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file";
+/// Most entries of a folder that are looked at.
+const MAX_ENTRIES: usize = 1_000_000;
+
+/// Opens what lies under a path: one recording, or a folder that holds several.
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    if let Some(source) = one(path)? {
+        return Ok(source);
+    }
+    if !path.is_dir() {
+        let reason =
+            if path.exists() { "is no recording that is known here" } else { "there is no such file or folder" };
+        return Err(files::wrong(path, reason, HINT));
+    }
+    let mut sources = Vec::new();
+    for entry in entries(path)? {
+        sources.extend(one(&path.join(&entry))?);
+    }
+    if sources.is_empty() {
+        return Err(files::wrong(path, "holds no pictures and no recordings", HINT));
+    }
+    Ok(Box::new(Shelf { sources }))
+}
+
+/// The source that a path is, if it is one.
+fn one(path: &Path) -> Result<Option<Box<dyn Source>>, PlatformError> {
+    if path.is_dir() {
+        if path.join("meta").join("info.json").is_file() {
+            return lerobot(path).map(Some);
+        }
+        return Ok(Folder::open(path)?.map(|folder| Box::new(folder) as Box<dyn Source>));
+    }
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match ending.as_str() {
+        "mp4" | "m4v" | "mov" => video(path).map(Some),
+        "mcap" => mcap(path).map(Some),
+        _ => Ok(None),
+    }
+}
+
+#[cfg(feature = "lerobot")]
+fn lerobot(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    let described = Description::read(&path.join("recording.toml"))?;
+    Ok(Box::new(crate::lerobot::Dataset::open(path, described)?))
+}
+
+#[cfg(not(feature = "lerobot"))]
+fn lerobot(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    Err(absent(path, "LeRobot datasets"))
+}
+
+#[cfg(feature = "video")]
+fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    Ok(Box::new(crate::video::File::open(path, description_beside(path)?)?))
+}
+
+#[cfg(not(feature = "video"))]
+fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    Err(absent(path, "MP4 files"))
+}
+
+#[cfg(feature = "mcap")]
+fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    Ok(Box::new(crate::mcap::File::open(path, description_beside(path)?)?))
+}
+
+#[cfg(not(feature = "mcap"))]
+fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    Err(absent(path, "MCAP files"))
+}
+
+#[cfg(not(all(feature = "lerobot", feature = "mcap", feature = "video")))]
+fn absent(path: &Path, what: &str) -> PlatformError {
+    let hint = "build it with `cargo build --release --features full`";
+    files::wrong(path, format!("this build reads no {what}"), hint)
+}
+
+/// `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same folder.
+#[cfg(any(feature = "mcap", feature = "video"))]
+fn description_beside(path: &Path) -> Result<Description, PlatformError> {
+    let own = path.with_extension("toml");
+    let file = if own.is_file() { own } else { path.with_file_name("recording.toml") };
+    Description::read(&file)
+}
+
+/// The name of the recording that a file or folder is.
+pub(crate) fn scene_of(path: &Path) -> Result<SceneId, PlatformError> {
+    let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
+    let name = match name {
+        Some(name) => name.to_string_lossy().into_owned(),
+        // "." and "/" have no name of their own.
+        None => "recording".to_owned(),
+    };
+    SceneId::new(name).map_err(|error| files::wrong(path, error.to_string(), "give the file or folder another name"))
+}
+
+/// The names in a folder, sorted as people count: `2.png` before `10.png`.
+pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
+    let wrong = |error: std::io::Error| files::wrong(folder, error.to_string(), HINT);
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(wrong)? {
+        if names.len() == MAX_ENTRIES {
+            return Err(files::wrong(folder, format!("holds more than {MAX_ENTRIES} files"), "split it up"));
+        }
+        // A name that is not text cannot be one of ours.
+        names.extend(entry.map_err(wrong)?.file_name().into_string().ok());
+    }
+    names.sort_by(|a, b| folder::in_order(a, b));
+    Ok(names)
+}
+
+/// Several sources in one folder.
+struct Shelf {
+    sources: Vec<Box<dyn Source>>,
+}
+
+impl Source for Shelf {
+    fn scenes(&self) -> Vec<SceneId> {
+        let mut scenes: Vec<SceneId> = self.sources.iter().flat_map(|source| source.scenes()).collect();
+        scenes.sort();
+        scenes.dedup();
+        scenes
+    }
+
+    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
+        let source = self.sources.iter().find(|source| source.scenes().contains(scene));
+        source.map_or_else(|| Err(unknown(scene)), |source| source.open(scene))
+    }
+}
+
+/// There is no such recording.
+pub(crate) fn unknown(scene: &SceneId) -> PlatformError {
+    let hint = "leave --scan out, or name one that `wayword view map` or a run has listed".to_owned();
+    PlatformError::UnknownScene { scene: scene.to_string(), hint }
+}

@@ -1,0 +1,278 @@
+//! Recordings as a [`Platform`].
+
+use crate::{
+    choose::{Choice, choose},
+    open,
+    reel::{Recording, Source},
+};
+use image::imageops::{FilterType, resize};
+use rand::Rng;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path as FilePath,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    DVec3, Frame, Gaze, Heading, Image, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
+    View, ViewpointGraph, ViewpointId, path::Stop, rng,
+};
+use wayword_platforms::{files, process::Hear, recent::Recent};
+
+/// Recordings that are kept open.
+const OPEN: usize = 8;
+/// Pictures that are kept in memory: 0.9 MB each.
+const KEPT: usize = 256;
+/// Frames that are read together: a video is decoded from a key picture on, whichever one is wanted.
+const AHEAD: usize = 16;
+/// Pictures are made this wide if they are wider, pixels: what other worlds draw, and what models that see take in.
+const WIDEST_PX: u32 = 640;
+/// Horizontal field of view where nobody says, radians: a robot's or a telephone's usual camera.
+const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
+const HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
+
+/// Folders of pictures, videos, MCAP files and LeRobot datasets.
+///
+/// A scene is one recording; it can be seen from where its pictures were taken, in the direction in which they were taken, and
+/// from nowhere else. It knows neither objects nor rooms.
+pub struct RecordingPlatform {
+    source: Box<dyn Source>,
+    hear: Hear,
+    opened: Recent<SceneId, Opened>,
+    /// Held while one is opened: all its pictures are looked at then, which two need not do at once.
+    opening: Mutex<()>,
+    pictures: Recent<(SceneId, usize), Image>,
+}
+
+/// A recording whose frames have been chosen.
+struct Opened {
+    recording: Recording,
+    /// Pictures that are frames, in order.
+    stops: Vec<usize>,
+    ids: Vec<ViewpointId>,
+    /// Where each frame was taken; empty where that is not known.
+    places: Vec<DVec3>,
+    graph: Arc<ViewpointGraph>,
+}
+
+impl RecordingPlatform {
+    /// Opens a recording, or a folder that holds several. `hear` is told what became of each recording's pictures.
+    ///
+    /// # Errors
+    /// When there is none, or this build cannot read its kind.
+    pub fn open(path: &FilePath, hear: Hear) -> Result<Self, PlatformError> {
+        let source = open::open(path)?;
+        Ok(Self { source, hear, opened: Recent::new(OPEN), opening: Mutex::new(()), pictures: Recent::new(KEPT) })
+    }
+
+    fn opened(&self, scene: &SceneId) -> Result<Arc<Opened>, PlatformError> {
+        let _alone = self.opening.lock().unwrap_or_else(PoisonError::into_inner);
+        self.opened.get_or_make(scene.clone(), || {
+            let recording = self.source.open(scene)?;
+            let mut seen: BTreeMap<usize, Image> = BTreeMap::new();
+            let choice = choose(&recording, &mut |number, image| {
+                if seen.len() < KEPT {
+                    seen.insert(number, scaled(image));
+                }
+            })?;
+            (self.hear)(&told(scene, &recording, &choice));
+            for number in &choice.stops {
+                if let Some(image) = seen.remove(number) {
+                    self.pictures.get_or_make((scene.clone(), *number), || Ok::<_, PlatformError>(image))?;
+                }
+            }
+            Opened::new(scene, recording, choice)
+        })
+    }
+
+    /// The picture of a frame; those of the frames after it are read along.
+    fn picture(&self, scene: &SceneId, opened: &Opened, at: usize) -> Result<Arc<Image>, PlatformError> {
+        self.pictures.get_or_make((scene.clone(), opened.stops[at]), || {
+            let wanted = &opened.stops[at..opened.stops.len().min(at + AHEAD)];
+            let mut first = None;
+            opened.recording.reel.pictures(wanted, &mut |number, image| {
+                let image = scaled(&image);
+                if number == wanted[0] {
+                    first = Some(image);
+                } else {
+                    self.pictures.get_or_make((scene.clone(), number), || Ok::<_, PlatformError>(image))?;
+                }
+                Ok(())
+            })?;
+            let name = || FilePath::new(opened.ids[at].as_str()).to_owned();
+            first.ok_or_else(|| files::wrong(&name(), "the recording did not give this picture", HINT))
+        })
+    }
+}
+
+impl Opened {
+    fn new(scene: &SceneId, recording: Recording, choice: Choice) -> Result<Self, PlatformError> {
+        let stops = choice.stops;
+        let ids = stops.iter().map(|number| {
+            let name = recording.reel.name(*number);
+            ViewpointId::new(name).map_err(|error| files::wrong(FilePath::new(scene.as_str()), error.to_string(), HINT))
+        });
+        let ids: Vec<ViewpointId> = ids.collect::<Result<_, _>>()?;
+        let times_s = recording.reel.times_s();
+        let places: Vec<DVec3> = match &recording.track {
+            Some(track) => stops.iter().filter_map(|number| Some(track.at(times_s[*number])?.position)).collect(),
+            None => Vec::new(),
+        };
+        let graph = chain(&ids, &places).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+        Ok(Self { recording, stops, ids, places, graph: Arc::new(graph) })
+    }
+
+    fn motion(&self) -> Motion {
+        if self.recording.track.is_some() { Motion::Known } else { Motion::Unknown }
+    }
+
+    /// Frames from one stop to another, both included.
+    fn frames(&self, first: usize, last: usize) -> Vec<Frame> {
+        if self.recording.track.is_none() {
+            let frame = |id: &ViewpointId| Frame {
+                pose: Pose::level(DVec3::ZERO, Heading::NORTH),
+                viewpoint: Some(id.clone()),
+                level: None,
+            };
+            return self.ids[first..=last].iter().map(frame).collect();
+        }
+        let stop = |at: usize| Stop { position: self.places[at], viewpoint: Some(self.ids[at].clone()), level: None };
+        Path::frames_along((first..=last).map(stop).collect(), self.looking(first))
+    }
+
+    /// Where the camera looked when a frame was taken: as its track says, else along the way.
+    fn looking(&self, at: usize) -> Option<Heading> {
+        let track = self.recording.track.as_ref()?;
+        let along = || {
+            let hop = |from: usize, to: usize| Heading::towards(*self.places.get(from)?, *self.places.get(to)?);
+            at.checked_sub(1).and_then(|before| hop(before, at)).or_else(|| hop(at, at + 1))
+        };
+        track.at(self.recording.reel.times_s()[self.stops[at]])?.heading.or_else(along)
+    }
+
+    /// First and last stop of a path of the kind that is asked for: the whole recording where it is one, else a stretch of it.
+    fn stretch(&self, request: &PathRequest, dice: &mut impl Rng) -> Option<(usize, usize)> {
+        let end = self.stops.len().checked_sub(1).filter(|end| *end > 0)?;
+        let mut walked_m = vec![0.0];
+        for pair in self.places.windows(2) {
+            walked_m.push(walked_m[walked_m.len() - 1] + pair[0].distance(pair[1]));
+        }
+        let fits = |first: usize, last: usize| match self.motion() {
+            Motion::Known => request.length_m.contains(&(walked_m[last] - walked_m[first])),
+            Motion::Unknown => request.hops.contains(&(last - first)),
+        };
+        if fits(0, end) {
+            return Some((0, end));
+        }
+        // Lengths grow with the last stop, so those that fit lie together.
+        let lasts = |first: usize| (first + 1..=end).filter(|last| fits(first, *last)).collect::<Vec<_>>();
+        let firsts: Vec<usize> = (0..end).filter(|first| (first + 1..=end).any(|last| fits(*first, last))).collect();
+        let first = *firsts.get(dice.random_range(0..firsts.len().max(1)))?;
+        let lasts = lasts(first);
+        Some((first, lasts[dice.random_range(0..lasts.len())]))
+    }
+}
+
+impl Platform for RecordingPlatform {
+    fn name(&self) -> &'static str {
+        "recording"
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        Ok(self.source.scenes())
+    }
+
+    /// The frames one after another; empty where no pose is known.
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.opened(scene)?.graph.clone())
+    }
+
+    /// The whole recording where its length fits, else a stretch of it. Without poses the number of hops counts, and there is no
+    /// length.
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        let opened = self.opened(scene)?;
+        let mut dice = rng(seed, &["stretch", scene.as_str()]);
+        let (first, last) = opened.stretch(request, &mut dice).ok_or_else(|| PlatformError::NoSuchPath {
+            scene: scene.clone(),
+            request: match opened.motion() {
+                Motion::Known => format!("{} to {} metres", request.length_m.start(), request.length_m.end()),
+                Motion::Unknown => format!("{} to {} hops", request.hops.start(), request.hops.end()),
+            },
+        })?;
+        let frames = opened.frames(first, last);
+        Ok(Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None, motion: opened.motion() })
+    }
+
+    /// The picture that was taken there, where it was taken in this direction; else a view without one.
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let opened = self.opened(scene)?;
+        let id = from.viewpoint.as_ref().ok_or_else(|| PlatformError::NotAViewpoint { scene: scene.clone() })?;
+        let unknown = || PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: id.clone() };
+        let at = opened.ids.iter().position(|other| other == id).ok_or_else(unknown)?;
+        // Without a pose the picture is what the walker sees ahead.
+        let looking = opened.looking(at).unwrap_or(from.pose.heading);
+        if !gaze.holds(looking) {
+            return Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, None));
+        }
+        let described = opened.recording.described.horizontal_fov_deg.map(f64::to_radians);
+        let fov_rad = described.or(opened.recording.horizontal_fov_rad).unwrap_or(USUAL_FOV_RAD);
+        let picture = self.picture(scene, &opened, at)?;
+        Ok(View::new(Pose::level(from.pose.position, looking), fov_rad, Some(picture), None))
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.opened(scene)?;
+        Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, None))
+    }
+
+    fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
+        Ok(None)
+    }
+
+    fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        Ok(None)
+    }
+}
+
+/// Places one after another.
+fn chain(ids: &[ViewpointId], places: &[DVec3]) -> Result<ViewpointGraph, wayword_core::graph::GraphError> {
+    let mut graph = ViewpointGraph::default();
+    for (id, place) in ids.iter().zip(places) {
+        graph.add(id.clone(), *place, None)?;
+    }
+    if !places.is_empty() {
+        for pair in ids.windows(2) {
+            graph.join(&pair[0], &pair[1])?;
+        }
+    }
+    Ok(graph)
+}
+
+/// A picture at most [`WIDEST_PX`] wide.
+fn scaled(image: &Image) -> Image {
+    let (width, height) = (image.width_px(), image.height_px());
+    if width <= WIDEST_PX {
+        return image.clone();
+    }
+    let high = (u64::from(height) * u64::from(WIDEST_PX) / u64::from(width)).max(1) as u32;
+    let pixels = image::ImageBuffer::<image::Rgb<u8>, &[u8]>::from_raw(width, height, image.rgb());
+    let small = pixels.map(|pixels| resize(&pixels, WIDEST_PX, high, FilterType::Triangle));
+    small.and_then(|small| Image::new(WIDEST_PX, high, small.into_raw()).ok()).unwrap_or_else(|| image.clone())
+}
+
+/// What became of a recording's pictures.
+fn told(scene: &SceneId, recording: &Recording, choice: &Choice) -> String {
+    let count = |count: usize, what: &str| if count > 0 { format!("; {count} {what}") } else { String::new() };
+    let poses = if recording.track.is_some() { "" } else { "; no poses, so no turns and distances" };
+    format!(
+        "recording {scene}: {} pictures, {} frames{poses}{}{}{}{}",
+        recording.reel.times_s().len(),
+        choice.stops.len(),
+        count(choice.without_pose, "pictures without a pose"),
+        count(choice.blurred, "places left out as blurred"),
+        count(choice.alike, "as the same as before"),
+        count(choice.turned_away, "as looking away from the way"),
+    )
+}
+
+#[cfg(test)]
+mod tests;

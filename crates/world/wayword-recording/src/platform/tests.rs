@@ -1,0 +1,108 @@
+use super::*;
+use ::image::{Rgb, RgbImage};
+use std::sync::Mutex;
+use wayword_core::motion::Turn;
+
+/// Twelve pictures, each with its own pattern; 4 m north, then 4 m east where `poses` are there.
+fn walk(poses: bool) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let mut csv = String::from("image,x,y,z,heading_deg\n");
+    for at in 0..=8_u32 {
+        let picture = RgbImage::from_fn(64, 48, |x, y| {
+            Rgb([if (x + 5 * at) / 4 % 2 == 0 { 200 } else { 20 }, (y * 5) as u8, at as u8])
+        });
+        picture.save(folder.path().join(format!("{at}.png"))).unwrap();
+        let (north, east) = (at.min(4), at.saturating_sub(4));
+        csv += &format!("{at}.png,{east},{north},1.5,{}\n", if at > 4 { 90 } else { 0 });
+    }
+    if poses {
+        std::fs::write(folder.path().join("poses.csv"), csv).unwrap();
+    }
+    folder
+}
+
+fn open(folder: &tempfile::TempDir) -> (RecordingPlatform, SceneId, Arc<Mutex<Vec<String>>>) {
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let hearing = Arc::clone(&heard);
+    let hear: Hear = Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned()));
+    let platform = RecordingPlatform::open(folder.path(), hear).unwrap();
+    let scene = platform.scenes().unwrap().remove(0);
+    (platform, scene, heard)
+}
+
+#[test]
+fn a_walk_with_poses_has_moves_and_pictures_ahead() {
+    let folder = walk(true);
+    let (platform, scene, heard) = open(&folder);
+    let path = platform.sample_path(&scene, &PathRequest::default(), 3).unwrap();
+    assert_eq!((path.frames.len(), path.motion, path.target.is_none()), (9, Motion::Known, true));
+    let turns: Vec<Turn> = path.moves().iter().map(wayword_core::Move::turn).collect();
+    assert_eq!(turns.iter().filter(|turn| **turn == Turn::Right).count(), 1, "{turns:?}");
+    assert_eq!(platform.graph(&scene).unwrap().len(), 9);
+    for (at, frame) in path.frames.iter().enumerate() {
+        let view = platform.look(&scene, frame, Gaze::quarter(frame.pose.heading)).unwrap();
+        assert_eq!(view.image.unwrap().rgb()[2], at as u8);
+
+        let behind = platform.look(&scene, frame, Gaze::around(frame.pose.heading)[2]).unwrap();
+        assert!(behind.image.is_none());
+    }
+    assert!(heard.lock().unwrap()[0].contains("9 pictures, 9 frames"), "{heard:?}");
+}
+
+#[test]
+fn a_walk_without_poses_knows_its_order_alone() {
+    let folder = walk(false);
+    let (platform, scene, heard) = open(&folder);
+    let path = platform.sample_path(&scene, &PathRequest { hops: 2..=3, ..PathRequest::default() }, 3).unwrap();
+    assert_eq!(path.motion, Motion::Unknown);
+    assert!(path.moves().is_empty());
+    assert!((3..=4).contains(&path.frames.len()));
+    assert!(platform.graph(&scene).unwrap().is_empty());
+    let names: Vec<&str> = path.frames.iter().map(|frame| frame.viewpoint.as_ref().unwrap().as_str()).collect();
+    assert!(names.iter().all(|name| name.ends_with(".png")), "{names:?}");
+    let first = &path.frames[0];
+    assert!(platform.look(&scene, first, Gaze::quarter(first.pose.heading)).unwrap().image.is_some());
+    assert!(heard.lock().unwrap()[0].contains("no poses"));
+}
+
+#[test]
+fn stretches_keep_to_what_is_asked_for_and_to_the_seed() {
+    let folder = walk(true);
+    let (platform, scene, _) = open(&folder);
+    let request = PathRequest { length_m: 2.0..=4.0, ..PathRequest::default() };
+    let mut starts = BTreeSet::new();
+    for seed in 0..20 {
+        let path = platform.sample_path(&scene, &request, seed).unwrap();
+        assert_eq!(path, platform.sample_path(&scene, &request, seed).unwrap());
+        let length_m: f64 = path.moves().iter().map(|step| step.distance_m).sum();
+        assert!((2.0..=4.0).contains(&length_m), "{length_m}");
+        starts.insert(path.frames[0].viewpoint.clone());
+    }
+    assert!(starts.len() > 3);
+    let long = PathRequest { length_m: 50.0..=60.0, ..PathRequest::default() };
+    assert!(matches!(platform.sample_path(&scene, &long, 0), Err(PlatformError::NoSuchPath { .. })));
+}
+
+#[test]
+fn what_is_not_there_is_refused() {
+    let folder = walk(true);
+    let (platform, scene, _) = open(&folder);
+    let mut frame = platform.sample_path(&scene, &PathRequest::default(), 0).unwrap().frames.remove(0);
+    frame.viewpoint = Some(ViewpointId::new("nothing").unwrap());
+    let gaze = Gaze::quarter(frame.pose.heading);
+    assert!(matches!(platform.look(&scene, &frame, gaze), Err(PlatformError::UnknownViewpoint { .. })));
+    frame.viewpoint = None;
+    assert!(matches!(platform.look(&scene, &frame, gaze), Err(PlatformError::NotAViewpoint { .. })));
+    let other = SceneId::new("other").unwrap();
+    assert!(matches!(platform.graph(&other), Err(PlatformError::UnknownScene { .. })));
+    let nowhere = RecordingPlatform::open(FilePath::new("/nowhere"), Arc::new(|_: &str| {}));
+    assert!(nowhere.err().unwrap().to_string().contains("there is no such file or folder"));
+}
+
+#[test]
+fn large_pictures_are_made_as_wide_as_other_worlds_have_them() {
+    let large = Image::new(1280, 720, vec![90; 1280 * 720 * 3]).unwrap();
+    let small = scaled(&large);
+    assert_eq!((small.width_px(), small.height_px()), (640, 360));
+    assert!(small.rgb().iter().all(|level| *level == 90));
+}

@@ -1,0 +1,114 @@
+//! Poses as CSV with a header: a time or a picture, a position, and where the camera looks if that is known.
+
+use super::rows::{Facing, Of, Row, Rows, number, seconds};
+use crate::axes::{Axes, Body};
+use wayword_core::DVec3;
+
+/// Where each column is.
+struct Columns {
+    of: Index,
+    position: [usize; 3],
+    facing: Seat,
+}
+
+enum Index {
+    Time { column: usize, unit: Option<&'static str> },
+    Picture(usize),
+}
+
+enum Seat {
+    Nowhere,
+    Quaternion([usize; 4]),
+    Yaw { column: usize, per_unit_rad: f64 },
+    Heading { column: usize, per_unit_rad: f64 },
+}
+
+const HEADER: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, `yaw_rad` or \
+                      `heading_deg` say where the camera looks";
+
+/// Reads it.
+pub(super) fn read(text: &str) -> Result<Rows, String> {
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let (_, header) = lines.next().ok_or("is empty")?;
+    let names: Vec<String> = cells(header.trim_start_matches('\u{feff}')).map(name_of).collect();
+    let columns = Columns::of(&names).ok_or_else(|| format!("line 1: {HEADER}"))?;
+    let rows = lines.filter(|(_, line)| !line.starts_with('#')).map(|(at, line)| {
+        let cells: Vec<&str> = cells(line).collect();
+        columns.row(&cells).map_err(|reason| format!("line {}: {reason}", at + 1))
+    });
+    Ok(Rows { usual: Axes::of(Body::Robot), rows: rows.collect::<Result<_, _>>()? })
+}
+
+fn cells(line: &str) -> impl Iterator<Item = &str> {
+    let between = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
+    line.split(between).map(|cell| cell.trim().trim_matches('"'))
+}
+
+/// A column's name as it is compared: `#timestamp [ns]` is `timestamp_ns`, `p_RS_R_x [m]` is `x`.
+fn name_of(cell: &str) -> String {
+    let cell = cell.trim_start_matches('#').trim().to_ascii_lowercase();
+    let (name, unit) = match cell.split_once('[') {
+        Some((name, unit)) => (name.trim(), unit.trim_end_matches(']').trim()),
+        None => (cell.as_str(), ""),
+    };
+    // EuRoC's names: position and quaternion of the sensor in the reference frame.
+    let name = name.strip_prefix("p_rs_r_").or_else(|| name.strip_prefix("q_rs_").map(|_| name)).unwrap_or(name);
+    let name = name.strip_prefix("q_rs_").map_or_else(|| name.to_owned(), |part| format!("q{part}"));
+    if matches!(unit, "s" | "ms" | "us" | "ns" | "rad" | "deg") { format!("{name}_{unit}") } else { name }
+}
+
+impl Columns {
+    fn of(names: &[String]) -> Option<Self> {
+        let find = |name: &str| names.iter().position(|other| other == name);
+        let any = |names: &[&str]| names.iter().find_map(|name| find(name));
+        let time = || {
+            let bare = any(&["time", "timestamp", "t", "stamp"]).map(|column| Index::Time { column, unit: None });
+            let with_unit = ["s", "ms", "us", "ns"].into_iter().find_map(|unit| {
+                let names = ["time", "timestamp", "t", "stamp"].map(|name| format!("{name}_{unit}"));
+                let column = names.iter().find_map(|name| find(name))?;
+                Some(Index::Time { column, unit: Some(unit) })
+            });
+            with_unit.or(bare)
+        };
+        let of = any(&["image", "file", "filename", "picture", "name"]).map(Index::Picture).or_else(time)?;
+        let axis = |axis: &str| any(&[axis, &format!("t{axis}"), &format!("p{axis}"), &format!("{axis}_m")]);
+        Some(Self { of, position: [axis("x")?, axis("y")?, axis("z").or_else(|| axis("x"))?], facing: Seat::of(&find) })
+    }
+
+    fn row(&self, cells: &[&str]) -> Result<Row, String> {
+        let cell = |column: usize| cells.get(column).copied().ok_or_else(|| format!("only {} cells", cells.len()));
+        let value = |column: usize| number(cell(column)?);
+        let of = match self.of {
+            Index::Time { column, unit } => Of::Time(seconds(value(column)?, unit)),
+            Index::Picture(column) => Of::Picture(cell(column)?.to_owned()),
+        };
+        let [x, y, z] = self.position;
+        // A robot on a plane has no z.
+        let height_m = if z == x { 0.0 } else { value(z)? };
+        let position = DVec3::new(value(x)?, value(y)?, height_m);
+        let facing = match self.facing {
+            Seat::Nowhere => Facing::Unknown,
+            Seat::Quaternion([x, y, z, w]) => Facing::Quaternion([value(x)?, value(y)?, value(z)?, value(w)?]),
+            Seat::Yaw { column, per_unit_rad } => Facing::Yaw(value(column)? * per_unit_rad),
+            Seat::Heading { column, per_unit_rad } => Facing::Heading(value(column)? * per_unit_rad),
+        };
+        Ok(Row { of, position, facing })
+    }
+}
+
+impl Seat {
+    fn of(find: &dyn Fn(&str) -> Option<usize>) -> Self {
+        let quaternion = || Some(Self::Quaternion([find("qx")?, find("qy")?, find("qz")?, find("qw")?]));
+        let rad_per_deg = 1_f64.to_radians();
+        let angle = |name: &str| {
+            let rad = find(&format!("{name}_rad")).map(|column| (column, 1.0));
+            rad.or_else(|| find(&format!("{name}_deg")).map(|column| (column, rad_per_deg)))
+        };
+        let yaw = || {
+            let found = angle("yaw").or_else(|| find("yaw").or_else(|| find("theta")).map(|column| (column, 1.0)));
+            found.map(|(column, per_unit_rad)| Self::Yaw { column, per_unit_rad })
+        };
+        let heading = || angle("heading").map(|(column, per_unit_rad)| Self::Heading { column, per_unit_rad });
+        quaternion().or_else(heading).or_else(yaw).unwrap_or(Self::Nowhere)
+    }
+}

@@ -1,0 +1,48 @@
+//! Lines of bare numbers: TUM (`time x y z qx qy qz qw`) and KITTI (a 3 x 4 matrix per picture).
+
+use super::rows::{Facing, Of, Row, Rows, number, seconds};
+use crate::axes::{Axes, Body, World};
+use wayword_core::DVec3;
+
+/// Reads either; which one it is, its first line tells.
+pub(super) fn read(text: &str) -> Result<Rows, String> {
+    let lines = text.lines().enumerate().filter(|(_, line)| {
+        let line = line.trim();
+        !line.is_empty() && !line.starts_with('#')
+    });
+    let mut rows = Vec::new();
+    let mut columns = None;
+    for (at, line) in lines {
+        let numbers: Vec<f64> = line
+            .split([' ', '\t', ','])
+            .filter(|word| !word.is_empty())
+            .take(13)
+            .map(number)
+            .collect::<Result<_, _>>()
+            .map_err(|reason| format!("line {}: {reason}", at + 1))?;
+        let expected = *columns.get_or_insert(numbers.len());
+        let row = if numbers.len() == expected { row(&numbers, rows.len()) } else { None };
+        rows.push(row.ok_or_else(|| {
+            let count = numbers.len();
+            format!("line {}: {count} numbers, not 8 (time x y z qx qy qz qw) or 12 (a 3 x 4 matrix)", at + 1)
+        })?);
+    }
+    let kitti = Axes { world: World::YDown, ..Axes::of(Body::Optical) };
+    Ok(Rows { usual: if columns == Some(12) { kitti } else { Axes::of(Body::Optical) }, rows })
+}
+
+fn row(numbers: &[f64], at: usize) -> Option<Row> {
+    match *numbers {
+        [time, x, y, z, qx, qy, qz, qw] => Some(Row {
+            of: Of::Time(seconds(time, None)),
+            position: DVec3::new(x, y, z),
+            facing: Facing::Quaternion([qx, qy, qz, qw]),
+        }),
+        [a, b, c, x, d, e, f, y, g, h, i, z] => Some(Row {
+            of: Of::Number(at),
+            position: DVec3::new(x, y, z),
+            facing: Facing::Columns([DVec3::new(a, d, g), DVec3::new(b, e, h), DVec3::new(c, f, i)]),
+        }),
+        _ => None,
+    }
+}

@@ -1,0 +1,100 @@
+//! Poses that lie in a file beside pictures or a video.
+
+mod csv;
+mod json;
+mod matrix;
+mod rows;
+
+use crate::{axes::Axes, describe::Description, track::Track};
+use rows::{Of, Rows};
+use std::path::{Component, Path, PathBuf};
+use wayword_core::PlatformError;
+use wayword_platforms::files;
+
+const MAX_FILE_BYTES: u64 = 256 << 20;
+const HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
+/// Names under which the poses of a folder are looked for.
+const IN_FOLDER: [&str; 6] =
+    ["poses.json", "poses.csv", "poses.tum", "poses.txt", "groundtruth.txt", "transforms.json"];
+
+/// The pose file of a folder, or of a file by its own name (`walk.csv` for `walk.mp4`), where there is one; or the one that the
+/// description names.
+///
+/// # Errors
+/// When the description names one that is not there.
+pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<PathBuf>, PlatformError> {
+    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
+    if let Some(named) = &described.poses {
+        let plain = Path::new(named).components().all(|part| matches!(part, Component::Normal(_)));
+        let file = folder.join(named);
+        return if plain && file.is_file() {
+            Ok(Some(file))
+        } else {
+            let reason = format!("poses = {named:?} names no file in the folder of the recording");
+            Err(files::wrong(folder, reason, crate::describe::HINT))
+        };
+    }
+    let candidates: Vec<PathBuf> = if path.is_dir() {
+        IN_FOLDER.iter().map(|name| folder.join(name)).collect()
+    } else {
+        ["tum", "csv", "json", "txt"].iter().map(|ending| path.with_extension(ending)).collect()
+    };
+    Ok(candidates.into_iter().find(|file| file.is_file()))
+}
+
+/// The track in a pose file, on the clock of pictures that were taken at `times_s` and are called `name`.
+///
+/// # Errors
+/// When it cannot be read, or tells nothing of these pictures.
+pub(crate) fn track(
+    file: &Path,
+    described: &Description,
+    times_s: &[f64],
+    name: &dyn Fn(usize) -> String,
+) -> Result<Track, PlatformError> {
+    let wrong = |reason: String| files::wrong(file, reason, HINT);
+    let text =
+        files::text_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
+    let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let Rows { usual, rows } = match ending {
+        "json" => json::read(&text),
+        "csv" => csv::read(&text),
+        _ => matrix::read(&text),
+    }
+    .map_err(wrong)?;
+    let track = on_clock(rows, described.axes(usual), times_s, name).ok_or_else(|| wrong("holds no pose".into()))?;
+    if !times_s.iter().any(|time_s| track.at(*time_s).is_some()) {
+        let ((from, to), first, last) =
+            (track.span_s(), times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));
+        return Err(wrong(format!(
+            "has poses from {from} to {to} s, and the pictures were taken from {first} to {last} s: no pose belongs to a picture"
+        )));
+    }
+    Ok(track)
+}
+
+/// Rows as fixes; those of pictures that are not there are left out.
+fn on_clock(rows: Vec<rows::Row>, axes: Axes, times_s: &[f64], name: &dyn Fn(usize) -> String) -> Option<Track> {
+    let by_name = rows.iter().any(|row| matches!(row.of, Of::Picture(_)));
+    let mut named: Vec<(String, f64)> = Vec::new();
+    if by_name {
+        named = times_s.iter().enumerate().map(|(at, time_s)| (rows::stem(&name(at)), *time_s)).collect();
+        named.sort_by(|a, b| a.0.cmp(&b.0));
+    }
+    let fixes = rows.into_iter().filter_map(|row| {
+        let time_s = match &row.of {
+            Of::Time(time_s) => Some(*time_s),
+            Of::Number(number) => times_s.get(*number).copied(),
+            Of::Picture(picture) => {
+                let stem = rows::stem(picture);
+                let found = named.binary_search_by(|(other, _)| other.as_str().cmp(&stem)).ok();
+                found.map(|at| named[at].1)
+            }
+        };
+        Some(row.fix(time_s?, axes))
+    });
+    Track::new(fixes.collect())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,96 @@
+//! A line of a pose file.
+
+use crate::{axes::Axes, track::Fix};
+use std::path::Path;
+use wayword_core::{DVec3, Heading};
+
+/// What a file says, and how its format usually means it.
+#[derive(Debug)]
+pub(super) struct Rows {
+    pub(super) usual: Axes,
+    pub(super) rows: Vec<Row>,
+}
+
+/// A pose, as it was written down.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Row {
+    pub(super) of: Of,
+    pub(super) position: DVec3,
+    pub(super) facing: Facing,
+}
+
+/// What a pose belongs to.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Of {
+    /// A time, seconds.
+    Time(f64),
+    /// A picture, by the name of its file.
+    Picture(String),
+    /// A picture, by its number from 0.
+    Number(usize),
+}
+
+/// Where the body looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Facing {
+    Unknown,
+    /// recorded_from_body as x, y, z, w.
+    Quaternion([f64; 4]),
+    /// recorded_from_body by its columns.
+    Columns([DVec3; 3]),
+    /// Radians counter-clockwise from the recorded +x.
+    Yaw(f64),
+    /// Radians clockwise from Wayword's +y.
+    Heading(f64),
+}
+
+impl Row {
+    /// The pose at a time, in Wayword's frame.
+    pub(super) fn fix(&self, time_s: f64, axes: Axes) -> Fix {
+        let heading = match self.facing {
+            Facing::Unknown => None,
+            Facing::Quaternion(quaternion) => axes.heading(quaternion),
+            Facing::Columns(columns) => axes.heading_by_columns(columns),
+            Facing::Yaw(yaw_rad) => axes.heading_by_yaw(yaw_rad),
+            Facing::Heading(rad) => Heading::new(rad + axes.mount_rad).ok(),
+        };
+        Fix { time_s, position: axes.wayword_from_recorded(self.position), heading }
+    }
+}
+
+/// What pictures are told apart by, whatever folder and ending a pose file gives them.
+pub(super) fn stem(name: &str) -> String {
+    let path = Path::new(name);
+    let known = path
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .is_some_and(|ending| ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
+    let stem = if known { path.file_stem() } else { path.file_name() };
+    stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// A finite number, or the words for what is wrong with it.
+pub(super) fn number(text: &str) -> Result<f64, String> {
+    let number: f64 =
+        text.trim().parse().map_err(|_| format!("{:?} is no number", text.chars().take(40).collect::<String>()))?;
+    if number.is_finite() { Ok(number) } else { Err(format!("{number} is no place or time")) }
+}
+
+/// A time by a number and the unit that its column names; without a unit, seconds, unless the number can only be a time of day in
+/// milliseconds, microseconds or nanoseconds.
+pub(super) fn seconds(number: f64, unit: Option<&str>) -> f64 {
+    let per_s = match unit {
+        Some("ns") => 1e9,
+        Some("us") => 1e6,
+        Some("ms") => 1e3,
+        Some(_) => 1.0,
+        // Seconds since 1970 have ten digits until the year 2286.
+        None => match number.abs() {
+            n if n >= 1e17 => 1e9,
+            n if n >= 1e14 => 1e6,
+            n if n >= 1e11 => 1e3,
+            _ => 1.0,
+        },
+    };
+    number / per_s
+}

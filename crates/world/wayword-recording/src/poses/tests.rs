@@ -1,0 +1,107 @@
+use super::*;
+use proptest::prelude::*;
+use wayword_core::DVec3;
+
+/// Reads a pose file for pictures `0.png`, `1.png`, ... that were taken a second apart from `from_s` on.
+fn read(name: &str, text: &str, from_s: f64, described: &Description) -> Result<Track, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join(name);
+    std::fs::write(&file, text).unwrap();
+    let times_s: Vec<f64> = (0..4).map(|at| from_s + f64::from(at)).collect();
+    track(&file, described, &times_s, &|at| format!("{at}.png")).map_err(|error| error.to_string())
+}
+
+fn at(track: &Track, time_s: f64) -> (DVec3, f64) {
+    let fix = track.at(time_s).unwrap();
+    (fix.position, fix.heading.unwrap().deg().round() % 360.0)
+}
+
+#[test]
+fn every_format_tells_the_same_walk() {
+    let usual = Description::default();
+    // Two metres east, looking east.
+    let files = [
+        (
+            "poses.tum",
+            "# time x y z qx qy qz qw\n10 0 0 1.5 -0.5 0.5 -0.5 0.5\n11 1 0 1.5 -0.5 0.5 -0.5 0.5\n12 2 0 1.5 -0.5 0.5 -0.5 0.5\n",
+        ),
+        ("poses.csv", "time_s,x,y,z,yaw_rad\n10,0,0,1.5,0\n11,1,0,1.5,0\n12,2,0,1.5,0\n"),
+        (
+            "poses.csv",
+            "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n\
+                       10000000000,0,0,1.5,1,0,0,0\n11000000000,1,0,1.5,1,0,0,0\n12000000000,2,0,1.5,1,0,0,0\n",
+        ),
+        ("poses.csv", "image;x;y;z;heading_deg\n0.png;0;0;1.5;90\n1.png;1;0;1.5;90\n2;2;0;1.5;90\n"),
+        (
+            "poses.json",
+            r#"[{"image": "rgb/0.png", "position": [0, 0, 1.5], "heading_deg": 90},
+                           {"time_s": 12, "position": [2, 0, 1.5], "orientation": [0, 0, 0, 1]}]"#,
+        ),
+        (
+            "transforms.json",
+            r#"{"camera_angle_x": 1.0, "frames": [
+            {"file_path": "./images/0", "transform_matrix": [[0, 0, -1, 0], [-1, 0, 0, 0], [0, 1, 0, 1.5], [0, 0, 0, 1]]},
+            {"file_path": "images/2.png", "transform_matrix": [[0, 0, -1, 2], [-1, 0, 0, 0], [0, 1, 0, 1.5], [0, 0, 0, 1]]}]}"#,
+        ),
+    ];
+    for (name, text) in files {
+        let track = read(name, text, 10.0, &usual).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(at(&track, 11.0), (DVec3::new(1.0, 0.0, 1.5), 90.0), "{name}: {text}");
+    }
+}
+
+#[test]
+fn kitti_counts_pictures_and_has_y_down() {
+    let text = "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 -1 0 0 1 3\n";
+    let track = read("poses.txt", text, 0.0, &Description::default()).unwrap();
+    assert_eq!(at(&track, 1.0), (DVec3::new(0.0, 3.0, 1.0), 0.0));
+}
+
+#[test]
+fn clocks_that_never_meet_are_told_with_both_their_times() {
+    let error = read("poses.csv", "time,x,y\n5,0,0\n6,1,1\n", 1_700_000_000.0, &Description::default()).unwrap_err();
+    assert!(error.contains("from 5 to 6 s") && error.contains("from 1700000000"), "{error}");
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_line() {
+    let usual = Description::default();
+    for (name, text, told) in [
+        ("poses.csv", "time,x\n1,2\n", "line 1: the header needs"),
+        ("poses.csv", "time,x,y\n1,2,here\n", "line 2: \"here\" is no number"),
+        ("poses.csv", "time,x,y\n1,2\n", "line 2: only 2 cells"),
+        ("poses.tum", "1 2 3\n", "line 1: 3 numbers, not 8"),
+        ("poses.tum", "1 0 0 0 0 0 0 1\n1 2 3\n", "line 2: 3 numbers"),
+        ("poses.json", "[{\"position\": [0, 0, 0]}]", "pose 0: expected"),
+        ("poses.json", "{", "line 1"),
+        ("poses.json", "{}", "expected `transforms.json`"),
+        ("poses.tum", "", "holds no pose"),
+    ] {
+        let error = read(name, text, 0.0, &usual).unwrap_err();
+        assert!(error.contains(told), "{name} {text:?}: {error}");
+    }
+}
+
+#[test]
+fn a_pose_file_is_found_by_its_name_and_never_outside() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = folder.path().join("walk");
+    std::fs::create_dir(&inside).unwrap();
+    std::fs::write(folder.path().join("secret.csv"), "").unwrap();
+    std::fs::write(folder.path().join("walk.csv"), "").unwrap();
+    std::fs::write(folder.path().join("walk.mp4"), "").unwrap();
+    let usual = Description::default();
+    assert_eq!(beside(&inside, &usual).unwrap(), None);
+    assert_eq!(beside(&folder.path().join("walk.mp4"), &usual).unwrap(), Some(folder.path().join("walk.csv")));
+    for named in ["../secret.csv", "none.csv", "/etc/hostname"] {
+        let described = Description { poses: Some(named.into()), ..Description::default() };
+        assert!(beside(&inside, &described).unwrap_err().to_string().contains("names no file"), "{named}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_file_makes_it_panic(text in "(time|x|y|z|qw|image|[0-9.,;# \\-\n\"\\[\\]{}:e]){0,60}", ending in "(csv|json|tum)") {
+        let _ = read(&format!("poses.{ending}"), &text, 0.0, &Description::default());
+    }
+}

@@ -1,0 +1,47 @@
+//! What every kind of recording gives: pictures in the order of their times, and where the camera was.
+
+use crate::{describe::Description, track::Track};
+use wayword_core::{Image, PlatformError, SceneId};
+
+/// A file or folder that holds recordings.
+pub(crate) trait Source: Send + Sync {
+    /// The recordings, sorted.
+    fn scenes(&self) -> Vec<SceneId>;
+
+    /// Opens one of [`Source::scenes`]. Reads what is needed to know times and poses, but no pictures.
+    ///
+    /// # Errors
+    /// When its files cannot be read.
+    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError>;
+}
+
+/// One recording of one camera.
+pub(crate) struct Recording {
+    /// Its pictures.
+    pub(crate) reel: Box<dyn Reel>,
+    /// Where the camera was; `None` where the recording does not know.
+    pub(crate) track: Option<Track>,
+    /// Horizontal field of view of its pictures, radians, where the recording itself knows it.
+    pub(crate) horizontal_fov_rad: Option<f64>,
+    /// What the user says about it.
+    pub(crate) described: Description,
+}
+
+/// Who is handed a picture: its number, and the picture.
+pub(crate) type Take<'a> = dyn FnMut(usize, Image) -> Result<(), PlatformError> + 'a;
+
+/// The pictures of a recording, in the order of their times.
+pub(crate) trait Reel: Send + Sync {
+    /// When each picture was taken, seconds on the clock of the recording's track, not descending.
+    fn times_s(&self) -> &[f64];
+
+    /// The name of a picture, unique within the recording.
+    fn name(&self, number: usize) -> String;
+
+    /// Hands out the wanted pictures, in order, one at a time: a picture need not stay in memory while the next is read.
+    /// `wanted` ascends, without repetition, and names numbers below the length of [`Reel::times_s`].
+    ///
+    /// # Errors
+    /// When one cannot be read, or `take` fails.
+    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError>;
+}

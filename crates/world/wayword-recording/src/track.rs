@@ -1,0 +1,119 @@
+//! Where the camera was, over time.
+
+use wayword_core::{DVec3, Heading};
+
+/// Longest time between two fixes over which the way is taken to be straight, seconds.
+const MAX_GAP_S: f64 = 2.0;
+/// How far beyond the first and last fix, or a gap, these hold, seconds: cameras and trackers do not start together.
+const MAX_BEYOND_S: f64 = 0.1;
+/// Positions farther off than this are no place on Earth's surface that a robot walks to in one recording, metres.
+const MAX_COORDINATE_M: f64 = 1e6;
+
+/// Where the camera was at one time, in Wayword's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fix {
+    /// On the clock of the pictures, seconds.
+    pub(crate) time_s: f64,
+    /// Of the camera, or of the robot that carries it, metres.
+    pub(crate) position: DVec3,
+    /// Where the camera looks, where that is known.
+    pub(crate) heading: Option<Heading>,
+}
+
+/// Fixes in the order of their times.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Track {
+    fixes: Vec<Fix>,
+}
+
+impl Track {
+    /// A track from fixes in any order; `None` where there is none. Of several fixes at one time the first counts, and those
+    /// without a place or time do not.
+    pub(crate) fn new(mut fixes: Vec<Fix>) -> Option<Self> {
+        fixes.retain(|fix| {
+            let place = fix.position;
+            fix.time_s.is_finite() && place.is_finite() && place.abs().max_element() <= MAX_COORDINATE_M
+        });
+        fixes.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+        fixes.dedup_by(|later, first| later.time_s == first.time_s);
+        (!fixes.is_empty()).then_some(Self { fixes })
+    }
+
+    /// Times of the first and last fix, seconds.
+    pub(crate) fn span_s(&self) -> (f64, f64) {
+        let time_s = |fix: Option<&Fix>| fix.map_or(0.0, |fix| fix.time_s);
+        (time_s(self.fixes.first()), time_s(self.fixes.last()))
+    }
+
+    /// Where the camera was at a time: on the straight way between two fixes that are near in time, else at the nearest one if
+    /// it is very near; `None` where neither is.
+    pub(crate) fn at(&self, time_s: f64) -> Option<Fix> {
+        let next = self.fixes.partition_point(|fix| fix.time_s < time_s);
+        let (before, after) = (next.checked_sub(1).map(|at| self.fixes[at]), self.fixes.get(next).copied());
+        if let (Some(before), Some(after)) = (before, after)
+            && after.time_s - before.time_s <= MAX_GAP_S
+        {
+            return Some(between(before, after, time_s));
+        }
+        let nearest = [before, after].into_iter().flatten().min_by(|a, b| {
+            let off = |fix: &Fix| (fix.time_s - time_s).abs();
+            off(a).total_cmp(&off(b))
+        })?;
+        ((nearest.time_s - time_s).abs() <= MAX_BEYOND_S).then_some(Fix { time_s, ..nearest })
+    }
+}
+
+fn between(before: Fix, after: Fix, time_s: f64) -> Fix {
+    let share = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
+    let heading = match (before.heading, after.heading) {
+        (Some(from), Some(to)) => Some(from.turned(from.turn_to(to) * share)),
+        (one, other) => one.or(other),
+    };
+    Fix { time_s, position: before.position.lerp(after.position, share), heading }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn fix(time_s: f64, x: f64, deg: f64) -> Fix {
+        let heading = Heading::new(deg.to_radians()).ok();
+        Fix { time_s, position: DVec3::new(x, 0.0, 0.0), heading }
+    }
+
+    #[test]
+    fn between_two_fixes_the_way_is_straight_and_the_turn_the_short_one() {
+        let track = Track::new(vec![fix(2.0, 4.0, 10.0), fix(1.0, 2.0, 350.0)]).unwrap();
+        let half = track.at(1.5).unwrap();
+        assert_eq!(half.position.x, 3.0);
+        assert!(half.heading.unwrap().turn_to(Heading::NORTH).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nothing_is_known_within_long_gaps_and_beyond_the_ends() {
+        let track = Track::new(vec![fix(0.0, 0.0, 0.0), fix(10.0, 5.0, 0.0)]).unwrap();
+        assert!(track.at(5.0).is_none() && track.at(-1.0).is_none() && track.at(11.0).is_none());
+        assert_eq!(track.at(0.05).unwrap().position.x, 0.0);
+        assert_eq!(track.at(10.05).unwrap().position.x, 5.0);
+        assert_eq!(track.at(9.95).unwrap().position.x, 5.0);
+    }
+
+    #[test]
+    fn what_is_no_place_is_no_fix() {
+        assert!(Track::new(vec![fix(0.0, f64::NAN, 0.0), fix(f64::NAN, 0.0, 0.0), fix(0.0, 1e9, 0.0)]).is_none());
+    }
+
+    proptest! {
+        #[test]
+        fn every_place_lies_between_its_fixes(times in prop::collection::vec(0.0..20.0f64, 1..20), at in -1.0..21.0f64) {
+            let fixes = times.iter().map(|time_s| fix(*time_s, *time_s, 0.0)).collect();
+            let track = Track::new(fixes).unwrap();
+            let (first, last) = track.span_s();
+            if let Some(found) = track.at(at) {
+                prop_assert!((first..=last).contains(&found.position.x));
+                prop_assert!((found.position.x - at).abs() <= MAX_BEYOND_S + 1e-9);
+            }
+        }
+    }
+}
