@@ -1,8 +1,10 @@
 //! What has no material.
 //!
-//! Habitat gives it a white one that is lit by an image of a photo studio (`brown_photostudio`), while everything else in a
-//! scene without lights is drawn as it is stored. Of that light only what frames of Habitat show is known: its colour on surfaces
-//! that look up, east and south. It changes with the angle of view by up to 12 of 255, which is left out here.
+//! Habitat gives it a white one of metalness 0.3 and roughness 0.3 (`ResourceManager.cpp`, `buildDefaultMaterial`) and lights it by
+//! the image of a photo studio, `brown_photostudio_02_1k.hdr` (`PbrIBLHelper.cpp`, `pbrLighting.glsl`), while everything else in a
+//! scene without lights is drawn as it is stored. So a third of what such a surface shows is the studio's mirror image, hardly
+//! blurred. That image is not at hand. Of the light only what frames of Habitat show is known: its mean colour on surfaces that look
+//! up, east and south. The mirror image changes it by up to 13 of 255, which is left out here.
 
 use glam::Vec3;
 
