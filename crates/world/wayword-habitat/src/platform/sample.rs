@@ -40,11 +40,19 @@ pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f6
             break;
         }
     }
-    bare.ok_or_else(|| {
-        let length_m = &request.length_m;
-        let request = format!("{} to {} metres", length_m.start(), length_m.end());
-        PlatformError::NoSuchPath { scene: scene.clone(), request }
-    })
+    bare.ok_or_else(|| PlatformError::NoSuchPath { scene: scene.clone(), request: refused(home, request) })
+}
+
+/// What was asked for, beside the ground that there is: a scene in other units, or one that lies on its side, has next to none.
+fn refused(home: &Home, request: &PathRequest) -> String {
+    let length_m = &request.length_m;
+    let largest_m2 = home.ground.islands_m2().next().unwrap_or_default();
+    format!(
+        "{} to {} metres on its {largest_m2:.1} m2 of ground (a scene is read as metres with z up; where that is wrong, a \
+         stage_config.json beside it says units_to_meters, up and front)",
+        length_m.start(),
+        length_m.end()
+    )
 }
 
 fn ends(home: &Home, rng: &mut impl Rng) -> Option<(DVec3, DVec3)> {

@@ -129,3 +129,14 @@ fn without_semantics_nothing_is_known() {
     let elsewhere = platform.graph(&SceneId::new("attic").unwrap()).unwrap_err().to_string();
     assert_eq!(elsewhere, "there is no scene attic: there are 1: yard ...");
 }
+
+#[test]
+fn a_walk_that_finds_no_room_is_told_how_much_ground_there_is() {
+    let (platform, scene) = platform(false);
+    let request = PathRequest { length_m: 40.0..=50.0, ..PathRequest::default() };
+    let message = platform.sample_path(&scene, &request, 1).unwrap_err().to_string();
+    let area = message.split_once("40 to 50 metres on its ").unwrap().1.split_once(" m2 of ground").unwrap().0;
+    // 8 x 8 m without the box, and an agent's radius from every edge.
+    assert!((50.0..60.0).contains(&area.parse::<f64>().unwrap()), "{message}");
+    assert!(message.contains("units_to_meters, up and front"), "{message}");
+}
