@@ -9,6 +9,8 @@ use wayword_core::DVec3;
 const LEAST_M: f64 = 0.02;
 /// How far the sides of two tiles may lie apart, metres.
 const APART_M: f64 = 0.01;
+/// Doors in one edge, at most. Detour has four; edges that lie on top of one another would all be joined with all.
+const MAX_DOORS: usize = 32;
 
 /// An edge on a side of a tile.
 #[derive(Debug)]
@@ -88,6 +90,10 @@ fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) 
     let (at_low, at_high) = (gap(low), gap(high));
     let near = at_low.abs() <= 2.0 * climb_m || at_high.abs() <= 2.0 * climb_m || at_low * at_high < 0.0;
     if !near {
+        return;
+    }
+    let doors = |opening: &Opening| polygons[opening.polygon].corners[opening.corner].portals.len();
+    if doors(one) >= MAX_DOORS || doors(other) >= MAX_DOORS {
         return;
     }
     for (opening, beyond) in [(one, other), (other, one)] {

@@ -15,6 +15,11 @@ const CLOSE_RAD: f64 = 0.35;
 /// Tries for each square metre of ground, and at most.
 const TRIES_PER_M2: f64 = 12.0;
 const MAX_TRIES: usize = 40_000;
+/// Viewpoints, at most, before those at bends: what is joined is looked for among all pairs of them. The tries find fewer where they
+/// lie as dense as on 3,000 square metres or less.
+const MAX_PLACED: usize = 2000;
+/// Ways between parts that are looked for in vain, at most: each is a search.
+const MAX_IN_VAIN: usize = 4000;
 /// More open than this is no better, metres.
 const OPEN_ENOUGH_M: f64 = 1.0;
 
@@ -53,6 +58,9 @@ impl RoadMap<'_> {
         }
         places.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, place) in places {
+            if self.nodes.len() >= MAX_PLACED {
+                break;
+            }
             if self.nodes.iter().all(|node| far(*node, place)) {
                 self.nodes.push(place);
             }
@@ -125,11 +133,18 @@ impl RoadMap<'_> {
         }
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let mut parts = parts;
+        let mut in_vain = 0;
         for (_, a, b) in pairs {
             if parts[a] == parts[b] {
                 continue;
             }
-            let Some(way) = self.way(a, b) else { continue };
+            let Some(way) = self.way(a, b) else {
+                in_vain += 1;
+                if in_vain > MAX_IN_VAIN {
+                    break;
+                }
+                continue;
+            };
             let mut last = a;
             for bend in way.corners.iter().skip(1).rev().skip(1).rev() {
                 self.nodes.push(*bend);

@@ -237,3 +237,33 @@ proptest! {
         prop_assert!(length(0, 2) <= (length(0, 1) + length(1, 2)) * 1.3);
     }
 }
+
+/// A file of one triangle whose sides are kilometres long.
+#[test]
+fn a_country_has_no_more_viewpoints_than_can_be_joined() {
+    let far = 5e4;
+    let country = Ground::new(&paved(&[vec![[-far, -far, 0.0], [far, -far, 0.0], [0.0, far, 0.0]]]));
+    let graph = viewpoint_graph(&country, 0).unwrap();
+    assert_eq!((graph.len(), graph.components()), (2000, 1));
+}
+
+/// Squares on top of one another on both sides of a border between two tiles.
+#[test]
+fn edges_on_top_of_one_another_are_not_all_joined_with_all() {
+    let mut mesh = paved(&vec![slab([0.0, 1.0], [0.0, 1.0], 0.0); 200]);
+    for poly in &mut mesh.tiles[0].polys {
+        poly.neis = [0; 6];
+        poly.neis[1] = 0x8000;
+    }
+    let mut beside = mesh.tiles[0].clone();
+    beside.header.place[0] += 1;
+    beside.verts.iter_mut().for_each(|vert| vert[0] += 1.0);
+    for poly in &mut beside.polys {
+        poly.neis = [0; 6];
+        poly.neis[3] = 0x8004;
+    }
+    mesh.tiles.push(beside);
+    let ground = Ground::new(&mesh);
+    let doors = ground.polygons.iter().flat_map(|polygon| &polygon.corners).map(|corner| corner.portals.len());
+    assert_eq!(doors.max(), Some(32));
+}
