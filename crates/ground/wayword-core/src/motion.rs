@@ -21,6 +21,16 @@ impl Motion {
     pub fn is_known(&self) -> bool {
         *self == Self::Known
     }
+
+    /// Whether a walk over so many frames goes anywhere. Of an unknown motion only that is known which the frames tell: one
+    /// alone is where it begins and ends.
+    #[must_use]
+    pub fn goes_anywhere(self, moves: &[Move], frames: usize) -> bool {
+        match self {
+            Self::Known => moves.iter().any(|step| step.distance_m > 0.0),
+            Self::Unknown => frames > 1,
+        }
+    }
 }
 
 /// From one frame to the next: first a turn on the spot, then a walk.

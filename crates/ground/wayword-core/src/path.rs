@@ -75,6 +75,15 @@ pub enum Distinction {
     },
 }
 
+impl Frame {
+    /// What tells where it was taken from where others were: frames of one place see the same. The name counts beside the
+    /// position, for that is all that tells frames without poses apart.
+    #[must_use]
+    pub fn place(&self) -> ([u64; 3], Option<ViewpointId>) {
+        (self.pose.position.to_array().map(f64::to_bits), self.viewpoint.clone())
+    }
+}
+
 impl Path {
     /// Frames along `stops`: the first looks along `start_heading` (towards the second where there is none), each later
     /// one along the hop just made. A hop straight up or down keeps the heading.
@@ -161,6 +170,17 @@ mod tests {
     fn a_hop_straight_up_keeps_the_heading() {
         let path = path(vec![stop(0.0, 0.0, 0.0), stop(1.0, 0.0, 0.0), stop(1.0, 0.0, 3.0)], None);
         assert_eq!(path.frames[1].pose.heading, path.frames[2].pose.heading);
+    }
+
+    #[test]
+    fn frames_without_poses_are_told_apart_by_their_names() {
+        let frame = |name: &str| Frame {
+            pose: Pose::level(DVec3::ZERO, Heading::NORTH),
+            viewpoint: Some(ViewpointId::new(name).unwrap()),
+            level: None,
+        };
+        assert_ne!(frame("a").place(), frame("b").place());
+        assert_eq!(frame("a").place(), frame("a").place());
     }
 
     #[test]

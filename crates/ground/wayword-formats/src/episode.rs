@@ -52,13 +52,15 @@ impl Episode {
         }
     }
 
-    /// The item of a path, named as the path is; its viewpoints are the frames' where each frame has one.
+    /// The item of a path, named as the path is; its viewpoints are the frames' where each frame has one. Where the motion
+    /// is unknown the item has neither viewpoints (the frames' names are pictures') nor a heading.
     #[must_use]
     pub fn from_path(path: &Path, instructions: Vec<String>) -> Self {
-        let viewpoints = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect::<Option<Vec<_>>>();
+        let frames = if path.motion.is_known() { &path.frames[..] } else { &[] };
+        let viewpoints = frames.iter().map(|frame| frame.viewpoint.clone()).collect::<Option<Vec<_>>>();
         Self {
             viewpoints: viewpoints.unwrap_or_default(),
-            start_heading: path.frames.first().map(|frame| frame.pose.heading),
+            start_heading: frames.first().map(|frame| frame.pose.heading),
             target_object: path.target.as_ref().map(|target| target.object.clone()),
             instructions,
             ..Self::new(path.id.clone(), path.id.clone(), path.scene.clone())
@@ -66,10 +68,11 @@ impl Episode {
     }
 
     /// With positions on the floor, which lies `eye_height_m` below the eyes of the path's frames (a camera's height over
-    /// the floor: about 1.5 m in Matterport3D). VLN-CE needs them.
+    /// the floor: about 1.5 m in Matterport3D). VLN-CE needs them. A path whose motion is unknown has none.
     #[must_use]
     pub fn on_floor_of(mut self, path: &Path, eye_height_m: f64) -> Self {
-        self.floor_positions = path.frames.iter().map(|frame| frame.pose.position - DVec3::Z * eye_height_m).collect();
+        let frames = path.frames.iter().filter(|_| path.motion.is_known());
+        self.floor_positions = frames.map(|frame| frame.pose.position - DVec3::Z * eye_height_m).collect();
         self
     }
 

@@ -201,6 +201,22 @@ fn formats_that_need_viewpoints_or_floors_say_so() {
 }
 
 #[test]
+fn a_path_without_poses_is_exported_nowhere_as_if_it_had_some() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("export.json");
+    let video = wayword_core::Path { motion: Motion::Unknown, ..path("7", None) };
+    let episode = Episode::from_path(&video, vec!["Go on.".into()]).on_floor_of(&video, EYE_HEIGHT_M);
+    assert_eq!((episode.start_heading, episode.floor_length_m()), (None, None));
+    let episode = std::slice::from_ref(&episode);
+    for refused in [r2r::write(&file, episode), reverie::write(&file, episode), rxr::write(&file, episode)] {
+        assert!(refused.unwrap_err().to_string().contains("names no viewpoints"));
+    }
+    let refused = vlnce::write(&file, &vlnce::Dataset::of(episode.to_vec()));
+    assert!(refused.unwrap_err().to_string().contains("no floor positions"));
+    assert!(!file.exists());
+}
+
+#[test]
 fn a_sidecar_lies_beside_its_dataset() {
     let folder = tempfile::tempdir().unwrap();
     let dataset = folder.path().join("d.json.gz");

@@ -59,7 +59,9 @@ pub fn observe(
                 .iter()
                 .flat_map(|look| &look.caption.sightings)
                 .any(|sighting| sighting.witness == Witness::Seen);
-            let looks = if at == last && empty && selection == FrameSelection::Central {
+            // Without poses there is no around: the picture is all that there is.
+            let may_look = path.motion.is_known() && selection == FrameSelection::Central;
+            let looks = if at == last && empty && may_look {
                 look_at(platform, path, frame, &Gaze::around(frame.pose.heading), minds)?
             } else {
                 looks

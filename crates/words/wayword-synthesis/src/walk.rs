@@ -2,7 +2,7 @@
 
 use crate::evidence::Evidence;
 use serde::{Deserialize, Serialize};
-use wayword_core::{Caption, Gaze, Heading, Move, Path, Side, Sighting, Witness};
+use wayword_core::{Caption, Distinction, Gaze, Heading, Move, Path, Side, Sighting, Witness};
 
 /// Which views of each frame are captioned.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -41,7 +41,7 @@ pub struct Observation {
 pub struct Walk {
     /// The path, with its target where one is given.
     pub path: Path,
-    /// The moves between its frames.
+    /// The moves between its frames; none where the motion is unknown.
     pub moves: Vec<Move>,
     /// One observation per frame.
     pub observations: Vec<Observation>,
@@ -52,23 +52,33 @@ pub struct Walk {
 pub struct Seen<'a> {
     /// What the witness said.
     pub sighting: &'a Sighting,
-    /// The side of the walker on which it is, where that was told.
+    /// The side of the walker on which it is, where that was told and the motion is known.
     pub side: Option<Side>,
 }
 
 impl Walk {
-    /// A walk from a path and what was seen along it.
+    /// A walk from a path and what was seen along it. Where the motion is unknown, so are floors and where the target is from
+    /// the walker: whatever the path says of them is left out.
     #[must_use]
-    pub fn new(path: Path, observations: Vec<Observation>) -> Self {
+    pub fn new(mut path: Path, observations: Vec<Observation>) -> Self {
+        if !path.motion.is_known() {
+            path.frames.iter_mut().for_each(|frame| frame.level = None);
+            if let Some(target) = &mut path.target {
+                let needs_no_pose =
+                    |by: &Distinction| !matches!(by, Distinction::OnSide { .. } | Distinction::Range { .. });
+                target.told_by.retain(needs_no_pose);
+            }
+        }
         Self { moves: path.moves(), path, observations }
     }
 
     /// The objects that were seen from a frame, each look's in its order.
     pub fn seen(&self, frame: usize) -> impl Iterator<Item = Seen<'_>> {
         let heading = self.path.frames.get(frame).map_or(Heading::NORTH, |frame| frame.pose.heading);
+        let has_sides = self.path.motion.is_known();
         self.observations.get(frame).into_iter().flat_map(|observation| &observation.looks).flat_map(move |look| {
             let seen = look.caption.sightings.iter().filter(|sighting| sighting.witness == Witness::Seen);
-            seen.map(move |sighting| Seen { sighting, side: look.side_of(sighting, heading) })
+            seen.map(move |sighting| Seen { sighting, side: look.side_of(sighting, heading).filter(|_| has_sides) })
         })
     }
 

@@ -131,7 +131,7 @@ impl Bends {
             left: to(Side::Left),
             right: to(Side::Right),
             around: to(Side::Behind),
-            moves: evidence.moves.iter().any(|step| step.distance_m > 0.0),
+            moves: evidence.motion.goes_anywhere(&evidence.moves, evidence.frames.len()),
         }
     }
 
@@ -165,11 +165,12 @@ mod tests {
     use crate::evidence::Source;
     use proptest::prelude::*;
     use std::time::{Duration, Instant};
-    use wayword_core::Move;
+    use wayword_core::{Motion, Move};
 
     fn walk(turns_deg: &[f64]) -> Evidence {
         let step = |deg: &f64| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: 0.0 };
-        Evidence { frames: Vec::new(), moves: turns_deg.iter().map(step).collect(), source: Source::Nothing }
+        let moves = turns_deg.iter().map(step).collect();
+        Evidence { frames: Vec::new(), moves, motion: Motion::Known, source: Source::Nothing }
     }
 
     /// Every way to lay the steps, without any bound.

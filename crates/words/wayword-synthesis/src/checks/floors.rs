@@ -5,20 +5,21 @@ use crate::{
     evidence::Evidence,
     reading::{Event, Floor, Reading, What},
 };
-use wayword_core::{Check, Climb, Finding, Verdict};
+use wayword_core::{Check, Climb, Finding, Motion, Verdict};
 
 pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
     let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();
     let stairs = reading.events.iter().filter_map(|event| {
-        let (verdict, reason) = match event.what {
+        let (verdict, wrong) = match event.what {
             What::Climb(climb) => (climbed(climb, evidence), format!("the path does not go {} any stairs", way(climb))),
-            What::Steps(climb) if evidence.steps(climb) => return None,
-            What::Steps(climb) => (Verdict::Fail, format!("the path does not go {} any steps", way(climb))),
+            What::Steps(climb) => (stepped(climb, evidence), format!("the path does not go {} any steps", way(climb))),
             What::Storey(climb) => {
                 (storey(climb, evidence), format!("the path does not end {} any stairs", way(climb)))
             }
             _ => return None,
         };
+        let unknown = || "nothing here can tell whether the path goes up or down".to_owned();
+        let reason = if verdict == Verdict::Fail { wrong } else { unknown() };
         (verdict != Verdict::Pass).then(|| finding(Check::Floors, verdict, reason, Some(event.span)))
     });
     or_pass(Check::Floors, stairs.chain(wrong_floor(&told(reading), reading, &levels)).collect())
@@ -29,14 +30,27 @@ fn way(climb: Climb) -> &'static str {
 }
 
 fn climbed(climb: Climb, evidence: &Evidence) -> Verdict {
-    if evidence.frames_with_climb(climb).is_empty() { Verdict::Fail } else { Verdict::Pass }
+    holds(!evidence.frames_with_climb(climb).is_empty(), evidence)
+}
+
+fn stepped(climb: Climb, evidence: &Evidence) -> Verdict {
+    holds(evidence.steps(climb), evidence)
+}
+
+/// A climb that the moves do not make is wrong where there are moves.
+fn holds(climbs: bool, evidence: &Evidence) -> Verdict {
+    match (climbs, evidence.motion) {
+        (true, _) => Verdict::Pass,
+        (false, Motion::Known) => Verdict::Fail,
+        (false, Motion::Unknown) => Verdict::Unverified,
+    }
 }
 
 /// "The bedroom upstairs" tells a place to somebody who stands anywhere.
 fn storey(climb: Climb, evidence: &Evidence) -> Verdict {
     let ends_there = match evidence.frames.last().and_then(|frame| frame.level) {
         Some(level) => (level >= 2) == (climb == Climb::Up),
-        None if climbed(climb, evidence) == Verdict::Fail => return Verdict::Unverified,
+        None if climbed(climb, evidence) != Verdict::Pass => return Verdict::Unverified,
         None => true,
     };
     if ends_there { Verdict::Pass } else { climbed(climb, evidence) }

@@ -63,6 +63,10 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdic
             _ => (verdict, format!("nothing here can tell whether there is {:?}", place.name)),
         });
     }
+    if sides::is_unknown(place, evidence) {
+        let reason = format!("nothing here can tell on which side of the walker {:?} is", place.name);
+        return Some((Verdict::Unverified, reason));
+    }
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
     let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
     Some((wrong_unless_elsewhere(shown), reason))

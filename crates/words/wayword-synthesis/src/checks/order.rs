@@ -47,7 +47,7 @@ pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> 
             (vec![finding(Check::Order, places, reason, span(at)), turns_alone(reading, evidence)], None)
         }
         Ok(laid_places) => match lay(&certain, &possible, evidence) {
-            (_, Ok(laid)) => (vec![pass(Check::Order), pass(Check::Turns)], Some(laid)),
+            (_, Ok(laid)) => (vec![pass(Check::Order), no_wrong_turn(reading, evidence)], Some(laid)),
             (turns, Err(at)) => {
                 let wrong = finding(Check::Turns, turns, turn_reason(&certain, at), span(at));
                 (vec![pass(Check::Order), wrong], Some(laid_places))
@@ -114,13 +114,26 @@ fn turns_alone(reading: &Reading, evidence: &Evidence) -> Finding {
         reading.events.iter().filter(|event| matches!(event.what, What::Turn(_) | What::Onward)).collect();
     let steps: Vec<Step> = turns.iter().map(|event| step(event, Vec::new(), evidence)).collect();
     match align(&steps, evidence) {
-        Ok(_) => pass(Check::Turns),
+        Ok(_) => no_wrong_turn(reading, evidence),
         Err(at) => finding(Check::Turns, Verdict::Fail, turn_reason(&steps, at), Some(turns[at].span)),
+    }
+}
+
+/// A text no turn of which is wrong. Where nobody knows how the walker moved, none is right either.
+fn no_wrong_turn(reading: &Reading, evidence: &Evidence) -> Finding {
+    let first = reading.events.iter().find(|event| matches!(event.what, What::Turn(_)));
+    match first.filter(|_| !evidence.motion.is_known()) {
+        Some(turn) => {
+            let reason = "nothing here can tell how the path turns";
+            finding(Check::Turns, Verdict::Unverified, reason, Some(turn.span))
+        }
+        None => pass(Check::Turns),
     }
 }
 
 fn step(event: &Event, shown: Vec<usize>, evidence: &Evidence) -> Step {
     match &event.what {
+        What::Turn(_) if !evidence.motion.is_known() => Step::Free,
         What::Turn(side) => Step::Turn(*side),
         What::Place(_) if !shown.is_empty() => Step::Place(shown),
         What::Climb(climb) => {

@@ -32,6 +32,11 @@ pub(super) fn wrong_side(place: &Place, frames: &[usize], evidence: &Evidence) -
     (!turns.is_empty() && !turns.iter().any(|turn_rad| lies_on(side, *turn_rad))).then_some(side)
 }
 
+/// Whether nobody knows where a side of the walker is: a picture's left need not be the walker's.
+pub(super) fn is_unknown(place: &Place, evidence: &Evidence) -> bool {
+    place.side.is_some() && !evidence.motion.is_known()
+}
+
 /// The directions of a named thing at a frame, from the heading of arrival and from that of leaving.
 fn turns_to(place: &Place, at: usize, evidence: &Evidence) -> Vec<f64> {
     let leaving_rad = evidence.moves.get(at).map_or(0.0, |step| step.turn_rad);

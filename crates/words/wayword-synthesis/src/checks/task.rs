@@ -2,7 +2,7 @@
 
 use super::{
     finding, pass,
-    sides::{lies_on, word},
+    sides::{self, lies_on, word},
 };
 use crate::{
     evidence::Evidence,
@@ -29,6 +29,10 @@ pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Targe
     }
     if alike.is_empty() {
         return fail(format!("{name:?} is not seen from the final viewpoint"), Some(span));
+    }
+    if sides::is_unknown(place, evidence) {
+        let reason = format!("nothing here can tell on which side of the walker {name:?} is");
+        return finding(Check::Task, Verdict::Unverified, reason, Some(span));
     }
     // Where the very object is known, a side is told of it and of no namesake.
     let meant = alike.iter().filter(|thing| {

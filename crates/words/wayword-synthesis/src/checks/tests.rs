@@ -1,8 +1,8 @@
 //! What the checks say about texts on made-up paths.
 
-use super::{Subject, check};
+use super::{Subject, check, check_own};
 use crate::evidence::{Evidence, FrameEvidence, SeenThing, Source};
-use wayword_core::{Check, Constraints, Move, Style, Verdict};
+use wayword_core::{Check, Constraints, Motion, Move, Style, Verdict};
 
 /// A frame in a room (none where nobody knows it), with things (`None` where nobody knows them), on a floor.
 fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
@@ -20,7 +20,7 @@ fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
     let step = |(deg, rise_m): &(f64, f64)| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: *rise_m };
     let knows = frames.iter().any(|frame| !frame.rooms.is_empty() || frame.knows_things);
     let source = if knows { Source::Labels } else { Source::Nothing };
-    Evidence { frames, moves: moves.iter().map(step).collect(), source }
+    Evidence { frames, moves: moves.iter().map(step).collect(), motion: Motion::Known, source }
 }
 
 /// Through the hallway past a sofa, and right into the bedroom with a lamp and a bed.
@@ -220,4 +220,88 @@ fn nobody_walks_on_where_the_path_goes_nowhere() {
     fails(Check::Turns, "Walk straight ahead and stop at the sink.", &standing);
     fails(Check::Turns, "Continue through the kitchen and stop at the sink.", &standing);
     passes("Stop at the sink.", &standing);
+}
+
+/// The way to the bedroom as a video shows it.
+fn on_video() -> Evidence {
+    let mut path = to_the_bedroom();
+    path.frames.iter_mut().for_each(|frame| frame.level = None);
+    Evidence { moves: Vec::new(), motion: Motion::Unknown, ..path }
+}
+
+#[test]
+fn of_an_unknown_motion_turns_floors_and_sides_are_neither_right_nor_wrong() {
+    for text in [
+        "Walk past the sofa and turn right into the bedroom.",
+        "Walk past the sofa and turn left into the bedroom.",
+        "Turn around and walk to the bedroom.",
+    ] {
+        is_unverified(Check::Turns, text, &on_video());
+    }
+    for text in [
+        "Go up the stairwell into the bedroom.",
+        "Walk up two steps and stop in the bedroom.",
+        "Go to the bedroom upstairs.",
+        "Go to the bedroom on the second floor.",
+    ] {
+        is_unverified(Check::Floors, text, &on_video());
+    }
+    let mut sided = on_video();
+    sided.frames[1].things[0].turn_rad = Some(-0.3);
+    for side in ["left", "right"] {
+        is_unverified(Check::Landmarks, &format!("Walk past the sofa on your {side} into the bedroom."), &sided);
+    }
+    let task = told_in("Go to the bedroom and clean the lamp on your left", &on_video(), &style(true));
+    assert_eq!(task, (Verdict::Unverified, vec![Check::Task]));
+}
+
+#[test]
+fn of_an_unknown_motion_places_and_their_order_are_held_against_what_was_seen() {
+    passes("Walk straight past the sofa into the bedroom and stop at the bed.", &on_video());
+    fails(Check::Landmarks, "Walk past the piano into the bedroom.", &on_video());
+    fails(Check::Order, "Walk past the lamp and pass the rug, then stop.", &on_video());
+    fails(Check::Order, "Turn left at the lamp and pass the rug, then stop.", &on_video());
+    let picture = Evidence { frames: vec![frame("kitchen", Some(&["sink"]), 0)], ..on_video() };
+    fails(Check::Turns, "Walk straight ahead and stop at the sink.", &picture);
+}
+
+#[test]
+fn a_text_of_our_own_tells_nothing_of_an_unknown_motion() {
+    let own = |text: &str, evidence: &Evidence| {
+        let checked = check_own(text, Subject { evidence, style: &style(false), target: None });
+        let failed = checked.findings.into_iter().filter(|finding| finding.verdict == Verdict::Fail);
+        failed
+            .map(|finding| (finding.check, finding.span.map(|[from, to]| text[from..to].to_owned())))
+            .collect::<Vec<_>>()
+    };
+    let video = on_video();
+    for (text, check, words) in [
+        ("Walk past the sofa and turn right into the bedroom.", Check::Turns, "right"),
+        ("Walk past the sofa, do not turn left, and stop at the bed.", Check::Turns, "left"),
+        ("Walk straight past the sofa into the bedroom.", Check::Turns, "straight"),
+        ("Walk past the sofa, go 3 metres and stop at the bed.", Check::Turns, "3 metres"),
+        ("Walk past the sofa, go 3m and stop at the bed.", Check::Turns, "3m"),
+        ("Walk past the sofa and a few steps on to the bed.", Check::Turns, "few steps"),
+        ("Walk past the sofa and go upstairs to the bed.", Check::Floors, "upstairs"),
+        ("Walk past the sofa to the bedroom on the second floor.", Check::Floors, "second floor"),
+        ("Walk past the sofa on your left into the bedroom.", Check::Landmarks, "sofa"),
+    ] {
+        let told = own(text, &video);
+        assert!(
+            told.iter().any(|(by, span)| *by == check && span.as_ref().is_some_and(|span| span.contains(words))),
+            "{text}: {told:?}"
+        );
+        assert!(own(text, &to_the_bedroom()).iter().all(|(by, _)| *by != Check::Landmarks), "{text}");
+    }
+    for text in [
+        "Walk past the sofa into the bedroom and stop at the foot of the bed.",
+        "Walk past the sofa. Stop once you see the lamp.",
+        "Leave the hallway and turn on the lamp.",
+    ] {
+        assert_eq!(own(text, &video), [], "{text}");
+    }
+    // Each check has one outcome: what was said of the same words before is gone.
+    let checked = check_own("Turn left to the bed.", Subject { evidence: &video, style: &style(false), target: None });
+    let turns = checked.findings.iter().filter(|finding| finding.check == Check::Turns);
+    assert_eq!(turns.map(|finding| finding.verdict).collect::<Vec<_>>(), [Verdict::Fail]);
 }

@@ -4,15 +4,17 @@ mod from_captions;
 mod from_labels;
 
 use crate::lexicon::{Class, agree, room_name, same_room, thing};
-use wayword_core::{Climb, Move, ObjectId, Path, motion};
+use wayword_core::{Climb, Motion, Move, ObjectId, Path, motion};
 
 /// What is known of a path, frame by frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
     /// One per frame of the path.
     pub frames: Vec<FrameEvidence>,
-    /// The moves between them.
+    /// The moves between them; none where the motion is unknown.
     pub moves: Vec<Move>,
+    /// Whether anything is known of how the walker moved: without it, that there is no move says nothing.
+    pub motion: Motion,
     /// Who vouches for it.
     pub source: Source,
 }
@@ -72,9 +74,9 @@ const STEP_M: f64 = 0.1;
 impl Evidence {
     fn of(path: &Path, mut frames: Vec<FrameEvidence>, source: Source) -> Self {
         for (evidence, frame) in frames.iter_mut().zip(&path.frames) {
-            evidence.level = frame.level;
+            evidence.level = frame.level.filter(|_| path.motion.is_known());
         }
-        Self { frames, moves: path.moves(), source }
+        Self { frames, moves: path.moves(), motion: path.motion, source }
     }
 
     /// Evidence of a path about whose sights nobody says anything: turns and floors alone can be checked.

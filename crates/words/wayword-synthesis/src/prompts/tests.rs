@@ -5,7 +5,9 @@ use crate::{
     walk::{Observation, Walk},
     writer::Complaint,
 };
-use wayword_core::{Check, DVec3, Distinction, Finding, Motion, ObjectId, Path, SceneId, Target, Verdict, path::Stop};
+use wayword_core::{
+    Check, DVec3, Distinction, Finding, Motion, ObjectId, Path, SceneId, Side, Target, Verdict, path::Stop,
+};
 
 fn transcript() -> Vec<Exchange> {
     [
@@ -76,6 +78,18 @@ fn the_writing_prompts() {
         let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints };
         insta::assert_snapshot!(format!("write_{name}"), prompts.write(&brief).unwrap());
     }
+}
+
+#[test]
+fn who_writes_about_a_video_without_poses_is_told_to_make_no_motion_up() {
+    let mut path = walk().path;
+    path.motion = Motion::Unknown;
+    path.target.as_mut().unwrap().told_by = vec![Distinction::OnSide { side: Side::Left }];
+    let walk = Walk::new(path, walk().observations);
+    let style = built_in("reverie").unwrap();
+    let profile = Profile::measure(&style.references);
+    let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &[] };
+    insta::assert_snapshot!("write_without_poses", Prompts::new(&[]).unwrap().write(&brief).unwrap());
 }
 
 #[test]

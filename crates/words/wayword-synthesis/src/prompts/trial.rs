@@ -29,15 +29,17 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     prompts.summary(&transcript, &[denied], &complaints)?;
     prompts.condense(&[("ahead", "A hallway.")], 20, &complaints)?;
     // Names that every build holds; without them there is nothing to try the template on.
-    let (Ok(style), Some(walk)) = (built_in("r2r"), walk()) else { return Ok(()) };
+    let Ok(style) = built_in("r2r") else { return Ok(()) };
     let finding = Finding { check: Check::Form, verdict: Verdict::Fail, reason: "too long".to_owned(), span: None };
     let complaints = [Complaint { text: "Go.".to_owned(), findings: vec![finding] }];
     let profile = Profile::measure(&style.references);
-    prompts.write(&Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &complaints })?;
+    for walk in [Motion::Known, Motion::Unknown].into_iter().filter_map(walk) {
+        prompts.write(&Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &complaints })?;
+    }
     Ok(())
 }
 
-fn walk() -> Option<Walk> {
+fn walk(motion: Motion) -> Option<Walk> {
     let stop = |y: f64| Stop { position: DVec3::new(0.0, y, 1.5), viewpoint: None, level: None };
     let target =
         Target { object: ObjectId::new("1").ok()?, name: "lamp".to_owned(), told_by: Vec::new(), has_namesake: false };
@@ -45,7 +47,7 @@ fn walk() -> Option<Walk> {
         id: "trial".to_owned(),
         scene: SceneId::new("trial").ok()?,
         frames: Path::frames_along(vec![stop(0.0), stop(2.0)], None),
-        motion: Motion::Known,
+        motion,
         target: Some(target),
     };
     let seen = |summary: &str| Observation { summary: summary.to_owned(), ..Observation::default() };

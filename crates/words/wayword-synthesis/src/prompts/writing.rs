@@ -14,6 +14,7 @@ pub(super) fn context(brief: &Brief<'_>) -> Value {
         .collect();
     context! {
         frames,
+        knows_motion => walk.path.motion.is_known(),
         references => brief.style.references,
         target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(target),
         constraints => constraints(&brief.style.constraints, brief.profile.tells_turns()),

@@ -1,7 +1,7 @@
 //! Write, check, and write again what failed.
 
 use crate::{
-    checks::{Subject, check},
+    checks::{Subject, check_own},
     dialogue::Mode,
     evidence::Evidence,
     observe::Minds,
@@ -116,7 +116,7 @@ fn unusable(text: String, reason: &str) -> Complaint {
 
 fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
-    let checked = check(&text, Subject { evidence: order.evidence, style: order.style, target });
+    let checked = check_own(&text, Subject { evidence: order.evidence, style: order.style, target });
     Instruction {
         style: order.style.name.clone(),
         verdict: checked.verdict(),

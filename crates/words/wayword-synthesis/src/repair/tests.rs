@@ -6,6 +6,7 @@ use crate::{
     walk::{Look, Observation},
     writer::RulesWriter,
 };
+use proptest::prelude::*;
 use std::sync::Mutex;
 use wayword_core::{Caption, DVec3, Gaze, Motion, Path, SceneId, Sighting, Where, Witness, path::Stop};
 
@@ -196,6 +197,74 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
                     assert!(!crate::text::words(&instruction.text).contains(&word.to_owned()), "{}", instruction.text);
                 }
             }
+        }
+    }
+}
+
+/// The same pictures as a video shows them: in their order, and with no pose.
+fn on_video(walk: &Walk) -> Walk {
+    Walk::new(Path { motion: Motion::Unknown, ..walk.path.clone() }, walk.observations.clone())
+}
+
+#[test]
+fn a_turn_that_nobody_knows_goes_back_with_the_reason() {
+    let walk = on_video(&walk());
+    let evidence = walk.evidence().unwrap();
+    let told = "Walk past the sofa to the lamp. Stop at the sink.";
+    let mode = Mode::Dialogue { questions: 9 };
+    let (outcome, complaints) = outcome_against(&walk, &evidence, mode, vec![said(GOOD), said(told)], false, 3);
+    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    assert_eq!((instruction.text.as_str(), instruction.verdict, complaints.len()), (told, Verdict::Pass, 2));
+    let (outcome, _) = outcome_against(&walk, &evidence, mode, vec![said(GOOD)], false, 0);
+    let Outcome::Rejected { reason, .. } = outcome.unwrap() else { panic!("it was accepted") };
+    assert!(reason.contains("nobody knows how the walk turns"), "{reason}");
+    // Where nothing at all is known, a turn is made up all the same.
+    let nothing = Evidence::of_path_alone(&walk.path);
+    let (outcome, _) = outcome_against(&walk, &nothing, mode, vec![said(GOOD)], false, 0);
+    assert!(matches!(outcome.unwrap(), Outcome::Rejected { .. }));
+}
+
+/// Rooms and things of a video: any of some, or none.
+fn sights() -> impl Strategy<Value = Vec<(Option<&'static str>, Option<&'static str>)>> {
+    let room = prop::sample::select(vec!["kitchen", "hallway", "stairs", "balcony", "bedroom", "garage"]);
+    let thing = prop::sample::select(vec!["sofa", "lamp", "stairs", "door", "sink", "painting", "toilet", "rug"]);
+    prop::collection::vec((prop::option::of(room), prop::option::of(thing)), 1..12)
+}
+
+proptest! {
+    #[test]
+    fn rules_make_no_motion_up(sights in sights(), seed in any::<u64>()) {
+        let places: Vec<(f64, f64)> = (0..sights.len()).map(|at| (0.0, at as f64)).collect();
+        let things: Vec<&str> = sights.iter().map(|(_, thing)| thing.unwrap_or("sofa")).collect();
+        let mut walk = on_video(&along(&places, &things));
+        for (observation, (room, thing)) in walk.observations.iter_mut().zip(&sights) {
+            let caption = &mut observation.looks[0].caption;
+            caption.room = room.map(str::to_owned);
+            caption.sightings.retain(|_| thing.is_some());
+            // As if the picture had it on a side.
+            caption.sightings.iter_mut().for_each(|sighting| sighting.place = Some(Where::Left));
+        }
+        let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let asker = RulesAsker::default();
+        let (answerer, summariser) = (&Labels, &RulesSummariser);
+        let minds = Minds { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
+        for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
+            let profile = Profile::measure(&style.references);
+            let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8 };
+            let writers = Writers { writer: &RulesWriter, finisher: None };
+            let text = match write_and_repair(writers, minds, order).unwrap() {
+                Outcome::Accepted(instruction) => instruction.text,
+                Outcome::Rejected { reason, .. } => {
+                    prop_assert!(!reason.contains("nobody knows"), "{}", reason);
+                    continue;
+                }
+            };
+            let told = text.to_lowercase().replace("stop right there", "stop");
+            for word in ["left", "right", "straight", "forward", "around", "upstairs", "downstairs", "floor", "level"] {
+                prop_assert!(!crate::text::words(&told).contains(&word.to_owned()), "{}", text);
+            }
+            let stays = text.to_lowercase().split_whitespace().any(|word| word == "stay" || word == "remain");
+            prop_assert_eq!(stays, sights.len() == 1, "{}", text);
         }
     }
 }

@@ -7,7 +7,7 @@ use super::{
 use crate::lexicon::room_name;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use wayword_core::{Climb, Side, Turn};
+use wayword_core::{Climb, Motion, Side, Turn};
 
 const TURN: &[&str] = &["turn {s}", "take a {s}", "make a {s}", "go {s}", "make a {s} turn", "head {s}", "hang a {s}"];
 const TURN_AGAIN: &[&str] = &["turn {s} again", "take another {s}", "make another {s}", "go {s} again"];
@@ -127,6 +127,7 @@ const ON: &[&str] = &[
     "walk straight",
     "continue forward",
 ];
+const ON_SOMEHOW: &[&str] = &["keep going", "walk on", "go on", "continue on your way", "carry on"];
 const STAY: &[&str] = &["stay where you are", "remain where you are", "stay here", "remain here"];
 const STAY_IN: &[&str] = &["stay in {r}", "remain in {r}", "stay here in {r}"];
 const STOP_BY: &[&str] = &[
@@ -160,13 +161,18 @@ pub(super) fn pick<'a, T: ?Sized>(rng: &mut ChaCha8Rng, of: &[&'a T]) -> &'a T {
     of[rng.random_range(0..of.len())]
 }
 
+/// Those ways to say a step that suit a motion: where nobody knows how a walk bends, nothing is said to be straight.
+pub(super) fn unbent(of: &[&'static str], motion: Motion) -> Vec<&'static str> {
+    of.iter().copied().filter(|way| motion.is_known() || !way.contains("straight")).collect()
+}
+
 /// A room with its article.
 pub(super) fn the(room: &str) -> String {
     format!("the {room}")
 }
 
 /// A step in words, in lower case and without a mark at its end.
-pub(super) fn phrase(step: &Step, told_room: Option<&str>, rng: &mut ChaCha8Rng) -> String {
+pub(super) fn phrase(step: &Step, told_room: Option<&str>, motion: Motion, rng: &mut ChaCha8Rng) -> String {
     match step {
         Step::Turn { turn, at, into, within } => {
             let within = within.as_ref().filter(|within| told_room != Some(&*within.room) || within.out);
@@ -177,12 +183,13 @@ pub(super) fn phrase(step: &Step, told_room: Option<&str>, rng: &mut ChaCha8Rng)
             fill(pick(rng, LEAVE), &[("{a}", &the(from)), ("{r}", &the(to))])
         }
         Step::Room { to, through, .. } => fill(pick(rng, if *through { THROUGH } else { ENTER }), &[("{r}", &the(to))]),
-        Step::Pass(landmark) => pass_phrase(landmark, rng),
+        Step::Pass(landmark) => pass_phrase(landmark, motion, rng),
         Step::Along { room } => {
             let hall = room_name(room) == Some("hallway");
-            fill(pick(rng, if hall { ALONG_HALL } else { ALONG }), &[("{r}", &the(room))])
+            let ways = unbent(if hall { ALONG_HALL } else { ALONG }, motion);
+            fill(pick(rng, &ways), &[("{r}", &the(room))])
         }
-        Step::On => pick(rng, ON).to_owned(),
+        Step::On => pick(rng, if motion.is_known() { ON } else { ON_SOMEHOW }).to_owned(),
         Step::Stay => stay_phrase(None, rng),
         Step::Stop { by, room, climbed } => {
             let room = room.as_deref().filter(|room| told_room != Some(*room));
@@ -239,8 +246,8 @@ pub(super) fn ordinal(level: u32) -> Option<&'static str> {
     ["first", "second", "third", "fourth", "fifth"].get(level.checked_sub(1)? as usize).copied()
 }
 
-fn pass_phrase(landmark: &Landmark, rng: &mut ChaCha8Rng) -> String {
-    let pass = fill(pick(rng, PASS), &[("{l}", &landmark.phrase)]);
+fn pass_phrase(landmark: &Landmark, motion: Motion, rng: &mut ChaCha8Rng) -> String {
+    let pass = fill(pick(rng, &unbent(PASS, motion)), &[("{l}", &landmark.phrase)]);
     let side = landmark.side.filter(|side| matches!(side, Side::Left | Side::Right));
     match side.filter(|_| rng.random_bool(0.3)) {
         Some(side) => format!("{pass} on {} {}", pick(rng, &["your", "the"]), side_word(side)),

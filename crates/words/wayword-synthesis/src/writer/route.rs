@@ -4,7 +4,7 @@ use super::landmarks::{Landmark, Landmarks};
 use crate::{lexicon::room_name, walk::Walk};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use wayword_core::{Climb, Side, Turn, motion};
+use wayword_core::{Climb, Motion, Side, Turn, motion};
 
 /// Something to tell.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,9 +51,26 @@ const LONG_M: f64 = 3.5;
 
 /// The steps of a walk, the stop last.
 pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Weighed> {
+    let (mut steps, climbed) = match walk.path.motion {
+        _ if stands_still(walk) => (Vec::new(), None),
+        Motion::Known => by_moves(walk, landmarks, rng),
+        Motion::Unknown => (by_sight(walk, landmarks, rng), None),
+    };
+    if steps.is_empty() {
+        let step = if stands_still(walk) { Step::Stay } else { Step::On };
+        steps.push(Weighed { step, weight: 3 });
+    }
+    let end = walk.path.frames.len() - 1;
+    let room = walk.room(end).and_then(usable_room);
+    let by = landmarks.choose(end, WALKED_PAST, rng).or_else(|| landmarks.choose(end, STOPPED_AT, rng));
+    steps.push(Weighed { step: Step::Stop { by, room, climbed }, weight: 3 });
+    steps
+}
+
+/// The steps of a walk whose moves are known, and which way it climbs at last.
+fn by_moves(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> (Vec<Weighed>, Option<Climb>) {
     let mut steps: Vec<Weighed> = Vec::new();
-    let mut climbed = None;
-    let mut at = if stands_still(walk) { walk.moves.len() } else { 0 };
+    let (mut climbed, mut at) = (None, 0);
     while at < walk.moves.len() {
         let flight = motion::flight(&walk.moves, at);
         let last = flight.map_or(at, |(last, _)| last);
@@ -97,14 +114,26 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
         }
         at = last + 1;
     }
-    if steps.is_empty() {
-        let step = if stands_still(walk) { Step::Stay } else { Step::On };
-        steps.push(Weighed { step, weight: 3 });
-    }
+    (steps, climbed)
+}
+
+/// The steps of a walk of which there are pictures and no poses: rooms and landmarks in their order.
+fn by_sight(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Weighed> {
+    let mut steps: Vec<Weighed> = Vec::new();
     let end = walk.path.frames.len() - 1;
-    let room = walk.room(end).and_then(usable_room);
-    let by = landmarks.choose(end, WALKED_PAST, rng).or_else(|| landmarks.choose(end, STOPPED_AT, rng));
-    steps.push(Weighed { step: Step::Stop { by, room, climbed }, weight: 3 });
+    for at in 0..end {
+        if let Some(to) = changed_room(walk, at, at + 1) {
+            let from = walk.room(at).and_then(usable_room).filter(|_| rng.random_bool(0.4));
+            let through = changed_room(walk, at + 1, at + 2).is_some();
+            steps.push(Weighed { step: Step::Room { from, to, through }, weight: 2 });
+        } else if at + 1 < end {
+            steps.extend(onwards(walk, at, &steps, landmarks, rng));
+        }
+    }
+    // However short the text has to be, there is something to tell before the end.
+    if let Some(last) = steps.last_mut() {
+        last.weight = 3;
+    }
     steps
 }
 
@@ -128,13 +157,16 @@ fn onwards(
         None if matches!(told.last(), Some(Weighed { step: Step::On | Step::Along { .. } | Step::Pass(_), .. })) => {
             None
         }
-        None => Some(Weighed { step: Step::On, weight: if walk.moves[at].distance_m >= LONG_M { 2 } else { 1 } }),
+        None => {
+            let is_long = walk.moves.get(at).is_some_and(|step| step.distance_m >= LONG_M);
+            Some(Weighed { step: Step::On, weight: if is_long { 2 } else { 1 } })
+        }
     }
 }
 
 /// Whether a walk goes nowhere: that of a path with a single viewpoint does.
 pub(super) fn stands_still(walk: &Walk) -> bool {
-    walk.moves.iter().all(|step| step.distance_m <= 0.0)
+    !walk.path.motion.goes_anywhere(&walk.moves, walk.path.frames.len())
 }
 
 /// Which way the last flight of stairs of a walk goes.

@@ -3,7 +3,7 @@
 use super::{
     Brief, WriteError, Writer,
     landmarks::Landmarks,
-    phrases::{self, fill, level_phrase, ordinal, pick, the},
+    phrases::{self, fill, level_phrase, ordinal, pick, the, unbent},
     realise::{capital, join, sentences},
     route::{Step, Weighed, last_climb, stands_still, steps, usable_room},
     task,
@@ -11,7 +11,7 @@ use super::{
 use crate::{lexicon::room_name, text::word_count};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use wayword_core::{Climb, rng};
+use wayword_core::{Climb, Motion, rng};
 
 /// Writes from captions and moves. Where the references tell turns it tells the way step by step; where they don't, it
 /// names the place at the end. Length, sentences, floors, task and full stop are drawn from the references too.
@@ -48,7 +48,7 @@ fn the_way(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError
     }
     let steps = steps(brief.walk, &mut landmarks, rng);
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-    let mut phrases = in_words(&steps, rng);
+    let mut phrases = in_words(&steps, brief.walk.path.motion, rng);
     if let Some((task, _)) = task {
         phrases.pop();
         phrases.push(Phrase { text: task, weight: KEPT });
@@ -99,7 +99,7 @@ fn drop_least(phrases: &mut Vec<Phrase>, below: u8) -> bool {
     true
 }
 
-fn in_words(steps: &[Weighed], rng: &mut ChaCha8Rng) -> Vec<Phrase> {
+fn in_words(steps: &[Weighed], motion: Motion, rng: &mut ChaCha8Rng) -> Vec<Phrase> {
     let mut told_room: Option<String> = None;
     let mut last_turn = None;
     let phrase = |Weighed { step, weight }: &Weighed| {
@@ -109,7 +109,7 @@ fn in_words(steps: &[Weighed], rng: &mut ChaCha8Rng) -> Vec<Phrase> {
         };
         let text = match bare_side.filter(|side| last_turn == Some(*side)) {
             Some(side) => phrases::turn_again(side, rng),
-            None => phrases::phrase(step, told_room.as_deref(), rng),
+            None => phrases::phrase(step, told_room.as_deref(), motion, rng),
         };
         last_turn = match step {
             Step::Turn { turn, .. } => turn.side(),
@@ -253,6 +253,8 @@ fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaC
         (None, Some(room)) => {
             fill(pick(rng, &["go through {r}", "walk through {r}", "leave {r}"]), &[("{r}", &the(&room))])
         }
-        (None, None) => pick(rng, &["go straight ahead", "walk on to the end", "keep going"]).to_owned(),
+        (None, None) => {
+            pick(rng, &unbent(&["go straight ahead", "walk on to the end", "keep going"], walk.path.motion)).to_owned()
+        }
     }
 }
