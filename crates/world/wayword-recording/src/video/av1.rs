@@ -1,0 +1,94 @@
+//! AV1, decoded by rav1d: dav1d in Rust.
+
+use super::{
+    colour::{Chroma, Colour, Plane, Planes},
+    decoder::{Coded, Decode, MAX_PIXELS, Out, size_is_possible},
+};
+use re_rav1d::dav1d::{Decoder, Error, Picture, PixelLayout, PlanarImageComponent, Settings, pixel::YUVRange};
+
+/// A decoder of one stream.
+pub(super) struct Av1 {
+    decoder: Decoder,
+    /// What the container says of the colours.
+    colour: Colour,
+}
+
+impl Av1 {
+    pub(super) fn new(colour: Colour) -> Result<Self, String> {
+        let mut settings = Settings::new();
+        // Pictures come out as soon as they can: with one thread and no delay nothing stays inside.
+        settings.set_n_threads(1);
+        settings.set_max_frame_delay(1);
+        settings.set_frame_size_limit(MAX_PIXELS);
+        let decoder = Decoder::with_settings(&settings).map_err(|error| format!("cannot be decoded: {error}"))?;
+        Ok(Self { decoder, colour })
+    }
+
+    /// Hands out what has come out of the decoder.
+    fn drain(&mut self, out: &mut Out<'_>) -> Result<(), String> {
+        loop {
+            match self.decoder.get_picture() {
+                Ok(picture) => hand_out(&picture, self.colour, out)?,
+                Err(Error::Again) => return Ok(()),
+                Err(error) => return Err(format!("cannot be decoded: {error}")),
+            }
+        }
+    }
+}
+
+impl Decode for Av1 {
+    fn feed(&mut self, coded: Coded<'_>, out: &mut Out<'_>) -> Result<(), String> {
+        let sample = i64::try_from(coded.sample).ok();
+        let mut sent = self.decoder.send_data(coded.bytes.to_vec(), None, sample, None);
+        loop {
+            self.drain(out)?;
+            match sent {
+                Ok(()) => return Ok(()),
+                Err(Error::Again) => sent = self.decoder.send_pending_data(),
+                Err(error) => return Err(format!("cannot be decoded: {error}")),
+            }
+        }
+    }
+
+    fn finish(&mut self, out: &mut Out<'_>) -> Result<(), String> {
+        self.drain(out)
+    }
+}
+
+fn hand_out(picture: &Picture, container: Colour, out: &mut Out<'_>) -> Result<(), String> {
+    let sample =
+        picture.timestamp().and_then(|sample| usize::try_from(sample).ok()).ok_or("has a picture from nowhere")?;
+    size_is_possible(picture.width(), picture.height())?;
+    let shifts = match picture.pixel_layout() {
+        PixelLayout::I400 => None,
+        PixelLayout::I420 => Some((1, 1)),
+        PixelLayout::I422 => Some((1, 0)),
+        PixelLayout::I444 => Some((0, 0)),
+    };
+    use PlanarImageComponent::{U, V, Y};
+    let brightness = picture.plane(Y);
+    let chroma = shifts.map(|shifts| (picture.plane(U), picture.plane(V), shifts));
+    let stride = |component| picture.stride(component) as usize;
+    let chroma = chroma.as_ref().map(|(blue, red, (shift_x, shift_y))| Chroma {
+        blue: Plane { bytes: blue.as_ref(), stride: stride(U) },
+        red: Plane { bytes: red.as_ref(), stride: stride(V) },
+        shift_x: *shift_x,
+        shift_y: *shift_y,
+    });
+    let planes = Planes {
+        width_px: picture.width(),
+        height_px: picture.height(),
+        bits: picture.bit_depth() as u32,
+        brightness: Plane { bytes: brightness.as_ref(), stride: stride(Y) },
+        chroma,
+        colour: said(picture).or(container),
+    };
+    out(sample, &planes)
+}
+
+/// What the stream says of its colours.
+fn said(picture: &Picture) -> Colour {
+    let full_range = Some(picture.color_range() == YUVRange::Full);
+    let matrix = Colour::coded(picture.matrix_coefficients() as u32);
+    Colour { matrix, full_range }
+}

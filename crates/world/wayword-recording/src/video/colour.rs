@@ -1,0 +1,208 @@
+//! From the planes of a decoder to RGB, as the stream says (ITU-T H.273): integers only, so that every machine makes the same
+//! picture.
+
+use wayword_core::Image;
+
+/// Fixed point: 1.0.
+const ONE: f64 = 65536.0;
+/// `matrix_coefficients` that say nothing.
+const UNSPECIFIED: u32 = 2;
+
+/// What is said of a stream's colours; `None` is not said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Colour {
+    /// `matrix_coefficients` of H.273, table 4.
+    pub(super) matrix: Option<u32>,
+    /// Whether black is 0 and white the largest number.
+    pub(super) full_range: Option<bool>,
+}
+
+impl Colour {
+    /// A matrix as streams write it down.
+    pub(super) fn coded(matrix: u32) -> Option<u32> {
+        (matrix != UNSPECIFIED).then_some(matrix)
+    }
+
+    /// What `self` says, and where it says nothing, `other`.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self { matrix: self.matrix.or(other.matrix), full_range: self.full_range.or(other.full_range) }
+    }
+
+    /// Weights of red and blue in the brightness. Where nothing is said, BT.601 is: so do ffmpeg, OpenCV and thereby LeRobot
+    /// write, whatever the size.
+    fn weights(self) -> Result<(f64, f64), String> {
+        match self.matrix.unwrap_or(6) {
+            1 => Ok((0.2126, 0.0722)),
+            4 => Ok((0.30, 0.11)),
+            5 | 6 => Ok((0.299, 0.114)),
+            7 => Ok((0.212, 0.087)),
+            9 | 10 => Ok((0.2627, 0.0593)),
+            other => Err(format!("has colours of a kind that is not read (matrix {other} of H.273)")),
+        }
+    }
+}
+
+/// One plane: rows from the top.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plane<'a> {
+    pub(super) bytes: &'a [u8],
+    /// Bytes from row to row.
+    pub(super) stride: usize,
+}
+
+impl<'a> Plane<'a> {
+    fn row(self, y: usize, bytes: usize) -> Option<&'a [u8]> {
+        let start = self.stride.checked_mul(y)?;
+        self.bytes.get(start..start.checked_add(bytes)?)
+    }
+}
+
+/// Differences of colour, and by how many bits their planes are smaller.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Chroma<'a> {
+    pub(super) blue: Plane<'a>,
+    pub(super) red: Plane<'a>,
+    pub(super) shift_x: u32,
+    pub(super) shift_y: u32,
+}
+
+/// A decoded picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Planes<'a> {
+    pub(super) width_px: u32,
+    pub(super) height_px: u32,
+    /// Bits of a number: 8 in one byte, more in two.
+    pub(super) bits: u32,
+    pub(super) brightness: Plane<'a>,
+    /// `None` where all is grey.
+    pub(super) chroma: Option<Chroma<'a>>,
+    pub(super) colour: Colour,
+}
+
+/// Factors in fixed point.
+struct Factors {
+    black: i32,
+    grey: i32,
+    brightness: i32,
+    red: i32,
+    green_of_red: i32,
+    green_of_blue: i32,
+    blue: i32,
+}
+
+impl Factors {
+    /// H.273, section 8.3, equations 21 to 23 and 39 to 44.
+    fn new(colour: Colour, bits: u32) -> Result<Self, String> {
+        let (kr, kb) = colour.weights()?;
+        let kg = 1.0 - kr - kb;
+        let unit = 1 << (bits - 8);
+        let (black, steps, chroma_steps) = match colour.full_range {
+            Some(true) => (0, (1 << bits) - 1, (1 << bits) - 1),
+            _ => (16 * unit, 219 * unit, 224 * unit),
+        };
+        let chroma = 255.0 / f64::from(chroma_steps);
+        let fixed = |factor: f64| (factor * ONE).round() as i32;
+        Ok(Self {
+            black,
+            grey: 128 * unit,
+            brightness: fixed(255.0 / f64::from(steps)),
+            red: fixed(2.0 * (1.0 - kr) * chroma),
+            green_of_red: fixed(-2.0 * (1.0 - kr) * kr / kg * chroma),
+            green_of_blue: fixed(-2.0 * (1.0 - kb) * kb / kg * chroma),
+            blue: fixed(2.0 * (1.0 - kb) * chroma),
+        })
+    }
+
+    fn rgb(&self, brightness: i32, blue: i32, red: i32) -> [u8; 3] {
+        let base = (brightness - self.black) * self.brightness + (1 << 15);
+        let (blue, red) = (blue - self.grey, red - self.grey);
+        let byte = |fixed: i32| (fixed >> 16).clamp(0, 255) as u8;
+        [
+            byte(base + red * self.red),
+            byte(base + red * self.green_of_red + blue * self.green_of_blue),
+            byte(base + blue * self.blue),
+        ]
+    }
+}
+
+/// The picture in RGB. Of colours that are shared by several pixels, each takes its own, as players do by default.
+pub(super) fn picture(planes: &Planes<'_>) -> Result<Image, String> {
+    let factors = Factors::new(planes.colour, planes.bits)?;
+    let mut rgb = vec![0; planes.width_px as usize * planes.height_px as usize * 3];
+    let rows = rgb.chunks_exact_mut((planes.width_px as usize * 3).max(1));
+    for (y, row) in rows.enumerate() {
+        let written =
+            if planes.bits == 8 { line::<1>(planes, &factors, y, row) } else { line::<2>(planes, &factors, y, row) };
+        written.ok_or("its decoder gave fewer pixels than it said")?;
+    }
+    Image::new(planes.width_px, planes.height_px, rgb).map_err(|error| error.to_string())
+}
+
+/// One row, of numbers of `BYTES` bytes; `None` where there are too few of them.
+fn line<const BYTES: usize>(planes: &Planes<'_>, factors: &Factors, y: usize, rgb: &mut [u8]) -> Option<()> {
+    let width = planes.width_px as usize;
+    let brightness = planes.brightness.row(y, width * BYTES)?;
+    let pixels = rgb.chunks_exact_mut(3).enumerate();
+    let Some(chroma) = planes.chroma else {
+        for (x, pixel) in pixels {
+            pixel.copy_from_slice(&factors.rgb(number::<BYTES>(brightness, x), factors.grey, factors.grey));
+        }
+        return Some(());
+    };
+    let narrow = width.div_ceil(1 << chroma.shift_x);
+    let blue = chroma.blue.row(y >> chroma.shift_y, narrow * BYTES)?;
+    let red = chroma.red.row(y >> chroma.shift_y, narrow * BYTES)?;
+    for (x, pixel) in pixels {
+        let shared = x >> chroma.shift_x;
+        let (blue, red) = (number::<BYTES>(blue, shared), number::<BYTES>(red, shared));
+        pixel.copy_from_slice(&factors.rgb(number::<BYTES>(brightness, x), blue, red));
+    }
+    Some(())
+}
+
+/// A number of one byte, or of two as this machine orders them.
+fn number<const BYTES: usize>(row: &[u8], at: usize) -> i32 {
+    match BYTES {
+        1 => i32::from(row[at]),
+        _ => i32::from(u16::from_ne_bytes([row[2 * at], row[2 * at + 1]])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pixel(colour: Colour, bits: u32, [y, cb, cr]: [u16; 3]) -> [u8; 3] {
+        let bytes = |number: u16| if bits == 8 { vec![number as u8] } else { number.to_ne_bytes().to_vec() };
+        let (y, cb, cr) = (bytes(y), bytes(cb), bytes(cr));
+        let plane = |bytes| Plane { bytes, stride: 2 };
+        let chroma = Chroma { blue: plane(&cb), red: plane(&cr), shift_x: 1, shift_y: 1 };
+        let planes = Planes { width_px: 1, height_px: 1, bits, brightness: plane(&y), chroma: Some(chroma), colour };
+        picture(&planes).unwrap().rgb().try_into().unwrap()
+    }
+
+    #[test]
+    fn black_white_and_red_are_what_the_standards_say() {
+        let said = |matrix, full_range| Colour { matrix: Some(matrix), full_range: Some(full_range) };
+        assert_eq!(pixel(Colour::default(), 8, [16, 128, 128]), [0, 0, 0]);
+        assert_eq!(pixel(Colour::default(), 8, [235, 128, 128]), [255, 255, 255]);
+        assert_eq!(pixel(said(6, true), 8, [255, 128, 128]), [255, 255, 255]);
+        // Pure red: BT.601 limited (81, 90, 240), BT.709 limited (63, 102, 240), both within rounding.
+        let near = |[r, g, b]: [u8; 3]| r >= 253 && g <= 2 && b <= 2;
+        assert!(near(pixel(said(6, false), 8, [81, 90, 240])));
+        assert!(near(pixel(said(1, false), 8, [63, 102, 240])));
+        assert!(!near(pixel(said(1, false), 8, [81, 90, 240])));
+        assert!(near(pixel(said(1, false), 10, [250, 409, 960])));
+    }
+
+    #[test]
+    fn pixels_that_are_not_there_are_an_error_and_no_panic() {
+        let plane = Plane { bytes: &[0; 7], stride: 4 };
+        let colour = Colour::default();
+        let planes = Planes { width_px: 4, height_px: 2, bits: 8, brightness: plane, chroma: None, colour };
+        assert!(picture(&planes).is_err());
+        assert!(picture(&Planes { width_px: 3, ..planes }).is_ok());
+        let colour = Colour { matrix: Some(0), ..colour };
+        assert!(picture(&Planes { width_px: 3, colour, ..planes }).unwrap_err().contains("H.273"));
+    }
+}

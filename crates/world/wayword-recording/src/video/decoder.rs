@@ -1,0 +1,76 @@
+//! What the decoders of all codecs have in common.
+
+use super::{
+    av1::Av1,
+    colour::{Colour, Planes},
+    h264::{self, H264},
+};
+
+/// Longest side of a picture, pixels.
+const MAX_SIDE_PX: u32 = 12_288;
+/// Most pixels of a picture.
+pub(super) const MAX_PIXELS: u32 = 64_000_000;
+
+/// A sample on its way into a decoder.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Coded<'a> {
+    /// Its place in the order of decoding.
+    pub(super) sample: usize,
+    /// When it is shown, ticks.
+    pub(super) shown: i64,
+    pub(super) bytes: &'a [u8],
+}
+
+/// Who is handed a picture: the sample that it was, and its planes.
+pub(super) type Out<'a> = dyn FnMut(usize, &Planes<'_>) -> Result<(), String> + 'a;
+
+/// A decoder of one stream.
+pub(super) trait Decode {
+    /// Takes the next sample, and hands out what can be shown now. Samples may be left out before one with which decoding can
+    /// begin.
+    fn feed(&mut self, coded: Coded<'_>, out: &mut Out<'_>) -> Result<(), String>;
+
+    /// Hands out what is left when nothing more comes.
+    fn finish(&mut self, out: &mut Out<'_>) -> Result<(), String>;
+}
+
+/// A codec that is read, with what its decoder has to know.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Codec {
+    H264(h264::Setup),
+    /// What the container says of the colours.
+    Av1(Colour),
+}
+
+impl Codec {
+    pub(super) fn decoder(&self) -> Result<Box<dyn Decode>, String> {
+        Ok(match self {
+            Self::H264(setup) => Box::new(H264::new(setup)?),
+            Self::Av1(colour) => Box::new(Av1::new(*colour)?),
+        })
+    }
+
+    /// Whether decoding can begin with a sample that the container marks so.
+    pub(super) fn can_begin_with(&self, sample: &[u8]) -> bool {
+        match self {
+            Self::H264(setup) => setup.can_begin_with(sample),
+            Self::Av1(_) => true,
+        }
+    }
+}
+
+/// Refuses pictures of sizes that no camera has.
+pub(super) fn size_is_possible(width_px: u32, height_px: u32) -> Result<(), String> {
+    let is_possible =
+        width_px <= MAX_SIDE_PX && height_px <= MAX_SIDE_PX && width_px.saturating_mul(height_px) <= MAX_PIXELS;
+    if is_possible {
+        Ok(())
+    } else {
+        Err(format!("has pictures of {width_px} x {height_px} pixels, which is too large"))
+    }
+}
+
+/// Runs a decoder, whose panics on broken input become a refusal.
+pub(super) fn contained<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(decode)).unwrap_or_else(|_| Err("is broken".to_owned()))
+}

@@ -1,0 +1,126 @@
+//! Which pictures a player shows, in which order, and when: edit lists (ISO/IEC 14496-12, section 8.6.6).
+
+use super::{
+    boxes::{Fields, find, within},
+    tables::Sample,
+};
+
+/// One picture as it is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shown {
+    /// Seconds from the start of the video.
+    pub(super) time_s: f64,
+    /// Its place in the order of decoding.
+    pub(super) sample: usize,
+}
+
+/// The part of a track that is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Edit {
+    /// How long nothing is shown first, ticks of the movie.
+    wait: u64,
+    /// What is shown begins here, ticks of the track.
+    start: i64,
+    /// How long it is shown, ticks of the movie; 0 is until the end.
+    length: u64,
+}
+
+/// How many ticks a second has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Clocks {
+    pub(super) movie: u32,
+    pub(super) track: u32,
+}
+
+/// Reads the edit list of a track; `None` where all is shown.
+pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
+    let Some(elst) = find(trak, b"edts").and_then(|edts| find(edts, b"elst")) else { return Ok(None) };
+    let read = || -> Result<Vec<(u64, i64)>, String> {
+        let (mut fields, version, _) = Fields::full(elst)?;
+        if version == 0 {
+            return Ok(fields.rows::<12>()?.filter_map(|row| entry(&row, version)).collect());
+        }
+        Ok(fields.rows::<20>()?.filter_map(|row| entry(&row, version)).collect())
+    };
+    let mut found: Option<Edit> = None;
+    let mut wait = 0_u64;
+    for (length, start) in read().map_err(within("elst"))? {
+        match found {
+            None if start < 0 => wait = wait.saturating_add(length),
+            None => found = Some(Edit { wait, start, length }),
+            // What is empty at the end shows nothing.
+            Some(_) if start < 0 => {}
+            Some(_) => return Err("is cut together of several pieces (box `elst`)".to_owned()),
+        }
+    }
+    Ok(found)
+}
+
+/// Length of a piece and where it starts, -1 for nothing.
+fn entry(row: &[u8], version: u8) -> Option<(u64, i64)> {
+    let mut fields = Fields::new(row);
+    let length = fields.long(version).ok()?;
+    let start = if version == 0 { i64::from(fields.i32().ok()?) } else { fields.u64().ok()?.cast_signed() };
+    // Beyond 2^56 nothing could be subtracted any more.
+    Some((length, start.clamp(-1, 1 << 56)))
+}
+
+/// The pictures that are shown, in the order in which they are.
+pub(super) fn shown(samples: &[Sample], edit: Option<Edit>, clocks: Clocks) -> Vec<Shown> {
+    let (movie, track) = (f64::from(clocks.movie), f64::from(clocks.track));
+    // Without a list, the first picture is the start: recorders that cut a stream count from when the stream began.
+    let first = samples.iter().map(|sample| sample.shown).min().unwrap_or(0);
+    let Edit { wait, start, length } = edit.unwrap_or(Edit { wait: 0, start: first, length: 0 });
+    // Lengths are rounded to the movie's ticks: what begins within the last of them begins after the end.
+    let end_s = if length == 0 { f64::INFINITY } else { (length as f64 - 1.0) / movie };
+    let mut order: Vec<usize> = (0..samples.len()).collect();
+    order.sort_by_key(|at| samples[*at].shown);
+    let timed = order.into_iter().filter_map(|sample| {
+        let ticks = samples[sample].shown - start;
+        let time_s = ticks as f64 / track;
+        (ticks >= 0 && time_s < end_s).then(|| Shown { time_s: time_s + wait as f64 / movie, sample })
+    });
+    timed.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLOCKS: Clocks = Clocks { movie: 1000, track: 10 };
+
+    fn samples(shown: &[i64]) -> Vec<Sample> {
+        shown.iter().map(|shown| Sample { offset: 0, bytes: 1, shown: *shown, is_key: false }).collect()
+    }
+
+    fn of(edit: Option<Edit>) -> Vec<(f64, usize)> {
+        let shown = shown(&samples(&[2, 6, 4, 3, 5]), edit, CLOCKS);
+        shown.into_iter().map(|shown| (shown.time_s, shown.sample)).collect()
+    }
+
+    #[test]
+    fn pictures_come_in_the_order_in_which_they_are_shown() {
+        assert_eq!(of(None), [(0.0, 0), (0.1, 3), (0.2, 2), (0.3, 4), (0.4, 1)]);
+    }
+
+    #[test]
+    fn what_is_cut_off_is_not_shown() {
+        let edit = Edit { wait: 500, start: 3, length: 200 };
+        assert_eq!(of(Some(edit)), [(0.5, 3), (0.6, 2)]);
+    }
+
+    #[test]
+    fn a_list_is_read_and_one_of_several_pieces_refused() {
+        let trak = |rows: &[[u32; 3]]| {
+            let rows: Vec<u8> = rows.iter().flatten().flat_map(|word| word.to_be_bytes()).collect();
+            let list = [&[0; 7], &[(rows.len() / 12) as u8][..], &rows].concat();
+            let elst = [&(list.len() as u32 + 8).to_be_bytes(), &b"elst"[..], &list].concat();
+            [&(elst.len() as u32 + 8).to_be_bytes(), &b"edts"[..], &elst].concat()
+        };
+        let rate = 1 << 16;
+        let wanted = Edit { wait: 40, start: 1024, length: 3000 };
+        assert_eq!(edit(&trak(&[[40, u32::MAX, rate], [3000, 1024, rate]])), Ok(Some(wanted)));
+        assert!(edit(&trak(&[[40, 0, rate], [3000, 1024, rate]])).unwrap_err().contains("elst"));
+        assert_eq!(edit(b""), Ok(None));
+    }
+}

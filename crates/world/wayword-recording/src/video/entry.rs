@@ -1,0 +1,88 @@
+//! How a track's pictures are coded: its sample entry (ISO/IEC 14496-12, section 8.5.2).
+
+use super::{
+    boxes::{Atom, Fields, boxes, find, name, need, within},
+    colour::Colour,
+};
+
+/// Bytes of a `VisualSampleEntry` before its boxes.
+const BEFORE_BOXES: usize = 78;
+/// Codecs that people meet, with their names.
+const KNOWN: [(&[u8; 4], &str); 14] = [
+    (b"hvc1", "HEVC (H.265)"),
+    (b"hev1", "HEVC (H.265)"),
+    (b"dvh1", "Dolby Vision (HEVC)"),
+    (b"dvhe", "Dolby Vision (HEVC)"),
+    (b"vp08", "VP8"),
+    (b"vp09", "VP9"),
+    (b"mp4v", "MPEG-4 Part 2"),
+    (b"jpeg", "Motion JPEG"),
+    (b"mjpg", "Motion JPEG"),
+    (b"png ", "PNG"),
+    (b"apcn", "ProRes"),
+    (b"apch", "ProRes"),
+    (b"ap4h", "ProRes"),
+    (b"encv", "an encrypted form"),
+];
+
+/// A codec, with what its decoder needs to know beforehand.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Codec {
+    /// `AVCDecoderConfigurationRecord` (ISO/IEC 14496-15, section 5.3.3).
+    H264(Vec<u8>),
+    /// `AV1CodecConfigurationRecord` (AV1 in ISOBMFF, section 2.3).
+    Av1,
+    /// One that is not read, by name.
+    Other(String),
+}
+
+/// A sample entry.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Entry {
+    pub(super) codec: Codec,
+    pub(super) width_px: u16,
+    pub(super) height_px: u16,
+    /// What the container says of the colours.
+    pub(super) colour: Colour,
+}
+
+/// The sample entry in a track's `stsd`.
+pub(super) fn entry(stsd: &[u8]) -> Result<Entry, String> {
+    let (mut fields, ..) = Fields::full(stsd)?;
+    let count = fields.u32()?;
+    if count != 1 {
+        return Err(format!("lists {count} ways of coding, and one is read"));
+    }
+    let Atom { kind, body } = boxes(fields.rest()).next().ok_or("lists no way of coding")?;
+    let mut fields = Fields::new(body);
+    fields.bytes(24)?;
+    let (width_px, height_px) = (fields.u16()?, fields.u16()?);
+    let within_entry = body.get(BEFORE_BOXES..).unwrap_or_default();
+    let codec = match &kind {
+        b"avc1" | b"avc3" => Codec::H264(need(within_entry, b"avcC")?.to_vec()),
+        b"av01" => Codec::Av1,
+        other => Codec::Other(named(other)),
+    };
+    Ok(Entry { codec, width_px, height_px, colour: colour(within_entry).map_err(within("colr"))? })
+}
+
+fn named(kind: &[u8; 4]) -> String {
+    KNOWN
+        .iter()
+        .find(|(known, _)| *known == kind)
+        .map_or_else(|| format!("`{}`", name(kind)), |(_, name)| (*name).to_owned())
+}
+
+/// `colr`: ISO's `nclx` says the range, QuickTime's `nclc` does not.
+fn colour(within_entry: &[u8]) -> Result<Colour, String> {
+    let Some(colr) = find(within_entry, b"colr") else { return Ok(Colour::default()) };
+    let mut fields = Fields::new(colr);
+    let kind = fields.array::<4>()?;
+    if kind != *b"nclx" && kind != *b"nclc" {
+        return Ok(Colour::default());
+    }
+    fields.bytes(4)?;
+    let matrix = Colour::coded(fields.u16()?.into());
+    let full_range = if kind == *b"nclx" { Some(fields.u8()? & 0x80 != 0) } else { None };
+    Ok(Colour { matrix, full_range })
+}

@@ -1,0 +1,166 @@
+//! The pictures of an MP4 file, by their number in the order in which they are shown.
+
+use super::{
+    colour,
+    decoder::{Coded, Decode, contained},
+    edits::Shown,
+    movie::{HINT, Movie, bytes_at},
+};
+use crate::reel::Take;
+use std::{
+    collections::{BTreeMap, btree_map::Entry},
+    fs::File,
+    ops::Range,
+    path::{Path, PathBuf},
+};
+use wayword_core::{Image, PlatformError};
+use wayword_platforms::files;
+
+/// Pictures that decoders hold back at most (ITU-T H.264, annex A.3.1).
+const MAX_HELD: usize = 17;
+
+/// One camera's pictures in an MP4 file.
+#[derive(Debug)]
+pub(crate) struct Film {
+    file: PathBuf,
+    movie: Movie,
+    times_s: Vec<f64>,
+}
+
+impl Film {
+    /// Opens a file, reads which pictures it holds, and decodes none. `camera` is the number of the track as the file
+    /// counts them (`"1"`), needed only where there are several.
+    ///
+    /// # Errors
+    /// When it is no MP4 file, is broken, has no such camera, or its pictures are in a codec that is not read.
+    pub(crate) fn open(file: &Path, camera: Option<&str>) -> Result<Self, PlatformError> {
+        let mut opened = File::open(file).map_err(|error| files::wrong(file, error.to_string(), HINT))?;
+        let movie = Movie::read(&mut opened, camera);
+        let movie = movie.map_err(|refusal| files::wrong(file, refusal.reason, refusal.hint))?;
+        let times_s = movie.shown.iter().map(|shown| shown.time_s).collect();
+        Ok(Self { file: file.to_owned(), movie, times_s })
+    }
+
+    /// When each picture is shown, seconds from the start of the video, not descending.
+    pub(crate) fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    /// Hands out the wanted pictures: numbers into [`Film::times_s`], ascending and without repetition. Decodes from the key
+    /// picture before the first of them to the last, without the stretches in which none is wanted.
+    ///
+    /// # Errors
+    /// When the file has changed or is broken there, or `take` fails.
+    pub(crate) fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
+        let wrong = |reason: String| files::wrong(&self.file, reason, HINT);
+        let mut file = File::open(&self.file).map_err(|error| wrong(error.to_string()))?;
+        let mut desk = Desk::new(&self.movie, wanted);
+        let mut decoder = self.movie.codec.decoder().map_err(wrong)?;
+        for run in self.runs(&mut file, wanted).map_err(wrong)? {
+            for sample in run {
+                let fed = self.feed(&mut file, sample, decoder.as_mut(), &mut desk);
+                fed.map_err(|reason| {
+                    wrong(format!("picture at byte {}: {reason}", self.movie.samples[sample].offset))
+                })?;
+                desk.hand_over(take)?;
+            }
+        }
+        contained(|| decoder.finish(&mut |sample, planes| desk.put(sample, planes))).map_err(wrong)?;
+        desk.hand_over(take)?;
+        match desk.missing() {
+            Some(number) => Err(wrong(format!("picture {number} (from 0) could not be decoded"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Feeds one sample to a decoder.
+    fn feed(
+        &self,
+        file: &mut File,
+        sample: usize,
+        decoder: &mut dyn Decode,
+        desk: &mut Desk<'_>,
+    ) -> Result<(), String> {
+        let bytes = self.sample(file, sample)?;
+        let coded = Coded { sample, shown: self.movie.samples[sample].shown, bytes: &bytes };
+        contained(|| decoder.feed(coded, &mut |sample, planes| desk.put(sample, planes)))
+    }
+
+    fn sample(&self, file: &mut File, sample: usize) -> Result<Vec<u8>, String> {
+        let sample = self.movie.samples[sample];
+        bytes_at(file, sample.offset, sample.bytes.into())
+    }
+
+    /// The samples to decode for the wanted pictures.
+    fn runs(&self, file: &mut File, wanted: &[usize]) -> Result<Vec<Range<usize>>, String> {
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for Shown { sample, .. } in wanted.iter().filter_map(|number| self.movie.shown.get(*number)) {
+            let fed = runs.last().map_or(0, |run| run.end);
+            if *sample < fed {
+                continue;
+            }
+            let key = self.key(file, *sample, fed)?;
+            match runs.last_mut() {
+                // Nothing between can be left out.
+                Some(run) if key <= fed => run.end = sample + 1,
+                _ => runs.push(key..sample + 1),
+            }
+        }
+        Ok(runs)
+    }
+
+    /// The last sample with which decoding can begin for the one wanted, or one at or before `fed`.
+    fn key(&self, file: &mut File, wanted: usize, fed: usize) -> Result<usize, String> {
+        for key in (fed..=wanted).rev().filter(|at| self.movie.samples[*at].is_key) {
+            if self.movie.codec.can_begin_with(&self.sample(file, key)?) {
+                return Ok(key);
+            }
+        }
+        Ok(fed)
+    }
+}
+
+/// Where decoded pictures lie until it is their turn.
+struct Desk<'a> {
+    movie: &'a Movie,
+    /// Which are wanted: the number of each, by sample.
+    numbers: BTreeMap<usize, usize>,
+    /// Wanted numbers that were not handed over, in order.
+    due: std::iter::Peekable<std::iter::Copied<std::slice::Iter<'a, usize>>>,
+    done: BTreeMap<usize, Image>,
+}
+
+impl<'a> Desk<'a> {
+    fn new(movie: &'a Movie, wanted: &'a [usize]) -> Self {
+        let number = |number: &usize| movie.shown.get(*number).map(|shown| (shown.sample, *number));
+        let numbers = wanted.iter().filter_map(number).collect();
+        Self { movie, numbers, due: wanted.iter().copied().peekable(), done: BTreeMap::new() }
+    }
+
+    /// Takes what comes out of a decoder.
+    fn put(&mut self, sample: usize, planes: &colour::Planes<'_>) -> Result<(), String> {
+        let Some(number) = self.numbers.get(&sample) else { return Ok(()) };
+        if self.done.len() > MAX_HELD {
+            return Err("shows its pictures in another order than it says".to_owned());
+        }
+        if let Entry::Vacant(place) = self.done.entry(*number) {
+            place.insert(self.movie.turn.apply(colour::picture(planes)?));
+        }
+        Ok(())
+    }
+
+    /// Hands over those whose turn it is.
+    fn hand_over(&mut self, take: &mut Take<'_>) -> Result<(), PlatformError> {
+        while let Some(number) = self.due.peek() {
+            let Some(picture) = self.done.remove(number) else { break };
+            take(*number, picture)?;
+            self.due.next();
+        }
+        Ok(())
+    }
+
+    /// The first that has not come.
+    fn missing(&mut self) -> Option<usize> {
+        self.due.peek().copied()
+    }
+}

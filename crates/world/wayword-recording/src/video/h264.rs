@@ -1,0 +1,181 @@
+//! H.264, decoded by Cisco's OpenH264.
+
+use super::{
+    boxes::{Fields, within},
+    colour::{Chroma, Colour, Plane, Planes},
+    decoder::{Coded, Decode, Out, size_is_possible},
+    sps::Sps,
+};
+use openh264::{
+    OpenH264API,
+    decoder::{DecodedYUV, Decoder, DecoderConfig, Flush},
+    formats::YUVSource,
+};
+use std::collections::BTreeSet;
+
+const START: [u8; 4] = [0, 0, 0, 1];
+/// Types of NAL units (ITU-T H.264, table 7-1).
+const IDR: u8 = 5;
+const SPS: u8 = 7;
+
+/// What stands before the stream: `AVCDecoderConfigurationRecord` (ISO/IEC 14496-15, section 5.3.3.1).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Setup {
+    /// How many bytes the length of a NAL unit has.
+    length_bytes: usize,
+    /// Parameter sets, each after a start code.
+    parameters: Vec<u8>,
+    colour: Colour,
+}
+
+impl Setup {
+    /// Reads an `avcC` box. What the container says of the `colour` holds where the stream says nothing.
+    pub(super) fn read(record: &[u8], colour: Colour) -> Result<Self, String> {
+        let (length_bytes, units) = taken_apart(record).map_err(within("avcC"))?;
+        let mut setup = Self { length_bytes, parameters: Vec::new(), colour };
+        for unit in units {
+            if kind(unit) == SPS {
+                setup.colour = possible(unit)?.colour.or(setup.colour);
+            }
+            setup.parameters.extend_from_slice(&START);
+            setup.parameters.extend_from_slice(unit);
+        }
+        Ok(setup)
+    }
+
+    /// The NAL units of a sample.
+    fn units<'a>(&self, sample: &'a [u8]) -> impl Iterator<Item = Result<&'a [u8], String>> {
+        let mut fields = Fields::new(sample);
+        let length_bytes = self.length_bytes;
+        std::iter::from_fn(move || {
+            if fields.rest().is_empty() {
+                return None;
+            }
+            let unit = fields.bytes(length_bytes).and_then(|length| {
+                let length = length.iter().fold(0, |length, byte| length << 8 | usize::from(*byte));
+                fields.bytes(length)
+            });
+            if unit.is_err() {
+                fields = Fields::new(&[]);
+            }
+            Some(unit.map_err(|_| "holds a unit that is longer than itself".to_owned()))
+        })
+    }
+
+    /// Whether decoding can begin with a sample. Containers also mark pictures from which a stream only recovers.
+    pub(super) fn can_begin_with(&self, sample: &[u8]) -> bool {
+        self.units(sample).any(|unit| unit.is_ok_and(|unit| kind(unit) == IDR))
+    }
+}
+
+/// How many bytes a length has, and the parameter sets.
+fn taken_apart(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
+    let mut fields = Fields::new(record);
+    fields.bytes(4)?;
+    let length_bytes = usize::from(fields.u8()? & 3) + 1;
+    let mut units = Vec::new();
+    // Sequence parameter sets, then picture parameter sets.
+    for mask in [31, 255] {
+        for _ in 0..fields.u8()? & mask {
+            let length = fields.u16()?;
+            units.push(fields.bytes(length.into())?);
+        }
+    }
+    Ok((length_bytes, units))
+}
+
+fn kind(unit: &[u8]) -> u8 {
+    unit.first().map_or(0, |first| first & 31)
+}
+
+/// A parameter set of a stream that OpenH264 decodes within bounds.
+fn possible(unit: &[u8]) -> Result<Sps, String> {
+    let sps = Sps::read(unit).ok_or("has a broken sequence parameter set")?;
+    size_is_possible(sps.width_px, sps.height_px)?;
+    let cannot = |what: &str| Err(format!("is H.264 {what}, which is not read"));
+    match sps {
+        Sps { bits: 9.., .. } => cannot(&format!("with {} bits", sps.bits)),
+        Sps { chroma_format: 2.., .. } => cannot("with 4:2:2 or 4:4:4 colours"),
+        Sps { is_interlaced: true, .. } => cannot("with interlaced pictures"),
+        _ => Ok(sps),
+    }
+}
+
+/// A decoder of one stream.
+pub(super) struct H264 {
+    setup: Setup,
+    decoder: Decoder,
+    /// What was fed and has not come out, in the order in which it is shown: OpenH264 gives no times back, but pictures in
+    /// that order.
+    inside: BTreeSet<(i64, usize)>,
+    has_begun: bool,
+}
+
+impl H264 {
+    pub(super) fn new(setup: &Setup) -> Result<Self, String> {
+        // Flushing after each picture would give them in the order of decoding, and lose some.
+        let config = DecoderConfig::new().flush_after_decode(Flush::NoFlush);
+        let decoder = Decoder::with_api_config(OpenH264API::from_source(), config);
+        let decoder = decoder.map_err(|error| format!("cannot be decoded: {error}"))?;
+        Ok(Self { setup: setup.clone(), decoder, inside: BTreeSet::new(), has_begun: false })
+    }
+
+    /// A sample with start codes instead of lengths.
+    fn annex_b(&mut self, sample: &[u8]) -> Result<Vec<u8>, String> {
+        let mut stream = if self.has_begun { Vec::new() } else { self.setup.parameters.clone() };
+        let mut colour = self.setup.colour;
+        for unit in self.setup.units(sample) {
+            let unit = unit?;
+            if kind(unit) == SPS {
+                colour = possible(unit)?.colour.or(colour);
+            }
+            stream.extend_from_slice(&START);
+            stream.extend_from_slice(unit);
+        }
+        self.setup.colour = colour;
+        self.has_begun = true;
+        Ok(stream)
+    }
+}
+
+impl Decode for H264 {
+    fn feed(&mut self, coded: Coded<'_>, out: &mut Out<'_>) -> Result<(), String> {
+        let stream = self.annex_b(coded.bytes)?;
+        self.inside.insert((coded.shown, coded.sample));
+        let decoded = self.decoder.decode(&stream).map_err(|error| format!("cannot be decoded: {error}"))?;
+        match decoded {
+            Some(decoded) => hand_out(&mut self.inside, self.setup.colour, &decoded, out),
+            None => Ok(()),
+        }
+    }
+
+    fn finish(&mut self, out: &mut Out<'_>) -> Result<(), String> {
+        let rest = self.decoder.flush_remaining().map_err(|error| format!("cannot be decoded: {error}"))?;
+        for decoded in &rest {
+            hand_out(&mut self.inside, self.setup.colour, decoded, out)?;
+        }
+        // Had one been lost, all that came after it would have had the name of another.
+        if self.inside.is_empty() { Ok(()) } else { Err(format!("lost {} pictures in decoding", self.inside.len())) }
+    }
+}
+
+/// Hands a picture out under the name of the sample that is to be shown next.
+fn hand_out(
+    inside: &mut BTreeSet<(i64, usize)>,
+    colour: Colour,
+    decoded: &DecodedYUV<'_>,
+    out: &mut Out<'_>,
+) -> Result<(), String> {
+    let (_, sample) = inside.pop_first().ok_or("gives more pictures than it holds")?;
+    let (width, height) = decoded.dimensions();
+    let (stride, stride_blue, stride_red) = decoded.strides();
+    let chroma = Chroma {
+        blue: Plane { bytes: decoded.u(), stride: stride_blue },
+        red: Plane { bytes: decoded.v(), stride: stride_red },
+        shift_x: 1,
+        shift_y: 1,
+    };
+    let brightness = Plane { bytes: decoded.y(), stride };
+    let (width_px, height_px) = (width as u32, height as u32);
+    out(sample, &Planes { width_px, height_px, bits: 8, brightness, chroma: Some(chroma), colour })
+}

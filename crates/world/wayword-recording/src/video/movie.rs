@@ -1,0 +1,225 @@
+//! An MP4 file: its video tracks, and one of them chosen.
+
+use super::{
+    boxes::{Fields, Header, boxes, find, need, within},
+    decoder::Codec,
+    edits::{self, Clocks, Shown},
+    entry::{self, Entry, entry},
+    fragments::Fragments,
+    h264,
+    tables::{self, Sample},
+    turn::Turn,
+};
+use std::{
+    fs::File,
+    io::{Read, Seek, SeekFrom},
+};
+
+/// Most bytes of what says where pictures are: about 50 for each of [`tables::MAX_SAMPLES`].
+const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
+
+/// What to do about a file that is not read.
+pub(super) const HINT: &str = "copy or record it again; if players show it, this makes a file that is read here: \
+    ffmpeg -i IN.mp4 -c:v libx264 -pix_fmt yuv420p -fps_mode passthrough -an OUT.mp4";
+const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
+
+/// A video track.
+#[derive(Debug)]
+pub(super) struct Movie {
+    pub(super) codec: Codec,
+    pub(super) turn: Turn,
+    /// In the order of decoding.
+    pub(super) samples: Vec<Sample>,
+    /// In the order in which they are shown.
+    pub(super) shown: Vec<Shown>,
+}
+
+impl Movie {
+    /// Reads a file's description of one camera: the track of that number, or the only one there is.
+    pub(super) fn read(file: &mut File, camera: Option<&str>) -> Result<Self, Refusal> {
+        let file_bytes = file.metadata().map_err(|error| error.to_string())?.len();
+        let parts = Parts::read(file, file_bytes)?;
+        let mut tracks = Vec::new();
+        for trak in boxes(&parts.moov).filter(|found| found.kind == *b"trak") {
+            tracks.extend(VideoTrack::read(trak.body)?);
+        }
+        let track = chosen(&tracks, camera).map_err(|reason| Refusal { reason, hint: CAMERA_HINT })?;
+        Ok(track.movie(&parts, file_bytes).map_err(|reason| format!("track {} {reason}", track.number))?)
+    }
+}
+
+/// Why a file is not read, and what to do.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Refusal {
+    pub(super) reason: String,
+    pub(super) hint: &'static str,
+}
+
+impl From<String> for Refusal {
+    fn from(reason: String) -> Self {
+        Self { reason, hint: HINT }
+    }
+}
+
+/// What describes the pictures of a file.
+struct Parts {
+    moov: Vec<u8>,
+    /// Each `moof`, and where it begins.
+    moofs: Vec<(u64, Vec<u8>)>,
+}
+
+impl Parts {
+    fn read(file: &mut File, file_bytes: u64) -> Result<Self, String> {
+        let (mut moov, mut moofs) = (None, Vec::new());
+        let (mut start, mut describing) = (0, 0);
+        while start < file_bytes {
+            let Some(header) = header_at(file, start, file_bytes)? else { break };
+            let end = start.saturating_add(header.bytes);
+            if matches!(&header.kind, b"moov" | b"moof") {
+                // What is cut off is the last fragment of a recording that was broken off.
+                if end > file_bytes {
+                    break;
+                }
+                describing += header.bytes;
+                if describing > MAX_DESCRIBING_BYTES {
+                    return Err(format!("byte {start}: describes more pictures than any camera takes"));
+                }
+                let body = bytes_at(file, start + header.length as u64, header.bytes - header.length as u64)?;
+                match header.kind {
+                    kind if kind == *b"moof" => moofs.push((start, body)),
+                    _ => moov = Some(body),
+                }
+            } else if start == 0 && !header.kind.iter().all(|byte| byte.is_ascii_graphic() || *byte == b' ') {
+                break;
+            }
+            start = end;
+        }
+        let moov = moov.ok_or_else(|| {
+            "is no whole MP4 file: it has no box `moov`, which recorders write when they stop".to_owned()
+        })?;
+        Ok(Self { moov, moofs })
+    }
+}
+
+/// The header of the box at a place of a file; `None` where there is none.
+fn header_at(file: &mut File, start: u64, file_bytes: u64) -> Result<Option<Header>, String> {
+    let left = file_bytes - start;
+    let bytes = bytes_at(file, start, left.min(Header::MOST as u64))?;
+    Ok(Header::read(&bytes, left))
+}
+
+/// Bytes of a file; the caller has seen to it that there are so many.
+pub(super) fn bytes_at(file: &mut File, start: u64, count: u64) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let read = file.seek(SeekFrom::Start(start)).and_then(|_| file.take(count).read_to_end(&mut bytes));
+    let read = read.map_err(|error| error.to_string())?;
+    if (read as u64) < count {
+        return Err(format!("ends at byte {}, within what begins at byte {start}", start + read as u64));
+    }
+    Ok(bytes)
+}
+
+/// A track that holds pictures, as far as is needed to choose among several.
+struct VideoTrack<'a> {
+    number: u32,
+    trak: &'a [u8],
+    stbl: &'a [u8],
+    ticks_per_s: u32,
+    entry: Entry,
+}
+
+impl<'a> VideoTrack<'a> {
+    /// Reads a track; `None` where it holds sound or other things.
+    fn read(trak: &'a [u8]) -> Result<Option<Self>, String> {
+        let Some(mdia) = find(trak, b"mdia") else { return Ok(None) };
+        let Some(hdlr) = find(mdia, b"hdlr") else { return Ok(None) };
+        if hdlr.get(8..12) != Some(b"vide") {
+            return Ok(None);
+        }
+        let number = || -> Result<u32, String> {
+            let (mut fields, version, _) = Fields::full(need(trak, b"tkhd")?)?;
+            fields.bytes(if version == 0 { 8 } else { 16 })?;
+            fields.u32()
+        };
+        let number = number().map_err(within("tkhd"))?;
+        let read = || -> Result<Self, String> {
+            let ticks_per_s = ticks_per_s(need(mdia, b"mdhd")?).map_err(within("mdhd"))?;
+            let stbl = need(need(mdia, b"minf")?, b"stbl")?;
+            let entry = entry(need(stbl, b"stsd")?).map_err(within("stsd"))?;
+            Ok(Self { number, trak, stbl, ticks_per_s, entry })
+        };
+        read().map(Some).map_err(|reason| format!("track {number}: {reason}"))
+    }
+
+    fn movie(&self, parts: &Parts, file_bytes: u64) -> Result<Movie, String> {
+        let codec = match &self.entry.codec {
+            entry::Codec::H264(record) => Codec::H264(h264::Setup::read(record, self.entry.colour)?),
+            entry::Codec::Av1 => Codec::Av1(self.entry.colour),
+            entry::Codec::Other(name) => return Err(format!("is in {name}, and H.264 and AV1 are read")),
+        };
+        let mut samples = tables::samples(self.stbl, file_bytes)?;
+        let mut fragments = Fragments::new(&parts.moov, self.number, file_bytes)?;
+        for (start, moof) in &parts.moofs {
+            fragments.add(moof, *start, &mut samples).map_err(|reason| format!("byte {start}: box `moof` {reason}"))?;
+        }
+        whole(&mut samples, file_bytes, !parts.moofs.is_empty())?;
+        let movie = find(&parts.moov, b"mvhd").map_or(Ok(self.ticks_per_s), ticks_per_s).map_err(within("mvhd"))?;
+        let shown = edits::shown(&samples, edits::edit(self.trak)?, Clocks { movie, track: self.ticks_per_s });
+        if shown.is_empty() {
+            return Err("holds no pictures".to_owned());
+        }
+        let turn = Turn::read(need(self.trak, b"tkhd")?).map_err(within("tkhd"))?;
+        Ok(Movie { codec, turn, samples, shown })
+    }
+
+    fn described(&self) -> String {
+        let codec = match &self.entry.codec {
+            entry::Codec::H264(_) => "H.264",
+            entry::Codec::Av1 => "AV1",
+            entry::Codec::Other(name) => name,
+        };
+        format!("{} ({codec}, {} x {})", self.number, self.entry.width_px, self.entry.height_px)
+    }
+}
+
+/// `mdhd` and `mvhd` begin alike: times, then ticks of a second.
+fn ticks_per_s(header: &[u8]) -> Result<u32, String> {
+    let (mut fields, version, _) = Fields::full(header)?;
+    fields.bytes(if version == 0 { 8 } else { 16 })?;
+    match fields.u32()? {
+        0 => Err("says that a second has no ticks".to_owned()),
+        ticks => Ok(ticks),
+    }
+}
+
+/// The track that is meant.
+fn chosen<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<&'b VideoTrack<'a>, String> {
+    let names = || tracks.iter().map(VideoTrack::described).collect::<Vec<_>>().join(", ");
+    let wanted = camera.map(str::trim);
+    let mut meant = tracks.iter().filter(|track| match wanted {
+        Some(wanted) => track.number.to_string() == wanted,
+        // Pictures of the title and previews are no second camera.
+        None => tracks.len() == 1 || !matches!(track.entry.codec, entry::Codec::Other(_)),
+    });
+    match (meant.next(), meant.next(), wanted) {
+        (Some(track), None, _) => Ok(track),
+        (_, _, Some(wanted)) => Err(format!("has no video track {wanted:?}; it has {}", names())),
+        _ if tracks.is_empty() => Err("holds no video".to_owned()),
+        _ => Err(format!("holds several video tracks: {}", names())),
+    }
+}
+
+/// Sees to it that all samples lie in the file. A fragmented file that was broken off is read as far as it goes.
+fn whole(samples: &mut Vec<Sample>, file_bytes: u64, is_fragmented: bool) -> Result<(), String> {
+    let outside = |sample: &Sample| sample.offset.saturating_add(u64::from(sample.bytes)) > file_bytes;
+    let Some(first) = samples.iter().position(outside) else { return Ok(()) };
+    if is_fragmented && first > 0 {
+        samples.truncate(first);
+        return Ok(());
+    }
+    let offset = samples[first].offset;
+    Err(format!(
+        "is cut off: of {} pictures, number {first} would lie at byte {offset}, and it has {file_bytes}",
+        samples.len()
+    ))
+}

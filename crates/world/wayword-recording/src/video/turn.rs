@@ -1,0 +1,96 @@
+//! How a picture is to be turned before it is shown: phones film as they are held and write down how that was
+//! (ISO/IEC 14496-12, section 8.3.2, `matrix`).
+
+use super::boxes::Fields;
+use wayword_core::Image;
+
+/// A turn by quarters, with or without a mirror: where a step to the right and one down in the coded picture lead in the shown
+/// one, as (right, down).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Turn {
+    right: (i8, i8),
+    down: (i8, i8),
+}
+
+impl Turn {
+    pub(super) const NONE: Self = Self { right: (1, 0), down: (0, 1) };
+
+    /// From `tkhd`; a matrix that is no turn by quarters changes nothing.
+    pub(super) fn read(tkhd: &[u8]) -> Result<Self, String> {
+        let (mut fields, version, _) = Fields::full(tkhd)?;
+        // Times, number, duration; then layer, group, volume.
+        fields.bytes(if version == 0 { 20 } else { 32 } + 16)?;
+        let (a, b) = (fields.i32()?, fields.i32()?);
+        fields.i32()?;
+        let (c, d) = (fields.i32()?, fields.i32()?);
+        let sign = |number: i32| number.signum() as i8;
+        let turn = Self { right: (sign(a), sign(b)), down: (sign(c), sign(d)) };
+        let is_turn = (b == 0 && c == 0 && a != 0 && d != 0) || (a == 0 && d == 0 && b != 0 && c != 0);
+        Ok(if is_turn { turn } else { Self::NONE })
+    }
+
+    /// The picture as it is shown.
+    pub(super) fn apply(self, coded: Image) -> Image {
+        if self == Self::NONE {
+            return coded;
+        }
+        let (width, height) = (coded.width_px() as usize, coded.height_px() as usize);
+        let (shown_width, shown_height) = if self.right.0 == 0 { (height, width) } else { (width, height) };
+        // Turns have their transposes for inverses; where a step leads backwards, one starts from the far end.
+        let (x, y) = (Axis::new(self.right, width), Axis::new(self.down, height));
+        let mut rgb = Vec::with_capacity(coded.rgb().len());
+        for shown_y in 0..shown_height {
+            for shown_x in 0..shown_width {
+                let at = (y.at(shown_x, shown_y) * width + x.at(shown_x, shown_y)) * 3;
+                rgb.extend_from_slice(&coded.rgb()[at..at + 3]);
+            }
+        }
+        Image::new(shown_width as u32, shown_height as u32, rgb).unwrap_or(coded)
+    }
+}
+
+/// One coordinate of the coded picture.
+struct Axis {
+    /// Whether it runs along the rows of the shown picture.
+    along_x: bool,
+    /// The last coordinate, where it runs backwards.
+    from_end: Option<usize>,
+}
+
+impl Axis {
+    fn new((x, y): (i8, i8), length: usize) -> Self {
+        Self { along_x: x != 0, from_end: (x + y < 0).then(|| length.saturating_sub(1)) }
+    }
+
+    fn at(&self, shown_x: usize, shown_y: usize) -> usize {
+        let at = if self.along_x { shown_x } else { shown_y };
+        self.from_end.map_or(at, |end| end - at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Turns a picture of one row: 1, 2, 3.
+    fn turned(matrix: [i32; 4]) -> (u32, Vec<u8>) {
+        let [a, b, c, d] = matrix;
+        let words = [a, b, 0, c, d, 0, 0, 0, 1 << 30].map(i32::to_be_bytes).concat();
+        let turn = Turn::read(&[vec![0; 40], words].concat()).unwrap();
+        let shown = turn.apply(Image::new(3, 1, vec![1, 1, 1, 2, 2, 2, 3, 3, 3]).unwrap());
+        (shown.width_px(), shown.rgb().chunks(3).map(|pixel| pixel[0]).collect())
+    }
+
+    #[test]
+    fn a_phone_that_was_held_upright_gives_upright_pictures() {
+        const ONE: i32 = 1 << 16;
+        assert_eq!(turned([ONE, 0, 0, ONE]), (3, vec![1, 2, 3]));
+        // A quarter clockwise: what was left is above.
+        assert_eq!(turned([0, ONE, -ONE, 0]), (1, vec![1, 2, 3]));
+        assert_eq!(turned([0, -ONE, ONE, 0]), (1, vec![3, 2, 1]));
+        assert_eq!(turned([-ONE, 0, 0, -ONE]), (3, vec![3, 2, 1]));
+        // What is no turn by quarters.
+        assert_eq!(turned([ONE, ONE, -ONE, ONE]), (3, vec![1, 2, 3]));
+        assert_eq!(turned([0; 4]), (3, vec![1, 2, 3]));
+    }
+}
