@@ -1,0 +1,149 @@
+//! Reads CDR, in which ROS 2 writes its messages (OMG DDSI-RTPS 2.5, section 10.2; DDS-XTypes 1.3, section 7.4.1).
+//!
+//! Four bytes tell the byte order; each number after them lies at a multiple of its own size, counted from behind these four.
+
+/// Bytes that tell how the rest is written.
+const ENCAPSULATION_BYTES: usize = 4;
+/// With these a file of Zstandard begins (RFC 8878).
+const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+
+/// A message that is read from its front to its back. Errors say at which byte of the message.
+pub(crate) struct Cdr<'a> {
+    body: &'a [u8],
+    at: usize,
+    big_endian: bool,
+}
+
+impl<'a> Cdr<'a> {
+    /// Begins to read a message.
+    ///
+    /// # Errors
+    /// When it is too short, or written in another way than plain CDR.
+    pub(crate) fn new(message: &'a [u8]) -> Result<Self, String> {
+        let (head, body) = message.split_at_checked(ENCAPSULATION_BYTES).ok_or("byte 0: is too short for a message")?;
+        if head == ZSTD {
+            let why = "each message is compressed by itself; write it again with `--compression-mode file` or `none`";
+            return Err(format!("byte 0: {why} (`ros2 bag convert`)"));
+        }
+        match head[..2] {
+            [0, way @ (0 | 1)] => Ok(Self { body, at: 0, big_endian: way == 0 }),
+            _ => Err(format!("byte 0: is written as {:#04x}{:02x}, not as plain CDR", head[0], head[1])),
+        }
+    }
+
+    pub(crate) fn u8(&mut self) -> Result<u8, String> {
+        Ok(self.number::<1>()?[0])
+    }
+
+    pub(crate) fn u32(&mut self) -> Result<u32, String> {
+        Ok(u32::from_le_bytes(self.number()?))
+    }
+
+    pub(crate) fn i32(&mut self) -> Result<i32, String> {
+        Ok(i32::from_le_bytes(self.number()?))
+    }
+
+    pub(crate) fn f64(&mut self) -> Result<f64, String> {
+        Ok(f64::from_le_bytes(self.number()?))
+    }
+
+    /// So many numbers.
+    pub(crate) fn f64s<const COUNT: usize>(&mut self) -> Result<[f64; COUNT], String> {
+        let mut numbers = [0.0; COUNT];
+        for number in &mut numbers {
+            *number = self.f64()?;
+        }
+        Ok(numbers)
+    }
+
+    /// A text; what is not UTF-8 in it is replaced.
+    pub(crate) fn text(&mut self) -> Result<String, String> {
+        let bytes = self.bytes()?;
+        // The length counts the zero at the end, which some writers leave out of an empty text.
+        Ok(String::from_utf8_lossy(bytes.strip_suffix(&[0]).unwrap_or(bytes)).into_owned())
+    }
+
+    /// A sequence of bytes.
+    pub(crate) fn bytes(&mut self) -> Result<&'a [u8], String> {
+        let length = self.u32()?;
+        self.take(usize::try_from(length).unwrap_or(usize::MAX))
+    }
+
+    /// How many items a sequence has, each of at least `item_bytes` bytes.
+    pub(crate) fn count(&mut self, item_bytes: usize) -> Result<usize, String> {
+        let (count, at) = (self.u32()?, self.at);
+        let room = (self.body.len() - self.at) / item_bytes.max(1);
+        usize::try_from(count).ok().filter(|count| *count <= room).ok_or_else(|| {
+            format!("byte {}: says that {count} items follow, where at most {room} fit", ENCAPSULATION_BYTES + at - 4)
+        })
+    }
+
+    /// A number's bytes, the lowest first.
+    fn number<const BYTES: usize>(&mut self) -> Result<[u8; BYTES], String> {
+        let padding = self.at.wrapping_neg() % BYTES;
+        self.take(padding)?;
+        let mut number = [0; BYTES];
+        number.copy_from_slice(self.take(BYTES)?);
+        if self.big_endian {
+            number.reverse();
+        }
+        Ok(number)
+    }
+
+    fn take(&mut self, count: usize) -> Result<&'a [u8], String> {
+        let rest = self.body.get(self.at..).unwrap_or_default();
+        let taken = rest.get(..count).ok_or_else(|| {
+            let at = ENCAPSULATION_BYTES + self.at;
+            format!("byte {at}: {count} bytes were expected, {} are left of the message", rest.len())
+        })?;
+        self.at += count;
+        Ok(taken)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn numbers_lie_at_multiples_of_their_size_behind_the_first_four_bytes() {
+        let mut message = vec![0, 1, 0, 0, 7, 0xff, 0xff, 0xff];
+        message.extend(0xfffe_u32.to_le_bytes());
+        message.extend(2.5_f64.to_le_bytes());
+        message.extend([3, 0, 0, 0, b'h', b'i', 0]);
+        let mut cdr = Cdr::new(&message).unwrap();
+        assert_eq!((cdr.u8(), cdr.u32(), cdr.f64()), (Ok(7), Ok(0xfffe), Ok(2.5)));
+        assert_eq!(cdr.text().unwrap(), "hi");
+        assert!(cdr.u8().unwrap_err().starts_with("byte 27"));
+    }
+
+    #[test]
+    fn the_other_byte_order_is_read_too() {
+        let mut message = vec![0, 0, 0, 0];
+        message.extend((-3_i32).to_be_bytes());
+        message.extend([0xff; 4]);
+        message.extend(0.5_f64.to_be_bytes());
+        let mut cdr = Cdr::new(&message).unwrap();
+        assert_eq!((cdr.i32(), cdr.f64()), (Ok(-3), Ok(0.5)));
+    }
+
+    #[test]
+    fn lengths_that_lie_and_other_ways_of_writing_are_refused() {
+        assert!(Cdr::new(&[0, 3, 0, 0]).err().unwrap().contains("0x0003"));
+        let long = [0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff, b'x'];
+        assert!(Cdr::new(&long).unwrap().text().unwrap_err().contains("4294967295 bytes were expected, 1 are left"));
+        assert!(Cdr::new(&long).unwrap().count(8).unwrap_err().contains("at most 0 fit"));
+        // ROS 2 writes an empty text with the length 1; others with 0.
+        assert_eq!(Cdr::new(&[0, 1, 0, 0, 0, 0, 0, 0]).unwrap().text().unwrap(), "");
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(message in prop::collection::vec(any::<u8>(), 0..64)) {
+            if let Ok(mut cdr) = Cdr::new(&message) {
+                let _ = (cdr.u8(), cdr.text(), cdr.f64(), cdr.count(3), cdr.bytes(), cdr.f64s::<3>());
+            }
+        }
+    }
+}

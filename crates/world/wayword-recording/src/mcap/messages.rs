@@ -1,0 +1,233 @@
+//! The messages of ROS 2 that are read (`common_interfaces`: `sensor_msgs`, `geometry_msgs`, `nav_msgs`; `tf2_msgs`).
+
+use super::cdr::Cdr;
+use glam::{DQuat, DVec3};
+
+/// What a topic's messages are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// `sensor_msgs/msg/Image`.
+    Raw,
+    /// `sensor_msgs/msg/CompressedImage`.
+    Compressed,
+    /// `sensor_msgs/msg/CameraInfo`.
+    Lens,
+    /// `geometry_msgs/msg/PoseStamped`, and with covariance, which lies behind the pose.
+    Pose,
+    /// `nav_msgs/msg/Odometry`.
+    Odometry,
+    /// `tf2_msgs/msg/TFMessage`.
+    Transforms,
+}
+
+impl Kind {
+    /// The kind of a schema's name; `None` where it is not read here.
+    pub(crate) fn of(schema: &str) -> Option<Self> {
+        // Some writers leave `msg` out, IDL has colons.
+        match schema.replace("::", "/").replace("/msg/", "/").as_str() {
+            "sensor_msgs/Image" => Some(Self::Raw),
+            "sensor_msgs/CompressedImage" => Some(Self::Compressed),
+            "sensor_msgs/CameraInfo" => Some(Self::Lens),
+            "geometry_msgs/PoseStamped" | "geometry_msgs/PoseWithCovarianceStamped" => Some(Self::Pose),
+            "nav_msgs/Odometry" => Some(Self::Odometry),
+            "tf2_msgs/TFMessage" | "tf/tfMessage" => Some(Self::Transforms),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn is_picture(self) -> bool {
+        matches!(self, Self::Raw | Self::Compressed)
+    }
+
+    pub(crate) fn is_pose(self) -> bool {
+        matches!(self, Self::Pose | Self::Odometry | Self::Transforms)
+    }
+}
+
+/// `std_msgs/msg/Header`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Head {
+    /// When it was so, nanoseconds; 0 where nobody said.
+    pub(crate) stamp_ns: i64,
+    /// In which frame, without the slash that older programs put before it.
+    pub(crate) frame: String,
+}
+
+fn head(cdr: &mut Cdr<'_>) -> Result<Head, String> {
+    let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
+    Ok(Head { stamp_ns: i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds), frame: frame(cdr)? })
+}
+
+fn frame(cdr: &mut Cdr<'_>) -> Result<String, String> {
+    let frame = cdr.text()?;
+    Ok(frame.strip_prefix('/').map_or(frame.clone(), str::to_owned))
+}
+
+/// The beginning of a picture's message, for which its first few hundred bytes are enough.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct PictureHead {
+    pub(crate) head: Head,
+    /// `bgr8`, `jpeg`, `rgb8; jpeg compressed bgr8`.
+    pub(crate) encoding: String,
+}
+
+impl PictureHead {
+    pub(crate) fn read(kind: Kind, message: &[u8]) -> Result<Self, String> {
+        let mut cdr = Cdr::new(message)?;
+        let head = head(&mut cdr)?;
+        if kind == Kind::Raw {
+            let (_height_px, _width_px) = (cdr.u32()?, cdr.u32()?);
+        }
+        Ok(Self { head, encoding: cdr.text()? })
+    }
+}
+
+/// `sensor_msgs/msg/Image`, behind its header.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Raw<'a> {
+    pub(crate) width_px: u32,
+    pub(crate) height_px: u32,
+    pub(crate) encoding: String,
+    pub(crate) big_endian: bool,
+    /// From one row to the next.
+    pub(crate) row_bytes: u32,
+    pub(crate) pixels: &'a [u8],
+}
+
+impl<'a> Raw<'a> {
+    pub(crate) fn read(message: &'a [u8]) -> Result<Self, String> {
+        let mut cdr = Cdr::new(message)?;
+        head(&mut cdr)?;
+        let (height_px, width_px) = (cdr.u32()?, cdr.u32()?);
+        let (encoding, big_endian) = (cdr.text()?, cdr.u8()? != 0);
+        Ok(Self { width_px, height_px, encoding, big_endian, row_bytes: cdr.u32()?, pixels: cdr.bytes()? })
+    }
+}
+
+/// `sensor_msgs/msg/CompressedImage`, behind its header: its format, and a file's bytes.
+pub(crate) fn compressed(message: &[u8]) -> Result<(String, &[u8]), String> {
+    let mut cdr = Cdr::new(message)?;
+    head(&mut cdr)?;
+    Ok((cdr.text()?, cdr.bytes()?))
+}
+
+/// What `sensor_msgs/msg/CameraInfo` says of the lens.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Lens {
+    pub(crate) head: Head,
+    /// Radians; `None` where the camera is not calibrated, or sees less than 10 degrees or more than 160.
+    pub(crate) horizontal_fov_rad: Option<f64>,
+}
+
+impl Lens {
+    pub(crate) fn read(message: &[u8]) -> Result<Self, String> {
+        let mut cdr = Cdr::new(message)?;
+        let head = head(&mut cdr)?;
+        let (_height_px, width_px) = (cdr.u32()?, cdr.u32()?);
+        let distortion = cdr.text()?;
+        for _ in 0..cdr.count(8)? {
+            cdr.f64()?;
+        }
+        let [focal_px, ..] = cdr.f64s::<9>()?;
+        let widths = f64::from(width_px) / focal_px;
+        let fov = match distortion.as_str() {
+            // A fisheye's pictures: equal angles lie equally far from each other.
+            "equidistant" | "fisheye" => widths,
+            _ => 2.0 * libm::atan(widths / 2.0),
+        };
+        let usual = 10_f64.to_radians()..=160_f64.to_radians();
+        Ok(Self { head, horizontal_fov_rad: Some(fov).filter(|fov| usual.contains(fov)) })
+    }
+}
+
+/// Where one frame is in another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Placing {
+    pub(crate) position: DVec3,
+    /// Of length 1.
+    pub(crate) rotation: DQuat,
+}
+
+impl Placing {
+    pub(crate) const HERE: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
+
+    /// `None` where the numbers are no place or no rotation.
+    pub(crate) fn new(position: [f64; 3], rotation: [f64; 4]) -> Option<Self> {
+        let (position, rotation) = (DVec3::from(position), DQuat::from_array(rotation));
+        let length = rotation.length();
+        let stands = position.is_finite() && length.is_finite() && length > 1e-6;
+        stands.then(|| Self { position, rotation: rotation / length })
+    }
+
+    /// What is placed by `inner` in a frame that is placed by this.
+    pub(crate) fn then(self, inner: Self) -> Self {
+        let position = self.position + self.rotation * inner.position;
+        Self { position, rotation: (self.rotation * inner.rotation).normalize() }
+    }
+
+    /// On the straight way to another, and the short turn.
+    pub(crate) fn towards(self, other: Self, share: f64) -> Self {
+        Self {
+            position: self.position.lerp(other.position, share),
+            rotation: self.rotation.lerp(other.rotation, share),
+        }
+    }
+}
+
+/// Where something was: a pose, or a transform.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Placed {
+    /// When, and in which frame.
+    pub(crate) head: Head,
+    /// Which frame; `None` in a pose, which does not say.
+    pub(crate) what: Option<String>,
+    pub(crate) placing: Placing,
+}
+
+/// What a message of poses holds; those that are no place are left out.
+pub(crate) fn placed(kind: Kind, message: &[u8]) -> Result<Vec<Placed>, String> {
+    /// A header of 12 bytes at least, a text of 4, and 7 numbers.
+    const LEAST_BYTES: usize = 12 + 4 + 7 * 8;
+    let mut cdr = Cdr::new(message)?;
+    let count = if kind == Kind::Transforms { cdr.count(LEAST_BYTES)? } else { 1 };
+    let mut all = Vec::with_capacity(count);
+    for _ in 0..count {
+        let head = head(&mut cdr)?;
+        let what = if kind == Kind::Pose { None } else { Some(frame(&mut cdr)?) };
+        let (position, rotation) = (cdr.f64s()?, cdr.f64s()?);
+        all.extend(Placing::new(position, rotation).map(|placing| Placed { head, what, placing }));
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schemas_are_known_by_each_of_their_names() {
+        assert_eq!(Kind::of("sensor_msgs/msg/CompressedImage"), Some(Kind::Compressed));
+        assert_eq!(Kind::of("sensor_msgs/Image"), Some(Kind::Raw));
+        assert_eq!(Kind::of("nav_msgs::msg::Odometry"), Some(Kind::Odometry));
+        assert_eq!(Kind::of("foxglove.CompressedImage"), None);
+    }
+
+    #[test]
+    fn a_frame_in_a_turned_frame_is_where_both_say() {
+        let quarter = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let robot = Placing { position: DVec3::new(1.0, 2.0, 0.0), rotation: quarter };
+        let camera = Placing { position: DVec3::new(0.5, 0.0, 1.0), rotation: DQuat::IDENTITY };
+        let placed = robot.then(camera);
+        assert!(placed.position.abs_diff_eq(DVec3::new(1.0, 2.5, 1.0), 1e-12));
+        assert!(placed.rotation.abs_diff_eq(quarter, 1e-12));
+        // A quaternion and its negative are the same rotation.
+        let half = Placing::HERE.towards(Placing { rotation: -quarter, ..robot }, 0.5);
+        assert!((half.rotation * DVec3::X).abs_diff_eq(DVec3::new(0.5, 0.5, 0.0) * 2_f64.sqrt(), 1e-12));
+    }
+
+    #[test]
+    fn what_is_no_rotation_is_no_place() {
+        assert_eq!(Placing::new([0.0; 3], [0.0; 4]), None);
+        assert_eq!(Placing::new([f64::NAN, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]), None);
+    }
+}

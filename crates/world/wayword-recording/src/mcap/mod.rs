@@ -1,0 +1,235 @@
+//! ROS 2 recordings in MCAP files (`ros2 bag record`, Foxglove): pictures of one camera, and where it was.
+//!
+//! Nothing of a file stays in memory but where its pictures are, and its poses.
+
+mod cdr;
+mod contents;
+mod gather;
+mod messages;
+mod pixels;
+mod poses;
+mod records;
+mod reel;
+#[cfg(test)]
+mod tests;
+mod topics;
+mod tree;
+
+use crate::{
+    axes::{Axes, Body},
+    describe::Description,
+    open,
+    reel::{Recording, Source},
+    track::{Fix, Track},
+};
+use contents::{Contents, MAGIC};
+use gather::{Message, Place};
+use glam::DVec3 as Vector;
+use messages::{Kind, Lens, PictureHead, Placing};
+use poses::{Poses, Way};
+use reel::Pictures;
+use std::{
+    collections::BTreeMap,
+    io::Read,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
+use topics::Heads;
+use tree::{Clock, Times};
+use wayword_core::{DVec3, PlatformError, SceneId};
+use wayword_platforms::files;
+
+const HINT: &str = "give a file that `ros2 bag record --storage mcap` has written";
+/// What is read of a picture to know its time, frame and encoding.
+const HEAD_BYTES: u64 = 4 << 10;
+/// No message of poses is longer.
+const MAX_POSES_BYTES: u64 = 16 << 20;
+
+/// An MCAP file.
+pub(crate) struct File {
+    path: PathBuf,
+    scene: SceneId,
+    described: Description,
+}
+
+impl File {
+    /// Opens a file, and looks whether it is one.
+    pub(crate) fn open(path: &Path, described: Description) -> Result<Self, PlatformError> {
+        let mut begin = [0; MAGIC.len()];
+        let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut begin));
+        if read.is_err() || begin != *MAGIC {
+            let reason = match read {
+                Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.to_string(),
+                _ => "byte 0: does not begin as an MCAP file does".to_owned(),
+            };
+            return Err(files::wrong(path, reason, HINT));
+        }
+        Ok(Self { path: path.to_owned(), scene: open::scene_of(path)?, described })
+    }
+
+    fn wrong(&self, (reason, hint): topics::Unclear) -> PlatformError {
+        files::wrong(&self.path, reason, hint)
+    }
+
+    fn read(&self) -> Result<Recording, PlatformError> {
+        let broken = |why: String| {
+            self.wrong((why, "if it is damaged, `mcap recover IN.mcap -o OUT.mcap` saves what can be saved"))
+        };
+        let file = std::fs::File::open(&self.path).map_err(|error| broken(error.to_string()))?;
+        let contents = Contents::of(&file).map_err(broken)?;
+        let unclear = |(why, hint): topics::Unclear| match &contents.broken {
+            Some(end) => broken(format!("{why} (it can be read only up to {end})")),
+            None => self.wrong((why, hint)),
+        };
+        let (heads, lenses) = beginnings(&file, &contents).map_err(broken)?;
+        let camera = topics::camera(&contents, &heads, self.described.camera.as_deref()).map_err(unclear)?;
+        let named = self.named_poses(&contents).map_err(unclear)?;
+        let frame = heads.get(camera).map_or("", |head| head.head.frame.as_str());
+        let (mut shots, poses) = gathered(&file, &contents, camera, frame).map_err(broken)?;
+        let way = poses.way(named).map_err(unclear)?;
+        let (track, clock) = self.track(&shots, way.as_ref(), frame);
+        shots.retain(|shot| shot.times.on(clock).is_some());
+        let time_ns = |shot: &Shot| shot.times.on(clock).unwrap_or_default();
+        shots.sort_by_key(|shot| (time_ns(shot), shot.place));
+        let first_ns = shots.first().map_or(0, time_ns);
+        let horizontal_fov_rad = topics::lens(&lenses, camera, frame).and_then(|lens| lens.horizontal_fov_rad);
+        let pictures = Pictures {
+            file: self.path.clone(),
+            topic: camera.to_owned(),
+            kind: contents.topics.get(camera).and_then(|topic| topic.kind).unwrap_or(Kind::Raw),
+            times_s: shots.iter().map(|shot| seconds(time_ns(shot), first_ns)).collect(),
+            places: shots.iter().map(|shot| shot.place).collect(),
+            stretches: contents.stretches,
+        };
+        Ok(Recording { reel: Box::new(pictures), track, horizontal_fov_rad, described: self.described.clone() })
+    }
+
+    /// The topic of poses that a user has named.
+    fn named_poses(&self, contents: &Contents) -> Result<Option<(&str, Kind)>, topics::Unclear> {
+        let Some(named) = self.described.poses.as_deref() else { return Ok(None) };
+        let kind = contents.topics.get(named).and_then(|topic| topic.kind).filter(|kind| kind.is_pose());
+        kind.map(|kind| Some((named, kind))).ok_or_else(|| {
+            let poses = contents.topics.iter().filter(|(_, topic)| topic.kind.is_some_and(Kind::is_pose));
+            let poses = topics::listed(poses.map(|(name, _)| name.as_str()));
+            let reason = format!(
+                "has no poses {named}; its topics of poses: {}",
+                if poses.is_empty() { "none" } else { &poses }
+            );
+            (reason, "name one of these as `poses`, or leave it out")
+        })
+    }
+
+    /// Where the camera was, and the clock on which pictures and poses meet: what they say themselves, unless all of either say
+    /// nothing, or they never meet; then the recorder's.
+    fn track(&self, shots: &[Shot], way: Option<&Way<'_>>, frame: &str) -> (Option<Track>, Clock) {
+        let stamped = shots.iter().any(|shot| shot.times.on(Clock::Stamp).is_some());
+        let usual = if stamped { Clock::Stamp } else { Clock::Log };
+        let Some(way) = way else { return (None, usual) };
+        let on = |clock: Clock| {
+            let times = shots.iter().filter_map(|shot| shot.times.on(clock));
+            let (first_ns, last_ns) = (times.clone().min()?, times.max()?);
+            let placings = way.placings(clock);
+            let meet = placings.first()?.0 <= last_ns && placings.last()?.0 >= first_ns;
+            meet.then(|| self.fixes(&placings, first_ns, way.of_camera, frame)).and_then(Track::new)
+        };
+        let clocks = if stamped { &[Clock::Stamp, Clock::Log][..] } else { &[Clock::Log] };
+        clocks.iter().find_map(|clock| Some((Some(on(*clock)?), *clock))).unwrap_or((None, usual))
+    }
+
+    fn fixes(&self, placings: &[(i64, Placing)], first_ns: i64, of_camera: bool, frame: &str) -> Vec<Fix> {
+        let axes = self.described.axes(Axes::of(if of_camera { body(placings, frame) } else { Body::Robot }));
+        let fix = |(time_ns, placing): &(i64, Placing)| Fix {
+            time_s: seconds(*time_ns, first_ns),
+            position: axes.wayword_from_recorded(DVec3::from(placing.position.to_array())),
+            heading: axes.heading(placing.rotation.to_array()),
+        };
+        placings.iter().map(fix).collect()
+    }
+}
+
+/// What pictures say their frame is should be the optical one (`sensor_msgs/msg/Image`); some say the camera's body. No camera
+/// looks straight up all the way, so one whose z axis does is a body.
+fn body(placings: &[(i64, Placing)], frame: &str) -> Body {
+    let upright = placings.first().is_some_and(|(_, placing)| (placing.rotation * Vector::Z).z > 0.8);
+    if upright && !frame.contains("optical") { Body::Robot } else { Body::Optical }
+}
+
+fn seconds(time_ns: i64, first_ns: i64) -> f64 {
+    time_ns.saturating_sub(first_ns) as f64 * 1e-9
+}
+
+impl Source for File {
+    fn scenes(&self) -> Vec<SceneId> {
+        vec![self.scene.clone()]
+    }
+
+    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
+        if *scene != self.scene {
+            return Err(open::unknown(scene));
+        }
+        self.read()
+    }
+}
+
+/// A picture: when it was taken, and where in the file it is.
+struct Shot {
+    times: Times,
+    place: Place,
+}
+
+/// What the first message of each camera says, and of each lens.
+fn beginnings(file: &std::fs::File, contents: &Contents) -> Result<(Heads, BTreeMap<String, Lens>), String> {
+    let (mut heads, mut lenses) = (Heads::new(), BTreeMap::new());
+    let wanted = channels(contents, |kind| (kind.is_picture() || kind == Kind::Lens).then_some(HEAD_BYTES));
+    let mut missing: Vec<&str> = wanted.values().map(|(name, ..)| *name).collect();
+    let most = wanted.iter().map(|(id, (.., most))| (*id, *most)).collect();
+    gather::messages(file, contents, &most, &mut |message: Message<'_>| {
+        let Some((name, kind, _)) = wanted.get(&message.channel) else { return Ok(ControlFlow::Continue(())) };
+        if missing.contains(name) {
+            missing.retain(|missing| missing != name);
+            if *kind == Kind::Lens {
+                // A lens that cannot be read is one that nobody knows.
+                lenses.extend(Lens::read(message.bytes).ok().map(|lens| ((*name).to_owned(), lens)));
+            } else {
+                heads.insert((*name).to_owned(), PictureHead::read(*kind, message.bytes)?);
+            }
+        }
+        Ok(if missing.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    })?;
+    Ok((heads, lenses))
+}
+
+/// Where all pictures of a camera are, and all poses.
+fn gathered(
+    file: &std::fs::File,
+    contents: &Contents,
+    camera: &str,
+    frame: &str,
+) -> Result<(Vec<Shot>, Poses), String> {
+    let (mut shots, mut poses) = (Vec::new(), Poses::new(frame));
+    let mut wanted = channels(contents, |kind| kind.is_pose().then_some(MAX_POSES_BYTES));
+    let cameras = channels(contents, |kind| kind.is_picture().then_some(HEAD_BYTES));
+    wanted.extend(cameras.into_iter().filter(|(_, (name, ..))| *name == camera));
+    let most = wanted.iter().map(|(id, (.., most))| (*id, *most)).collect();
+    gather::messages(file, contents, &most, &mut |Message { channel, logged_ns, place, bytes }: Message<'_>| {
+        if let Some((name, kind, _)) = wanted.get(&channel) {
+            if kind.is_picture() {
+                let stamp_ns = PictureHead::read(*kind, bytes)?.head.stamp_ns;
+                shots.push(Shot { times: Times { stamp_ns, logged_ns }, place });
+            } else {
+                poses.add(name, *kind, logged_ns, messages::placed(*kind, bytes)?);
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    })?;
+    Ok((shots, poses))
+}
+
+/// The channels of some kinds of topics: whose they are, and how much of their messages is wanted.
+fn channels(contents: &Contents, most: impl Fn(Kind) -> Option<u64>) -> BTreeMap<u16, (&str, Kind, u64)> {
+    let wanted = contents.topics.iter().filter_map(|(name, topic)| {
+        let kind = topic.kind?;
+        Some((&topic.channels, (name.as_str(), kind, most(kind)?)))
+    });
+    wanted.flat_map(|(channels, wanted)| channels.iter().map(move |id| (*id, wanted))).collect()
+}

@@ -1,0 +1,208 @@
+//! Pictures as ROS writes them (`sensor_msgs/include/sensor_msgs/image_encodings.hpp`), as RGB.
+
+use super::messages::{self, Kind, Raw};
+use wayword_core::Image;
+use wayword_platforms::files;
+
+const MAX_SIDE_PX: u32 = 12_288;
+const MAX_PIXELS: u64 = 64_000_000;
+
+/// Why a camera's messages are no pictures, by their encoding; `None` where they are.
+pub(crate) fn unfit(kind: Kind, encoding: &str) -> Option<String> {
+    let known = match kind {
+        // `16UC1; compressedDepth png`; without a word about what is in it, its first bytes tell.
+        Kind::Compressed => !encoding.contains("compressedDepth") && !is_depth(encoding.split(';').next()?.trim()),
+        _ => Layout::of(encoding).is_some(),
+    };
+    let depth = is_depth(encoding.split(';').next()?.trim()) || encoding.contains("compressedDepth");
+    (!known).then(|| format!("{encoding:?}{}", if depth { ", which is depth" } else { ", which is not read" }))
+}
+
+fn is_depth(encoding: &str) -> bool {
+    matches!(encoding, "16UC1" | "16SC1" | "32FC1" | "64FC1")
+}
+
+/// Decodes a message of a camera.
+pub(crate) fn picture(kind: Kind, message: &[u8]) -> Result<Image, String> {
+    if kind == Kind::Raw {
+        return raw(&Raw::read(message)?);
+    }
+    let (format, bytes) = messages::compressed(message)?;
+    match unfit(kind, &format) {
+        Some(why) => Err(format!("has the format {why}")),
+        None => files::picture(bytes).map_err(|why| format!("{why} (its format is {format:?})")),
+    }
+}
+
+/// How pixels lie in a row.
+#[derive(Clone, Copy)]
+enum Layout {
+    /// So many bytes per pixel, and which of them are red, green and blue.
+    Plain { bytes: usize, rgb: [usize; 3] },
+    /// 16 bits of grey.
+    Grey16,
+    /// Two pixels in four bytes: where the first's Y lies, and U.
+    Yuv422 { y: usize, u: usize },
+    /// One colour per pixel: in which column and row of each 2 x 2 red lies.
+    Bayer { red: [usize; 2] },
+}
+
+impl Layout {
+    fn of(encoding: &str) -> Option<Self> {
+        Some(match encoding {
+            "rgb8" => Self::Plain { bytes: 3, rgb: [0, 1, 2] },
+            // OpenCV's order, which `cv_bridge` writes without a name.
+            "bgr8" | "8UC3" => Self::Plain { bytes: 3, rgb: [2, 1, 0] },
+            "rgba8" => Self::Plain { bytes: 4, rgb: [0, 1, 2] },
+            "bgra8" | "8UC4" => Self::Plain { bytes: 4, rgb: [2, 1, 0] },
+            "mono8" | "8UC1" => Self::Plain { bytes: 1, rgb: [0; 3] },
+            "mono16" => Self::Grey16,
+            "yuv422" | "uyvy" => Self::Yuv422 { y: 1, u: 0 },
+            "yuv422_yuy2" | "yuyv" => Self::Yuv422 { y: 0, u: 1 },
+            "bayer_rggb8" => Self::Bayer { red: [0, 0] },
+            "bayer_grbg8" => Self::Bayer { red: [1, 0] },
+            "bayer_gbrg8" => Self::Bayer { red: [0, 1] },
+            "bayer_bggr8" => Self::Bayer { red: [1, 1] },
+            _ => return None,
+        })
+    }
+
+    fn bytes_per_pixel(self) -> usize {
+        match self {
+            Self::Plain { bytes, .. } => bytes,
+            Self::Grey16 | Self::Yuv422 { .. } => 2,
+            Self::Bayer { .. } => 1,
+        }
+    }
+}
+
+fn raw(raw: &Raw<'_>) -> Result<Image, String> {
+    let layout = Layout::of(&raw.encoding).ok_or_else(|| format!("has the encoding {:?}", raw.encoding))?;
+    let (width_px, height_px) = (raw.width_px, raw.height_px);
+    let fits = width_px.max(height_px) <= MAX_SIDE_PX && u64::from(width_px) * u64::from(height_px) <= MAX_PIXELS;
+    if !fits || width_px == 0 || height_px == 0 {
+        return Err(format!("has {width_px} x {height_px} pixels; 1 x 1 to 64 megapixels can be read"));
+    }
+    let (width, height, stride) = (width_px as usize, height_px as usize, raw.row_bytes as usize);
+    let row_bytes = width * layout.bytes_per_pixel();
+    // The last row may end without the padding between rows.
+    let needed = stride.checked_mul(height - 1).and_then(|before| before.checked_add(row_bytes));
+    if stride < row_bytes || needed.is_none_or(|needed| needed > raw.pixels.len()) {
+        let (encoding, bytes) = (&raw.encoding, raw.pixels.len());
+        return Err(format!("has {bytes} bytes in rows of {stride} for {width} x {height} pixels of {encoding}"));
+    }
+    let row = |y: usize| &raw.pixels[y * stride..y * stride + row_bytes];
+    let mut rgb = Vec::with_capacity(width * height * 3);
+    for y in 0..height {
+        match layout {
+            Layout::Plain { bytes, rgb: [r, g, b] } => {
+                rgb.extend(row(y).chunks_exact(bytes).flat_map(|pixel| [pixel[r], pixel[g], pixel[b]]));
+            }
+            Layout::Grey16 => {
+                let high = usize::from(!raw.big_endian);
+                rgb.extend(row(y).chunks_exact(2).flat_map(|pixel| [pixel[high]; 3]));
+            }
+            Layout::Yuv422 { y: first, u } => yuv422(row(y), [first, u], &mut rgb),
+            Layout::Bayer { red } => {
+                let rows = [row(y.saturating_sub(1)), row(y), row((y + 1).min(height - 1))];
+                bayer(rows, y, red, &mut rgb);
+            }
+        }
+    }
+    Image::new(width_px, height_px, rgb).map_err(|error| error.to_string())
+}
+
+/// A row of pixels that share their colour by two (ITU-R BT.601, studio range, as OpenCV's `COLOR_YUV2RGB_UYVY`).
+fn yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
+    for pair in row.chunks(4) {
+        // The last pixel of an odd row has its U and none of V: grey.
+        let chroma = |at: usize| if pair.len() == 4 { i32::from(pair[at]) - 128 } else { 0 };
+        let (blue, red) = (chroma(u), chroma(u + 2));
+        for y in pair.iter().skip(first).step_by(2) {
+            let light = 298 * (i32::from(*y) - 16) + 128;
+            let colours = [light + 409 * red, light - 100 * blue - 208 * red, light + 516 * blue];
+            rgb.extend(colours.map(|colour| (colour >> 8).clamp(0, 255) as u8));
+        }
+    }
+}
+
+/// A row of a picture behind a Bayer filter: of each colour the mean of what the 3 x 3 pixels around have of it.
+fn bayer(rows: [&[u8]; 3], y: usize, [red_x, red_y]: [usize; 2], rgb: &mut Vec<u8>) {
+    let width = rows[1].len();
+    for x in 0..width {
+        let (mut sums, mut counts) = ([0_u32; 3], [0_u32; 3]);
+        for (row, dy) in rows.iter().zip([1, 0, 1]) {
+            for column in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+                // At the rim a row stands in for one that is not there: it has other colours, so it does not count.
+                let doubled = dy == 1 && std::ptr::eq(row.as_ptr(), rows[1].as_ptr());
+                if !doubled {
+                    let off_red = [(column + red_x) % 2, (y + dy + red_y) % 2];
+                    let colour = off_red[0] + off_red[1];
+                    sums[colour] += u32::from(row[column]);
+                    counts[colour] += 1;
+                }
+            }
+        }
+        rgb.extend([0, 1, 2].map(|colour| (sums[colour] / counts[colour].max(1)) as u8));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(encoding: &str, (width_px, height_px): (u32, u32), row_bytes: u32, pixels: &[u8]) -> Result<Image, String> {
+        let encoding = encoding.to_owned();
+        raw(&Raw { width_px, height_px, encoding, big_endian: false, row_bytes, pixels })
+    }
+
+    #[test]
+    fn each_order_of_colours_comes_out_as_rgb() {
+        assert_eq!(of("rgb8", (1, 1), 3, &[1, 2, 3]).unwrap().rgb(), [1, 2, 3]);
+        assert_eq!(of("bgr8", (1, 1), 3, &[1, 2, 3]).unwrap().rgb(), [3, 2, 1]);
+        assert_eq!(of("bgra8", (1, 1), 4, &[1, 2, 3, 9]).unwrap().rgb(), [3, 2, 1]);
+        assert_eq!(of("mono8", (2, 1), 2, &[7, 8]).unwrap().rgb(), [7, 7, 7, 8, 8, 8]);
+        assert_eq!(of("mono16", (1, 1), 2, &[7, 8]).unwrap().rgb(), [8, 8, 8]);
+    }
+
+    #[test]
+    fn rows_may_be_padded_but_not_cut() {
+        assert_eq!(of("mono8", (1, 2), 3, &[5, 0, 0, 6]).unwrap().rgb(), [5, 5, 5, 6, 6, 6]);
+        assert!(of("mono8", (1, 2), 3, &[5, 0, 0]).unwrap_err().contains("3 bytes in rows of 3"));
+        assert!(of("rgb8", (2, 1), 3, &[0; 6]).is_err());
+        assert!(of("rgb8", (u32::MAX, u32::MAX), u32::MAX, &[0; 6]).unwrap_err().contains("megapixels"));
+        assert!(of("rgb8", (0, 0), 0, &[]).is_err());
+    }
+
+    #[test]
+    fn red_in_two_orders_of_yuv_is_red() {
+        // BT.601: red is Y 82, U 90, V 240.
+        for (encoding, pixels) in [("yuv422", [90, 82, 240, 82]), ("yuv422_yuy2", [82, 90, 82, 240])] {
+            let image = of(encoding, (2, 1), 4, &pixels).unwrap();
+            assert!(image.rgb().chunks(3).all(|pixel| pixel[0] > 250 && pixel[1] < 5 && pixel[2] < 5), "{encoding}");
+        }
+        assert_eq!(of("yuv422", (1, 1), 2, &[128, 16]).unwrap().rgb(), [0, 0, 0]);
+    }
+
+    #[test]
+    fn an_even_colour_behind_each_bayer_filter_is_that_colour() {
+        for (encoding, [x, y]) in
+            [("bayer_rggb8", [0, 0]), ("bayer_grbg8", [1, 0]), ("bayer_gbrg8", [0, 1]), ("bayer_bggr8", [1, 1])]
+        {
+            let pixels: Vec<u8> = (0..16).map(|at| [200, 100, 50][(at % 4 + x) % 2 + (at / 4 + y) % 2]).collect();
+            let image = of(encoding, (4, 4), 4, &pixels).unwrap();
+            assert!(image.rgb().chunks(3).all(|pixel| pixel == [200, 100, 50]), "{encoding}: {:?}", image.rgb());
+        }
+        assert!(of("bayer_rggb8", (1, 1), 1, &[9]).is_ok());
+    }
+
+    #[test]
+    fn depth_is_no_picture() {
+        assert!(unfit(Kind::Raw, "16UC1").unwrap().contains("depth"));
+        assert!(unfit(Kind::Compressed, "16UC1; compressedDepth png").unwrap().contains("depth"));
+        assert!(unfit(Kind::Raw, "nv12").unwrap().contains("not read"));
+        for usual in ["jpeg", "png", "rgb8; jpeg compressed bgr8", ""] {
+            assert_eq!(unfit(Kind::Compressed, usual), None);
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Where the camera was: by the tree of frames, odometry, or poses.
+
+use super::{
+    messages::{Head, Kind, Placed, Placing},
+    topics::{Unclear, listed},
+    tree::{Clock, Edge, Times, Tree, placings},
+};
+use std::collections::BTreeMap;
+
+/// Words in the names of topics whose poses are wishes.
+const WISHED: [&str; 4] = ["goal", "initialpose", "target", "plan"];
+const NAME_IT: &str = "write `poses = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
+
+/// All poses of a file.
+#[derive(Debug)]
+pub(crate) struct Poses {
+    /// What frame pictures say they are in.
+    camera: String,
+    tree: Tree,
+    /// Those that are not the tree's, by topic.
+    topics: BTreeMap<String, Moves>,
+}
+
+/// Poses of one topic.
+#[derive(Debug)]
+struct Moves {
+    kind: Kind,
+    /// What is placed, where that is told.
+    what: Option<String>,
+    edge: Edge,
+}
+
+/// Where the camera was, from its own frame, or from that of the robot which carries it, up to one that stands still.
+#[derive(Debug)]
+pub(crate) struct Way<'a> {
+    edges: Vec<&'a Edge>,
+    /// Whether the camera's own frame is where it begins.
+    pub(crate) of_camera: bool,
+}
+
+impl Poses {
+    pub(crate) fn new(camera: &str) -> Self {
+        Self { camera: camera.to_owned(), tree: Tree::new(camera), topics: BTreeMap::new() }
+    }
+
+    /// Takes in a message.
+    pub(crate) fn add(&mut self, topic: &str, kind: Kind, logged_ns: i64, all: Vec<Placed>) {
+        for placed in all {
+            if kind == Kind::Transforms {
+                self.tree.add(logged_ns, placed, topic.ends_with("tf_static"));
+                continue;
+            }
+            let Placed { head: Head { stamp_ns, frame }, what, placing } = placed;
+            if !self.topics.contains_key(topic) {
+                let edge = Edge { parent: frame, ..Edge::default() };
+                self.topics.insert(topic.to_owned(), Moves { kind, what, edge });
+            }
+            if let Some(moves) = self.topics.get_mut(topic) {
+                moves.edge.samples.push((Times { stamp_ns, logged_ns }, placing));
+            }
+        }
+    }
+
+    /// The way that is to be read: by the named topic, or the obvious one. `None` where nobody knows where the camera was.
+    pub(crate) fn way(&self, named: Option<(&str, Kind)>) -> Result<Option<Way<'_>>, Unclear> {
+        match named {
+            Some((topic, Kind::Transforms)) => {
+                let way = self.tree.way_up(true).map(|edges| Some(Way { edges, of_camera: true }));
+                way.ok_or_else(|| (self.incomplete(topic), "name another topic as `poses`, or leave it out"))
+            }
+            Some((topic, _)) => Ok(self.topics.get(topic).map(|moves| self.moved(moves))),
+            None => self.obvious(),
+        }
+    }
+
+    fn incomplete(&self, topic: &str) -> String {
+        let above = self.tree.above(&self.camera).join(" in ");
+        format!("{topic} does not tell how the camera moved: its frame {above}, which never moves or is in nothing")
+    }
+
+    fn obvious(&self) -> Result<Option<Way<'_>>, Unclear> {
+        if let Some(edges) = self.tree.way_up(false) {
+            return Ok(Some(Way { edges, of_camera: true }));
+        }
+        for kind in [Kind::Odometry, Kind::Pose] {
+            let wished =
+                |name: &str| kind == Kind::Pose && WISHED.iter().any(|word| name.to_ascii_lowercase().contains(word));
+            let of_kind = self.topics.iter().filter(|(name, moves)| moves.kind == kind && !wished(name));
+            let found: Vec<(&String, &Moves)> = of_kind.collect();
+            match found[..] {
+                [] => {}
+                [(_, moves)] => return Ok(Some(self.moved(moves))),
+                _ => {
+                    let names = listed(found.iter().map(|(name, _)| name.as_str()));
+                    return Err((format!("holds several topics of poses: {names}"), NAME_IT));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The way of what a topic tells of, from the camera's frame if it is known where that is on the robot.
+    fn moved<'a>(&'a self, moves: &'a Moves) -> Way<'a> {
+        let mounted = moves.what.as_ref().and_then(|what| self.tree.up_to(what));
+        let of_camera = mounted.is_some();
+        let mut edges = mounted.unwrap_or_default();
+        edges.push(&moves.edge);
+        Way { edges, of_camera }
+    }
+}
+
+impl Way<'_> {
+    pub(crate) fn placings(&self, clock: Clock) -> Vec<(i64, Placing)> {
+        placings(&self.edges, clock)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DQuat, DVec3};
+
+    fn placed(frame: &str, what: Option<&str>, stamp_ns: i64, position: DVec3) -> Placed {
+        let placing = Placing { position, rotation: DQuat::IDENTITY };
+        Placed { head: Head { stamp_ns, frame: frame.to_owned() }, what: what.map(str::to_owned), placing }
+    }
+
+    fn told(poses: &mut Poses, topic: &str, kind: Kind, frame: &str, what: Option<&str>, x: f64) {
+        for step in 1..=2_i32 {
+            let position = DVec3::new(x * f64::from(step), 0.0, 0.0);
+            poses.add(topic, kind, i64::from(step), vec![placed(frame, what, i64::from(step), position)]);
+        }
+    }
+
+    #[test]
+    fn odometry_and_where_the_camera_is_on_the_robot_make_the_cameras_way() {
+        let mut poses = Poses::new("cam");
+        told(&mut poses, "/odom", Kind::Odometry, "odom", Some("base"), 1.0);
+        assert!(!poses.way(None).unwrap().unwrap().of_camera);
+        poses.add("/tf_static", Kind::Transforms, 0, vec![placed("base", Some("cam"), 0, DVec3::new(0.0, 0.0, 0.5))]);
+        let way = poses.way(None).unwrap().unwrap();
+        assert!(way.of_camera);
+        assert_eq!(way.placings(Clock::Log)[1].1.position, DVec3::new(2.0, 0.0, 0.5));
+    }
+
+    #[test]
+    fn the_tree_goes_before_odometry_and_odometry_before_poses() {
+        let mut poses = Poses::new("cam");
+        assert!(poses.way(None).unwrap().is_none());
+        told(&mut poses, "/goal_pose", Kind::Pose, "map", None, 9.0);
+        assert!(poses.way(None).unwrap().is_none());
+        told(&mut poses, "/pose", Kind::Pose, "map", None, 1.0);
+        let x = |poses: &Poses, named| poses.way(named).unwrap().unwrap().placings(Clock::Stamp)[0].1.position.x;
+        assert_eq!(x(&poses, None), 1.0);
+        told(&mut poses, "/odom", Kind::Odometry, "odom", Some("base"), 2.0);
+        assert_eq!(x(&poses, None), 2.0);
+        assert_eq!(x(&poses, Some(("/goal_pose", Kind::Pose))), 9.0);
+        assert!(poses.way(Some(("/tf", Kind::Transforms))).unwrap_err().0.contains("/tf"));
+        told(&mut poses, "/tf", Kind::Transforms, "map", Some("cam"), 3.0);
+        assert_eq!(x(&poses, None), 3.0);
+    }
+
+    #[test]
+    fn of_two_odometries_one_has_to_be_named() {
+        let mut poses = Poses::new("cam");
+        told(&mut poses, "/wheels", Kind::Odometry, "odom", Some("base"), 1.0);
+        told(&mut poses, "/filtered", Kind::Odometry, "odom", Some("base"), 2.0);
+        let (why, hint) = poses.way(None).unwrap_err();
+        assert!(why.contains("/filtered, /wheels") && hint.contains("poses ="), "{why}");
+        assert!(poses.way(Some(("/wheels", Kind::Odometry))).unwrap().is_some());
+    }
+}

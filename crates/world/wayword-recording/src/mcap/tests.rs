@@ -1,0 +1,370 @@
+//! Recordings that other programs wrote (`fixtures/make_mcap.py`), and broken and odd ones of our own.
+
+use super::{contents::Stretch, *};
+use crate::reel::Recording;
+use proptest::prelude::*;
+use tempfile::TempDir;
+use wayword_core::{Heading, Image};
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/mcap").join(name)
+}
+
+fn read(path: &Path, described: Description) -> Result<Recording, String> {
+    let file = File::open(path, described).map_err(|error| error.to_string())?;
+    file.open(&file.scenes()[0]).map_err(|error| error.to_string())
+}
+
+fn bytes_read(bytes: &[u8], described: Description) -> (TempDir, Result<Recording, String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("made.mcap");
+    std::fs::write(&path, bytes).unwrap();
+    let recording = read(&path, described);
+    (folder, recording)
+}
+
+fn pictures(recording: &Recording, wanted: &[usize]) -> Result<Vec<Image>, String> {
+    let mut images = Vec::new();
+    let taken = recording.reel.pictures(wanted, &mut |number, image| {
+        assert_eq!(wanted[images.len()], number);
+        images.push(image);
+        Ok(())
+    });
+    taken.map(|()| images).map_err(|error| error.to_string())
+}
+
+/// Where the robot was, and where it looked, degrees.
+fn robot(frame: usize) -> (DVec3, f64) {
+    match frame {
+        0..=5 => (DVec3::new(frame as f64 * 0.5, 0.0, 0.0), 90.0),
+        _ => (DVec3::new(2.5, (frame - 5) as f64 * 0.5, 0.0), 0.0),
+    }
+}
+
+fn check_colours(recording: &Recording, frames: &[usize]) {
+    for (frame, image) in frames.iter().zip(pictures(recording, frames).unwrap()) {
+        let step = *frame as i32;
+        let expected = [20 * step, 255 - 20 * step, 40 + 80 * (step % 3)];
+        assert_eq!((image.width_px(), image.height_px()), (32, 24));
+        for pixel in image.rgb().chunks(3) {
+            let off = pixel.iter().zip(expected).map(|(found, expected)| (i32::from(*found) - expected).abs());
+            assert!(off.max().unwrap() <= 3, "frame {frame}: {pixel:?}, not {expected:?}");
+        }
+    }
+}
+
+/// Holds a recording to the walk that all fixtures tell of, from `ahead_m` before the robot, `up_m` above the ground.
+fn check_walk(recording: &Recording, frames: usize, [ahead_m, up_m]: [f64; 2]) {
+    let times_s = recording.reel.times_s();
+    assert_eq!(times_s.len(), frames);
+    let track = recording.track.as_ref().unwrap();
+    for (frame, time_s) in times_s.iter().enumerate() {
+        assert!((time_s - frame as f64 * 0.5).abs() < 1e-9);
+        let fix = track.at(*time_s).unwrap();
+        let (position, deg) = robot(frame);
+        let heading = Heading::new(deg.to_radians()).unwrap();
+        let ahead = DVec3::new(deg.to_radians().sin(), deg.to_radians().cos(), 0.0);
+        let expected = position + ahead_m * ahead + up_m * DVec3::Z;
+        assert!(fix.position.abs_diff_eq(expected, 1e-9), "frame {frame}: {}, not {expected}", fix.position);
+        assert!(fix.heading.unwrap().turn_to(heading).abs() < 1e-9, "frame {frame}: {:?}", fix.heading);
+    }
+    check_colours(recording, &(0..frames).collect::<Vec<_>>());
+}
+
+const ALL: [(&str, [f64; 2]); 5] = [
+    ("poses_zstd.mcap", [0.0, 0.0]),
+    ("odometry_lz4.mcap", [0.2, 1.0]),
+    ("odometry_zstd.mcap", [0.2, 1.0]),
+    ("tree_bare.mcap", [0.2, 1.0]),
+    ("tree_chunks.mcap", [0.2, 1.0]),
+];
+
+#[test]
+fn what_other_programs_wrote_comes_back() {
+    for (name, camera) in ALL {
+        let recording = read(&fixture(name), Description::default()).unwrap();
+        check_walk(&recording, 11, camera);
+        // Any of them, also backwards in the file.
+        check_colours(&recording, &[9]);
+        check_colours(&recording, &[0, 3, 10]);
+        let fov_deg = recording.horizontal_fov_rad.map(|fov| fov.to_degrees().round());
+        assert_eq!(fov_deg, Some(90.0).filter(|_| name != "tree_chunks.mcap"), "{name}");
+        assert_eq!(recording.reel.name(3), "000003");
+    }
+}
+
+#[test]
+fn the_summary_of_a_file_tells_what_going_through_it_tells() {
+    for (name, _) in ALL {
+        let file = std::fs::File::open(fixture(name)).unwrap();
+        let bytes = std::fs::read(fixture(name)).unwrap();
+        let told = Contents::of(&file).unwrap();
+        let (folder, _) = bytes_read(&bytes[..bytes.len() - 8], Description::default());
+        let walked = Contents::of(&std::fs::File::open(folder.path().join("made.mcap")).unwrap()).unwrap();
+        assert_eq!(told.topics, walked.topics, "{name}");
+        let places = |contents: &Contents| -> Vec<String> {
+            let known = contents.stretches.iter().map(|stretch| match stretch {
+                Stretch::Chunk { at, .. } => format!("chunk {at}"),
+                bare => format!("{bare:?}"),
+            });
+            known.collect()
+        };
+        assert_eq!(places(&told), places(&walked), "{name}");
+        // Only the end of the summary is gone.
+        assert_eq!(walked.broken, None, "{name}");
+        assert!(told.broken.is_none(), "{name}: {:?}", told.broken);
+    }
+    let lz4 = Contents::of(&std::fs::File::open(fixture("odometry_lz4.mcap")).unwrap()).unwrap();
+    assert!(lz4.stretches.len() > 2, "one chunk would show nothing");
+}
+
+#[test]
+fn of_a_file_whose_recorder_crashed_the_beginning_is_read() {
+    for (name, camera) in ALL {
+        let bytes = std::fs::read(fixture(name)).unwrap();
+        let mut counts = Vec::new();
+        for tenths in 1..10 {
+            let (_folder, recording) = bytes_read(&bytes[..bytes.len() * tenths / 10], Description::default());
+            match recording {
+                Ok(recording) => {
+                    let frames = recording.reel.times_s().len();
+                    // The last picture may have come before the last pose.
+                    let placed = |at: &f64| recording.track.as_ref().is_some_and(|track| track.at(*at).is_some());
+                    if recording.reel.times_s().iter().all(placed) {
+                        check_walk(&recording, frames, camera);
+                    } else {
+                        check_colours(&recording, &(0..frames).collect::<Vec<_>>());
+                    }
+                    counts.push(frames);
+                }
+                Err(error) => {
+                    assert!(counts.is_empty(), "{name}: {error}");
+                    assert!(error.contains("it can be read only up to byte"), "{name}: {error}");
+                }
+            }
+        }
+        assert!(counts.is_sorted(), "{name}: {counts:?}");
+        assert!(
+            name.ends_with("_zstd.mcap") || counts.iter().any(|count| (1..11).contains(count)),
+            "{name}: {counts:?}"
+        );
+    }
+}
+
+#[test]
+fn what_is_named_is_taken() {
+    let path = fixture("odometry_zstd.mcap");
+    let named = |camera: &str, poses: &str| Description {
+        camera: Some(camera.to_owned()).filter(|name| !name.is_empty()),
+        poses: Some(poses.to_owned()).filter(|name| !name.is_empty()),
+        ..Description::default()
+    };
+    check_walk(&read(&path, named("/camera/color/image_raw", "/odom")).unwrap(), 11, [0.2, 1.0]);
+    let error = |camera, poses| read(&path, named(camera, poses)).err().unwrap();
+    let depth = error("/camera/depth/image", "");
+    assert!(depth.contains("the pictures of /camera/depth/image are \"16UC1\", which is depth"), "{depth}");
+    assert!(error("/cam", "").contains("has no camera /cam; its topics: /camera/color/camera_info"));
+    assert!(error("/odom", "").contains("/odom has messages nav_msgs/msg/Odometry as cdr, which are no pictures"));
+    assert!(error("", "/pose").contains("has no poses /pose; its topics of poses: /odom, /tf_static"));
+    assert!(error("", "/tf_static").contains("its frame camera_optical in base_link, which never moves"));
+}
+
+#[test]
+fn messages_that_are_compressed_by_themselves_are_told_apart() {
+    let error = read(&fixture("messages_zstd.mcap"), Description::default()).err().unwrap();
+    assert!(error.contains("each message is compressed by itself"), "{error}");
+}
+
+#[test]
+fn what_is_no_mcap_file_is_refused_at_once() {
+    for bytes in [&b"\x89MCAP"[..], b"#ROSBAG V2.0\n....", b""] {
+        let error = bytes_read(bytes, Description::default()).1.err().unwrap();
+        assert!(error.contains("byte 0: does not begin as an MCAP file does"), "{error}");
+    }
+    assert!(bytes_read(MAGIC, Description::default()).1.err().unwrap().contains("has no messages"));
+}
+
+/// Messages by the Rust library: topic, schema, encoding, log time, bytes.
+fn made(messages: &[(&str, &str, &str, u64, Vec<u8>)]) -> Vec<u8> {
+    let options = ::mcap::WriteOptions::new().compression(None).chunk_size(Some(256));
+    let mut writer = options.create(std::io::Cursor::new(Vec::new())).unwrap();
+    for (topic, schema, encoding, log_time, bytes) in messages {
+        let schema = writer.add_schema(schema, "ros2msg", b"").unwrap();
+        let channel_id = writer.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap();
+        let (log_time, publish_time) = (*log_time, *log_time);
+        let header = ::mcap::records::MessageHeader { channel_id, sequence: 0, log_time, publish_time };
+        writer.write_to_known_channel(&header, bytes).unwrap();
+    }
+    writer.finish().unwrap();
+    writer.into_inner().into_inner()
+}
+
+/// Writes CDR, the number's highest byte first.
+struct Out(Vec<u8>);
+
+impl Out {
+    fn message(seconds: i32, frame: &str) -> Self {
+        Self(vec![0, 0, 0, 0]).number(seconds.to_be_bytes()).number([0; 4]).text(frame)
+    }
+
+    fn number<const BYTES: usize>(mut self, bytes: [u8; BYTES]) -> Self {
+        while !(self.0.len() - 4).is_multiple_of(BYTES) {
+            self.0.push(0);
+        }
+        self.0.extend(bytes);
+        self
+    }
+
+    fn text(self, text: &str) -> Self {
+        let mut out = self.number((text.len() as u32 + 1).to_be_bytes());
+        out.0.extend(text.as_bytes());
+        out.0.push(0);
+        out
+    }
+}
+
+fn grey(seconds: i32, grey: u8) -> Vec<u8> {
+    let out = Out::message(seconds, "cam").number(1_u32.to_be_bytes()).number(1_u32.to_be_bytes()).text("mono8");
+    out.number([1]).number(1_u32.to_be_bytes()).number(1_u32.to_be_bytes()).number([grey]).0
+}
+
+fn pose(seconds: i32, x: f64) -> Vec<u8> {
+    let numbers = [x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    numbers.iter().fold(Out::message(seconds, "map"), |out, number| out.number(number.to_be_bytes())).0
+}
+
+const IMAGE: &str = "sensor_msgs/msg/Image";
+const POSE: &str = "geometry_msgs/msg/PoseStamped";
+const S: u64 = 1_000_000_000;
+
+#[test]
+fn pictures_and_poses_meet_on_a_clock_that_both_have() {
+    // Stamps of pictures and poses; the x at the second picture's time, which was logged at 12 s as the pose 2.0 was.
+    for (shot, posed, expected) in [
+        ([100, 102], [100, 102], 2.0),
+        // Simulated time begins with 0: that picture has none.
+        ([0, 2], [0, 2], 2.0),
+        ([0, 0], [100, 102], 2.0),
+        ([100, 102], [0, 0], 2.0),
+        // A camera's own clock.
+        ([100, 102], [9000, 9002], 2.0),
+    ] {
+        let bytes = made(&[
+            ("/image", IMAGE, "cdr", 10 * S, grey(shot[0], 7)),
+            ("/pose", POSE, "cdr", 10 * S, pose(posed[0], 1.0)),
+            ("/image", IMAGE, "cdr", 12 * S, grey(shot[1], 9)),
+            ("/pose", POSE, "cdr", 12 * S, pose(posed[1], 2.0)),
+        ]);
+        let (_folder, recording) = bytes_read(&bytes, Description::default());
+        let recording = recording.unwrap();
+        let last_s = *recording.reel.times_s().last().unwrap();
+        let fix = recording.track.as_ref().unwrap().at(last_s).unwrap();
+        assert_eq!(fix.position.x, expected, "{shot:?} {posed:?}");
+        let last = recording.reel.times_s().len() - 1;
+        assert_eq!(pictures(&recording, &[last]).unwrap()[0].rgb(), [9, 9, 9]);
+    }
+}
+
+#[test]
+fn pictures_that_were_written_late_stand_where_they_belong() {
+    let bytes = made(&[
+        ("/image", IMAGE, "cdr", 10 * S, grey(30, 3)),
+        ("/image", IMAGE, "cdr", 11 * S, grey(10, 1)),
+        ("/image", IMAGE, "cdr", 12 * S, grey(20, 2)),
+    ]);
+    let (_folder, recording) = bytes_read(&bytes, Description::default());
+    let recording = recording.unwrap();
+    assert_eq!(recording.reel.times_s(), [0.0, 10.0, 20.0]);
+    let greys: Vec<u8> = pictures(&recording, &[0, 1, 2]).unwrap().iter().map(|image| image.rgb()[0]).collect();
+    assert_eq!(greys, [1, 2, 3]);
+    assert!(recording.track.is_none());
+}
+
+#[test]
+fn errors_name_what_is_there_and_what_to_do() {
+    let errors: Vec<String> = [
+        made(&[("/left/image", IMAGE, "cdr", 1, grey(1, 1)), ("/right/image", IMAGE, "cdr", 2, grey(1, 1))]),
+        made(&[("/video", "foxglove.CompressedVideo", "protobuf", 1, vec![1])]),
+        made(&[("/image", "sensor_msgs/Image", "ros1", 1, vec![1])]),
+        made(&[("/image", IMAGE, "cdr", 1, grey(1, 1)[..20].to_vec())]),
+        made(&[("/image", IMAGE, "cdr", 1, vec![0, 9, 0, 0])]),
+    ]
+    .map(|bytes| bytes_read(&bytes, Description::default()).1.err().unwrap())
+    .map(|error| error.split_once("made.mcap").unwrap().1.to_owned())
+    .into();
+    for (error, expected) in errors.iter().zip([
+        ": holds several cameras: /left/image, /right/image; write `camera = \"TOPIC\"`",
+        ": has no pictures that are read here; its topics: /video (foxglove.CompressedVideo as protobuf); record",
+        ": has no pictures that are read here; its topics: /image (sensor_msgs/Image as ros1); convert the ROS 1 bag",
+        ": message at byte ",
+        ": message at byte ",
+    ]) {
+        assert!(error.starts_with(expected), "{error}");
+    }
+    assert!(errors[3].contains("bytes were expected"), "{}", errors[3]);
+    assert!(errors[4].contains("not as plain CDR"), "{}", errors[4]);
+}
+
+#[test]
+fn a_picture_that_is_cut_off_is_told_by_its_number() {
+    let mut cut = grey(1, 1);
+    cut.pop();
+    let bytes = made(&[("/image", IMAGE, "cdr", 1, grey(1, 1)), ("/image", IMAGE, "cdr", 2, cut)]);
+    let (_folder, recording) = bytes_read(&bytes, Description::default());
+    let error = pictures(&recording.unwrap(), &[0, 1]).unwrap_err();
+    assert!(error.contains("picture 1 of /image: message at byte"), "{error}");
+}
+
+#[test]
+fn lengths_that_lie_take_no_memory() {
+    // A chunk that says that it becomes enormous, and a record that says it is.
+    let bytes = std::fs::read(fixture("odometry_lz4.mcap")).unwrap();
+    let contents = Contents::of(&std::fs::File::open(fixture("odometry_lz4.mcap")).unwrap()).unwrap();
+    let Stretch::Chunk { at, .. } = contents.stretches[0] else { panic!("is chunked") };
+    for (from, to) in [(at + 1, at + 9), (at + 9 + 16, at + 9 + 24)] {
+        let mut bytes = bytes.clone();
+        bytes[from as usize..to as usize].fill(0x7f);
+        let (_folder, recording) = bytes_read(&bytes, Description::default());
+        if let Err(error) = recording.and_then(|recording| pictures(&recording, &[0])) {
+            assert!(error.contains("byte"), "{error}");
+        }
+    }
+}
+
+/// Reads all there is of a file that may be broken.
+fn exhaust(bytes: &[u8]) {
+    if let (_folder, Ok(recording)) = bytes_read(bytes, Description::default()) {
+        let times_s = recording.reel.times_s();
+        assert!(times_s.is_sorted());
+        let _ = pictures(&recording, &(0..times_s.len()).collect::<Vec<_>>());
+        for number in 0..times_s.len() {
+            let _ = pictures(&recording, &[number]);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+    #[test]
+    fn no_damage_makes_it_panic(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..12),
+        cut in prop::option::of(any::<prop::sample::Index>()),
+        lost in prop::option::of((any::<prop::sample::Index>(), 1..40_usize)),
+    ) {
+        for (name, _) in ALL {
+            let mut bytes = std::fs::read(fixture(name)).unwrap();
+            for (at, byte) in &damage {
+                let at = at.index(bytes.len());
+                bytes[at] = *byte;
+            }
+            if let Some((at, count)) = lost {
+                let at = at.index(bytes.len());
+                bytes.drain(at..(at + count).min(bytes.len()));
+            }
+            if let Some(cut) = cut {
+                bytes.truncate(cut.index(bytes.len()));
+            }
+            exhaust(&bytes);
+        }
+    }
+}

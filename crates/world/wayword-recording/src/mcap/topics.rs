@@ -1,0 +1,138 @@
+//! Which of a file's topics is the camera, and which the lens.
+
+use super::{
+    contents::Contents,
+    contents::Topic,
+    messages::{Lens, PictureHead},
+    pixels,
+};
+use std::collections::BTreeMap;
+
+/// Most names that an error lists.
+const MAX_NAMES: usize = 20;
+/// What the names of topics have in them that are not what a person would see.
+const NO_VIEW: [&str; 9] = ["depth", "disparity", "infra", "thermal", "mask", "segment", "semantic", "label", "debug"];
+/// What those have in them that are.
+const COLOUR: [&str; 3] = ["color", "colour", "rgb"];
+
+/// What is said at the beginning of the first message of a camera.
+pub(crate) type Heads = BTreeMap<String, PictureHead>;
+
+/// Why there is no camera, and what to do.
+pub(crate) type Unclear = (String, &'static str);
+
+const NAME_IT: &str = "write `camera = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
+const FOREIGN: &str =
+    "record sensor_msgs/msg/Image or CompressedImage with ROS 2; or write the pictures to a folder, or to an MP4 file";
+const ROS_1: &str = "convert the ROS 1 bag with `rosbags-convert --src NAME.bag --dst NAME --dst-storage mcap --dst-typestore ros2_humble` (pip install rosbags)";
+
+/// The camera's topic: the named one, or the obvious one.
+pub(crate) fn camera<'a>(contents: &'a Contents, heads: &Heads, named: Option<&str>) -> Result<&'a str, Unclear> {
+    let cameras: Vec<(&str, Option<String>)> = contents
+        .topics
+        .iter()
+        .filter_map(|(name, topic)| {
+            let kind = topic.kind.filter(|kind| kind.is_picture())?;
+            // One whose messages all lie behind a break has no head.
+            Some((name.as_str(), pixels::unfit(kind, &heads.get(name)?.encoding)))
+        })
+        .collect();
+    if let Some(named) = named {
+        return match cameras.iter().find(|(name, _)| *name == named) {
+            Some((name, None)) => Ok(name),
+            Some((_, Some(why))) => {
+                Err((format!("the pictures of {named} are {why}"), "name another camera, or leave `camera` out"))
+            }
+            None => Err((not_there(contents, named), "name one of these, or leave `camera` out")),
+        };
+    }
+    let fit: Vec<&str> = cameras.iter().filter(|(_, why)| why.is_none()).map(|(name, _)| *name).collect();
+    match obvious(&fit) {
+        Some(camera) => Ok(camera),
+        None if fit.is_empty() => Err(none(contents, &cameras)),
+        None => Err((format!("holds several cameras: {}", listed(fit.into_iter())), NAME_IT)),
+    }
+}
+
+fn not_there(contents: &Contents, named: &str) -> String {
+    match contents.topics.get(named) {
+        Some(topic) => format!("{named} has messages {}, which are no pictures", told(topic)),
+        None => format!("has no camera {named}; its topics: {}", listed(contents.topics.keys().map(String::as_str))),
+    }
+}
+
+fn none(contents: &Contents, cameras: &[(&str, Option<String>)]) -> Unclear {
+    if !cameras.is_empty() {
+        let why = cameras.iter().map(|(name, why)| format!("{name}: {}", why.as_deref().unwrap_or_default()));
+        let why: Vec<String> = why.take(MAX_NAMES).collect();
+        return (format!("has no pictures that can be read ({})", why.join("; ")), FOREIGN);
+    }
+    let topics = contents.topics.iter().take(MAX_NAMES).map(|(name, topic)| format!("{name} ({})", told(topic)));
+    let topics: Vec<String> = topics.collect();
+    let hint = if contents.topics.values().any(|topic| topic.encoding == "ros1") { ROS_1 } else { FOREIGN };
+    match topics.is_empty() {
+        true => ("has no messages".to_owned(), "record it again, with a camera's topic"),
+        false => (format!("has no pictures that are read here; its topics: {}", topics.join(", ")), hint),
+    }
+}
+
+fn told(topic: &Topic) -> String {
+    let Topic { schema, encoding, .. } = topic;
+    if schema.is_empty() { format!("without a type, as {encoding}") } else { format!("{schema} as {encoding}") }
+}
+
+pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    match names.len().saturating_sub(MAX_NAMES) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names[..MAX_NAMES].join(", ")),
+    }
+}
+
+/// The one camera among those that can be read: without what nobody would see, without doubles, by its colours.
+fn obvious<'a>(fit: &[&'a str]) -> Option<&'a str> {
+    let only = |names: &[&'a str]| if let [name] = names { Some(*name) } else { None };
+    let has = |name: &str, words: &[&str]| words.iter().any(|word| name.to_ascii_lowercase().contains(word));
+    let seen: Vec<&str> = fit.iter().copied().filter(|name| !has(name, &NO_VIEW)).collect();
+    // The same pictures as files are a fraction of the bytes.
+    let doubled =
+        |name: &str| seen.iter().any(|other| *other != name && other.strip_suffix("/compressed") == Some(name));
+    let seen: Vec<&str> = seen.iter().copied().filter(|name| !doubled(name)).collect();
+    let colour: Vec<&str> = seen.iter().copied().filter(|name| has(name, &COLOUR)).collect();
+    only(fit).or_else(|| only(&seen)).or_else(|| only(&colour))
+}
+
+/// What is known of a camera's lens: by the topic beside it, else by its frame if that is one lens only.
+pub(crate) fn lens<'a>(lenses: &'a BTreeMap<String, Lens>, camera: &str, frame: &str) -> Option<&'a Lens> {
+    let plain = camera.strip_suffix("/compressed").unwrap_or(camera);
+    let beside = plain.rsplit_once('/').map_or("", |(parent, _)| parent);
+    if let Some(lens) = lenses.get(&format!("{beside}/camera_info")) {
+        return Some(lens);
+    }
+    let mut same = lenses.values().filter(|lens| lens.head.frame == frame);
+    let first = same.next()?;
+    same.all(|lens| lens.horizontal_fov_rad == first.horizontal_fov_rad).then_some(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_colour_camera_is_obvious_and_two_of_them_are_not() {
+        let depth = ["/cam/color/image_raw", "/cam/aligned_depth_to_color/image_raw", "/cam/infra1/image_rect_raw"];
+        assert_eq!(obvious(&depth), Some("/cam/color/image_raw"));
+        assert_eq!(obvious(&["/image_raw", "/image_raw/compressed"]), Some("/image_raw/compressed"));
+        assert_eq!(obvious(&["/fisheye/image", "/front/rgb/image"]), Some("/front/rgb/image"));
+        assert_eq!(obvious(&["/left/image", "/right/image"]), None);
+        // Whoever records nothing else wants it.
+        assert_eq!(obvious(&["/thermal/image"]), Some("/thermal/image"));
+        assert_eq!(obvious(&[]), None);
+    }
+
+    #[test]
+    fn long_lists_are_cut() {
+        let names: Vec<String> = (0..25).map(|at| format!("/{at}")).collect();
+        assert!(listed(names.iter().map(String::as_str)).ends_with("/19 and 5 more"));
+    }
+}

@@ -1,0 +1,248 @@
+//! Frames that are placed in each other (`tf2`), over time.
+
+use super::messages::{Placed, Placing};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Frames that stand still, the better ones first (REP 105).
+const STANDING: [&str; 3] = ["map", "odom", "world"];
+/// No robot has more frames.
+const MAX_FRAMES: usize = 100_000;
+
+/// On which clock times are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// What messages say of themselves.
+    Stamp,
+    /// When the recorder had them.
+    Log,
+}
+
+/// Two times of one thing, nanoseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Times {
+    pub(crate) stamp_ns: i64,
+    pub(crate) logged_ns: i64,
+}
+
+impl Times {
+    /// `None` where a message did not say.
+    pub(crate) fn on(self, clock: Clock) -> Option<i64> {
+        match clock {
+            Clock::Stamp => Some(self.stamp_ns).filter(|stamp_ns| *stamp_ns != 0),
+            Clock::Log => Some(self.logged_ns),
+        }
+    }
+}
+
+/// How one frame moves in another.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Edge {
+    /// In which it is placed.
+    pub(crate) parent: String,
+    /// Whether it never moves.
+    pub(crate) fixed: bool,
+    pub(crate) samples: Vec<(Times, Placing)>,
+}
+
+impl Edge {
+    fn moves(&self) -> bool {
+        !self.fixed && self.samples.len() > 1
+    }
+
+    /// In the order of one clock; a single placing holds for all times.
+    pub(crate) fn on(&self, clock: Clock) -> Timed {
+        if !self.moves() {
+            return Timed {
+                samples: self.samples.last().map(|(_, placing)| (0, *placing)).into_iter().collect(),
+                moves: false,
+            };
+        }
+        let timed = self.samples.iter().filter_map(|(times, placing)| Some((times.on(clock)?, *placing)));
+        let mut samples: Vec<(i64, Placing)> = timed.collect();
+        samples.sort_by_key(|(time_ns, _)| *time_ns);
+        samples.dedup_by_key(|(time_ns, _)| *time_ns);
+        Timed { samples, moves: true }
+    }
+}
+
+/// An edge on one clock.
+pub(crate) struct Timed {
+    samples: Vec<(i64, Placing)>,
+    moves: bool,
+}
+
+impl Timed {
+    /// Where the frame is at a time; between two placings on the straight way. `None` before the first and after the last.
+    fn at(&self, time_ns: i64) -> Option<Placing> {
+        if !self.moves {
+            return self.samples.first().map(|(_, placing)| *placing);
+        }
+        let next = self.samples.partition_point(|(sample_ns, _)| *sample_ns < time_ns);
+        let (after_ns, after) = *self.samples.get(next)?;
+        if after_ns == time_ns {
+            return Some(after);
+        }
+        let (before_ns, before) = *self.samples.get(next.checked_sub(1)?)?;
+        let share = time_ns.saturating_sub(before_ns) as f64 / after_ns.saturating_sub(before_ns) as f64;
+        Some(before.towards(after, share))
+    }
+}
+
+/// Where the first of a row of frames is in the last one, at each time at which one of them moved.
+pub(crate) fn placings(chain: &[&Edge], clock: Clock) -> Vec<(i64, Placing)> {
+    let chain: Vec<Timed> = chain.iter().map(|edge| edge.on(clock)).collect();
+    let moving = chain.iter().filter(|edge| edge.moves);
+    let mut times: Vec<i64> = moving.flat_map(|edge| edge.samples.iter().map(|(time_ns, _)| *time_ns)).collect();
+    times.sort_unstable();
+    times.dedup();
+    let at = |time_ns: i64| chain.iter().try_fold(Placing::HERE, |inner, edge| Some(edge.at(time_ns)?.then(inner)));
+    times.into_iter().filter_map(|time_ns| Some((time_ns, at(time_ns)?))).collect()
+}
+
+/// Frames by name, each with the one in which it is placed.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Tree {
+    /// From whose frame upwards frames are of interest.
+    camera: String,
+    edges: BTreeMap<String, Edge>,
+    /// The only frames that are still of interest, once the way up to one that stands is known.
+    kept: Option<BTreeSet<String>>,
+}
+
+impl Tree {
+    pub(crate) fn new(camera: &str) -> Self {
+        Self { camera: camera.to_owned(), ..Self::default() }
+    }
+
+    /// Takes in where a frame is.
+    pub(crate) fn add(&mut self, logged_ns: i64, placed: Placed, fixed: bool) {
+        let Some(frame) = placed.what else { return };
+        let unknown = !self.edges.contains_key(&frame);
+        if self.kept.as_ref().is_some_and(|kept| !kept.contains(&frame)) || (unknown && self.edges.len() == MAX_FRAMES)
+        {
+            return;
+        }
+        let edge = self.edges.entry(frame).or_insert_with(|| Edge {
+            parent: placed.head.frame.clone(),
+            fixed,
+            ..Edge::default()
+        });
+        // A frame that was hung elsewhere in between: what was known first counts.
+        if edge.parent == placed.head.frame {
+            edge.fixed = fixed;
+            if fixed {
+                edge.samples.clear();
+            }
+            edge.samples.push((Times { stamp_ns: placed.head.stamp_ns, logged_ns }, placed.placing));
+        }
+        if unknown {
+            self.forget_others();
+        }
+    }
+
+    fn forget_others(&mut self) {
+        let above = self.above(&self.camera);
+        let root = above.last().copied().unwrap_or_default();
+        if standing(root).is_some() {
+            let kept: BTreeSet<String> = above.iter().map(|frame| (*frame).to_owned()).collect();
+            self.edges.retain(|frame, _| kept.contains(frame));
+            self.kept = Some(kept);
+        }
+    }
+
+    /// A frame, the one it is placed in, and so on up to the root.
+    pub(crate) fn above<'a>(&'a self, frame: &'a str) -> Vec<&'a str> {
+        let (mut above, mut seen) = (vec![frame], BTreeSet::from([frame]));
+        while let Some(edge) = above.last().and_then(|frame| self.edges.get(*frame)) {
+            if !seen.insert(&edge.parent) {
+                break;
+            }
+            above.push(&edge.parent);
+        }
+        above
+    }
+
+    /// The edges from the camera's frame up to another one; `None` where that does not lie above it.
+    pub(crate) fn up_to(&self, frame: &str) -> Option<Vec<&Edge>> {
+        let above = self.above(&self.camera);
+        let to = above.iter().position(|above| *above == frame)?;
+        above[..to].iter().map(|frame| self.edges.get(*frame)).collect()
+    }
+
+    /// The edges from the camera's frame up to the best frame that stands still; up to the root, if any will do. `None` where
+    /// there is no such frame, or nothing on the way ever moves.
+    pub(crate) fn way_up(&self, any: bool) -> Option<Vec<&Edge>> {
+        let above = self.above(&self.camera);
+        let best = above.iter().filter_map(|frame| Some((standing(frame)?, *frame))).min().map(|(_, frame)| frame);
+        let way = self.up_to(best.or(above.last().copied().filter(|_| any))?)?;
+        way.iter().any(|edge| edge.moves()).then_some(way)
+    }
+}
+
+/// Which of the frames that stand still a name means: `map`, `robot1/map`.
+fn standing(frame: &str) -> Option<usize> {
+    let name = frame.rsplit('/').next().unwrap_or(frame);
+    STANDING.iter().position(|standing| *standing == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mcap::messages::Head;
+    use glam::{DQuat, DVec3};
+
+    fn placed(frame: &str, what: &str, stamp_ns: i64, x: f64) -> Placed {
+        let placing = Placing { position: DVec3::new(x, 0.0, 0.0), rotation: DQuat::IDENTITY };
+        Placed { head: Head { stamp_ns, frame: frame.to_owned() }, what: Some(what.to_owned()), placing }
+    }
+
+    fn tree(all: &[(&str, &str, i64, f64, bool)]) -> Tree {
+        let mut tree = Tree::new("cam");
+        for (frame, what, stamp_ns, x, fixed) in all {
+            tree.add(0, placed(frame, what, *stamp_ns, *x), *fixed);
+        }
+        tree
+    }
+
+    #[test]
+    fn a_way_up_is_taken_at_every_time_at_which_something_moved() {
+        let tree = tree(&[
+            ("base", "cam", 0, 0.25, true),
+            ("odom", "base", 10, 1.0, false),
+            ("odom", "base", 30, 3.0, false),
+            ("map", "odom", 5, 100.0, false),
+            ("map", "odom", 20, 200.0, false),
+            ("map", "odom", 40, 200.0, false),
+            ("base", "arm", 40, 7.0, false),
+        ]);
+        let way = tree.way_up(false).unwrap();
+        let found: Vec<_> =
+            placings(&way, Clock::Stamp).iter().map(|(at, placing)| (*at, placing.position.x)).collect();
+        let third = 100.0 + 100.0 / 3.0;
+        assert_eq!(found.len(), 3);
+        for ((at, x), (expected_at, expected)) in found.iter().zip([(10, third + 1.25), (20, 202.25), (30, 203.25)]) {
+            assert_eq!(*at, expected_at);
+            assert!((x - expected).abs() < 1e-9, "{x} {expected}");
+        }
+        assert!(!tree.edges.contains_key("arm"));
+    }
+
+    #[test]
+    fn a_map_that_is_known_later_counts() {
+        let tree =
+            tree(&[("odom", "cam", 1, 1.0, false), ("odom", "cam", 3, 1.0, false), ("map", "odom", 2, 10.0, true)]);
+        assert_eq!(tree.way_up(false).unwrap().len(), 2);
+        assert_eq!(placings(&tree.way_up(false).unwrap(), Clock::Stamp)[1].1.position.x, 11.0);
+    }
+
+    #[test]
+    fn without_a_frame_that_stands_there_is_no_way_up() {
+        let moving = [("base", "cam", 1, 0.0, false), ("base", "cam", 2, 0.0, false)];
+        assert!(tree(&moving).way_up(false).is_none());
+        assert!(tree(&moving).way_up(true).is_some());
+        assert!(tree(&[("map", "cam", 1, 0.0, true)]).way_up(true).is_none());
+        // Two frames that are placed in each other end somewhere.
+        let round = [("b", "cam", 1, 0.0, false), ("cam", "b", 1, 0.0, false), ("b", "cam", 2, 0.0, false)];
+        assert!(tree(&round).way_up(false).is_none());
+    }
+}
