@@ -18,6 +18,9 @@ use std::{
 /// Most bytes of what says where pictures are: about 50 for each of [`tables::MAX_SAMPLES`].
 const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
 
+/// Most boxes of a file: two for each picture.
+const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
+
 /// What to do about a file that is not read.
 pub(super) const HINT: &str = "copy or record it again; if players show it, this makes a file that is read here: \
     ffmpeg -i IN.mp4 -c:v libx264 -pix_fmt yuv420p -fps_mode passthrough -an OUT.mp4";
@@ -71,8 +74,9 @@ struct Parts {
 impl Parts {
     fn read(file: &mut File, file_bytes: u64) -> Result<Self, String> {
         let (mut moov, mut moofs) = (None, Vec::new());
-        let (mut start, mut describing) = (0, 0);
-        while start < file_bytes {
+        let (mut start, mut describing, mut count) = (0, 0, 0);
+        while start < file_bytes && count < MAX_BOXES {
+            count += 1;
             let Some(header) = header_at(file, start, file_bytes)? else { break };
             let end = start.saturating_add(header.bytes);
             if matches!(&header.kind, b"moov" | b"moof") {
@@ -89,8 +93,6 @@ impl Parts {
                     kind if kind == *b"moof" => moofs.push((start, body)),
                     _ => moov = Some(body),
                 }
-            } else if start == 0 && !header.kind.iter().all(|byte| byte.is_ascii_graphic() || *byte == b' ') {
-                break;
             }
             start = end;
         }
