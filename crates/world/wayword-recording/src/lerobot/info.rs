@@ -1,0 +1,172 @@
+//! `meta/info.json`: what a dataset says about itself.
+
+use serde::Deserialize;
+use serde_json::Value;
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+use wayword_core::PlatformError;
+use wayword_platforms::files;
+
+const MAX_FILE_BYTES: u64 = 16 << 20;
+const HINT: &str = "give a dataset of LeRobot, versions 2.0, 2.1 or 3.0, as its library writes it";
+/// Most numbers of a feature that can hold poses.
+const MAX_WIDTH: u64 = 4096;
+
+/// How a dataset's files are laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Layout {
+    /// Version 2: a file for each episode.
+    Episodes,
+    /// Version 3: many episodes in a file.
+    Files,
+}
+
+/// What a dataset says about itself.
+#[derive(Debug, Deserialize)]
+pub(super) struct Info {
+    codebase_version: String,
+    fps: f64,
+    #[serde(default = "usual_chunk")]
+    pub(super) chunks_size: u64,
+    pub(super) data_path: String,
+    #[serde(default)]
+    pub(super) video_path: Option<String>,
+    pub(super) features: BTreeMap<String, Feature>,
+}
+
+/// A column, or a camera.
+#[derive(Debug, Clone, Deserialize)]
+pub(super) struct Feature {
+    pub(super) dtype: String,
+    #[serde(default)]
+    shape: Vec<u64>,
+    #[serde(default)]
+    names: Value,
+    #[serde(default, alias = "video_info")]
+    info: Value,
+}
+
+fn usual_chunk() -> u64 {
+    1000
+}
+
+impl Info {
+    /// Where it lies in a dataset.
+    pub(super) fn file(root: &Path) -> PathBuf {
+        root.join("meta").join("info.json")
+    }
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// When it is not there, is not what the library writes, or of another version.
+    pub(super) fn read(root: &Path) -> Result<Self, PlatformError> {
+        let file = Self::file(root);
+        let wrong = |reason: String| files::wrong(&file, reason, HINT);
+        let text =
+            files::text_if_there(&file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
+        let info: Self = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        if info.chunks_size == 0 {
+            return Err(wrong("chunks_size is 0".into()));
+        }
+        if !(1e-3..=1e4).contains(&info.fps) {
+            return Err(wrong(format!("fps is {}", info.fps)));
+        }
+        info.layout().ok_or_else(|| wrong(format!("is of version {:?}, which is not read", info.codebase_version)))?;
+        Ok(info)
+    }
+
+    /// How its files are laid out; `None` where that is not known.
+    pub(super) fn layout(&self) -> Option<Layout> {
+        match self.codebase_version.strip_prefix('v')?.split('.').next()? {
+            "2" => Some(Layout::Episodes),
+            "3" => Some(Layout::Files),
+            _ => None,
+        }
+    }
+
+    /// Time from one picture to the next, seconds.
+    pub(super) fn step_s(&self) -> f64 {
+        1.0 / self.fps
+    }
+}
+
+impl Feature {
+    /// Whether pictures of a camera are behind it, and not depths.
+    pub(super) fn is_camera(&self) -> bool {
+        let depths =
+            ["video.is_depth_map", "is_depth_map"].iter().any(|key| self.info.get(key) == Some(&Value::Bool(true)));
+        matches!(self.dtype.as_str(), "video" | "image") && !depths
+    }
+
+    /// How many numbers a row has, where it is a list of fractions.
+    pub(super) fn width(&self) -> Option<usize> {
+        match (self.dtype.as_str(), self.shape.as_slice()) {
+            ("float32" | "float64", [width @ 1..=MAX_WIDTH]) => usize::try_from(*width).ok(),
+            _ => None,
+        }
+    }
+
+    /// The names of its elements, also of those that are grouped (`{"motors": ["x", "y"]}`); `None` where not every element has
+    /// one.
+    pub(super) fn names(&self) -> Option<Vec<&str>> {
+        let mut names = Vec::new();
+        collect(&self.names, &mut names);
+        (self.width() == Some(names.len())).then_some(names)
+    }
+}
+
+/// Texts in the order in which they stand.
+fn collect<'a>(value: &'a Value, into: &mut Vec<&'a str>) {
+    match value {
+        Value::String(name) => into.push(name),
+        Value::Array(values) => values.iter().for_each(|value| collect(value, into)),
+        Value::Object(groups) => groups.values().for_each(|value| collect(value, into)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn feature(json: &str) -> Feature {
+        serde_json::from_str(json).unwrap()
+    }
+
+    #[test]
+    fn names_are_found_in_lists_and_groups() {
+        let list = feature(r#"{"dtype": "float32", "shape": [2], "names": ["x", "y"]}"#);
+        assert_eq!(list.names(), Some(vec!["x", "y"]));
+        let grouped = feature(r#"{"dtype": "float32", "shape": [3], "names": {"b": ["x", "y"], "a": ["yaw"]}}"#);
+        assert_eq!(grouped.names(), Some(vec!["x", "y", "yaw"]));
+        for unnamed in [r#"null"#, r#"["state"]"#] {
+            let json = format!(r#"{{"dtype": "float32", "shape": [2], "names": {unnamed}}}"#);
+            assert_eq!(feature(&json).names(), None);
+        }
+    }
+
+    #[test]
+    fn depths_are_no_camera() {
+        assert!(
+            feature(r#"{"dtype": "video", "shape": [4, 4, 3], "info": {"video.is_depth_map": false}}"#).is_camera()
+        );
+        assert!(!feature(r#"{"dtype": "video", "video_info": {"video.is_depth_map": true}}"#).is_camera());
+        assert!(!feature(r#"{"dtype": "float32", "shape": [1]}"#).is_camera());
+    }
+
+    #[test]
+    fn other_versions_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = |version: &str| {
+            std::fs::create_dir_all(folder.path().join("meta")).unwrap();
+            let text = format!(r#"{{"codebase_version": "{version}", "fps": 5, "data_path": "x", "features": {{}}}}"#);
+            std::fs::write(Info::file(folder.path()), text).unwrap();
+            Info::read(folder.path()).map(|info| info.layout().unwrap()).map_err(|error| error.to_string())
+        };
+        assert_eq!((read("v2.1"), read("v3.0")), (Ok(Layout::Episodes), Ok(Layout::Files)));
+        assert!(read("v1.6").unwrap_err().contains("\"v1.6\""));
+    }
+}

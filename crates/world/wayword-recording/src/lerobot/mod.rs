@@ -1,0 +1,146 @@
+//! Datasets of LeRobot, versions 2.0, 2.1 and 3.0: rows in Parquet files, pictures within them or in videos, one scene for each episode.
+//!
+//! After huggingface/lerobot, `lerobot/datasets/lerobot_dataset.py` and `utils.py` (0.3.3 writes version 2.1, 0.4.4 version 3.0).
+
+mod camera;
+mod episodes;
+mod info;
+mod parquet;
+mod pictures;
+mod place;
+mod template;
+
+use crate::{
+    describe::Description,
+    open::{scene_of, unknown},
+    reel::{Recording, Reel, Source},
+    track::{Fix, Track},
+};
+use camera::Camera;
+use episodes::Episode;
+use info::{Info, Layout};
+use parquet::Table;
+use pictures::{Stills, Stretch};
+use place::Place;
+use std::{ops::Range, path::Path};
+use wayword_core::{PlatformError, SceneId};
+use wayword_platforms::files;
+
+const HINT: &str = "fetch the dataset again, or write it again with the library of LeRobot";
+
+/// A dataset.
+pub(crate) struct Dataset {
+    described: Description,
+    info: Info,
+    camera: Camera,
+    place: Option<Place>,
+    /// By name, which is also by number.
+    episodes: Vec<(SceneId, Episode)>,
+}
+
+impl Dataset {
+    /// Opens the dataset in a folder; reads what it says about itself, and the list of its episodes.
+    ///
+    /// # Errors
+    /// When its folder `meta` cannot be read, or it has several cameras and the user named none.
+    pub(crate) fn open(root: &Path, described: Description) -> Result<Self, PlatformError> {
+        let info = Info::read(root)?;
+        let camera = camera::choose(root, &info, described.camera.as_deref())?;
+        let place = Place::find(root, &info, &described)?;
+        let name = scene_of(root)?;
+        let named = |episode: Episode| {
+            let scene = SceneId::new(format!("{name}_{:06}", episode.number));
+            let scene =
+                scene.map_err(|error| files::wrong(root, error.to_string(), "give the folder a shorter name"))?;
+            Ok((scene, episode))
+        };
+        let episodes =
+            episodes::read(root, &info, &camera)?.into_iter().map(named).collect::<Result<Vec<_>, PlatformError>>()?;
+        if episodes.is_empty() {
+            return Err(files::wrong(&root.join("meta"), "lists no episodes", HINT));
+        }
+        Ok(Self { described, info, camera, place, episodes })
+    }
+
+    /// Where the robot was in each row.
+    fn track(&self, table: &Table, rows: Range<u64>, times_s: &[f64]) -> Result<Option<Track>, PlatformError> {
+        let Some(place) = &self.place else { return Ok(None) };
+        let elements = place.elements();
+        let numbers = table.lists(&place.feature, rows, place.width, &elements)?;
+        let fixes = times_s.iter().zip(numbers.chunks_exact(elements.len()));
+        let fixes: Vec<Fix> =
+            fixes.filter_map(|(time_s, numbers)| place.fix(*time_s, numbers, &self.described)).collect();
+        Track::new(fixes).map(Some).ok_or_else(|| {
+            let reason = format!("column {:?}: no row holds a place in metres", place.feature);
+            files::wrong(
+                table.path(),
+                reason,
+                "name another feature: poses = \"NAME\" in a recording.toml (docs/RECORDINGS.md)",
+            )
+        })
+    }
+}
+
+impl Source for Dataset {
+    fn scenes(&self) -> Vec<SceneId> {
+        self.episodes.iter().map(|(scene, _)| scene.clone()).collect()
+    }
+
+    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
+        let (_, episode) = self.episodes.iter().find(|(known, _)| known == scene).ok_or_else(|| unknown(scene))?;
+        let table = Table::open(&episode.data)?;
+        let rows = rows_of(&table, episode, self.info.layout())?;
+        let times_s = times_s(&table, rows.clone())?;
+        let track = self.track(&table, rows.clone(), &times_s)?;
+        let reel: Box<dyn Reel> = match &episode.clip {
+            Some(clip) => Box::new(Stretch::open(clip, times_s, self.info.step_s())?),
+            None => Box::new(Stills::new(table, self.camera.key.clone(), rows.start, times_s)),
+        };
+        Ok(Recording { reel, track, horizontal_fov_rad: None, described: self.described.clone() })
+    }
+}
+
+/// The rows of an episode in its file, which lie together.
+fn rows_of(table: &Table, episode: &Episode, layout: Option<Layout>) -> Result<Range<u64>, PlatformError> {
+    const COLUMN: &str = "episode_index";
+    let mut rows: Option<Range<u64>> = None;
+    if layout == Some(Layout::Episodes) && !table.has(COLUMN) {
+        rows = Some(0..table.rows());
+    } else {
+        table.numbers(COLUMN, 0..table.rows(), &mut |row, number| {
+            if number != episode.number as f64 {
+                return Ok(());
+            }
+            let rows = rows.get_or_insert(row..row);
+            if rows.end != row {
+                return Err(format!("row {row}: the rows of episode {} do not lie together", episode.number));
+            }
+            rows.end = row + 1;
+            Ok(())
+        })?;
+    }
+    let rows = rows.unwrap_or(0..0);
+    if rows.end - rows.start != episode.length || rows.is_empty() {
+        let reason =
+            format!("holds {} rows of episode {}, not {}", rows.end - rows.start, episode.number, episode.length);
+        return Err(files::wrong(table.path(), reason, HINT));
+    }
+    Ok(rows)
+}
+
+/// When the rows were recorded, seconds from the beginning of the episode.
+fn times_s(table: &Table, rows: Range<u64>) -> Result<Vec<f64>, PlatformError> {
+    let mut times_s: Vec<f64> = Vec::new();
+    table.numbers("timestamp", rows, &mut |row, time_s| {
+        let last_s = times_s.last().copied().unwrap_or(f64::MIN);
+        if !time_s.is_finite() || time_s < last_s {
+            return Err(format!("row {row}: {time_s} s comes after {last_s} s"));
+        }
+        times_s.push(time_s);
+        Ok(())
+    })?;
+    Ok(times_s)
+}
+
+#[cfg(test)]
+mod tests;

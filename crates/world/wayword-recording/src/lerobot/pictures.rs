@@ -1,0 +1,127 @@
+//! The pictures of an episode: within its rows, or a stretch of a video.
+
+use super::{episodes::Clip, parquet::Table};
+use crate::{
+    reel::{Reel, Take},
+    video::Film,
+};
+use wayword_core::PlatformError;
+use wayword_platforms::files;
+
+const HINT: &str = "fetch the dataset again, or write it again with the library of LeRobot";
+
+/// Pictures within rows.
+pub(super) struct Stills {
+    table: Table,
+    /// The camera's column.
+    column: String,
+    /// The row of the first picture.
+    first: u64,
+    times_s: Vec<f64>,
+}
+
+impl Stills {
+    pub(super) fn new(table: Table, column: String, first: u64, times_s: Vec<f64>) -> Self {
+        Self { table, column, first, times_s }
+    }
+}
+
+impl Reel for Stills {
+    fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    fn name(&self, number: usize) -> String {
+        format!("{number:06}")
+    }
+
+    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
+        let rows: Vec<u64> = wanted.iter().map(|number| self.first + *number as u64).collect();
+        self.table.bytes(&self.column, &rows, &mut |row, bytes| {
+            let wrong =
+                |reason| files::wrong(self.table.path(), format!("{} of row {row}: {reason}", self.column), HINT);
+            let bytes =
+                bytes.ok_or_else(|| wrong("only the name of a picture is kept here, not the picture".to_owned()))?;
+            take((row - self.first) as usize, files::picture(bytes).map_err(wrong)?)
+        })
+    }
+}
+
+/// A stretch of a video.
+pub(super) struct Stretch {
+    film: Film,
+    /// Which picture of the video each of the episode's is; ascends.
+    numbers: Vec<usize>,
+    times_s: Vec<f64>,
+}
+
+impl Stretch {
+    /// The pictures that were taken at these times from the beginning of the episode on, seconds; `step_s` lies between two.
+    ///
+    /// # Errors
+    /// When the video cannot be read, or has no picture for one of them.
+    pub(super) fn open(clip: &Clip, times_s: Vec<f64>, step_s: f64) -> Result<Self, PlatformError> {
+        let film = Film::open(&clip.file, None)?;
+        let mut stretch = Self { film, numbers: Vec::new(), times_s: Vec::new() };
+        for (row, time_s) in times_s.into_iter().enumerate() {
+            let wanted_s = clip.from_s + time_s;
+            let number = nearest(stretch.film.times_s(), wanted_s, step_s / 2.0);
+            let number = number.ok_or_else(|| {
+                let reason =
+                    format!("row {row} of the episode needs a picture at {wanted_s:.3} s, and there is none near");
+                files::wrong(&clip.file, reason, HINT)
+            })?;
+            // Two rows may share a picture; the second has nothing new to show.
+            if stretch.numbers.last().is_none_or(|last| *last < number) {
+                stretch.numbers.push(number);
+                stretch.times_s.push(time_s);
+            }
+        }
+        Ok(stretch)
+    }
+}
+
+/// The number of the time that is nearest to another and not further away than `most_s`.
+fn nearest(times_s: &[f64], wanted_s: f64, most_s: f64) -> Option<usize> {
+    let next = times_s.partition_point(|time_s| *time_s < wanted_s);
+    let off = |at: usize| times_s.get(at).map(|time_s| ((time_s - wanted_s).abs(), at));
+    let nearest =
+        [next.checked_sub(1).and_then(off), off(next)].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.filter(|(off_s, _)| *off_s <= most_s).map(|(_, at)| at)
+}
+
+impl Reel for Stretch {
+    fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    fn name(&self, number: usize) -> String {
+        format!("{number:06}")
+    }
+
+    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
+        let numbers: Vec<usize> = wanted.iter().filter_map(|number| self.numbers.get(*number).copied()).collect();
+        self.film.pictures(&numbers, &mut |number, image| match self.numbers.binary_search(&number) {
+            Ok(own) => take(own, image),
+            Err(_) => Ok(()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn no_time_is_nearer_than_the_nearest(mut times_s in prop::collection::vec(0.0..10.0f64, 1..20), wanted_s in -1.0..11.0f64) {
+            times_s.sort_by(f64::total_cmp);
+            let off_s = |time_s: f64| (time_s - wanted_s).abs();
+            let least = times_s.iter().map(|time_s| off_s(*time_s)).fold(f64::MAX, f64::min);
+            let found = nearest(&times_s, wanted_s, 0.5);
+            prop_assert_eq!(found.is_some(), least <= 0.5);
+            prop_assert!(found.is_none_or(|at| off_s(times_s[at]) == least));
+        }
+    }
+}

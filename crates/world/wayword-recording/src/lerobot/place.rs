@@ -1,0 +1,247 @@
+//! Which numbers of a dataset's rows tell where the robot was.
+
+use super::info::{Feature, Info};
+use crate::{
+    axes::{Axes, Body, World},
+    describe::Description,
+    track::Fix,
+};
+use std::path::Path;
+use wayword_core::{DVec3, PlatformError};
+use wayword_platforms::files;
+
+const HINT: &str = "docs/RECORDINGS.md tells how a feature's elements have to be called in meta/info.json";
+/// Words in the name of an element that make it something else than a place in the world.
+const NO_PLACE: [&str; 18] = [
+    "vel", "velocity", "speed", "acc", "accel", "linear", "angular", "force", "torque", "effort", "current", "delta",
+    "goal", "target", "cmd", "command", "action", "error",
+];
+/// Words in the name of a feature that is not taken for the robot's place unless the user names it.
+const NO_ROBOT: [&str; 12] =
+    ["action", "actions", "eef", "ee", "effector", "tcp", "tool", "hand", "gripper", "wrist", "arm", "object"];
+
+/// The feature that tells where the robot was, and which of its elements.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Place {
+    pub(super) feature: String,
+    /// Number of its elements.
+    pub(super) width: usize,
+    x: usize,
+    y: usize,
+    z: Option<usize>,
+    facing: Facing,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Facing {
+    Unknown,
+    /// An angle counter-clockwise from +x; times this it is in radians.
+    Yaw(usize, f64),
+    /// x, y, z, w.
+    Quaternion([usize; 4]),
+}
+
+/// What an element of a feature is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    X,
+    Y,
+    Z,
+    Yaw,
+    YawDeg,
+    /// Part of a quaternion: x, y, z, w.
+    Q(usize),
+}
+
+impl Place {
+    /// Where the user says that poses are, else in the one feature that consists of x, y and a yaw and of nothing else; `None`
+    /// where there is no such feature, or several.
+    ///
+    /// # Errors
+    /// When the user names a feature that is not there or has no place in it.
+    pub(super) fn find(root: &Path, info: &Info, described: &Description) -> Result<Option<Self>, PlatformError> {
+        let Some(named) = &described.poses else {
+            let mut plain = info.features.iter().filter_map(|(key, feature)| Self::plain(key, feature));
+            let first = plain.next();
+            return Ok(first.filter(|_| plain.next().is_none()));
+        };
+        let wrong = |reason: String| files::wrong(&Info::file(root), reason, HINT);
+        let listed = || {
+            let lists = info.features.iter().filter(|(_, feature)| feature.width().is_some());
+            lists.map(|(key, _)| key.as_str()).collect::<Vec<_>>().join(", ")
+        };
+        let feature = info.features.get(named).filter(|feature| feature.width().is_some());
+        let feature = feature
+            .ok_or_else(|| wrong(format!("poses = {named:?}: is no list of fractions; such are {}", listed())))?;
+        let place = Self::within(named, feature).map_err(|reason| wrong(format!("poses = {named:?}: {reason}")))?;
+        if matches!(place.facing, Facing::Yaw(..)) && described.world.is_some_and(|world| world != World::ZUp) {
+            return Err(wrong(format!(
+                "poses = {named:?}: a yaw turns about z, so the world of the poses must be z-up"
+            )));
+        }
+        Ok(Some(place))
+    }
+
+    /// A feature that nobody named, if it is nothing but x, y, perhaps z, and a yaw, and not of a part of the robot.
+    fn plain(key: &str, feature: &Feature) -> Option<Self> {
+        let place = Self::within(key, feature).ok()?;
+        let elements = 3 + usize::from(place.z.is_some());
+        let robot = !words(key).any(|word| NO_ROBOT.contains(&word.as_str()) || NO_PLACE.contains(&word.as_str()));
+        (robot && matches!(place.facing, Facing::Yaw(..)) && place.width == elements).then_some(place)
+    }
+
+    fn within(key: &str, feature: &Feature) -> Result<Self, String> {
+        let names = feature.names().ok_or("its elements have no names")?;
+        let roles: Vec<Option<Role>> = names.iter().map(|name| role(name)).collect();
+        let at = |wanted: Role| {
+            let mut found = roles.iter().enumerate().filter(|(_, role)| **role == Some(wanted)).map(|(at, _)| at);
+            match (found.next(), found.next()) {
+                (Some(first), Some(second)) => {
+                    Err(format!("both {:?} and {:?} may be meant", names[first], names[second]))
+                }
+                (first, _) => Ok(first),
+            }
+        };
+        let (Some(x), Some(y)) = (at(Role::X)?, at(Role::Y)?) else {
+            return Err(format!("has no elements x and y, but {}", names.join(", ")));
+        };
+        let quaternion = [at(Role::Q(0))?, at(Role::Q(1))?, at(Role::Q(2))?, at(Role::Q(3))?];
+        let facing = match (at(Role::Yaw)?, at(Role::YawDeg)?, quaternion) {
+            (None, None, [Some(x), Some(y), Some(z), Some(w)]) => Facing::Quaternion([x, y, z, w]),
+            (Some(yaw), None, [None, None, None, None]) => Facing::Yaw(yaw, 1.0),
+            (None, Some(yaw), [None, None, None, None]) => Facing::Yaw(yaw, 1_f64.to_radians()),
+            (None, None, [None, None, None, None]) => Facing::Unknown,
+            _ => return Err(format!("where it faces is told twice or in part: {}", names.join(", "))),
+        };
+        Ok(Self { feature: key.to_owned(), width: names.len(), x, y, z: at(Role::Z)?, facing })
+    }
+
+    /// The elements that are needed, in the order in which [`Place::fix`] takes them.
+    pub(super) fn elements(&self) -> Vec<usize> {
+        let facing = match self.facing {
+            Facing::Unknown => Vec::new(),
+            Facing::Yaw(at, _) => vec![at],
+            Facing::Quaternion(at) => at.to_vec(),
+        };
+        // A floor that is nowhere told is at 0.
+        [self.x, self.y].into_iter().chain(self.z).chain(facing).collect()
+    }
+
+    /// Where the robot was, from the numbers of [`Place::elements`].
+    pub(super) fn fix(&self, time_s: f64, numbers: &[f64], described: &Description) -> Option<Fix> {
+        let axes = described.axes(Axes::of(Body::Robot));
+        let (place, facing) = numbers.split_at_checked(2 + usize::from(self.z.is_some()))?;
+        let recorded = DVec3::new(*place.first()?, *place.get(1)?, place.get(2).copied().unwrap_or(0.0));
+        let heading = match (self.facing, facing) {
+            (Facing::Yaw(_, rad), [yaw]) => axes.heading_by_yaw(yaw * rad),
+            (Facing::Quaternion(_), [x, y, z, w]) => axes.heading([*x, *y, *z, *w]),
+            _ => None,
+        };
+        Some(Fix { time_s, position: axes.wayword_from_recorded(recorded), heading })
+    }
+}
+
+/// The words of a name: `observation.base_x` has three, `robotYaw` one.
+fn words(name: &str) -> impl Iterator<Item = String> {
+    name.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase)
+}
+
+/// What an element is by its name: `x`, `base.x`, `pose_x_m`; `x.vel` is nothing of the kind.
+fn role(name: &str) -> Option<Role> {
+    let words: Vec<String> = words(name).collect();
+    if words.iter().any(|word| NO_PLACE.contains(&word.as_str())) {
+        return None;
+    }
+    let has = |wanted: &[&str]| words.iter().any(|word| wanted.contains(&word.as_str()));
+    let quaternion = has(&["q", "quat", "quaternion", "orientation", "rotation", "rot"]);
+    let roles = words.iter().filter_map(|word| {
+        Some(match (word.as_str(), quaternion) {
+            ("x", false) => Role::X,
+            ("y", false) => Role::Y,
+            ("z", false) => Role::Z,
+            ("qx", _) | ("x", true) => Role::Q(0),
+            ("qy", _) | ("y", true) => Role::Q(1),
+            ("qz", _) | ("z", true) => Role::Q(2),
+            ("qw", _) | ("w", true) => Role::Q(3),
+            ("yaw" | "theta", _) if has(&["deg", "degree", "degrees"]) => Role::YawDeg,
+            ("yaw" | "theta", _) => Role::Yaw,
+            _ => return None,
+        })
+    });
+    let roles: Vec<Role> = roles.collect();
+    match roles.as_slice() {
+        [role] => Some(*role),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn info(features: &[(&str, &[&str])]) -> Info {
+        let features: BTreeMap<_, _> = features
+            .iter()
+            .map(|(key, names)| (*key, serde_json::json!({"dtype": "float32", "shape": [names.len()], "names": names})))
+            .collect();
+        let info = serde_json::json!({"codebase_version": "v3.0", "fps": 5, "data_path": "x", "features": features});
+        serde_json::from_value(info).unwrap()
+    }
+
+    fn find(features: &[(&str, &[&str])], poses: Option<&str>) -> Result<Option<Place>, String> {
+        let described = Description { poses: poses.map(str::to_owned), ..Description::default() };
+        Place::find(Path::new("d"), &info(features), &described).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn without_a_word_only_what_is_nothing_but_a_place_is_one() {
+        let found = |key, names| find(&[(key, names)], None).unwrap().map(|place| place.feature);
+        assert_eq!(found("observation.state", &["x", "y", "theta"]).as_deref(), Some("observation.state"));
+        assert_eq!(found("odometry", &["base.x", "base.y", "base.z", "base.yaw"]).as_deref(), Some("odometry"));
+        // A command, speeds, an arm's hand, positions without a direction, joints beside: in doubt there is no pose.
+        assert_eq!(found("action", &["x", "y", "theta"]), None);
+        assert_eq!(found("observation.state", &["x.vel", "y.vel", "theta.vel"]), None);
+        assert_eq!(found("observation.state.end_effector", &["x", "y", "yaw"]), None);
+        assert_eq!(found("observation.ee_pose", &["x", "y", "z", "yaw"]), None);
+        assert_eq!(found("observation.state", &["x", "y", "z", "roll", "pitch", "yaw"]), None);
+        assert_eq!(found("observation.state", &["x", "y"]), None);
+        assert_eq!(found("observation.state", &["x", "y", "theta", "gripper"]), None);
+        assert_eq!(find(&[("a", &["x", "y", "yaw"]), ("b", &["x", "y", "yaw"])], None), Ok(None));
+    }
+
+    #[test]
+    fn what_the_user_names_is_taken_or_refused_with_a_reason() {
+        let state = |names| find(&[("state", names)], Some("state"));
+        let place = state(&["gripper", "x", "y", "z", "qx", "qy", "qz", "qw"]).unwrap().unwrap();
+        assert_eq!(place.elements(), [1, 2, 3, 4, 5, 6, 7]);
+        let turned = state(&["quat.x", "quat.y", "quat.z", "quat.w", "pos.x", "pos.y"]).unwrap().unwrap();
+        assert_eq!(turned.elements(), [4, 5, 0, 1, 2, 3]);
+        assert_eq!(state(&["x", "y"]).unwrap().unwrap().facing, Facing::Unknown);
+        assert!(state(&["left_x", "right_x", "y"]).unwrap_err().contains("left_x"));
+        assert!(state(&["x", "y", "yaw", "qx"]).unwrap_err().contains("twice or in part"));
+        assert!(state(&["a", "b"]).unwrap_err().contains("no elements x and y, but a, b"));
+        assert!(find(&[("state", &["x"])], Some("pose")).unwrap_err().contains("such are state"));
+    }
+
+    #[test]
+    fn yaw_is_counter_clockwise_from_x_which_is_east() {
+        let deg = |names: &[&str], yaw: f64| {
+            let place = find(&[("state", names)], Some("state")).unwrap().unwrap();
+            let fix = place.fix(0.0, &[3.0, 4.0, yaw], &Description::default()).unwrap();
+            assert_eq!(fix.position, DVec3::new(3.0, 4.0, 0.0));
+            fix.heading.unwrap().deg().round()
+        };
+        assert_eq!(deg(&["x", "y", "theta"], 0.0), 90.0);
+        assert_eq!(deg(&["x", "y", "yaw"], std::f64::consts::FRAC_PI_2) % 360.0, 0.0);
+        assert_eq!(deg(&["x", "y", "yaw_deg"], -90.0), 180.0);
+    }
+
+    #[test]
+    fn a_yaw_needs_a_world_with_z_up() {
+        let described =
+            Description { poses: Some("state".to_owned()), world: Some(World::YUp), ..Description::default() };
+        let info = info(&[("state", &["x", "y", "yaw"])]);
+        assert!(Place::find(Path::new("d"), &info, &described).unwrap_err().to_string().contains("z-up"));
+    }
+}

@@ -1,0 +1,110 @@
+//! Templates of paths, as `meta/info.json` holds them in the way of Python: `data/chunk-{episode_chunk:03d}/x.parquet`.
+
+use std::path::{Component, Path, PathBuf};
+
+/// Widest number, digits.
+const MAX_DIGITS: usize = 20;
+
+/// What stands for a placeholder.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Value<'a> {
+    Number(u64),
+    Text(&'a str),
+}
+
+/// The path below a dataset's folder that a template makes of some values.
+///
+/// # Errors
+/// In words, when the template cannot be read, asks for another value, or leads out of the folder.
+pub(super) fn fill(template: &str, values: &[(&str, Value<'_>)]) -> Result<PathBuf, String> {
+    let wrong = |reason: String| format!("the path {template:?} {reason}");
+    let mut filled = String::new();
+    let mut rest = template;
+    while let Some((before, from)) = rest.split_once('{') {
+        let (placeholder, after) = from.split_once('}').ok_or_else(|| wrong("has a { without a }".to_owned()))?;
+        filled.push_str(before);
+        filled.push_str(&written(placeholder, values).map_err(wrong)?);
+        rest = after;
+    }
+    filled.push_str(rest);
+    let path = PathBuf::from(&filled);
+    if filled.is_empty() || !is_below(&path) {
+        return Err(wrong(format!("becomes {filled:?}, which does not lie in the dataset")));
+    }
+    Ok(path)
+}
+
+fn is_below(path: &Path) -> bool {
+    path.components().all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// A placeholder with its value: `{name}`, `{name:d}` or `{name:03d}`.
+fn written(placeholder: &str, values: &[(&str, Value<'_>)]) -> Result<String, String> {
+    let (name, format) = placeholder.split_once(':').unwrap_or((placeholder, ""));
+    let value = values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
+    let value = value.ok_or_else(|| {
+        let known: Vec<&str> = values.iter().map(|(known, _)| *known).collect();
+        format!("asks for {name:?}; known are {}", known.join(", "))
+    })?;
+    let unknown = || format!("wants {name:?} in the format {format:?}, which is not known");
+    match value {
+        Value::Text(text) if format.is_empty() || format == "s" => Ok(text.to_owned()),
+        Value::Text(_) => Err(unknown()),
+        Value::Number(number) => {
+            let digits = format.strip_suffix('d').unwrap_or(format);
+            let width: usize = if digits.is_empty() { 0 } else { digits.parse().map_err(|_| unknown())? };
+            // Without the zero Python fills up with spaces, which no dataset has in its names.
+            if width > MAX_DIGITS || (width > 0 && !digits.starts_with('0')) {
+                return Err(unknown());
+            }
+            Ok(format!("{number:0width$}"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const VALUES: [(&str, Value<'_>); 2] =
+        [("episode_index", Value::Number(12)), ("video_key", Value::Text("images.front"))];
+
+    #[test]
+    fn templates_of_the_library_are_filled_as_python_does() {
+        let fill = |template| fill(template, &VALUES).unwrap();
+        assert_eq!(
+            fill("videos/{video_key}/episode_{episode_index:06d}.mp4"),
+            Path::new("videos/images.front/episode_000012.mp4")
+        );
+        assert_eq!(fill("{episode_index}/{episode_index:d}/{episode_index:01d}"), Path::new("12/12/12"));
+    }
+
+    #[test]
+    fn what_is_not_known_or_leads_out_is_refused() {
+        for (template, said) in [
+            ("{x}", "\"x\""),
+            ("{episode_index:6d}", "6d"),
+            ("{episode_index:0999d}", "0999d"),
+            ("{episode_index:03f}", "03f"),
+            ("{video_key:03d}", "03d"),
+            ("a{episode_index", "without"),
+            ("../{video_key}", "does not lie"),
+            ("/etc/{video_key}", "does not lie"),
+            ("", "does not lie"),
+        ] {
+            let error = fill(template, &VALUES).unwrap_err();
+            assert!(error.contains(said), "{template}: {error}");
+        }
+        assert!(fill("{k}", &[("k", Value::Text("a/../../b"))]).unwrap_err().contains("does not lie"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_template_leads_out(template in "[a./{}:0-9d_]{0,30}|([a./]|\\{video_key\\}|\\{episode_index:02d\\}){0,8}", key in "[a./]{0,5}") {
+            if let Ok(path) = fill(&template, &[("video_key", Value::Text(&key)), ("episode_index", Value::Number(3))]) {
+                prop_assert!(is_below(&path));
+            }
+        }
+    }
+}
