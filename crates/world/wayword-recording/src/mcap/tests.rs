@@ -186,7 +186,7 @@ fn what_is_no_mcap_file_is_refused_at_once() {
 
 /// Messages by the Rust library: topic, schema, encoding, log time, bytes.
 fn made(messages: &[(&str, &str, &str, u64, Vec<u8>)]) -> Vec<u8> {
-    let options = ::mcap::WriteOptions::new().compression(None).chunk_size(Some(256));
+    let options = ::mcap::WriteOptions::new().compression(None).chunk_size(Some(1024));
     let mut writer = options.create(std::io::Cursor::new(Vec::new())).unwrap();
     for (topic, schema, encoding, log_time, bytes) in messages {
         let schema = writer.add_schema(schema, "ros2msg", b"").unwrap();
