@@ -166,6 +166,18 @@ fn a_video_is_a_recording_of_one_scene() {
     assert_eq!((recording.reel.times_s().len(), recording.reel.name(7)), (12, "7".to_owned()));
 }
 
+#[test]
+fn poses_beside_a_video_count_from_its_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.mp4");
+    std::fs::copy(fixture("uneven.mp4"), &path).unwrap();
+    std::fs::write(folder.path().join("walk.tum"), "0.0 0 0 0 0 0 0 1\n2.0 4 0 0 0 0 0 1\n").unwrap();
+    let file = File::open(&path, Description::default()).unwrap();
+    let recording = file.open(&file.scenes()[0]).unwrap();
+    let fix = recording.track.unwrap().at(recording.reel.times_s()[4]).unwrap();
+    assert!((fix.position.x - 1.2).abs() < 1e-3, "{fix:?}");
+}
+
 /// Opens a file of some bytes, and reads all its pictures.
 fn read(bytes: &[u8]) -> Result<usize, String> {
     let folder = tempfile::tempdir().unwrap();
