@@ -9,6 +9,7 @@ mod ledger;
 mod models;
 mod perceive;
 mod similarity;
+mod view;
 
 use crate::settings::{Against, Asked, AskedRoles, Perception, Providers, Service, TargetMode};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -24,6 +25,7 @@ pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
 pub use similarity::{By, Similarity};
+pub use view::{View, ViewCommand, ViewMap, ViewPanorama, ViewPath, Walk};
 
 /// Writes the wayfinding instructions that a person would give a robot, for any simulator, and checks them.
 #[derive(Debug, Parser)]
@@ -96,6 +98,8 @@ pub enum Command {
     Models(Models),
     /// The worlds that there are: what each needs and offers.
     Platforms,
+    /// Pictures of a world: a panorama, a path as its walker sees it, a map.
+    View(View),
     /// Save a generated house as glTF with its navigation data.
     House(House),
     /// Print shell completions.
@@ -120,8 +124,8 @@ pub struct Demo {
 /// Which world, and where its data lies.
 #[derive(Debug, Clone, Default, Args)]
 pub struct World {
-    /// The world: house (generated, built in), matterport, habitat, tdw, virtualhome or process; `wayword platforms` lists what each
-    /// needs. [default: house]
+    /// The world: house (generated, built in), matterport, habitat, tdw, virtualhome, process or recording; `wayword platforms`
+    /// lists what each needs. [default: house]
     #[arg(long)]
     pub platform: Option<String>,
     /// Folder or file of the world's data.

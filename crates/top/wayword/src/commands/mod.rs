@@ -18,6 +18,7 @@ mod perceive;
 mod platforms;
 mod report;
 mod similarity;
+mod view;
 
 use crate::{
     cli::Command,
@@ -50,6 +51,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Ledger(args) => ledger::run(&args, output),
         Command::Models(args) => models::run(&args, output),
         Command::Platforms => platforms::run(output),
+        Command::View(args) => view::run(&args, output),
         Command::House(args) => house::run(&args, output),
         Command::Completions { shell } => completions::run(shell),
     }

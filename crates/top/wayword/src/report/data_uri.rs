@@ -3,7 +3,7 @@
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// A JPEG as a `data:` address.
-pub(super) fn jpeg(bytes: &[u8]) -> String {
+pub(crate) fn jpeg(bytes: &[u8]) -> String {
     format!("data:image/jpeg;base64,{}", base64(bytes))
 }
 

@@ -1,6 +1,9 @@
 //! The numbers of an item's map: metres in the world to units of an SVG, north up.
 
-use super::palette::{Colour, colour};
+use super::{
+    palette::{Colour, colour},
+    sheet::{Paper, Sheet, tenth},
+};
 use crate::run::Map;
 use serde::Serialize;
 use std::fmt::Write;
@@ -49,39 +52,32 @@ pub(super) struct Hop {
 
 /// A frame on the map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Spot {
+pub(crate) struct Spot {
     /// The frame's number, from 1.
-    pub(super) number: usize,
+    pub(crate) number: usize,
     /// Whether the last frame is here.
-    pub(super) is_last: bool,
+    pub(crate) is_last: bool,
     /// Where the frame is.
-    pub(super) at: [f64; 2],
+    pub(crate) at: [f64; 2],
     /// Where its number is: aside, where another number is in the way.
-    pub(super) badge: [f64; 2],
-    pub(super) is_aside: bool,
-    pub(super) colour: Colour,
+    pub(crate) badge: [f64; 2],
+    pub(crate) is_aside: bool,
+    pub(crate) colour: Colour,
 }
 
-/// Largest map: the width of a phone, so that numbers are read there.
-const MOST: [f64; 2] = [360.0, 330.0];
-/// Smallest, so that north arrow and scale bar find room.
-const LEAST: [f64; 2] = [220.0, 170.0];
-/// Around the walk: room for the first and the last frame's signs, and for north arrow and scale bar beside it.
-const PADDING: f64 = 34.0;
-/// How much of the world is seen around the walk, metres; the graph goes on beyond the edge of the map.
-const MARGIN_M: f64 = 1.2;
-/// Most units per metre: a short path does not become a huge one.
-const MOST_SCALE: f64 = 42.0;
+/// A map as wide as a phone, so that numbers are read there. The graph goes on beyond its edge.
+const PAPER: Paper =
+    Paper { most: [360.0, 330.0], least: [220.0, 170.0], padding: 34.0, margin_m: 1.2, most_scale: 42.0 };
 /// Radius of a frame's number.
-pub(super) const RADIUS: f64 = 9.5;
+pub(crate) const RADIUS: f64 = 9.5;
 /// How near two numbers may come: they may touch, but each has to be read.
 const LEAST_APART: f64 = 1.5 * RADIUS;
 /// How far a way back bends away from the way there, at its control point.
 const BEND: f64 = 32.0;
 /// Widest stretch of the world that is drawn, metres.
-const MOST_SPAN_M: f64 = 2_000.0;
+pub(crate) const MOST_SPAN_M: f64 = 2_000.0;
 /// Most nodes and edges of the graph that are drawn.
-const MOST_NODES: usize = 4_000;
+pub(crate) const MOST_NODES: usize = 4_000;
 
 impl MapView {
     /// The map of the first `frames` frames, or `None` where their positions are not known or make no map.
@@ -104,13 +100,10 @@ impl MapView {
         }
         let nodes: Vec<Option<[f64; 2]>> =
             map.nodes.iter().take(MOST_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
-        let sheet = Sheet::around(on_it().map(|stop| [stop.x, stop.y]))?;
+        let sheet = Sheet::around(on_it().map(|stop| [stop.x, stop.y]), &PAPER)?;
         let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place(node))).collect();
         let at: Vec<[f64; 2]> = trail.stops.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
-        let bar_m = [1, 2, 5, 10, 20, 50, 100, 200, 500]
-            .into_iter()
-            .rfind(|m| f64::from(*m) * sheet.scale <= 90.0)
-            .unwrap_or(1);
+        let (bar, bar_m) = sheet.bar();
         Some(Self {
             width: sheet.size[0],
             height: sheet.size[1],
@@ -119,7 +112,7 @@ impl MapView {
             hops: hops(trail, &at),
             spots: spots(trail, &at, sheet.size),
             start_deg: tenth(trail.start.deg()),
-            bar: tenth(f64::from(bar_m) * sheet.scale),
+            bar,
             bar_m,
             annotated: annotated(trail.annotated, &sheet),
         })
@@ -127,57 +120,16 @@ impl MapView {
 }
 
 /// What is drawn on a map: positions in metres, world frame.
-pub(super) struct Trail<'a> {
-    pub(super) stops: &'a [DVec3],
+pub(crate) struct Trail<'a> {
+    pub(crate) stops: &'a [DVec3],
     /// Which way the walker looks at first.
-    pub(super) start: Heading,
+    pub(crate) start: Heading,
     /// Of each hop whether it goes back; none does where nothing is said.
-    pub(super) backs: &'a [bool],
+    pub(crate) backs: &'a [bool],
     /// The path that people annotated; its last is the goal.
-    pub(super) annotated: &'a [DVec3],
+    pub(crate) annotated: &'a [DVec3],
     /// Whether a place has one number, that of the first stop there, however often the walk comes by.
-    pub(super) is_numbered_once: bool,
-}
-
-/// How the world lies on the sheet.
-struct Sheet {
-    scale: f64,
-    /// The sheet's upper left corner in the world, metres.
-    corner: [f64; 2],
-    size: [f64; 2],
-}
-
-impl Sheet {
-    fn around(points: impl Iterator<Item = [f64; 2]>) -> Option<Self> {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in points {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(point[axis]);
-                high[axis] = high[axis].max(point[axis]);
-            }
-        }
-        for axis in 0..2 {
-            low[axis] -= MARGIN_M;
-            high[axis] += MARGIN_M;
-        }
-        let span = [high[0] - low[0], high[1] - low[1]];
-        if !span.iter().all(|span| span.is_finite()) {
-            return None;
-        }
-        let fits = |axis: usize| (MOST[axis] - 2.0 * PADDING) / span[axis];
-        let scale = fits(0).min(fits(1)).min(MOST_SCALE);
-        let size = [0, 1].map(|axis| tenth((span[axis] * scale + 2.0 * PADDING).max(LEAST[axis])));
-        let margin_m = [0, 1].map(|axis| (size[axis] / scale - span[axis]) / 2.0);
-        Some(Self { scale, corner: [low[0] - margin_m[0], high[1] + margin_m[1]], size })
-    }
-
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [tenth((x - self.corner[0]) * self.scale), tenth((self.corner[1] - y) * self.scale)]
-    }
-}
-
-fn tenth(units: f64) -> f64 {
-    (units * 10.0).round() / 10.0
+    pub(crate) is_numbered_once: bool,
 }
 
 fn edges(places: &[Option<[f64; 2]>], edges: &[[usize; 2]]) -> String {
@@ -234,7 +186,7 @@ const WAYS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0], [0.7, -0.7], [-0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
 
 /// Puts each number on its frame, or beside it where an earlier number is there (stairs, loops, close frames).
-fn spots(trail: &Trail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
+pub(crate) fn spots(trail: &Trail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
     let first_at = |stop: usize| {
         let earlier = trail.stops.iter().position(|other| *other == trail.stops[stop]);
         earlier.filter(|_| trail.is_numbered_once).unwrap_or(stop)
@@ -308,7 +260,7 @@ mod tests {
             for place in map.spots.iter().flat_map(|spot| [spot.at, spot.badge]) {
                 assert!((0.0..=map.width).contains(&place[0]) && (0.0..=map.height).contains(&place[1]), "{place:?}");
             }
-            assert!(map.width <= MOST[0] && map.height <= MOST[1]);
+            assert!(map.width <= PAPER.most[0] && map.height <= PAPER.most[1]);
         }
     }
 

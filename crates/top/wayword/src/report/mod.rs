@@ -4,15 +4,16 @@
 //! comes from files or models is untrusted: the templates escape it, and the page forbids itself scripts and addresses.
 
 pub mod comparison;
-mod data_uri;
+pub(crate) mod data_uri;
 mod frames;
-mod map;
+pub(crate) mod map;
 mod model;
 mod page;
-mod palette;
+pub(crate) mod palette;
 mod pictures;
 mod records;
 pub mod replay;
+pub(crate) mod sheet;
 mod spans;
 mod texts;
 

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 /// A colour and the colour of a number that stands on it, as CSS has them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub(super) struct Colour {
-    pub(super) fill: String,
-    pub(super) ink: &'static str,
+pub(crate) struct Colour {
+    pub(crate) fill: String,
+    pub(crate) ink: &'static str,
 }
 
 /// Viridis (CC0, Smith and van der Walt) at eighths, without its last: that yellow is lost on white paper.
@@ -24,7 +24,7 @@ const STEPS: [[u8; 3]; 8] = [
 const WHITE_UNTIL: usize = 498;
 
 /// The colour of frame `at` (from 0) of so many.
-pub(super) fn colour(at: usize, frames: usize) -> Colour {
+pub(crate) fn colour(at: usize, frames: usize) -> Colour {
     let last = frames.saturating_sub(1).max(1);
     let thousandths = at.min(last) * 1000 / last;
     let along = thousandths * (STEPS.len() - 1);

@@ -1,0 +1,121 @@
+//! `wayword view panorama`.
+
+use super::{Written, kind::Kind, open, picture, scene, unfinished::Unfinished};
+use crate::{cli::ViewPanorama, error::Error, output::Output};
+use std::sync::Arc;
+use wayword_core::{Frame, Gaze, Heading, Image, PathRequest, Platform, Pose, SceneId, Side, View, ViewpointId};
+use wayword_render::{Quarter, panorama};
+
+/// The colour where a view has no picture.
+const GREY: [u8; 3] = [128; 3];
+/// How far a view may be from what was asked for, radians: less than a pixel.
+const NEAR_RAD: f64 = 1e-4;
+/// Viewpoints that an error names.
+const TOLD: usize = 5;
+
+pub(super) fn write(args: &ViewPanorama, output: &Output) -> Result<Written, Error> {
+    let kind = Kind::among(&[Kind::Png, Kind::Jpeg], &args.out)?;
+    kind.check_free(&args.out, args.world.data.as_deref())?;
+    let platform = open(&args.world)?;
+    let scene = scene(&*platform, args.scan.as_deref())?;
+    let mut frame = stand(args, &*platform, &scene)?;
+    if let Some(degrees) = args.heading_deg {
+        let heading = Heading::new(degrees.to_radians());
+        frame.pose.heading = heading
+            .map_err(|error| Error::usage(format!("--heading-deg: {error}"), "give degrees, as in --heading-deg 90"))?;
+    }
+    let whole = around(args, &*platform, &scene, &frame, output)?;
+    let bytes = if kind == Kind::Png { picture::png(&whole)? } else { picture::jpeg(&whole)? };
+    Unfinished::whole(&args.out, &bytes)?;
+    let (width, height) = (whole.width_px(), whole.height_px());
+    Ok(Written { scene, files: vec![args.out.clone()], width, height, frames: 1 })
+}
+
+/// Where to stand.
+fn stand(args: &ViewPanorama, platform: &dyn Platform, scene: &SceneId) -> Result<Frame, Error> {
+    let graph = platform.graph(scene)?;
+    if args.seed.is_some() || graph.is_empty() {
+        let path = platform.sample_path(scene, &PathRequest::default(), args.seed.unwrap_or(0))?;
+        let start = path.frames.into_iter().next();
+        return start.ok_or_else(|| Error::usage("the path has no frame", "choose another --seed"));
+    }
+    let viewpoint = match &args.viewpoint {
+        Some(name) => ViewpointId::new(name.as_str()).ok(),
+        None => graph.viewpoints().next().cloned(),
+    };
+    let found = viewpoint.and_then(|viewpoint| Some((graph.position(&viewpoint)?, viewpoint)));
+    let Some((position, viewpoint)) = found else {
+        let some: Vec<&str> = graph.viewpoints().take(TOLD).map(ViewpointId::as_str).collect();
+        let name = args.viewpoint.as_deref().unwrap_or_default();
+        let hint = format!("there are {}: {} ...; a map in SVG names them all", graph.len(), some.join(", "));
+        return Err(Error::usage(format!("scene {scene} has no viewpoint {name}"), hint));
+    };
+    let level = graph.level(&viewpoint);
+    Ok(Frame { pose: Pose::level(position, Heading::NORTH), viewpoint: Some(viewpoint), level })
+}
+
+/// The four views as one picture.
+fn around(
+    args: &ViewPanorama,
+    platform: &dyn Platform,
+    scene: &SceneId,
+    frame: &Frame,
+    output: &Output,
+) -> Result<Image, Error> {
+    let mut images: [Option<Arc<Image>>; 4] = [const { None }; 4];
+    for (image, gaze) in images.iter_mut().zip(Gaze::around(frame.pose.heading)) {
+        let view = platform.look(scene, frame, gaze)?;
+        check(&view, gaze)?;
+        *image = view.image;
+    }
+    let missing: Vec<&str> =
+        Side::ALL.into_iter().zip(&images).filter(|(_, image)| image.is_none()).map(word).collect();
+    match missing.len() {
+        0 => {}
+        1 => output.say(format_args!("what is {} has no picture, and is grey", missing[0])),
+        4 => {
+            let problem = format!("scene {scene} has no pictures there");
+            return Err(Error::usage(
+                problem,
+                "`wayword platforms` says what pictures need; `wayword view path` shows what a recording has",
+            ));
+        }
+        _ => {
+            let problem = format!("scene {scene}: there is no picture of what is {}", missing.join(", "));
+            let hint = "a panorama takes at least three of four sides; `wayword view path` shows what there is";
+            return Err(Error::usage(problem, hint));
+        }
+    }
+    let quarters = images.each_ref().map(|image| {
+        let image = image.as_deref()?;
+        Some(Quarter { width: image.width_px(), height: image.height_px(), rgb: image.rgb() })
+    });
+    let unfit = |error: String| Error::usage(format!("the views make no panorama: {error}"), "try another --width");
+    let whole = panorama(quarters, args.width, GREY).map_err(|error| unfit(error.to_string()))?;
+    Image::new(whole.width, whole.height, whole.rgb).map_err(|error| unfit(error.to_string()))
+}
+
+fn word((side, _): (Side, &Option<Arc<Image>>)) -> &'static str {
+    match side {
+        Side::Ahead => "ahead",
+        Side::Right => "on the right",
+        Side::Behind => "behind",
+        Side::Left => "on the left",
+    }
+}
+
+/// A view that is not what was asked for would be put where it does not belong.
+fn check(view: &View, gaze: Gaze) -> Result<(), Error> {
+    let is_turned =
+        view.pose.heading.turn_to(gaze.heading).abs() > NEAR_RAD || view.pose.elevation_rad.abs() > NEAR_RAD;
+    let is_wider = (view.horizontal_fov_rad - gaze.horizontal_fov_rad).abs() > NEAR_RAD;
+    if view.image.is_some() && (is_turned || is_wider) {
+        let (heading, fov) = (view.pose.heading.deg(), view.horizontal_fov_rad.to_degrees());
+        let problem = format!(
+            "the world gave a view of {fov:.0} degrees along {heading:.0}, not of 90 along {:.0}",
+            gaze.heading.deg()
+        );
+        return Err(Error::usage(problem, "`wayword view path` shows what there is"));
+    }
+    Ok(())
+}

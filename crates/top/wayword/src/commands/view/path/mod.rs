@@ -1,0 +1,100 @@
+//! `wayword view path`.
+
+mod between;
+
+use super::{Written, open, reel, walk};
+use crate::{cli::ViewPath, error::Error, output::Output};
+use between::Step;
+use image::imageops::{self, FilterType};
+use std::sync::Arc;
+use wayword_core::{Gaze, Image, Platform, PlatformError, SceneId};
+
+/// Most pictures of a path.
+const MOST_STEPS: usize = 20_000;
+/// Pictures for each second, where only the path's own frames are shown, and where there are pictures between.
+const FPS: [f64; 2] = [1.0, 12.0];
+/// What can be asked for: a GIF counts in hundredths of a second.
+const FPS_RANGE: std::ops::RangeInclusive<f64> = 0.1..=50.0;
+/// Widest pictures, pixels.
+const WIDEST_PX: u32 = 8192;
+
+pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> {
+    let fps = args.fps.unwrap_or(FPS[usize::from(args.smooth.is_some_and(|between| between > 0))]);
+    if !FPS_RANGE.contains(&fps) {
+        return Err(Error::usage(format!("--fps {fps} cannot be shown"), "give a number from 0.1 to 50"));
+    }
+    if args.width.is_some_and(|width| !(1..=WIDEST_PX).contains(&width)) {
+        return Err(Error::usage("--width cannot be that", format!("give a number from 1 to {WIDEST_PX}")));
+    }
+    let place = reel::Place::of(&args.out, args.world.data.as_deref())?;
+    let platform = open(&args.world)?;
+    let path = walk::path(&args.walk, &args.world, &*platform)?;
+    let steps = between::steps(&path, args.smooth.unwrap_or(0))?;
+    if steps.len() > MOST_STEPS {
+        let problem = format!("that is {} pictures, more than {MOST_STEPS}", steps.len());
+        return Err(Error::usage(problem, "ask for a shorter path, or a smaller --smooth"));
+    }
+    let mut reel = place.open(fps, steps.len())?;
+    let bar = output.progress(steps.len(), "looking");
+    let (mut size, mut frames) = (None, 0);
+    for step in &steps {
+        if let Some(image) = look(&*platform, &path.scene, step)? {
+            let size = *size.get_or_insert_with(|| size_of(&image, args.width));
+            let picture = fitted(image, size)?;
+            reel.add(&picture)?;
+            frames += 1;
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let Some((width, height)) = size else {
+        let problem = format!("path {}: none of its {} frames has a picture", path.id, steps.len());
+        return Err(Error::usage(problem, "`wayword platforms` says which worlds have pictures, and what they need"));
+    };
+    if frames < steps.len() {
+        output.say(format_args!(
+            "{} of {} frames have no picture, and were left out",
+            steps.len() - frames,
+            steps.len()
+        ));
+    }
+    Ok(Written { scene: path.scene, files: reel.finish()?, width, height, frames })
+}
+
+/// What is seen ahead; of a place between two frames there has to be a picture.
+fn look(platform: &dyn Platform, scene: &SceneId, step: &Step) -> Result<Option<Arc<Image>>, Error> {
+    let view = platform.look(scene, &step.frame, Gaze::quarter(step.frame.pose.heading));
+    let nothing_between = || {
+        let problem = format!("{} shows nothing between a path's frames", platform.name());
+        Err(Error::usage(problem, "leave --smooth out: the frames themselves can be seen"))
+    };
+    match view {
+        Err(PlatformError::NotAViewpoint { .. } | PlatformError::UnknownViewpoint { .. }) if step.is_between => {
+            nothing_between()
+        }
+        Err(error) => Err(error.into()),
+        Ok(view) if view.image.is_none() && step.is_between => nothing_between(),
+        Ok(view) => Ok(view.image),
+    }
+}
+
+/// The size of all pictures: that of the first, scaled to the width that is asked for.
+fn size_of(first: &Image, width: Option<u32>) -> (u32, u32) {
+    let size = (first.width_px(), first.height_px());
+    width.map_or(size, |width| {
+        let height = f64::from(size.1) * f64::from(width) / f64::from(size.0.max(1));
+        (width, (height.round() as u32).clamp(1, WIDEST_PX))
+    })
+}
+
+/// The picture in that size.
+fn fitted(image: Arc<Image>, (width, height): (u32, u32)) -> Result<Arc<Image>, Error> {
+    if (image.width_px(), image.height_px()) == (width, height) {
+        return Ok(image);
+    }
+    let broken = || Error::usage("a picture has no pixels", "look at the world's files");
+    let given = image::RgbImage::from_raw(image.width_px(), image.height_px(), image.rgb().to_vec());
+    let given = given.filter(|given| given.width() > 0 && given.height() > 0).ok_or_else(broken)?;
+    let scaled = imageops::resize(&given, width, height, FilterType::Triangle);
+    Image::new(width, height, scaled.into_raw()).map(Arc::new).map_err(|_| broken())
+}

@@ -1,0 +1,73 @@
+//! Pictures one after the other: in a folder, a GIF or a video.
+
+mod folder;
+mod gif;
+#[cfg(not(feature = "recording"))]
+#[path = "no_mp4.rs"]
+mod mp4;
+#[cfg(feature = "recording")]
+mod mp4;
+
+use super::kind::{Kind, check_foreign};
+use crate::error::Error;
+use std::path::{Path, PathBuf};
+use wayword_core::Image;
+
+/// Takes pictures of one size.
+pub(super) trait Reel {
+    /// The next one.
+    ///
+    /// # Errors
+    /// When it cannot be encoded or written.
+    fn add(&mut self, picture: &Image) -> Result<(), Error>;
+
+    /// Puts everything into its place; returns the files.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, Error>;
+}
+
+/// Where pictures go.
+#[derive(Debug)]
+pub(super) enum Place {
+    Folder(PathBuf),
+    Gif(PathBuf),
+    Mp4(PathBuf),
+}
+
+impl Place {
+    /// What `out` asks for: a folder where it has no ending or is one, else a file by its ending.
+    ///
+    /// # Errors
+    /// When the ending is no such file's, this build cannot write it, or what is there must not be overwritten.
+    pub(super) fn of(out: &Path, data: Option<&Path>) -> Result<Self, Error> {
+        let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
+        if is_folder || (out.extension().is_none() && !out.exists()) {
+            check_foreign(out, data)?;
+            return Ok(Self::Folder(out.to_owned()));
+        }
+        let kind = Kind::of(out).filter(|kind| matches!(kind, Kind::Gif | Kind::Mp4)).ok_or_else(|| {
+            let problem = format!("--out {}: its ending does not say what to write", out.display());
+            Error::usage(problem, "end it in .gif or .mp4, or in / for a folder of numbered PNG files")
+        })?;
+        kind.check_free(out, data)?;
+        if kind == Kind::Gif {
+            return Ok(Self::Gif(out.to_owned()));
+        }
+        mp4::check()?;
+        Ok(Self::Mp4(out.to_owned()))
+    }
+
+    /// Begins to write: so many pictures for each second, and at most so many.
+    ///
+    /// # Errors
+    /// When the place cannot be written.
+    pub(super) fn open(self, fps: f64, most: usize) -> Result<Box<dyn Reel>, Error> {
+        Ok(match self {
+            Self::Folder(folder) => Box::new(folder::Folder::new(folder, most)?),
+            Self::Gif(file) => Box::new(gif::Gif::new(&file, fps)?),
+            Self::Mp4(file) => mp4::open(&file, fps)?,
+        })
+    }
+}

@@ -1,0 +1,65 @@
+//! A file that takes its place once it is whole.
+
+use crate::error::Error;
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+/// A file beside its place. Dropped before it is finished, it is removed, and what was there stays.
+pub(super) struct Unfinished {
+    file: BufWriter<File>,
+    beside: PathBuf,
+    out: PathBuf,
+}
+
+impl Unfinished {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// When it cannot be made.
+    pub(super) fn new(out: &Path) -> Result<Self, Error> {
+        let mut name = std::ffi::OsString::from(".");
+        name.push(out.file_name().unwrap_or_default());
+        name.push(format!(".{}.part", std::process::id()));
+        let beside = out.with_file_name(name);
+        let file = File::create(&beside).map_err(Error::io(out, "write"))?;
+        Ok(Self { file: BufWriter::new(file), beside, out: out.to_owned() })
+    }
+
+    /// A file of these bytes.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(super) fn whole(out: &Path, bytes: &[u8]) -> Result<(), Error> {
+        let mut file = Self::new(out)?;
+        file.write_all(bytes).map_err(Error::io(out, "write"))?;
+        file.finish()
+    }
+
+    /// Moves it to its place.
+    ///
+    /// # Errors
+    /// When it cannot be written or moved.
+    pub(super) fn finish(mut self) -> Result<(), Error> {
+        self.file.flush().and_then(|()| fs::rename(&self.beside, &self.out)).map_err(Error::io(&self.out, "write"))
+    }
+}
+
+impl Write for Unfinished {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // Of a finished one there is nothing left; what cannot be removed stays.
+        let _ = fs::remove_file(&self.beside);
+    }
+}

@@ -1,0 +1,65 @@
+//! Which path is shown.
+
+use crate::{
+    cli::{Walk, World},
+    error::Error,
+    item::{self, Item},
+    settings::Asked,
+};
+use std::path::Path as FilePath;
+use wayword_core::{Path, Platform};
+use wayword_formats::{Format, detect, jsonl};
+
+/// Names of items that an error tells.
+const TOLD: usize = 5;
+
+/// The path that is asked for.
+///
+/// # Errors
+/// When there is none of that kind or name, or files cannot be read.
+pub(super) fn path(walk: &Walk, world: &World, platform: &dyn Platform) -> Result<Path, Error> {
+    if let Some(file) = &walk.episodes
+        && detect(file)? == Format::Wayword
+    {
+        // Its records hold their paths frame by frame, which lead over viewpoints only in some worlds.
+        return recorded(file, walk);
+    }
+    let asked = Asked {
+        platform: world.platform.clone(),
+        data: world.data.clone(),
+        at: world.at.clone(),
+        episodes: walk.episodes.clone(),
+        paths: walk.episodes.is_none().then_some(1),
+        scan: walk.scan.clone().map(|scan| vec![scan]),
+        hops: walk.hops.clone(),
+        metres: walk.metres.clone(),
+        seed: walk.seed,
+        ..Asked::default()
+    };
+    let settings = asked.resolve()?;
+    let items = item::items(&settings, platform)?;
+    let chosen = items.iter().find(|item| walk.item.as_deref().is_none_or(|id| item.id() == id));
+    let chosen = chosen.ok_or_else(|| absent(walk, items.iter().map(Item::id)))?;
+    Ok(chosen.path(&settings, platform)?)
+}
+
+/// The path of a record.
+fn recorded(file: &FilePath, walk: &Walk) -> Result<Path, Error> {
+    let records = jsonl::read(file)?;
+    let in_scene = |path: &Path| walk.scan.as_deref().is_none_or(|scan| path.scene.as_str() == scan);
+    let paths = || records.iter().map(|record| &record.path).filter(|path| in_scene(path));
+    let chosen = paths().find(|path| walk.item.as_ref().is_none_or(|id| path.id == *id));
+    chosen.cloned().ok_or_else(|| absent(walk, paths().map(|path| path.id.clone())))
+}
+
+fn absent(walk: &Walk, ids: impl Iterator<Item = String>) -> Error {
+    let mut some: Vec<String> = ids.collect();
+    some.dedup();
+    let more = if some.len() > TOLD { " ..." } else { "" };
+    some.truncate(TOLD);
+    let problem = match &walk.item {
+        Some(id) => format!("--item {id}: there is no such item"),
+        None => "there is no such item".to_owned(),
+    };
+    Error::usage(problem, format!("there are: {}{more}", some.join(", ")))
+}
