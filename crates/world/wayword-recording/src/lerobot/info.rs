@@ -123,7 +123,10 @@ fn collect<'a>(value: &'a Value, into: &mut Vec<&'a str>) {
     match value {
         Value::String(name) => into.push(name),
         Value::Array(values) => values.iter().for_each(|value| collect(value, into)),
-        Value::Object(groups) => groups.values().for_each(|value| collect(value, into)),
+        Value::Object(groups) => groups.iter().for_each(|(key, value)| {
+            // Some datasets number their names: {"x": 0, "y": 1}.
+            if value.as_u64() == Some(into.len() as u64) { into.push(key) } else { collect(value, into) }
+        }),
         _ => {}
     }
 }
@@ -142,6 +145,8 @@ mod tests {
         assert_eq!(list.names(), Some(vec!["x", "y"]));
         let grouped = feature(r#"{"dtype": "float32", "shape": [3], "names": {"b": ["x", "y"], "a": ["yaw"]}}"#);
         assert_eq!(grouped.names(), Some(vec!["x", "y", "yaw"]));
+        let numbered = feature(r#"{"dtype": "float32", "shape": [2], "names": {"x": 0, "y": 1}}"#);
+        assert_eq!(numbered.names(), Some(vec!["x", "y"]));
         for unnamed in [r#"null"#, r#"["state"]"#] {
             let json = format!(r#"{{"dtype": "float32", "shape": [2], "names": {unnamed}}}"#);
             assert_eq!(feature(&json).names(), None);

@@ -88,12 +88,24 @@ impl Footer {
         let leaves = leaves(thing.list(2))?;
         let groups = thing.list(4).iter().map(|group| read_group(group, leaves.len(), file_bytes));
         let groups: Vec<Group> = groups.collect::<Result<_, _>>()?;
-        let rows = groups.iter().fold(0_u64, |rows, group| rows.saturating_add(group.rows));
-        if rows > file_bytes.saturating_mul(MAX_ROWS_PER_BYTE) {
-            return Err(format!("announces {rows} rows in {file_bytes} bytes"));
-        }
+        check_sizes(&groups, file_bytes)?;
         Ok(Self { leaves, groups })
     }
+}
+
+/// Refuses what a file of this length cannot hold.
+fn check_sizes(groups: &[Group], file_bytes: u64) -> Result<(), String> {
+    let rows = groups.iter().fold(0_u64, |rows, group| rows.saturating_add(group.rows));
+    if rows > file_bytes.saturating_mul(MAX_ROWS_PER_BYTE) {
+        return Err(format!("announces {rows} rows in {file_bytes} bytes"));
+    }
+    // Else a short file could have the same bytes unfolded again and again.
+    let chunks = groups.iter().flat_map(|group| &group.chunks);
+    let bytes = chunks.fold(0_u64, |bytes, chunk| bytes.saturating_add(chunk.end - chunk.start));
+    if bytes > file_bytes {
+        return Err(format!("announces columns of {bytes} bytes in all, in a file of {file_bytes}"));
+    }
+    Ok(())
 }
 
 fn read_group(group: &Thing<'_>, leaves: usize, file_bytes: u64) -> Result<Group, String> {
@@ -215,5 +227,14 @@ mod tests {
         assert!(leaves(&vec![element("a", 1, 0); 100]).unwrap_err().contains("deep"));
         // What is announced is not reserved.
         assert!(leaves(&[element("schema", i64::MAX, 0)]).is_err());
+    }
+
+    #[test]
+    fn more_than_a_file_can_hold_is_refused() {
+        let group = |rows| Group { rows, chunks: vec![Chunk { codec: Codec::None, start: 4, end: 44 }] };
+        assert_eq!(check_sizes(&[group(700), group(700)], 100), Ok(()));
+        assert!(check_sizes(&[group(u64::MAX), group(1)], 100).unwrap_err().contains("rows in 100 bytes"));
+        let again = check_sizes(&[group(1), group(1), group(1)], 100);
+        assert!(again.unwrap_err().contains("columns of 120 bytes in all"));
     }
 }
