@@ -207,7 +207,7 @@ proptest! {
         fs::write(file, bytes).unwrap();
         for episode in 0..open(&root).map_or(0, |dataset| dataset.episodes.len()) {
             if let Ok(recording) = recording(&root, episode) {
-                let wanted: Vec<usize> = (0..recording.reel.times_s().len().min(3)).collect();
+                let wanted: Vec<usize> = (0..recording.reel.times_s().len().min(1)).collect();
                 let _: Result<_, _> = pictures(&recording, &wanted);
             }
         }

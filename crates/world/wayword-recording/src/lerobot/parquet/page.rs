@@ -230,3 +230,48 @@ fn length_at(bytes: &[u8], at: usize) -> Result<usize, String> {
     let length = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
     length.map(|length| u32::from_le_bytes(*length) as usize).ok_or_else(|| format!("byte {at} of a page: ends early"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Before a page of values: stored in 20 bytes, and unfolded to a number of bytes.
+    fn header(unfolded: &[u8]) -> Result<Header, String> {
+        let bytes = [&[0x15, 0, 0x15], unfolded, &[0x15, 40, 0x2c, 0x15, 2, 0x15, 0, 0, 0]].concat();
+        Header::read(&bytes).map(|(header, length)| {
+            assert_eq!(length, bytes.len());
+            header
+        })
+    }
+
+    fn leaf(physical: Physical) -> Leaf {
+        Leaf { path: vec!["x".to_owned()], physical, max_definition: 0, max_repetition: 0 }
+    }
+
+    #[test]
+    fn a_page_that_is_to_become_too_large_is_refused() {
+        let usual = header(&[0x50]).unwrap();
+        assert_eq!((usual.kind, usual.compressed, usual.unfolded, usual.values), (Kind::Values, 20, 40, 1));
+        let gigabyte = header(&[0x80, 0x80, 0x80, 0x80, 0x08]);
+        assert_eq!(gigabyte, Err("a page of 20 bytes is to unfold to 1073741824".to_owned()));
+    }
+
+    #[test]
+    fn entries_of_a_dictionary_must_be_there() {
+        let many = Header { kind: Kind::Dictionary, values: u64::MAX, ..header(&[0x50]).unwrap() };
+        for physical in [Physical::Double, Physical::Bytes, Physical::Other] {
+            assert!(Dictionary::new(&many, Codec::None, &leaf(physical), vec![0; 40]).is_err());
+        }
+        let two = Header { values: 2, ..many };
+        let dictionary = Dictionary::new(&two, Codec::None, &leaf(Physical::Int32), vec![7; 8]).unwrap();
+        assert_eq!(dictionary.entry(1), Ok(&[7; 4][..]));
+        assert_eq!(dictionary.entry(2), Err("entry 2 of a dictionary of 2".to_owned()));
+    }
+
+    #[test]
+    fn a_page_without_its_dictionary_is_refused() {
+        let numbers = Header { encoding: 8, ..header(&[0x50]).unwrap() };
+        let mut page = Page::new(&numbers, Codec::None, &leaf(Physical::Int32), vec![1, 2, 0]).unwrap();
+        assert!(page.next(None).unwrap_err().contains("no dictionary"));
+    }
+}
