@@ -2,7 +2,12 @@
 
 use crate::fault::{self, FileError};
 use gltf::json::{Index, Root, buffer::View};
-use std::path::{Component, Path};
+use std::{
+    cell::{Cell, RefCell},
+    collections::BTreeMap,
+    path::{Component, Path, PathBuf},
+    rc::Rc,
+};
 
 const HINT: &str = "export the scene again as GLB";
 /// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
@@ -13,7 +18,8 @@ const KNOWN: [&str; 4] = ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_
 /// A document and its bytes.
 pub(super) struct Asset {
     pub(super) root: Root,
-    buffers: Vec<Vec<u8>>,
+    buffers: Vec<Rc<Vec<u8>>>,
+    beside: Beside,
 }
 
 impl Asset {
@@ -30,15 +36,27 @@ impl Asset {
             let hint = "export it without compression of its geometry";
             return Err(FileError::new(file, format!("needs the extension {name:.60}, which cannot be read"), hint));
         }
+        let folder = file.parent().unwrap_or(Path::new("")).to_owned();
+        let beside = Beside { folder, read: RefCell::default(), bytes: Cell::new(bytes.len() as u64) };
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
             let bytes = match &buffer.uri {
-                None => blob.take().ok_or_else(|| wrong(format!("buffer {index} has no bytes")))?,
-                Some(uri) => beside(file, uri).map_err(|reason| wrong(format!("buffer {index}: {reason}")))?,
+                None => Rc::new(blob.take().ok_or_else(|| wrong(format!("buffer {index} has no bytes")))?),
+                Some(uri) => beside.bytes(uri).map_err(|reason| wrong(format!("buffer {index}: {reason}")))?,
             };
             buffers.push(bytes);
         }
-        Ok(Self { root, buffers })
+        Ok(Self { root, buffers, beside })
+    }
+
+    /// The bytes that an address names.
+    pub(super) fn beside(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
+        self.beside.bytes(uri)
+    }
+
+    /// Length of the file and of all that has been read beside it so far: what may be made of it is measured by that.
+    pub(super) fn length(&self) -> u64 {
+        self.beside.bytes.get()
     }
 
     /// The bytes of a view.
@@ -55,18 +73,37 @@ impl Asset {
     }
 }
 
-/// The bytes that a relative address names: a file beside, or those within the address itself.
-pub(super) fn beside(file: &Path, uri: &str) -> Result<Vec<u8>, String> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        let (_, text) = data.split_once(";base64,").ok_or("a data address without base64")?;
-        return base64::Engine::decode(&base64::engine::general_purpose::STANDARD, text)
-            .map_err(|error| error.to_string());
+/// What lies beside a file: each once, however often and in whatever spelling it is named.
+struct Beside {
+    folder: PathBuf,
+    read: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
+    bytes: Cell<u64>,
+}
+
+impl Beside {
+    /// The bytes that a relative address names: a file beside, or those within the address itself.
+    fn bytes(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
+        if let Some(data) = uri.strip_prefix("data:") {
+            let (_, text) = data.split_once(";base64,").ok_or("a data address without base64")?;
+            let decoded = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, text);
+            return decoded.map(Rc::new).map_err(|error| error.to_string());
+        }
+        let name = uri.replace("%20", " ");
+        let mut target = PathBuf::new();
+        for part in Path::new(&name).components() {
+            match part {
+                Component::Normal(part) if !name.contains(':') => target.push(part),
+                Component::CurDir => {}
+                _ => return Err(format!("{uri:.80?} is not a file beside the scene")),
+            }
+        }
+        if let Some(known) = self.read.borrow().get(&target) {
+            return Ok(known.clone());
+        }
+        let bytes = fault::bytes(&self.folder.join(&target), MAX_BYTES, HINT).map_err(|error| error.to_string())?;
+        self.bytes.set(self.bytes.get().saturating_add(bytes.len() as u64));
+        let bytes = Rc::new(bytes);
+        self.read.borrow_mut().insert(target, bytes.clone());
+        Ok(bytes)
     }
-    let name = uri.replace("%20", " ");
-    let path = Path::new(&name);
-    if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) || name.contains(':') {
-        return Err(format!("{uri:.80?} is not a file beside the scene"));
-    }
-    let target = file.parent().unwrap_or(Path::new("")).join(path);
-    fault::bytes(&target, MAX_BYTES, HINT).map_err(|error| error.to_string())
 }

@@ -20,6 +20,9 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_render::{Material, Mesh, Texture};
 
 const HINT: &str = "export the scene again as GLB";
+/// Corners of triangles that any file may have, and so many more for each of its bytes: a mesh may stand in a thousand places.
+const FREE_CORNERS: u64 = 1 << 22;
+const CORNERS_PER_BYTE: u64 = 64;
 
 /// What a scene is drawn of, in Wayword's frame.
 #[derive(Debug, Default)]
@@ -45,11 +48,19 @@ impl Model {
         let asset = Asset::read(file)?;
         let mut reading = Reading { asset: &asset, model: Self::default(), textures: BTreeMap::new(), plain: None };
         reading.surfaces(file)?;
+        let most_corners = FREE_CORNERS + CORNERS_PER_BYTE.saturating_mul(asset.length());
+        let mut corners = 0;
         for (number, place) in nodes::placed_meshes(&asset.root) {
             let mesh = asset.root.meshes.get(number);
             for (index, primitive) in mesh.iter().flat_map(|mesh| mesh.primitives.iter().enumerate()) {
                 let wrong = |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), HINT);
                 let Some(mut mesh) = primitive::read(&asset, primitive).map_err(wrong)? else { continue };
+                corners += mesh.positions.len() as u64 + 3 * mesh.triangles.len() as u64;
+                if corners > most_corners {
+                    let reason =
+                        format!("its meshes stand in so many places that they have over {most_corners} corners");
+                    return Err(FileError::new(file, reason, HINT));
+                }
                 mesh.material = match primitive.material.map(|material| material.value()) {
                     Some(material) if material < asset.root.materials.len() => material,
                     _ => reading.plain(),
@@ -106,7 +117,7 @@ impl Reading<'_> {
                 None => None,
                 Some(info) => {
                     let wrong = |reason| FileError::new(file, format!("material {number}: {reason}"), HINT);
-                    Some(self.texture(file, info.index.value()).map_err(wrong)?)
+                    Some(self.texture(info.index.value()).map_err(wrong)?)
                 }
             };
             let base_colour =
@@ -116,12 +127,17 @@ impl Reading<'_> {
         Ok(())
     }
 
-    fn texture(&mut self, file: &Path, number: usize) -> Result<usize, String> {
+    fn texture(&mut self, number: usize) -> Result<usize, String> {
         if let Some(known) = self.textures.get(&number) {
             return Ok(*known);
         }
-        self.model.textures.push(pictures::texture(self.asset, file, number)?);
-        let index = self.model.textures.len() - 1;
+        self.model.textures.push(pictures::texture(self.asset, number)?);
+        let (index, texels) =
+            (self.model.textures.len() - 1, self.model.textures.iter().map(|texture| texture.texels.len() as u64));
+        let most = pictures::most_texels(self.asset.length());
+        if texels.sum::<u64>() > most {
+            return Err(format!("texture {number}: the pictures have over {most} texels together"));
+        }
         self.textures.insert(number, index);
         Ok(index)
     }

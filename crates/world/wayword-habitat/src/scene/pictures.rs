@@ -1,9 +1,9 @@
 //! Textures: PNG and JPEG, and Basis as HM3D has it (`GOOGLE_texture_basis`).
 
-use super::asset::{Asset, beside};
+use super::asset::Asset;
 use crate::fault::contained;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
-use std::{io::Cursor, path::Path};
+use std::io::Cursor;
 use wayword_render::{MAX_TEXTURE_SIDE, Texture};
 
 /// Texels that any picture may have.
@@ -12,7 +12,7 @@ const FREE_TEXELS: u64 = 1 << 20;
 const TEXELS_PER_BYTE: u64 = 512;
 
 /// The texture of this number.
-pub(super) fn texture(asset: &Asset, file: &Path, number: usize) -> Result<Texture, String> {
+pub(super) fn texture(asset: &Asset, number: usize) -> Result<Texture, String> {
     let texture = asset.root.textures.get(number).ok_or_else(|| format!("texture {number} does not exist"))?;
     let basis = texture.extensions.as_ref().and_then(|all| all.others.get("GOOGLE_texture_basis"));
     let basis = basis.and_then(|basis| basis.get("source")).and_then(serde_json::Value::as_u64);
@@ -23,7 +23,7 @@ pub(super) fn texture(asset: &Asset, file: &Path, number: usize) -> Result<Textu
     let bytes = match (&image.buffer_view, &image.uri) {
         (Some(view), _) => asset.view(*view).map_err(wrong)?.1,
         (None, Some(uri)) => {
-            read = beside(file, uri).map_err(wrong)?;
+            read = asset.beside(uri).map_err(wrong)?;
             &read
         }
         (None, None) => return Err(wrong("has no bytes".to_owned())),
@@ -37,6 +37,11 @@ fn decode(bytes: &[u8]) -> Result<Texture, String> {
     if bytes.starts_with(b"sB") { basis(bytes) } else { common(bytes) }
 }
 
+/// Texels that all pictures of a file of so many bytes may have together: many may name the same bytes.
+pub(super) fn most_texels(bytes: u64) -> u64 {
+    4 * FREE_TEXELS + TEXELS_PER_BYTE.saturating_mul(bytes)
+}
+
 fn check(width: u32, height: u32, bytes: usize) -> Result<(), String> {
     let texels = u64::from(width) * u64::from(height);
     if width.max(height) > MAX_TEXTURE_SIDE || texels > FREE_TEXELS + TEXELS_PER_BYTE * bytes as u64 {
@@ -47,9 +52,12 @@ fn check(width: u32, height: u32, bytes: usize) -> Result<(), String> {
 
 fn common(bytes: &[u8]) -> Result<Texture, String> {
     let open = || image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string());
-    let (width, height) = open()?.into_dimensions().map_err(|error| error.to_string())?;
-    check(width, height, bytes.len())?;
-    let picture = contained(|| open()?.decode().map_err(|error| error.to_string()))?.into_rgba8();
+    let picture = contained(|| {
+        let (width, height) = open()?.into_dimensions().map_err(|error| error.to_string())?;
+        check(width, height, bytes.len())?;
+        open()?.decode().map_err(|error| error.to_string())
+    })?;
+    let picture = picture.into_rgba8();
     let texels = picture.pixels().map(|pixel| pixel.0).collect();
     Texture::new(picture.width(), picture.height(), texels).map_err(|error| error.to_string())
 }

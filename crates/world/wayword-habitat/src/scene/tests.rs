@@ -130,6 +130,47 @@ fn nodes_in_a_circle_come_to_an_end() {
     assert_eq!(read(&glb(&document, &bytes)).unwrap().meshes.len(), 1);
 }
 
+#[test]
+fn what_is_named_again_and_again_is_refused_before_it_fills_memory() {
+    let (mut document, mut bytes) = triangle();
+    let mut png = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut png);
+    let grey = vec![7; 1 << 20];
+    image::ImageEncoder::write_image(encoder, &grey, 1024, 1024, image::ExtendedColorType::L8).unwrap();
+    document["bufferViews"][3] = json!({ "buffer": 0, "byteOffset": bytes.len(), "byteLength": png.len() });
+    bytes.extend(&png);
+    document["buffers"][0]["byteLength"] = bytes.len().into();
+    document["textures"] = vec![json!({ "source": 0 }); 9].into();
+    let surface = |index: usize| json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": index } } });
+    document["materials"] = (0..9).map(surface).collect::<Vec<_>>().into();
+    let painted = read(&glb(&document, &bytes)).unwrap_err();
+    assert!(painted.contains("texels together"), "{painted}");
+
+    let (mut document, mut bytes) = triangle();
+    document["accessors"][2] = json!({ "bufferView": 4, "componentType": 5121, "count": 60_000, "type": "SCALAR" });
+    let view = json!({ "buffer": 0, "byteOffset": bytes.len(), "byteLength": 60_000 });
+    document["bufferViews"].as_array_mut().unwrap().push(view);
+    bytes.extend([0; 60_000]);
+    document["nodes"] = vec![json!({ "mesh": 0 }); 400].into();
+    document["scenes"][0]["nodes"] = (0..400).collect::<Vec<_>>().into();
+    let placed = read(&glb(&document, &bytes)).unwrap_err();
+    assert!(placed.contains("corners"), "{placed}");
+}
+
+#[test]
+fn a_file_beside_is_read_once_however_it_is_spelt() {
+    let (mut document, bytes) = triangle();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("x.bin"), &bytes).unwrap();
+    let spellings = ["x.bin", "./x.bin", "././x.bin", "x.bin/."];
+    document["buffers"] = spellings.map(|uri| json!({ "byteLength": bytes.len(), "uri": uri })).to_vec().into();
+    let file = folder.path().join("x.gltf");
+    std::fs::write(&file, document.to_string()).unwrap();
+    let asset = asset::Asset::read(&file).unwrap();
+    assert_eq!(asset.length(), document.to_string().len() as u64 + bytes.len() as u64);
+    assert_eq!(Model::of(&Stage::of(&file).unwrap()).unwrap().triangles().count(), 1);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
