@@ -3,16 +3,13 @@
 use rand::Rng;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{
-    DVec3, Frame, Gaze, Heading, Label, Motion, ObjectId, Path, PathRequest, PlatformError, Pose, SceneId, Target,
+    DVec3, Frame, Gaze, Heading, Label, ObjectId, Path, PathRequest, PlatformError, Pose, SceneId, Target,
     ViewpointGraph, ViewpointId, path::Stop, rng,
 };
+use wayword_platforms::wander::{Wander, no_such_walk, wander};
 
 /// Height of the eye above the ground, metres.
 pub(crate) const EYE_M: f64 = 1.5;
-/// So many pairs of places are tried.
-const TRIES: usize = 400;
-/// Ends at which nothing fit to be a target is visible that are passed over before one is accepted.
-const MAX_BARE_ENDS: usize = 6;
 /// A corner so near to the frame before it gets none of its own, metres.
 const CROWDED_M: f64 = 0.4;
 /// A target is at most so far from the last frame, metres.
@@ -33,8 +30,7 @@ pub(crate) trait Walkable {
     }
 }
 
-/// A walk between two of `eyes` whose length keeps to `request`, with frames at most `interval_m` apart and at corners. Hops
-/// play no part: a walk over open ground has none.
+/// A walk between two of `eyes` whose length keeps to `request`, with frames at most `interval_m` apart and at corners.
 pub(crate) fn path(
     world: &mut dyn Walkable,
     (scene, eyes): (&SceneId, &[DVec3]),
@@ -42,37 +38,32 @@ pub(crate) fn path(
     seed: u64,
     interval_m: f64,
 ) -> Result<Path, PlatformError> {
-    let mut dice = rng(seed, &["live path", scene.as_str()]);
-    let mut bare = None;
-    let mut bare_ends = 0;
-    for _ in 0..if eyes.is_empty() { 0 } else { TRIES } {
-        let (from, to) = (eyes[dice.random_range(0..eyes.len())], eyes[dice.random_range(0..eyes.len())]);
-        if from == to || from.distance(to) > *request.length_m.end() {
-            continue;
-        }
-        let Some(way) = world.way(from, to)? else { continue };
-        let frames = Path::frames_along(stops(&way, interval_m), None);
-        let mut path =
-            Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
-        if !request.allows_length_of(&path) {
-            continue;
-        }
-        let Some(last) = path.frames.last() else { continue };
-        let labels = world.labels_around(last.pose)?;
-        path.target = target(&labels, &mut dice);
-        if path.target.is_some() {
-            return Ok(path);
-        }
-        bare_ends += 1;
-        bare.get_or_insert(path);
-        if bare_ends > MAX_BARE_ENDS {
-            break;
-        }
+    let dice = rng(seed, &["live path", scene.as_str()]);
+    let found = wander(&mut Walker { world, eyes, dice, interval_m }, scene, request, seed)?;
+    found.ok_or_else(|| no_such_walk(scene, request))
+}
+
+/// Walks through a live world.
+struct Walker<'a, R> {
+    world: &'a mut dyn Walkable,
+    eyes: &'a [DVec3],
+    dice: R,
+    interval_m: f64,
+}
+
+impl<R: Rng> Wander for Walker<'_, R> {
+    fn ends(&mut self) -> Option<(DVec3, DVec3)> {
+        let mut eye = || self.eyes[self.dice.random_range(0..self.eyes.len())];
+        (!self.eyes.is_empty()).then(|| (eye(), eye()))
     }
-    bare.ok_or_else(|| {
-        let request = format!("{} to {} metres", request.length_m.start(), request.length_m.end());
-        PlatformError::NoSuchPath { scene: scene.clone(), request }
-    })
+
+    fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError> {
+        Ok(self.world.way(from, to)?.map(|way| stops(&way, self.interval_m)))
+    }
+
+    fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError> {
+        Ok(target(&self.world.labels_around(last.pose)?, &mut self.dice))
+    }
 }
 
 /// Where frames are taken: at both ends, at corners, and at equal distances of at most `interval_m` between.

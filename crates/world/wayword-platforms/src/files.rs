@@ -23,11 +23,7 @@ pub fn wrong(file: &Path, reason: impl Into<String>, hint: &'static str) -> Plat
 ///
 /// # Errors
 /// When it cannot be read, or has more.
-pub fn bytes_if_there(
-    file: &Path,
-    max_bytes: u64,
-    hint: &'static str,
-) -> Result<Option<Vec<u8>>, PlatformError> {
+pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<Vec<u8>>, PlatformError> {
     let opened = match File::open(file) {
         Ok(opened) => opened,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),

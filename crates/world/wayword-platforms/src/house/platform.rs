@@ -14,8 +14,8 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
-    SceneId, View, ViewpointGraph, ViewpointId,
+    DVec3, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform,
+    PlatformError, Pose, SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
 

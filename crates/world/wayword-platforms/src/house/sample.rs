@@ -1,15 +1,12 @@
 //! Random walks through a house: a shortest way between two places, with frames along it.
 
 use super::{dice::Dice, graph::EYE_M, ground::Way, objects::Role, platform::Home};
+use crate::wander::{Wander, no_such_walk, wander};
 use wayword_core::{
-    DVec3, Label, Motion, Path, PathRequest, PlatformError, Pose, SceneId, Target, ViewpointGraph, ViewpointId,
+    DVec3, Frame, Label, Path, PathRequest, PlatformError, Pose, SceneId, Target, ViewpointGraph, ViewpointId,
     path::Stop, seed::derive,
 };
 
-/// So many pairs of places are tried.
-const TRIES: usize = 400;
-/// Ends at which nothing fit to be a target is visible that are passed over before one is accepted.
-const MAX_BARE_ENDS: usize = 12;
 /// A corner so near to the frame before it gets none of its own, metres.
 const CROWDED_M: f64 = 0.4;
 /// A target is at most so far from the last frame, metres.
@@ -17,8 +14,7 @@ const TARGET_REACH_M: f64 = 4.0;
 
 /// A walk whose length keeps to `request`, with frames at most `interval_m` apart and at every corner.
 ///
-/// Both ends are walkable places near random viewpoints; the walk starts looking along its first hop. Hops play no part:
-/// a walk over open ground has none.
+/// Both ends are walkable places near random viewpoints; the walk starts looking along its first hop.
 pub(super) fn path(
     scene: &SceneId,
     home: &Home,
@@ -26,42 +22,32 @@ pub(super) fn path(
     seed: u64,
     interval_m: f64,
 ) -> Result<Path, PlatformError> {
-    let mut dice = Dice::new(derive(seed, &["house path"]), &[scene.as_str()]);
-    let places = home.standing_places();
-    let mut bare = None;
-    let mut bare_ends = 0;
-    for _ in 0..TRIES {
-        let (from, to) = (places[dice.index(places.len())], places[dice.index(places.len())]);
-        if from == to || from.distance(to) > *request.length_m.end() {
-            continue;
-        }
-        let Ok(way) = home.ground.geodesic(from, to) else {
-            continue;
-        };
-        let frames = Path::frames_along(stops(&way, interval_m), None);
-        let mut path =
-            Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
-        if !request.allows_length_of(&path) {
-            continue;
-        }
-        let Some(last) = path.frames.last() else {
-            continue;
-        };
-        path.target = target(home, &mut dice, last.pose)?;
-        if path.target.is_some() {
-            return Ok(path);
-        }
-        bare_ends += 1;
-        bare.get_or_insert(path);
-        if bare_ends > MAX_BARE_ENDS {
-            break;
-        }
+    let dice = Dice::new(derive(seed, &["house path"]), &[scene.as_str()]);
+    let mut walker = Walker { home, places: home.standing_places(), dice, interval_m };
+    wander(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
+}
+
+/// Walks through a house.
+struct Walker<'a> {
+    home: &'a Home,
+    places: Vec<DVec3>,
+    dice: Dice,
+    interval_m: f64,
+}
+
+impl Wander for Walker<'_> {
+    fn ends(&mut self) -> Option<(DVec3, DVec3)> {
+        let mut place = || self.places[self.dice.index(self.places.len())];
+        (!self.places.is_empty()).then(|| (place(), place()))
     }
-    bare.ok_or_else(|| {
-        let length_m = &request.length_m;
-        let request = format!("{} to {} metres", length_m.start(), length_m.end());
-        PlatformError::NoSuchPath { scene: scene.clone(), request }
-    })
+
+    fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError> {
+        Ok(self.home.ground.geodesic(from, to).ok().map(|way| stops(&way, self.interval_m)))
+    }
+
+    fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError> {
+        target(self.home, &mut self.dice, last.pose)
+    }
 }
 
 /// Where frames are taken: at both ends, at corners, and at equal distances of at most `interval_m` between.

@@ -6,8 +6,8 @@ use super::{
     read,
     thirty_six::ThirtySix,
 };
-use glam::DMat3;
 use crate::files;
+use glam::DMat3;
 use std::path::Path;
 use wayword_core::{Gaze, Image, PlatformError, SceneId};
 use wayword_render::{CubeMap, Face, sample_view};
