@@ -19,7 +19,7 @@ pub struct Output {
 const MOST_ERROR_CHARS: usize = 1000;
 
 /// A text that may hold anything, made fit for a terminal.
-fn tame(text: &str) -> String {
+pub(crate) fn tame(text: &str) -> String {
     let mut tamed: String =
         text.chars().take(MOST_ERROR_CHARS).map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect();
     if text.chars().nth(MOST_ERROR_CHARS).is_some() {

@@ -156,7 +156,7 @@ fn a_world_of_viewpoints_shows_nothing_between_them() {
     assert!(view(&building, &path)["frames"].as_u64().unwrap() > 1);
 }
 
-#[cfg(not(feature = "recording"))]
+#[cfg(not(feature = "video"))]
 #[test]
 fn a_build_without_films_says_how_to_get_one() {
     let told = refused(&Building::new(), &["path", "--out", "walk.mp4"]);
@@ -164,7 +164,7 @@ fn a_build_without_films_says_how_to_get_one() {
 }
 
 /// Every frame of an MP4 file, decoded: its samples lie one after the other in `mdat`, each unit behind its length.
-#[cfg(feature = "recording")]
+#[cfg(feature = "video")]
 fn decoded(bytes: &[u8]) -> Vec<RgbImage> {
     use openh264::{decoder::Decoder, formats::YUVSource};
     let find = |name: &[u8]| bytes.windows(4).position(|four| four == name).unwrap();
@@ -197,7 +197,7 @@ fn decoded(bytes: &[u8]) -> Vec<RgbImage> {
     frames
 }
 
-#[cfg(feature = "recording")]
+#[cfg(feature = "video")]
 #[test]
 fn a_film_shows_the_pictures_in_their_order() {
     let building = Building::new();

@@ -27,7 +27,7 @@ fn generate(building: &Building, platform: &str, scene: &str, at: &str) -> Ran {
 fn every_world_is_listed_with_what_it_needs() {
     let listed = Building::new().wayword(&["platforms", "--json"]).json();
     let names: Vec<&str> = listed.as_array().unwrap().iter().map(|world| world["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["house", "matterport", "process", "habitat", "tdw", "virtualhome"]);
+    assert_eq!(names, ["house", "matterport", "process", "habitat", "tdw", "virtualhome", "recording"]);
     for world in listed.as_array().unwrap() {
         assert!(world["is_here"] == true && !world["needs"].as_str().unwrap().is_empty(), "{world}");
     }
@@ -41,6 +41,8 @@ fn what_is_missing_is_told() {
         (&["--platform", "process"], "needs --data"),
         (&["--platform", "process", "--data", "nothing.json"], "nothing.json"),
         (&["--platform", "habitat", "--data", "nowhere"], "nowhere"),
+        (&["--platform", "recording"], "needs --data"),
+        (&["--platform", "recording", "--data", "nowhere"], "nowhere"),
         (&["--platform", "tdw", "--at", "here"], "--at here"),
         (&["--platform", "virtualhome", "--at", "here"], "--at here"),
         (&["--platform", "moon"], "virtualhome"),

@@ -16,6 +16,7 @@ use crate::{error::Error, output, settings::Settings};
 use std::{path::Path, sync::Arc};
 use wayword_core::Platform;
 use wayword_platforms::{house::HousePlatform, matterport::Matterport, process::ProcessPlatform};
+use wayword_recording::RecordingPlatform;
 
 pub use remembering::Remembering;
 
@@ -35,7 +36,7 @@ pub struct Listed {
 }
 
 /// All platforms, in this build or not.
-pub const PLATFORMS: [Listed; 6] = [
+pub const PLATFORMS: [Listed; 7] = [
     Listed {
         name: "house",
         what: "generated homes, built in",
@@ -78,6 +79,17 @@ pub const PLATFORMS: [Listed; 6] = [
         offers: "pictures, labels, rooms",
         is_here: cfg!(feature = "live"),
     },
+    Listed {
+        name: "recording",
+        what: "what robots leave: folders of pictures, MP4, MCAP, LeRobot datasets",
+        needs: if cfg!(all(feature = "lerobot", feature = "mcap", feature = "video")) {
+            "--data FILE or DIR, with poses in it or beside it for turns and distances (docs/RECORDINGS.md)"
+        } else {
+            "--data DIR of pictures, with poses beside them for turns and distances (docs/RECORDINGS.md); other recordings need the feature full"
+        },
+        offers: "pictures along the way that was recorded, and nothing else: a model has to see",
+        is_here: true,
+    },
 ];
 
 /// Opens the platform that the settings name.
@@ -101,6 +113,7 @@ pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<B
         "habitat" => habitat::open(data()?),
         "tdw" => live::tdw(data().ok(), at),
         "virtualhome" => live::virtualhome(at),
+        "recording" => Ok(Box::new(RecordingPlatform::open(data()?, Arc::new(output::pass_on))?)),
         other => Err(Error::usage(
             format!("there is no platform {other:?}"),
             format!("name one of: {}", PLATFORMS.map(|platform| platform.name).join(", ")),

@@ -3,7 +3,8 @@
 use crate::{
     calls::Spent,
     error::{Error, Exit},
-    run::{RunFolder, file, lines},
+    output::tame,
+    run::{Rejected, RunFolder, file, lines},
 };
 use serde::{Deserialize, Serialize};
 use std::{fmt, path::Path};
@@ -26,6 +27,9 @@ pub struct Summary {
     pub rejected: usize,
     /// Items that failed because a model gave nothing; the same command tries them again.
     pub errors: usize,
+    /// What became of the first item that failed, else of the first that was rejected.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_loss: Option<String>,
     /// Who perceived and wrote.
     pub minds: String,
     /// What the calls of this command came to, where models took part.
@@ -72,10 +76,28 @@ pub(super) fn summary(
         finished_by_rules: finished,
         rejected: run.rejected.len(),
         errors: run.errors.len(),
+        first_loss: match first_loss(&folder.join(file::ERRORS))? {
+            None => first_loss(&folder.join(file::REJECTED))?,
+            failed => failed,
+        },
         minds: minds.unwrap_or_default(),
         spent,
         stopped: stopped.map(|reason| reason.to_string()),
     })
+}
+
+/// The first line of a file of losses, in words.
+fn first_loss(losses: &Path) -> Result<Option<String>, Error> {
+    let mut first = None;
+    lines::each(losses, |line| {
+        if first.is_none() {
+            let Rejected { item, style, reason, .. } = line.parse()?;
+            let style = if style.is_empty() { style } else { format!(" ({style})") };
+            first = Some(format!("{item}{style}: {reason}"));
+        }
+        Ok(())
+    })?;
+    Ok(first)
 }
 
 /// The fields of an instruction's line that are counted and told.
@@ -105,6 +127,9 @@ impl fmt::Display for Summary {
         )?;
         if self.errors > 0 {
             writeln!(f, "{} items failed (errors.jsonl); the same command tries them again", self.errors)?;
+        }
+        if let Some(loss) = &self.first_loss {
+            writeln!(f, "the first of them, {}", tame(loss))?;
         }
         if !self.minds.is_empty() {
             writeln!(f, "minds: {}", self.minds)?;

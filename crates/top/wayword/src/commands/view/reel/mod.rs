@@ -2,10 +2,10 @@
 
 mod folder;
 mod gif;
-#[cfg(not(feature = "recording"))]
+#[cfg(not(feature = "video"))]
 #[path = "no_mp4.rs"]
 mod mp4;
-#[cfg(feature = "recording")]
+#[cfg(feature = "video")]
 mod mp4;
 
 use super::kind::{Kind, check_foreign};
