@@ -18,7 +18,7 @@ pub fn read(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode>, Error>
             let paths: BTreeMap<&str, &wayword_core::Path> =
                 records.iter().map(|record| (record.path.id.as_str(), &record.path)).collect();
             for episode in episodes.iter_mut().filter(|episode| episode.viewpoints.is_empty()) {
-                if let Some(path) = paths.get(episode.id.as_str()) {
+                if let Some(path) = paths.get(episode.id.as_str()).filter(|path| path.motion.is_known()) {
                     episode.viewpoints = nearest_along(platform, path)?;
                 }
             }

@@ -9,7 +9,7 @@ use crate::{
     team::Team,
     world::Remembering,
 };
-use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
+use wayword_core::{Frame, Gaze, Motion, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
     evidence::Evidence,
     minds::distinguish,
@@ -71,12 +71,18 @@ pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result
     Ok(path)
 }
 
-/// What labels tell of all that is around each frame: ahead, right, behind, left. Pictures may be left out.
+/// What labels tell of all that is around each frame: ahead, right, behind, left; ahead alone where no frame has a pose.
+/// Pictures may be left out.
 ///
 /// # Errors
 /// When a view cannot be had.
 pub fn panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
-    path.frames.iter().map(|frame| look_around(platform, &path.scene, frame)).collect()
+    let ahead = |frame: &Frame| platform.look_without_picture(&path.scene, frame, Gaze::quarter(frame.pose.heading));
+    let views = |frame: &Frame| match path.motion {
+        Motion::Known => look_around(platform, &path.scene, frame),
+        Motion::Unknown => ahead(frame).map(|view| vec![view]),
+    };
+    path.frames.iter().map(views).collect()
 }
 
 fn look_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<View>, PlatformError> {

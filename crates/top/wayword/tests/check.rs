@@ -84,6 +84,22 @@ fn what_generate_wrote_passes_when_it_is_checked_as_anyones() {
 }
 
 #[test]
+fn a_file_that_calls_the_motion_unknown_is_held_to_the_world_s_own_poses() {
+    let building = Building::new();
+    let file = "run/instructions.jsonl";
+    building.run_over_episodes("run");
+    let held = |text: String| {
+        building.write(file, text);
+        let ran = check(&building, file, &["--json"]);
+        (ran.code, ran.json())
+    };
+    let text = std::fs::read_to_string(building.path(file)).unwrap().replace("urn right", "urn left ");
+    let unknown = text.replace("\"frames\":", "\"motion\":\"unknown\",\"frames\":");
+    assert!(unknown != text);
+    assert_eq!(held(text), held(unknown));
+}
+
+#[test]
 fn each_kind_of_mistake_is_caught_with_its_words() {
     let copied = &built_in("r2r").unwrap().references[0];
     let copied: Vec<&str> = copied.split(' ').take(6).collect();

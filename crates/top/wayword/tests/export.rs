@@ -7,7 +7,7 @@ mod common;
 use common::{Building, files};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{Heading, Path, ViewpointId};
+use wayword_core::{Heading, Motion, Path, ViewpointId};
 use wayword_formats::{Format, jsonl, jsonl::Split};
 
 fn export(building: &Building, format: &str, out: &str) -> Value {
@@ -157,6 +157,28 @@ fn bad_combinations_are_refused_with_what_to_do() {
         let error = ran.refused();
         assert!(error.contains(problem) && error.contains(hint), "{arguments:?}: {error}");
         assert!(files(&building.path(".")) == before, "{arguments:?} left something behind");
+    }
+}
+
+#[test]
+fn a_recording_without_poses_is_exported_as_records_alone() {
+    let building = Building::new();
+    let mut records = building.run_over_episodes("run");
+    for record in &mut records {
+        record.path.motion = Motion::Unknown;
+    }
+    jsonl::write(&building.path("run/instructions.jsonl"), &records).unwrap();
+    for format in Format::ALL {
+        let ran =
+            building.wayword(&["export", "--run", "run", "--style", "r2r", "--format", format.name(), "--out", "o"]);
+        if format == Format::Wayword {
+            assert_eq!(ran.code, Some(0), "{ran:?}");
+            assert!(jsonl::read(&building.path("o")).unwrap().iter().all(|record| !record.path.motion.is_known()));
+        } else {
+            let error = ran.refused();
+            assert!(error.contains("demands poses") && error.contains("--format wayword"), "{error}");
+            assert!(!building.path("o").exists());
+        }
     }
 }
 

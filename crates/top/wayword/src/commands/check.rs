@@ -142,6 +142,10 @@ fn subjects(file: &FilePath, platform: &dyn Platform) -> Result<Vec<(Path, Vec<S
 fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
     let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
     let Some(viewpoints) = viewpoints else { return Ok(path) };
+    // Names of pictures are no viewpoints. The world says whether it has any: a file is not believed in this either.
+    if !path.motion.is_known() && platform.graph(&path.scene)?.is_empty() {
+        return Ok(path);
+    }
     let heading = path.frames.first().map(|frame| frame.pose.heading);
     let object = path.target.as_ref().map(|target| &target.object);
     Ok(path_of(platform, &path.id, &path.scene, &viewpoints, heading, object)?)

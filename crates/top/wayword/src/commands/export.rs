@@ -92,6 +92,7 @@ fn refuse_what_only_records_bear(args: &Export) -> Result<(), Error> {
 /// Writes one of the field's formats, and provenance beside it where its items have no place for it: VLN-CE's loader
 /// chokes on unknown fields, and R2R's items gather several instructions.
 fn write_as(format: Format, file: &Path, records: &[Record]) -> Result<Option<PathBuf>, Error> {
+    refuse_without_poses(format, records)?;
     let within = matches!(format, Format::Reverie | Format::Rxr);
     let episodes: Vec<Episode> = records.iter().map(|record| episode(record, within)).collect();
     let episodes = if format == Format::Reverie { gathered(episodes) } else { episodes };
@@ -110,6 +111,17 @@ fn write_as(format: Format, file: &Path, records: &[Record]) -> Result<Option<Pa
         .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": about(record)}))
         .collect();
     Ok(Some(write_sidecar(file, &lines)?))
+}
+
+/// All of the field's formats say where a walker stands and looks.
+fn refuse_without_poses(format: Format, records: &[Record]) -> Result<(), Error> {
+    match records.iter().find(|record| !record.path.motion.is_known()) {
+        Some(record) => Err(Error::usage(
+            format!("format {format} demands poses, and path {} is from a recording without any", record.path.id),
+            "use --format wayword",
+        )),
+        None => Ok(()),
+    }
 }
 
 /// REVERIE names an item by its path and object. Items without an object that share a path and a start become one item

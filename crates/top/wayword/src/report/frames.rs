@@ -29,7 +29,8 @@ pub(super) struct FrameView {
     /// The first things that were seen, where no picture shows them.
     seen: Vec<String>,
     seen_left_out: usize,
-    /// Name of the sign for the turn that follows, and the move in words; none at the last frame.
+    /// Name of the sign for the turn that follows, and the move in words; none at the last frame, and where the motion is
+    /// unknown.
     turn: Option<&'static str>,
     then: Option<String>,
     looks: Vec<LookView>,
@@ -72,7 +73,7 @@ pub(super) fn frames(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut
             picture: if walk.has_pictures { pictures.take(&walk.path.id, at) } else { None },
             alt: format!("View at frame {}. {}", at + 1, observation.summary),
             room: observation.looks.iter().find_map(|look| look.caption.room.clone()),
-            level: frame.level,
+            level: frame.level.filter(|_| walk.path.motion.is_known()),
             caption: observation.summary.clone(),
             seen: seen.iter().take(MOST_ON_CARD).map(|sighting| sighting_words(sighting)).collect(),
             seen_left_out: seen.len().saturating_sub(MOST_ON_CARD),

@@ -58,7 +58,7 @@ impl ItemView {
             id: path.id.clone(),
             scene: path.scene.to_string(),
             target: path.target.as_ref().map(target_words),
-            levels: levels(path.frames.iter().filter_map(|frame| frame.level)),
+            levels: levels(path.frames.iter().filter(|_| path.motion.is_known()).filter_map(|frame| frame.level)),
             map_words: length_m.as_ref().map_or_else(String::new, |length_m| {
                 format!("Map of the walk from frame 1 to frame {shown}, {length_m} m, north up")
             }),

@@ -166,6 +166,20 @@ fn the_page_of_a_small_run_is_as_before() {
 }
 
 #[test]
+fn a_walk_without_poses_shows_no_map_no_length_and_no_moves() {
+    let mut video = walk("a");
+    video.path.motion = Motion::Unknown;
+    let run = run_of(&video, &good());
+    let (page, _) = page_of(run.path(), 1);
+    let (_, page) = page.split_once("<article").unwrap();
+    assert!(page.contains("The recording has no poses: nothing is known of turns and distances."));
+    for told in [" m ·", " m</p>", "5.0 m", "0.0 m", "<svg viewBox", "floor 1", "class=\"then\"><svg", "make no map"] {
+        assert!(!page.contains(told), "{told}: {page}");
+    }
+    assert_eq!((page.matches("class=\"frame\"").count(), page.matches("the walk ends here").count()), (3, 1));
+}
+
+#[test]
 fn what_comes_from_files_and_models_stays_text() {
     let mut walk = walk(&format!("a{SCRIPT}"));
     walk.originals = vec![SCRIPT.into()];

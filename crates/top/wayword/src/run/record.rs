@@ -81,11 +81,14 @@ pub fn extra(path_id: &str) -> JsonMap<String, Value> {
 }
 
 impl Map {
-    /// The graph around a path.
+    /// The graph around a path; empty where nobody knows where the path lies.
     ///
     /// # Errors
     /// When the platform cannot give it.
     pub fn around(path: &Path, platform: &dyn Platform) -> Result<Self, PlatformError> {
+        if !path.motion.is_known() {
+            return Ok(Self::default());
+        }
         let stops: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position).collect();
         Ok(Self::near(&stops, &*platform.graph(&path.scene)?))
     }

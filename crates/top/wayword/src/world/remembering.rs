@@ -5,7 +5,8 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
+    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph,
+    ViewpointId,
 };
 
 /// A platform that remembers the views it has given: perception, evidence and report look at the same ones.
@@ -14,8 +15,8 @@ pub struct Remembering<'a> {
     views: Mutex<BTreeMap<Key, View>>,
 }
 
-/// Position, heading and width, as bits: equal looks give equal views.
-type Key = ([u64; 3], u64, u64);
+/// Place, heading and width, as bits: equal looks give equal views.
+type Key = (([u64; 3], Option<ViewpointId>), u64, u64);
 
 impl<'a> Remembering<'a> {
     /// Nothing remembered yet.
@@ -28,7 +29,7 @@ impl<'a> Remembering<'a> {
 fn key(from: &Frame, gaze: Gaze) -> Key {
     // Headings that differ by rounding alone look at the same thing.
     let micro_rad = |rad: f64| (rad * 1e6).round() as u64;
-    (from.pose.position.to_array().map(f64::to_bits), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
+    (from.place(), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
 }
 
 impl Platform for Remembering<'_> {

@@ -90,10 +90,9 @@ pub(super) fn plan(job: &Job) -> Result<Plan, Error> {
         plan.items += 1;
         plan.frames += path.frames.len();
         for frame in &path.frames {
-            let place = frame.pose.position.to_array().map(f64::to_bits);
-            views
-                .extend(gazes(frame, settings.frames).iter().map(|gaze| (path.scene.clone(), place, micro_rad(*gaze))));
-            panoramas.insert((path.scene.clone(), place));
+            let place = (path.scene.clone(), frame.place());
+            views.extend(gazes(frame, settings.frames).iter().map(|gaze| (place.clone(), micro_rad(*gaze))));
+            panoramas.insert(place);
         }
         writing.add(write_load(&prompts, settings, &styles, &path)?);
     }

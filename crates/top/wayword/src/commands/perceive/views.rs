@@ -31,7 +31,7 @@ pub(super) fn labelled_views(
             if views.len() == most {
                 break 'paths;
             }
-            let place = (path.scene.clone(), frame.pose.position.to_array().map(f64::to_bits), micro_rad(frame));
+            let place = (path.scene.clone(), frame.place(), micro_rad(frame));
             if !looked_at.insert(place) {
                 continue;
             }
