@@ -6,6 +6,7 @@
 use super::{
     messages::Kind,
     records::{CHANNEL, CHUNK, DATA_END, Found, MESSAGE, Records, SCHEMA},
+    shape::{fits, summary_fits},
 };
 use mcap::{
     Summary,
@@ -137,6 +138,9 @@ impl Contents {
 
 /// The summary at the end of a file, if there is one that can be read.
 fn summary(mut file: &File, length: u64) -> Option<Summary> {
+    if !summary_fits(file, length, MAX_RECORD_BYTES as u64) {
+        return None;
+    }
     let options = SummaryReaderOptions::default().with_file_size(length).with_record_length_limit(MAX_RECORD_BYTES);
     let mut reader = SummaryReader::new_with_options(options);
     while let Some(event) = reader.next_event() {
@@ -233,6 +237,9 @@ impl Survey {
             SCHEMA | CHANNEL => {
                 let mut body = Vec::new();
                 records.body(MAX_RECORD_BYTES as u64, &mut body)?;
+                if !fits(found.opcode, &body) {
+                    return Err(format!("{}: a length in the record leads out of it", records.place(found.at)));
+                }
                 let parsed = catch_unwind(|| {
                     mcap::parse_record(found.opcode, &body).map(Record::into_owned).map_err(|error| error.to_string())
                 });

@@ -10,6 +10,7 @@ mod pixels;
 mod poses;
 mod records;
 mod reel;
+mod shape;
 #[cfg(test)]
 mod tests;
 mod topics;

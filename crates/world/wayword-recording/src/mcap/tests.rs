@@ -343,6 +343,16 @@ fn exhaust(bytes: &[u8]) {
     }
 }
 
+#[test]
+fn a_text_that_is_longer_than_its_file_is_refused_before_it_takes_memory() {
+    let record = |opcode: u8, body: &[u8]| [&[opcode][..], &(body.len() as u64).to_le_bytes(), body].concat();
+    // A schema whose name says that it has 1.7 GB.
+    let schema = record(3, &[&[1, 0][..], b"iense", &[0; 8]].concat());
+    let (_folder, read) = bytes_read(&[b"\x89MCAP0\r\n".to_vec(), schema].concat(), Description::default());
+    let error = read.err().unwrap();
+    assert!(error.contains("leads out of it"), "{error}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
     #[test]
