@@ -66,3 +66,18 @@ fn an_executable_that_answers_can_be_walked_through() {
     let _executable = virtualhome::stand_in::StandIn::start(address).unwrap();
     generate(&building, "virtualhome", "home_0", &format!("http://{address}"));
 }
+
+/// From a scene's files to checked instructions, by Habitat's own formats: stage configuration, GLB and HM3D's semantics.
+#[test]
+fn a_house_saved_for_habitat_can_be_walked_through_as_one_of_its_scenes() {
+    let building = Building::new();
+    let saved = building.wayword(&["house", "--seed", "2", "--out", "houses", "--json"]).json();
+    let stage = saved["stage"].as_str().unwrap();
+    let world =
+        ["generate", "--platform", "habitat", "--data", stage, "--paths", "2", "--style", "r2r", "--out", "run"];
+    let ran = building.wayword(&world);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let records = building.records("run");
+    assert_eq!(records.len(), 2);
+    assert!(records.iter().all(|record| record.instruction.provenance.answerer == "labels"));
+}

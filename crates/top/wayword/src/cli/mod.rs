@@ -100,7 +100,7 @@ pub enum Command {
     Platforms,
     /// Pictures of a world: a panorama, a path as its walker sees it, a map.
     View(View),
-    /// Save a generated house as glTF with its navigation data.
+    /// Save a generated house as glTF with its navigation data, and as a scene of AI Habitat with semantics.
     House(House),
     /// Print shell completions.
     Completions {
@@ -324,7 +324,7 @@ pub struct House {
     /// Which house.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Folder for house-SEED.glb and house-SEED.navigation.json.
+    /// Folder for house-SEED.glb, its navigation data, and what Habitat reads beside it.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

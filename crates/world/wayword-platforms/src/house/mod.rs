@@ -31,7 +31,7 @@ pub use model::House;
 pub use objects::{Object, Role};
 pub use platform::{HouseOptions, HousePlatform};
 pub use rect::{RectCm, SpanCm, Wall};
-pub use save::{SaveError, glb, gltf_from_wayword, navigation, save};
+pub use save::{SaveError, Saved, glb, gltf_from_wayword, navigation, save, semantic_glb, semantic_txt};
 pub use scene::HouseScene;
 
 /// The home of a seed: the same on every machine.

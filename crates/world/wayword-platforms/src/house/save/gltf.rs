@@ -115,7 +115,7 @@ fn png(index: usize, texture: &Texture) -> Result<Vec<u8>, SaveError> {
 }
 
 /// Header, JSON chunk padded with spaces, binary chunk (glTF 2.0, section 4).
-fn container(document: &Value, binary: &[u8]) -> Result<Vec<u8>, SaveError> {
+pub(super) fn container(document: &Value, binary: &[u8]) -> Result<Vec<u8>, SaveError> {
     let mut text = serde_json::to_vec(document)?;
     text.resize(text.len().next_multiple_of(4), b' ');
     let bytes = 12 + 8 + text.len() + 8 + binary.len();

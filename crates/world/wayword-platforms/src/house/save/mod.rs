@@ -1,12 +1,15 @@
-//! Saves a house for other programs: glTF for its looks, JSON for its ground.
+//! Saves a house for other programs: glTF for its looks, JSON for its ground, and what AI Habitat reads beside these.
 
 mod buffer;
 mod gltf;
 mod navigation;
+mod semantic;
 
 use super::{graph::viewpoint_graph, ground::Ground, model::House};
 pub use gltf::{glb, gltf_from_wayword};
 pub use navigation::navigation;
+pub use semantic::{semantic_glb, semantic_txt};
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wayword_core::graph::GraphError;
 
@@ -43,21 +46,43 @@ pub enum SaveError {
     },
 }
 
-/// Writes `house-SEED.glb` and `house-SEED.navigation.json` into a folder that exists; gives their names.
+/// The files of a saved house.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Saved {
+    /// `house-SEED.glb`: its looks.
+    pub model: PathBuf,
+    /// `house-SEED.navigation.json`: rooms, objects, ground, viewpoint graph.
+    pub navigation: PathBuf,
+    /// `house-SEED.stage_config.json`: what names the rest to AI Habitat, and to the platform `habitat`.
+    pub stage: PathBuf,
+    /// `house-SEED.semantic.glb` and `house-SEED.semantic.txt`: what is what.
+    pub semantics: [PathBuf; 2],
+}
+
+/// Writes a house's files into a folder that exists.
 ///
 /// # Errors
 /// When a file cannot be written or the house not be encoded.
-pub fn save(house: &House, folder: &Path) -> Result<[PathBuf; 2], SaveError> {
+pub fn save(house: &House, folder: &Path) -> Result<Saved, SaveError> {
     let ground = Ground::of(house);
     let graph = viewpoint_graph(house, &ground)?;
-    let looks = folder.join(format!("house-{}.glb", house.seed));
-    let ways = folder.join(format!("house-{}.navigation.json", house.seed));
-    let write = |file: &PathBuf, bytes: &[u8]| {
-        std::fs::write(file, bytes).map_err(|source| SaveError::File { file: file.clone(), source })
+    let name = format!("house-{}", house.seed);
+    let write = |ending: &str, bytes: &[u8]| {
+        let file = folder.join(format!("{name}.{ending}"));
+        match std::fs::write(&file, bytes) {
+            Ok(()) => Ok(file),
+            Err(source) => Err(SaveError::File { file, source }),
+        }
     };
-    write(&looks, &glb(house)?)?;
-    write(&ways, &serde_json::to_vec(&navigation(house, &ground, &graph)?)?)?;
-    Ok([looks, ways])
+    Ok(Saved {
+        model: write("glb", &glb(house)?)?,
+        navigation: write("navigation.json", &serde_json::to_vec(&navigation(house, &ground, &graph)?)?)?,
+        stage: write("stage_config.json", &serde_json::to_vec_pretty(&semantic::stage_config(&name))?)?,
+        semantics: [
+            write("semantic.glb", &semantic_glb(house)?)?,
+            write("semantic.txt", semantic_txt(house).as_bytes())?,
+        ],
+    })
 }
 
 #[cfg(test)]

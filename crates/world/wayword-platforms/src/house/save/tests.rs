@@ -57,7 +57,7 @@ fn north_is_minus_z_and_up_is_y_in_gltf() {
 fn navigation_data_names_rooms_objects_and_ways() {
     let folder = tempfile::tempdir().unwrap();
     let house = generate(4);
-    let [looks, ways] = save(&house, folder.path()).unwrap();
+    let Saved { model: looks, navigation: ways, .. } = save(&house, folder.path()).unwrap();
     assert!(looks.ends_with("house-4.glb") && looks.metadata().unwrap().len() > 100_000);
     let read: serde_json::Value = serde_json::from_slice(&std::fs::read(ways).unwrap()).unwrap();
     assert_eq!(read["rooms"].as_array().unwrap().len(), house.rooms.len());
@@ -69,6 +69,28 @@ fn navigation_data_names_rooms_objects_and_ways() {
             |index: usize, cell: usize| origin[index].as_f64().unwrap() + cell_m * (run[cell].as_f64().unwrap() + 0.5);
         assert!(ground.is_walkable(wayword_core::DVec3::new(middle(0, 2), middle(1, 0), 0.0)));
     }
+}
+
+#[test]
+fn every_object_has_a_colour_of_its_own_and_every_vertex_that_of_its_object() {
+    let house = generate(4);
+    let text = semantic_txt(&house);
+    let mut colours = std::collections::BTreeSet::new();
+    for line in text.lines().skip(1) {
+        assert!(colours.insert(line.split(',').nth(1).unwrap().to_owned()), "{line}");
+    }
+    assert!(house.furniture.iter().all(|piece| text.contains(&format!("\"{}\"", piece.name))));
+    let file = Gltf::from_slice(&semantic_glb(&house).unwrap()).unwrap();
+    let blob = file.blob.as_deref().unwrap();
+    let mut seen = std::collections::BTreeSet::new();
+    for primitive in file.meshes().flat_map(|mesh| mesh.primitives().collect::<Vec<_>>()) {
+        let ReadColors::RgbF32(painted) = primitive.reader(|_| Some(blob)).read_colors(0).unwrap() else {
+            panic!("colours are floats")
+        };
+        let hex = |[r, g, b]: [u8; 3]| format!("{r:02X}{g:02X}{b:02X}");
+        seen.extend(painted.map(|colour| hex(colour.map(|factor| (255.0 * factor).round() as u8))));
+    }
+    assert!(seen.is_subset(&colours) && seen.len() > 20, "{} of {}", seen.len(), colours.len());
 }
 
 #[test]

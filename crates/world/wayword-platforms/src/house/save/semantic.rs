@@ -1,0 +1,72 @@
+//! What is what in a house, as AI Habitat reads it: a mesh whose colours are objects, and a list of what each colour means
+//! (HM3D's semantics, `*.semantic.glb` and `*.semantic.txt`), and the stage configuration that names them.
+
+use super::{
+    super::{drawing, model::House, objects},
+    SaveError,
+    buffer::Buffer,
+    gltf::container,
+};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// The bytes of a `.semantic.glb`: every vertex has the colour of its object.
+///
+/// # Errors
+/// When all is larger than a GLB may be.
+pub fn semantic_glb(house: &House) -> Result<Vec<u8>, SaveError> {
+    let mut buffer = Buffer::default();
+    let drawn = drawing::draw(house).meshes;
+    let primitives = drawn.iter().filter(|mesh| !mesh.triangles.is_empty()).map(|mesh| {
+        let paint = colour(mesh.id).map(|channel| f32::from(channel) / 255.0);
+        let painted = buffer.floats(mesh.positions.iter().flat_map(|_| paint), 3);
+        json!({
+            "attributes": { "POSITION": buffer.positions(&mesh.positions), "COLOR_0": painted },
+            "indices": buffer.indices(&mesh.triangles),
+            "material": 0,
+        })
+    });
+    let primitives: Vec<Value> = primitives.collect();
+    buffer.bytes.resize(buffer.bytes.len().next_multiple_of(4), 0);
+    let document = json!({
+        "asset": { "version": "2.0", "generator": "wayword" },
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": primitives }],
+        "materials": [{ "extensions": { "KHR_materials_unlit": {} } }],
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{ "byteLength": buffer.bytes.len() }],
+    });
+    container(&document, &buffer.bytes)
+}
+
+/// The text of a `.semantic.txt`: number, colour, name and room of each object.
+#[must_use]
+pub fn semantic_txt(house: &House) -> String {
+    let mut text = String::from("HM3D Semantic Annotations\n");
+    for (id, object) in objects::objects(house) {
+        let [red, green, blue] = colour(id);
+        let _ = writeln!(text, "{id},{red:02X}{green:02X}{blue:02X},\"{}\",{}", object.name, object.room);
+    }
+    text
+}
+
+/// A `.stage_config.json` for files of this name: glTF's y is up, which Habitat does not take for granted.
+pub(super) fn stage_config(name: &str) -> Value {
+    json!({
+        "render_asset": format!("{name}.glb"),
+        "semantic_asset": format!("{name}.semantic.glb"),
+        "up": [0.0, 1.0, 0.0],
+        "front": [0.0, 0.0, -1.0],
+        "units_to_meters": 1.0,
+    })
+}
+
+/// The colour of an object's number. An odd factor gives each of the 2^24 numbers a colour of its own.
+fn colour(id: u32) -> [u8; 3] {
+    let [_, red, green, blue] = id.wrapping_mul(0x9E_3779).to_be_bytes();
+    [red, green, blue]
+}
