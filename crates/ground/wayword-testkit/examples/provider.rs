@@ -1,0 +1,20 @@
+//! A service that plays models, to try a run with models where there is none. It speaks as OpenAI-compatible servers do, under the names
+//! `server/words` and `server/eye`, and it does not see: what it says of a picture is made up from the picture's bytes.
+//!
+//! `cargo run -p wayword-testkit --example provider` prints the address for `--base-url` and serves until it is interrupted.
+
+#![allow(clippy::print_stdout, reason = "an example tells what it does")]
+
+use wayword_testkit::provider::{
+    Behaviour, Dialect, Gallery, Provider,
+    scripts::{Cast, FlawedEye},
+};
+
+fn main() -> std::io::Result<()> {
+    let cast = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.0), 1, 0.0);
+    let provider = Provider::start(Behaviour::of("words", cast.clone()).and("eye", cast))?;
+    println!("{}", provider.base_url(Dialect::OpenAi));
+    loop {
+        std::thread::park();
+    }
+}
