@@ -23,6 +23,8 @@ enum Seat {
     Heading { column: usize, per_unit_rad: f64 },
 }
 
+/// With this EuRoC's names of positions begin.
+const EUROC_POSITION: &str = "p_rs_r_";
 const HEADER: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, `yaw_rad` or \
                       `heading_deg` say where the camera looks";
 
@@ -36,7 +38,10 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
         let cells: Vec<&str> = cells(line).collect();
         columns.row(&cells).map_err(|reason| format!("line {}: {reason}", at + 1))
     });
-    Ok(Rows { usual: Axes::of(Body::Robot), rows: rows.collect::<Result<_, _>>()? })
+    // The sensor of EuRoC has z ahead and x up (`body_T_cam` in its sensor.yaml).
+    let is_euroc = header.to_ascii_lowercase().contains(EUROC_POSITION);
+    let body = if is_euroc { Body::Optical } else { Body::Robot };
+    Ok(Rows { usual: Axes::of(body), rows: rows.collect::<Result<_, _>>()? })
 }
 
 fn cells(line: &str) -> impl Iterator<Item = &str> {
@@ -52,7 +57,7 @@ fn name_of(cell: &str) -> String {
         None => (cell.as_str(), ""),
     };
     // EuRoC's names: position and quaternion of the sensor in the reference frame.
-    let name = name.strip_prefix("p_rs_r_").or_else(|| name.strip_prefix("q_rs_").map(|_| name)).unwrap_or(name);
+    let name = name.strip_prefix(EUROC_POSITION).or_else(|| name.strip_prefix("q_rs_").map(|_| name)).unwrap_or(name);
     let name = name.strip_prefix("q_rs_").map_or_else(|| name.to_owned(), |part| format!("q{part}"));
     if matches!(unit, "s" | "ms" | "us" | "ns" | "rad" | "deg") { format!("{name}_{unit}") } else { name }
 }

@@ -5,8 +5,12 @@ mod json;
 mod matrix;
 mod rows;
 
-use crate::{axes::Axes, describe::Description, track::Track};
-use rows::{Of, Rows};
+use crate::{
+    axes::{Axes, World},
+    describe::Description,
+    track::Track,
+};
+use rows::{Facing, Of, Rows};
 use std::path::{Component, Path, PathBuf};
 use wayword_core::PlatformError;
 use wayword_platforms::files;
@@ -62,7 +66,13 @@ pub(crate) fn track(
         _ => matrix::read(&text),
     }
     .map_err(wrong)?;
-    let track = on_clock(rows, described.axes(usual), times_s, name).ok_or_else(|| wrong("holds no pose".into()))?;
+    let axes = described.axes(usual);
+    if axes.world != World::ZUp && rows.iter().any(|row| matches!(row.facing, Facing::Yaw(_))) {
+        return Err(wrong("a yaw turns about z, so the world of its poses must be z-up".into()));
+    }
+    let none =
+        if rows.is_empty() { "holds no pose" } else { "none of its poses is at a place, and that of a picture here" };
+    let track = on_clock(rows, axes, times_s, name).ok_or_else(|| wrong(none.into()))?;
     if !times_s.iter().any(|time_s| track.at(*time_s).is_some()) {
         let ((from, to), first, last) =
             (track.span_s(), times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));

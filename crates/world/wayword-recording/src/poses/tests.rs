@@ -29,7 +29,7 @@ fn every_format_tells_the_same_walk() {
         (
             "poses.csv",
             "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n\
-                       10000000000,0,0,1.5,1,0,0,0\n11000000000,1,0,1.5,1,0,0,0\n12000000000,2,0,1.5,1,0,0,0\n",
+                       10000000000,0,0,1.5,0.5,-0.5,0.5,-0.5\n11000000000,1,0,1.5,0.5,-0.5,0.5,-0.5\n12000000000,2,0,1.5,0.5,-0.5,0.5,-0.5\n",
         ),
         ("poses.csv", "image;x;y;z;heading_deg\n0.png;0;0;1.5;90\n1.png;1;0;1.5;90\n2;2;0;1.5;90\n"),
         (
@@ -76,10 +76,28 @@ fn what_is_wrong_is_told_with_its_line() {
         ("poses.json", "{", "line 1"),
         ("poses.json", "{}", "expected `transforms.json`"),
         ("poses.tum", "", "holds no pose"),
+        ("poses.csv", "image,x,y\nother.png,1,2\n", "none of its poses is at a place, and that of a picture"),
     ] {
         let error = read(name, text, 0.0, &usual).unwrap_err();
         assert!(error.contains(told), "{name} {text:?}: {error}");
     }
+}
+
+#[test]
+fn euroc_looks_along_z() {
+    // The first pose of V1_01_easy: the camera looks east and down, the sensor's x axis up.
+    let text = "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n\
+                0,0.878612,2.142470,0.947262,0.060514,-0.828459,-0.058956,-0.553641\n";
+    let track = read("poses.csv", text, 0.0, &Description::default()).unwrap();
+    assert_eq!(at(&track, 0.0).1, 80.0);
+}
+
+#[test]
+fn a_yaw_needs_a_world_with_z_up() {
+    let described = Description { world: Some(World::YUp), ..Description::default() };
+    let error = read("poses.csv", "time_s,x,y,z,yaw_rad\n0,0,0,0,0\n", 0.0, &described).unwrap_err();
+    assert!(error.contains("z-up"), "{error}");
+    assert!(read("poses.csv", "time_s,x,y,z,heading_deg\n0,0,0,0,0\n", 0.0, &described).is_ok());
 }
 
 #[test]
