@@ -8,6 +8,7 @@ use crate::{
 };
 use std::{
     cmp::Ordering,
+    collections::BTreeSet,
     path::{Component, Path, PathBuf},
 };
 use wayword_core::{PlatformError, SceneId};
@@ -52,8 +53,9 @@ impl Folder {
     fn timed(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
         let list = self.root.join(LIST);
         if let Some(text) = files::text_if_there(&list, MAX_LIST_BYTES, HINT)? {
-            return listed(&text, &self.root)
-                .map_err(|reason| files::wrong(&list, reason, "expected lines of `time file`"));
+            return listed(&text, &self.root).map_err(|reason| {
+                files::wrong(&list, reason, "expected lines of `time file`, with names of their own")
+            });
         }
         let named: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
         let timed = |(at, name): (usize, &String)| {
@@ -118,6 +120,7 @@ fn listed(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
         let line = line.trim();
         !line.is_empty() && !line.starts_with('#')
     });
+    let mut names = BTreeSet::new();
     let read = lines.map(|(at, line)| {
         let (time, file) =
             line.trim().split_once([' ', '\t']).ok_or_else(|| format!("line {}: only one word", at + 1))?;
@@ -128,6 +131,10 @@ fn listed(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
         let file = Path::new(file.trim());
         if !file.components().all(|part| matches!(part, Component::Normal(_))) {
             return Err(format!("line {}: the file does not lie below the folder", at + 1));
+        }
+        // By its name a picture is found again.
+        if !names.insert(file.file_name()) {
+            return Err(format!("line {}: a file of this name stands in a line before", at + 1));
         }
         Ok((time_s, root.join(file)))
     });
@@ -145,6 +152,10 @@ fn is_picture(name: &str) -> bool {
 fn time_of(name: &str) -> Option<f64> {
     let stem = Path::new(name).file_stem()?.to_str()?;
     let digits = stem.bytes().all(|byte| byte.is_ascii_digit());
+    // KITTI counts with ten digits.
+    if digits && stem.starts_with('0') {
+        return None;
+    }
     let number: f64 = stem.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0)?;
     let per_s = match (digits, stem.len()) {
         (false, _) => 1.0,
@@ -232,6 +243,7 @@ mod tests {
         assert!((recording.reel.times_s()[1] - 1_305_031_102.211_214).abs() < 1e-6);
         assert_eq!(time_of("1403636579763555584.png"), Some(1_403_636_579.763_555_6));
         assert_eq!(time_of("000012.png"), None);
+        assert_eq!(time_of("0000000012.png"), None);
     }
 
     #[test]
@@ -244,6 +256,7 @@ mod tests {
         for bad in ["1 ../x.png", "1 /etc/x.png", "x rgb/a.png", "1"] {
             assert!(listed(bad, Path::new("/tmp")).unwrap_err().contains("line 1"), "{bad}");
         }
+        assert!(listed("1 left/a.png\n2 right/a.png", Path::new("/tmp")).unwrap_err().contains("line 2"));
     }
 
     #[test]

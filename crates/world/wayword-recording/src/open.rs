@@ -6,7 +6,7 @@ use crate::{
     folder::{self, Folder},
     reel::{Recording, Source},
 };
-use std::path::Path;
+use std::{collections::BTreeSet, path::Path};
 use wayword_core::{PlatformError, SceneId};
 use wayword_platforms::files;
 
@@ -25,11 +25,17 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
         return Err(files::wrong(path, reason, HINT));
     }
     let mut sources = Vec::new();
-    for entry in entries(path)? {
-        sources.extend(one(&path.join(&entry))?);
+    // macOS leaves "._x.mp4" beside "x.mp4" on foreign disks, and file managers leave folders of small pictures.
+    for entry in entries(path)?.iter().filter(|name| !name.starts_with('.')) {
+        sources.extend(one(&path.join(entry))?);
     }
     if sources.is_empty() {
         return Err(files::wrong(path, "holds no pictures and no recordings", HINT));
+    }
+    let mut scenes = BTreeSet::new();
+    if let Some(twice) = sources.iter().flat_map(|source| source.scenes()).find(|scene| !scenes.insert(scene.clone())) {
+        let reason = format!("holds two recordings that are called {twice}");
+        return Err(files::wrong(path, reason, "give one of them another name, or name the file itself"));
     }
     Ok(Box::new(Shelf { sources }))
 }
@@ -133,7 +139,6 @@ impl Source for Shelf {
     fn scenes(&self) -> Vec<SceneId> {
         let mut scenes: Vec<SceneId> = self.sources.iter().flat_map(|source| source.scenes()).collect();
         scenes.sort();
-        scenes.dedup();
         scenes
     }
 
@@ -147,4 +152,37 @@ impl Source for Shelf {
 pub(crate) fn unknown(scene: &SceneId) -> PlatformError {
     let hint = "leave --scan out, or name one that `wayword view map` or a run has listed".to_owned();
     PlatformError::UnknownScene { scene: scene.to_string(), hint }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder of recordings, each with one picture.
+    fn shelf(pictures: &[&str]) -> tempfile::TempDir {
+        let shelf = tempfile::tempdir().unwrap();
+        for picture in pictures {
+            let file = shelf.path().join(picture);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, "").unwrap();
+        }
+        shelf
+    }
+
+    #[test]
+    fn each_recording_of_a_folder_is_a_scene_and_what_is_hidden_is_none() {
+        let shelf = shelf(&["b/1.png", "a/rgb/1.png", ".small/1.png", "notes/1.txt"]);
+        std::fs::write(shelf.path().join("._a.mp4"), "").unwrap();
+        let scenes = open(shelf.path()).map(|source| source.scenes()).unwrap();
+        assert_eq!(scenes.iter().map(SceneId::as_str).collect::<Vec<_>>(), ["a", "b"]);
+    }
+
+    #[cfg(feature = "video")]
+    #[test]
+    fn no_recording_is_passed_over_because_another_has_its_name() {
+        let shelf = shelf(&["walk/1.png"]);
+        std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
+        let error = open(shelf.path()).err().unwrap().to_string();
+        assert!(error.contains("two recordings that are called walk"), "{error}");
+    }
 }

@@ -6,8 +6,8 @@ use wayword_core::{DVec3, Heading};
 const MAX_GAP_S: f64 = 2.0;
 /// How far beyond the first and last fix, or a gap, these hold, seconds: cameras and trackers do not start together.
 const MAX_BEYOND_S: f64 = 0.1;
-/// Positions farther off than this are no place on Earth's surface that a robot walks to in one recording, metres.
-const MAX_COORDINATE_M: f64 = 1e6;
+/// Positions farther off than this are no places, metres: UTM counts up to ten million from the equator.
+const MAX_COORDINATE_M: f64 = 2e7;
 
 /// Where the camera was at one time, in Wayword's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +102,7 @@ mod tests {
     #[test]
     fn what_is_no_place_is_no_fix() {
         assert!(Track::new(vec![fix(0.0, f64::NAN, 0.0), fix(f64::NAN, 0.0, 0.0), fix(0.0, 1e9, 0.0)]).is_none());
+        assert!(Track::new(vec![fix(0.0, 5.4e6, 0.0)]).is_some());
     }
 
     proptest! {
