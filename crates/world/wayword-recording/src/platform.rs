@@ -9,6 +9,7 @@ use image::imageops::{FilterType, resize};
 use rand::Rng;
 use std::{
     collections::{BTreeMap, BTreeSet},
+    ops::RangeInclusive,
     path::Path as FilePath,
     sync::{Arc, Mutex, PoisonError},
 };
@@ -20,12 +21,12 @@ use wayword_platforms::{files, process::Hear, recent::Recent};
 
 /// Recordings that are kept open.
 const OPEN: usize = 8;
-/// Pictures that are kept in memory: 0.9 MB each.
+/// Pictures that are kept in memory: 1.2 MB each at most.
 const KEPT: usize = 256;
 /// Frames that are read together: a video is decoded from a key picture on, whichever one is wanted.
 const AHEAD: usize = 16;
-/// Pictures are made this wide if they are wider, pixels: what other worlds draw, and what models that see take in.
-const WIDEST_PX: u32 = 640;
+/// The longer side of larger pictures is made this long, pixels: what other worlds draw, and what models that see take in.
+const LONGEST_PX: u32 = 640;
 /// Horizontal field of view where nobody says, radians: a robot's or a telephone's usual camera.
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
 const HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
@@ -51,6 +52,8 @@ struct Opened {
     ids: Vec<ViewpointId>,
     /// Where each frame was taken; empty where that is not known.
     places: Vec<DVec3>,
+    /// Stops to which no way leads from the one before.
+    breaks: BTreeSet<usize>,
     graph: Arc<ViewpointGraph>,
 }
 
@@ -65,6 +68,10 @@ impl RecordingPlatform {
     }
 
     fn opened(&self, scene: &SceneId) -> Result<Arc<Opened>, PlatformError> {
+        // Who asks for another one that is open need not wait.
+        if let Ok(opened) = self.opened.get_or_make(scene.clone(), || Err(())) {
+            return Ok(opened);
+        }
         let _alone = self.opening.lock().unwrap_or_else(PoisonError::into_inner);
         self.opened.get_or_make(scene.clone(), || {
             let recording = self.source.open(scene)?;
@@ -106,7 +113,7 @@ impl RecordingPlatform {
 
 impl Opened {
     fn new(scene: &SceneId, recording: Recording, choice: Choice) -> Result<Self, PlatformError> {
-        let stops = choice.stops;
+        let Choice { stops, breaks, .. } = choice;
         let ids = stops.iter().map(|number| {
             let name = recording.reel.name(*number);
             ViewpointId::new(name).map_err(|error| files::wrong(FilePath::new(scene.as_str()), error.to_string(), HINT))
@@ -117,8 +124,9 @@ impl Opened {
             Some(track) => stops.iter().filter_map(|number| Some(track.at(times_s[*number])?.position)).collect(),
             None => Vec::new(),
         };
-        let graph = chain(&ids, &places).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
-        Ok(Self { recording, stops, ids, places, graph: Arc::new(graph) })
+        let graph =
+            chain(&ids, &places, &breaks).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+        Ok(Self { recording, stops, ids, places, breaks, graph: Arc::new(graph) })
     }
 
     fn motion(&self) -> Motion {
@@ -144,7 +152,8 @@ impl Opened {
         let track = self.recording.track.as_ref()?;
         let along = || {
             let hop = |from: usize, to: usize| Heading::towards(*self.places.get(from)?, *self.places.get(to)?);
-            at.checked_sub(1).and_then(|before| hop(before, at)).or_else(|| hop(at, at + 1))
+            let before = at.checked_sub(1).filter(|_| !self.breaks.contains(&at));
+            before.and_then(|before| hop(before, at)).or_else(|| hop(at, at + 1))
         };
         track.at(self.recording.reel.times_s()[self.stops[at]])?.heading.or_else(along)
     }
@@ -152,23 +161,34 @@ impl Opened {
     /// First and last stop of a path of the kind that is asked for: the whole recording where it is one, else a stretch of it.
     fn stretch(&self, request: &PathRequest, dice: &mut impl Rng) -> Option<(usize, usize)> {
         let end = self.stops.len().checked_sub(1).filter(|end| *end > 0)?;
+        let (far, wanted) = self.measured(request);
+        // Lengths grow with the last stop, so those that fit lie together.
+        let lasts = |first: usize| {
+            let behind = self.breaks.range(first + 1..).next().copied().unwrap_or(end + 1);
+            let rest = &far[first + 1..behind];
+            let least = rest.partition_point(|to| to - far[first] < *wanted.start());
+            let most = rest.partition_point(|to| to - far[first] <= *wanted.end());
+            first + 1 + least..first + 1 + most.max(least)
+        };
+        if lasts(0).contains(&end) {
+            return Some((0, end));
+        }
+        let firsts: Vec<usize> = (0..end).filter(|first| !lasts(*first).is_empty()).collect();
+        let first = *firsts.get(dice.random_range(0..firsts.len().max(1)))?;
+        Some((first, dice.random_range(lasts(first))))
+    }
+
+    /// How far each stop lies along the way, and how far two may be apart: metres, or hops where these are not known.
+    fn measured(&self, request: &PathRequest) -> (Vec<f64>, RangeInclusive<f64>) {
+        if self.motion() == Motion::Unknown {
+            let hops = (0..self.stops.len()).map(|at| at as f64).collect();
+            return (hops, *request.hops.start() as f64..=*request.hops.end() as f64);
+        }
         let mut walked_m = vec![0.0];
         for pair in self.places.windows(2) {
             walked_m.push(walked_m[walked_m.len() - 1] + pair[0].distance(pair[1]));
         }
-        let fits = |first: usize, last: usize| match self.motion() {
-            Motion::Known => request.length_m.contains(&(walked_m[last] - walked_m[first])),
-            Motion::Unknown => request.hops.contains(&(last - first)),
-        };
-        if fits(0, end) {
-            return Some((0, end));
-        }
-        // Lengths grow with the last stop, so those that fit lie together.
-        let lasts = |first: usize| (first + 1..=end).filter(|last| fits(first, *last)).collect::<Vec<_>>();
-        let firsts: Vec<usize> = (0..end).filter(|first| (first + 1..=end).any(|last| fits(*first, last))).collect();
-        let first = *firsts.get(dice.random_range(0..firsts.len().max(1)))?;
-        let lasts = lasts(first);
-        Some((first, lasts[dice.random_range(0..lasts.len())]))
+        (walked_m, request.length_m.clone())
     }
 }
 
@@ -181,7 +201,7 @@ impl Platform for RecordingPlatform {
         Ok(self.source.scenes())
     }
 
-    /// The frames one after another; empty where no pose is known.
+    /// The frames one after another, not joined where the way between them is not known; empty where no pose is known.
     fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
         Ok(self.opened(scene)?.graph.clone())
     }
@@ -233,30 +253,38 @@ impl Platform for RecordingPlatform {
     }
 }
 
-/// Places one after another.
-fn chain(ids: &[ViewpointId], places: &[DVec3]) -> Result<ViewpointGraph, wayword_core::graph::GraphError> {
+/// Places one after another, as far as the way between them is known.
+fn chain(
+    ids: &[ViewpointId],
+    places: &[DVec3],
+    breaks: &BTreeSet<usize>,
+) -> Result<ViewpointGraph, wayword_core::graph::GraphError> {
     let mut graph = ViewpointGraph::default();
     for (id, place) in ids.iter().zip(places) {
         graph.add(id.clone(), *place, None)?;
     }
     if !places.is_empty() {
-        for pair in ids.windows(2) {
-            graph.join(&pair[0], &pair[1])?;
+        for (before, pair) in ids.windows(2).enumerate() {
+            if !breaks.contains(&(before + 1)) {
+                graph.join(&pair[0], &pair[1])?;
+            }
         }
     }
     Ok(graph)
 }
 
-/// A picture at most [`WIDEST_PX`] wide.
+/// A picture at most [`LONGEST_PX`] wide and high.
 fn scaled(image: &Image) -> Image {
     let (width, height) = (image.width_px(), image.height_px());
-    if width <= WIDEST_PX {
+    let longest = width.max(height);
+    if longest <= LONGEST_PX {
         return image.clone();
     }
-    let high = (u64::from(height) * u64::from(WIDEST_PX) / u64::from(width)).max(1) as u32;
+    let scaled = |side: u32| (u64::from(side) * u64::from(LONGEST_PX) / u64::from(longest)).max(1) as u32;
+    let (wide, high) = (scaled(width), scaled(height));
     let pixels = image::ImageBuffer::<image::Rgb<u8>, &[u8]>::from_raw(width, height, image.rgb());
-    let small = pixels.map(|pixels| resize(&pixels, WIDEST_PX, high, FilterType::Triangle));
-    small.and_then(|small| Image::new(WIDEST_PX, high, small.into_raw()).ok()).unwrap_or_else(|| image.clone())
+    let small = pixels.map(|pixels| resize(&pixels, wide, high, FilterType::Triangle));
+    small.and_then(|small| Image::new(wide, high, small.into_raw()).ok()).unwrap_or_else(|| image.clone())
 }
 
 /// What became of a recording's pictures.
@@ -264,13 +292,14 @@ fn told(scene: &SceneId, recording: &Recording, choice: &Choice) -> String {
     let count = |count: usize, what: &str| if count > 0 { format!("; {count} {what}") } else { String::new() };
     let poses = if recording.track.is_some() { "" } else { "; no poses, so no turns and distances" };
     format!(
-        "recording {scene}: {} pictures, {} frames{poses}{}{}{}{}",
+        "recording {scene}: {} pictures, {} frames{poses}{}{}{}{}{}",
         recording.reel.times_s().len(),
         choice.stops.len(),
         count(choice.without_pose, "pictures without a pose"),
         count(choice.blurred, "places left out as blurred"),
         count(choice.alike, "as the same as before"),
         count(choice.turned_away, "as looking away from the way"),
+        count(choice.breaks.len(), "gaps over which no path leads"),
     )
 }
 

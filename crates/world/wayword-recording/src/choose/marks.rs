@@ -1,6 +1,6 @@
 //! Where frames are to be: marks along the way or the time, and the pictures near each.
 
-use super::{INTERVAL_M, INTERVAL_S};
+use super::{INTERVAL_M, INTERVAL_S, MOST_LEFT_OUT};
 use crate::reel::Recording;
 use wayword_core::DVec3;
 
@@ -18,8 +18,8 @@ pub(super) struct Mark {
     pub(super) at: usize,
     /// Pictures that may stand for it, ascending, itself among them.
     pub(super) candidates: Vec<usize>,
-    /// Where it is, where that is known.
-    pub(super) position: Option<DVec3>,
+    /// Whether nobody knows how the camera came here from the mark before.
+    pub(super) after_gap: bool,
 }
 
 /// The marks of a recording, and how many pictures have no pose although others do.
@@ -29,24 +29,30 @@ pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
         let interval_s = recording.described.interval_s.unwrap_or(INTERVAL_S);
         let all: Vec<usize> = (0..times_s.len()).collect();
         let off = |a: usize, b: usize| (times_s[a] - times_s[b]).abs();
-        return (spread(&all, interval_s, &off, &|_| None), 0);
+        return (spread(&all, interval_s, &off), 0);
     };
     let places: Vec<Option<DVec3>> = times_s.iter().map(|time_s| track.at(*time_s).map(|fix| fix.position)).collect();
     let posed: Vec<usize> = (0..times_s.len()).filter(|at| places[*at].is_some()).collect();
     let place = |at: usize| places[at].unwrap_or_default();
     let interval_m = recording.described.interval_m.unwrap_or(INTERVAL_M);
     let off = |a: usize, b: usize| place(a).distance(place(b));
-    (spread(&posed, interval_m, &off, &|at| places[at]), times_s.len() - posed.len())
+    let mut marks = spread(&posed, interval_m, &off);
+    // Where the tracker was lost, and found again far away.
+    let leap_m = (MOST_LEFT_OUT + 1) as f64 * interval_m;
+    let leaps = posed.windows(2).filter(|pair| pair[1] - pair[0] > 1 && off(pair[0], pair[1]) > leap_m);
+    let found_again: Vec<usize> = leaps.map(|pair| pair[1]).collect();
+    let mut passed = 0;
+    for mark in &mut marks {
+        let until = found_again.partition_point(|at| *at <= mark.at);
+        mark.after_gap = until > passed;
+        passed = until;
+    }
+    (marks, times_s.len() - posed.len())
 }
 
 /// Marks that lie one interval or a bit more apart: a tracker trembles while a robot stands, so what counts is how far it got
 /// from the last mark, and not how long its track is.
-fn spread(
-    pictures: &[usize],
-    interval: f64,
-    off: &dyn Fn(usize, usize) -> f64,
-    position: &dyn Fn(usize) -> Option<DVec3>,
-) -> Vec<Mark> {
+fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) -> Vec<Mark> {
     let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return Vec::new() };
     // Places in `pictures`, not numbers of pictures.
     let mut marks = vec![0];
@@ -73,7 +79,7 @@ fn spread(
         let after = (mark + 1..pictures.len()).take_while(near).count();
         thinned(mark - before..=mark + after, mark).map(|at| pictures[at]).collect()
     };
-    let mark = |at: &usize| Mark { at: pictures[*at], candidates: candidates(*at), position: position(pictures[*at]) };
+    let mark = |at: &usize| Mark { at: pictures[*at], candidates: candidates(*at), after_gap: false };
     marks.iter().map(mark).collect()
 }
 

@@ -7,7 +7,8 @@ mod marks;
 use crate::reel::Recording;
 use look::Look;
 use marks::Mark;
-use wayword_core::{Heading, Image, PlatformError};
+use std::collections::BTreeSet;
+use wayword_core::{Gaze, Heading, Image, PlatformError};
 
 /// Distance between frames unless the user says otherwise, metres.
 pub(crate) const INTERVAL_M: f64 = 1.0;
@@ -17,14 +18,16 @@ pub(crate) const INTERVAL_S: f64 = 2.0;
 const BLURRED: f64 = 0.3;
 /// A picture that differs by less than this from the one before it shows the same, levels of 255 on average.
 const ALIKE: f64 = 2.0;
-/// A camera that looks farther than this off the way that was just walked does not show what is ahead, radians.
-const TURNED_AWAY_RAD: f64 = 60.0 * std::f64::consts::PI / 180.0;
+/// Most places in a row that may be left out: beyond, the straight line between two frames is not the way that was walked.
+const MOST_LEFT_OUT: usize = 2;
 
 /// The frames of a recording, and what was left out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Choice {
     /// Numbers of pictures, ascending.
     pub(crate) stops: Vec<usize>,
+    /// Places in `stops` to which the way from the stop before is not known, although poses are.
+    pub(crate) breaks: BTreeSet<usize>,
     /// Places that were left out because every picture there is blurred.
     pub(crate) blurred: usize,
     /// Places whose picture shows what the one before it shows.
@@ -61,12 +64,18 @@ fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choi
     };
     let least = BLURRED * usual_sharpness(looks);
     let mut choice = Choice::default();
-    let mut last: Option<&Look> = None;
+    // The mark of the last stop, and what is seen there.
+    let mut last: Option<(usize, &Look)> = None;
     for (at, mark) in marks.iter().enumerate() {
         // Without its ends a path is another one.
         let is_end = at == 0 || at + 1 == marks.len();
-        let faces = |number: &&usize| is_end || faces_the_way(recording, marks, at, **number);
-        let facing: Vec<usize> = mark.candidates.iter().filter(faces).copied().collect();
+        let is_break = recording.track.is_some() && last.is_some_and(|(from, _)| is_lost(&marks[from + 1..=at]));
+        let before = choice.stops.last().copied().filter(|_| !is_break);
+        let faces = |number: &&usize| before.is_none_or(|before| faces_the_way(recording, before, **number));
+        let mut facing: Vec<usize> = mark.candidates.iter().filter(faces).copied().collect();
+        if facing.is_empty() && is_end {
+            facing.clone_from(&mark.candidates);
+        }
         if facing.is_empty() {
             choice.turned_away += 1;
             continue;
@@ -80,15 +89,18 @@ fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choi
             continue;
         };
         let Some(seen) = look(*number) else { continue };
-        if last.is_some_and(|last| last.difference(seen) < ALIKE) {
+        if last.is_some_and(|(_, last)| last.difference(seen) < ALIKE) {
             choice.alike += 1;
             if at + 1 < marks.len() || choice.stops.len() < 2 {
                 continue;
             }
             choice.stops.pop();
         }
+        if is_break {
+            choice.breaks.insert(choice.stops.len());
+        }
         choice.stops.push(*number);
-        last = Some(seen);
+        last = Some((at, seen));
     }
     choice
 }
@@ -104,15 +116,20 @@ fn usual_sharpness(looks: &[(usize, Look)]) -> f64 {
     all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Whether a picture was taken along the way from the mark before; true where that is not known.
-fn faces_the_way(recording: &Recording, marks: &[Mark], at: usize, number: usize) -> bool {
-    let heading = || {
-        let track = recording.track.as_ref()?;
-        let looking = track.at(recording.reel.times_s()[number])?.heading?;
-        let walked = Heading::towards(marks.get(at.checked_sub(1)?)?.position?, marks[at].position?)?;
-        Some(looking.turn_to(walked).abs() <= TURNED_AWAY_RAD)
+/// Whether the way over these marks, the last of which would be the next stop, is lost.
+fn is_lost(marks: &[Mark]) -> bool {
+    marks.len() > MOST_LEFT_OUT + 1 || marks.iter().any(|mark| mark.after_gap)
+}
+
+/// Whether somebody who comes from the stop `before` and looks ahead sees what a picture shows; true where that is not known.
+fn faces_the_way(recording: &Recording, before: usize, number: usize) -> bool {
+    let fix = |number: usize| recording.track.as_ref()?.at(recording.reel.times_s()[number]);
+    let faces = || {
+        let (from, to) = (fix(before)?, fix(number)?);
+        let walked = Heading::towards(from.position, to.position)?;
+        Some(Gaze::quarter(walked).holds(to.heading?))
     };
-    heading().unwrap_or(true)
+    faces().unwrap_or(true)
 }
 
 #[cfg(test)]

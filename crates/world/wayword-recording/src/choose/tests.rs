@@ -102,6 +102,46 @@ fn a_camera_that_looks_aside_shows_no_way() {
 }
 
 #[test]
+fn only_pictures_that_a_walker_would_be_shown_are_frames() {
+    // A view is 90 degrees wide: what was taken 50 degrees off the way lies in none.
+    let deg = |at: usize| if (15..=25).contains(&at) { 140.0 } else { 130.0 };
+    let fixes = (0..=60).map(|at| fix(at, at as f64 / 20.0, deg(at))).collect();
+    let choice = chosen(&recording(61, |number| stripes(number, 0), Some(fixes)));
+    assert_eq!((choice.stops, choice.turned_away), (vec![0, 40, 60], 1));
+}
+
+#[test]
+fn at_the_end_the_picture_along_the_way_is_taken_and_not_the_last_one() {
+    // Whoever has arrived turns on the spot.
+    let x_m = |at: usize| at.min(40) as f64 / 20.0;
+    let fixes = (0..=60).map(|at| fix(at, x_m(at), if at > 44 { 180.0 } else { 90.0 })).collect();
+    let choice = chosen(&recording(61, |number| stripes(number, 0), Some(fixes)));
+    assert!((37..=44).contains(choice.stops.last().unwrap()), "{choice:?}");
+}
+
+#[test]
+fn no_way_leads_over_what_nobody_knows() {
+    // Ten metres were walked while the tracker was lost.
+    let fixes = (0..=40).map(|at| fix(at, at as f64 / 20.0, 90.0));
+    let fixes = fixes.chain((70..=100).map(|at| fix(at, 10.0 + (at - 70) as f64 / 20.0, 90.0))).collect();
+    let choice = chosen(&recording(101, |number| stripes(number, 0), Some(fixes)));
+    let pieces: Vec<usize> = choice.breaks.iter().map(|at| choice.stops[*at]).collect();
+    assert!(matches!(pieces[..], [69..=70]), "{choice:?}");
+
+    // Five metres in a row were filmed sideways.
+    let deg = |at: usize| if (10..=110).contains(&at) { 180.0 } else { 90.0 };
+    let fixes = (0..=160).map(|at| fix(at, at as f64 / 20.0, deg(at))).collect();
+    let choice = chosen(&recording(161, |number| stripes(number, 0), Some(fixes)));
+    assert_eq!(choice.turned_away, 4);
+    assert_eq!(choice.breaks.iter().map(|at| choice.stops[*at]).collect::<Vec<_>>(), [80]);
+
+    // Without poses nothing is claimed of the way, so nothing is lost.
+    let choice = chosen(&recording(201, |number| stripes(number.clamp(20, 180), 0), None));
+    let alike = chosen(&recording(201, |number| stripes(if number < 160 { 0 } else { number }, 0), None));
+    assert!(choice.breaks.is_empty() && alike.breaks.is_empty() && alike.alike > 3, "{alike:?}");
+}
+
+#[test]
 fn pictures_without_a_pose_are_counted_and_left_out() {
     let fixes = (20..=60).map(|at| fix(at, at as f64 / 20.0, 90.0)).collect();
     let choice = chosen(&recording(101, |number| stripes(number, 0), Some(fixes)));

@@ -84,6 +84,27 @@ fn stretches_keep_to_what_is_asked_for_and_to_the_seed() {
 }
 
 #[test]
+fn no_path_leads_over_a_gap_in_the_track() {
+    let folder = walk(true);
+    // Four metres to the north and one to the east without a pose, and then far away.
+    let csv = "image,x,y,z,heading_deg\n0.png,0,0,0,0\n1.png,0,1,0,0\n2.png,0,2,0,0\n\
+               6.png,20,4,0,90\n7.png,21,4,0,90\n8.png,22,4,0,90\n";
+    std::fs::write(folder.path().join("poses.csv"), csv).unwrap();
+    let (platform, scene, heard) = open(&folder);
+    let request = |length_m| PathRequest { length_m, ..PathRequest::default() };
+    for seed in 0..20 {
+        let path = platform.sample_path(&scene, &request(1.5..=30.0), seed).unwrap();
+        assert!((path.length_m().unwrap() - 2.0).abs() < 1e-9, "{path:?}");
+    }
+    assert!(platform.sample_path(&scene, &request(5.0..=30.0), 0).is_err());
+    let id = |name: &str| ViewpointId::new(name).unwrap();
+    let graph = platform.graph(&scene).unwrap();
+    assert!(graph.shortest_path(&id("6.png"), &id("8.png")).unwrap().is_some());
+    assert!(graph.shortest_path(&id("2.png"), &id("6.png")).unwrap().is_none());
+    assert!(heard.lock().unwrap()[0].contains("1 gaps over which no path leads"), "{heard:?}");
+}
+
+#[test]
 fn what_is_not_there_is_refused() {
     let folder = walk(true);
     let (platform, scene, _) = open(&folder);
@@ -100,9 +121,13 @@ fn what_is_not_there_is_refused() {
 }
 
 #[test]
-fn large_pictures_are_made_as_wide_as_other_worlds_have_them() {
+fn large_pictures_are_made_as_large_as_other_worlds_have_them() {
     let large = Image::new(1280, 720, vec![90; 1280 * 720 * 3]).unwrap();
     let small = scaled(&large);
     assert_eq!((small.width_px(), small.height_px()), (640, 360));
     assert!(small.rgb().iter().all(|level| *level == 90));
+    // A telephone that was held upright.
+    let upright = scaled(&Image::new(720, 1280, vec![90; 1280 * 720 * 3]).unwrap());
+    assert_eq!((upright.width_px(), upright.height_px()), (360, 640));
+    assert_eq!(scaled(&upright), upright);
 }
