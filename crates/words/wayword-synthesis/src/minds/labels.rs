@@ -27,7 +27,7 @@ fn answer(view: &View, question: &str) -> Result<Answer, ModelError> {
     let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
         mind: "labels".into(),
         needs: "labels",
-        hint: "name a model that sees pictures, or use a platform or data folder with labels",
+        hint: "name a model that sees pictures, as in --see ollama/llava (docs/MODELS.md), or use a world with labels",
     })?;
     Ok(match asked(question) {
         Asked::Room => truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room))),
