@@ -7,6 +7,7 @@
 //! Architecture invariant: nothing here reads a file, a clock or a network, and nothing knows a model or a platform.
 
 pub mod caption;
+pub mod contain;
 pub mod encoder;
 pub mod from_above;
 pub mod graph;
@@ -26,6 +27,7 @@ pub mod verdict;
 pub mod view;
 
 pub use caption::{Answer, Answerer, Ask, Caption, Exchange, Sighting, Trouble, Where, Witness};
+pub use contain::contained;
 pub use encoder::{Grounder, TextEncoder};
 pub use from_above::FromAbove;
 pub use glam::DVec3;

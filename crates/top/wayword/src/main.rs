@@ -5,6 +5,13 @@ use std::process::ExitCode;
 use wayword::{cli::Cli, commands, output::Output};
 
 fn main() -> ExitCode {
+    let tell = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        // A decoder that broke on a file is told of by the error about the file.
+        if !wayword_core::contain::is_contained() {
+            tell(panic);
+        }
+    }));
     let cli = Cli::parse();
     let output = Output::new(cli.json, cli.quiet);
     match commands::run(cli.command, &output) {

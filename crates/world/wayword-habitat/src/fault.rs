@@ -59,5 +59,5 @@ pub(crate) fn text_if_there(file: &Path, most: u64, hint: &'static str) -> Resul
 
 /// Runs somebody else's decoder, whose panics on broken input become a refusal.
 pub(crate) fn contained<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(decode)).unwrap_or_else(|_| Err("is broken".to_owned()))
+    wayword_core::contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
 }

@@ -7,11 +7,8 @@ use super::{file::GgufFile, vocabulary::Vocabulary};
 use crate::LocalError;
 use minijinja::{Environment, Error, ErrorKind, State, Value, context};
 use serde::Serialize;
-use std::{
-    io::{self, Write},
-    panic::{AssertUnwindSafe, catch_unwind},
-};
-use wayword_core::{Message, Role};
+use std::io::{self, Write};
+use wayword_core::{Message, Role, contained};
 
 /// Longest template, bytes: Llama's has 8,000.
 const LONGEST_TEMPLATE: usize = 128 << 10;
@@ -125,8 +122,8 @@ impl Template {
         let template = environment.get_template("chat").map_err(|error| said(&error))?;
         let mut text = Bounded(Vec::new());
         // The engine reckons with numbers of the template, some without a look whether they overflow.
-        let rendered = catch_unwind(AssertUnwindSafe(|| template.render_captured_to(context, &mut text).map(drop)));
-        rendered.map_err(|_| "it breaks the engine that renders it".to_owned())?.map_err(|error| said(&error))?;
+        let rendered = contained(|| template.render_captured_to(context, &mut text).map(drop));
+        rendered.ok_or_else(|| "it breaks the engine that renders it".to_owned())?.map_err(|error| said(&error))?;
         String::from_utf8(text.0).map_err(|error| error.to_string())
     }
 }

@@ -17,8 +17,8 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     fs::File,
     io::{Read, Seek},
-    panic::{AssertUnwindSafe, catch_unwind},
 };
+use wayword_core::contained;
 
 /// Every MCAP file begins with it.
 pub(crate) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
@@ -82,7 +82,7 @@ impl Contents {
     pub(crate) fn of(file: &File) -> Result<Self, String> {
         let length = file.metadata().map_err(|error| error.to_string())?.len();
         // A summary that is broken, or does not tell all, is no reason to give up.
-        let summary = catch_unwind(AssertUnwindSafe(|| summary(file, length))).ok().flatten();
+        let summary = contained(|| summary(file, length)).flatten();
         Ok(summary.and_then(|summary| Self::told(&summary, length)).unwrap_or_else(|| Survey::of(file, length)))
     }
 
@@ -240,10 +240,10 @@ impl Survey {
                 if !fits(found.opcode, &body) {
                     return Err(format!("{}: a length in the record leads out of it", records.place(found.at)));
                 }
-                let parsed = catch_unwind(|| {
+                let parsed = contained(|| {
                     mcap::parse_record(found.opcode, &body).map(Record::into_owned).map_err(|error| error.to_string())
                 });
-                let parsed = parsed.unwrap_or_else(|_| Err("is broken".to_owned()));
+                let parsed = parsed.unwrap_or_else(|| Err("is broken".to_owned()));
                 match parsed.map_err(|why| format!("{}: {why}", records.place(found.at)))? {
                     Record::Schema { header, .. } => drop(self.schemas.insert(header.id, header.name)),
                     Record::Channel(channel) => {

@@ -8,8 +8,8 @@ use ruzstd::StreamingDecoder;
 use std::{
     fs::File,
     io::{BufReader, Error, ErrorKind, Read, Seek, SeekFrom, Take, copy, sink},
-    panic::{AssertUnwindSafe, catch_unwind},
 };
+use wayword_core::contained;
 
 pub(crate) const SCHEMA: u8 = 3;
 pub(crate) const CHANNEL: u8 = 4;
@@ -216,8 +216,8 @@ fn unpacking<'a>(zstd: bool, packed: Take<BufReader<&'a File>>) -> Result<Box<dy
     if !zstd {
         return Ok(Box::new(FrameDecoder::new(packed)));
     }
-    let begun = catch_unwind(AssertUnwindSafe(|| StreamingDecoder::new(packed).map_err(|error| error.to_string())));
-    Ok(Box::new(begun.unwrap_or_else(|_| Err("is broken".to_owned()))?))
+    let begun = contained(|| StreamingDecoder::new(packed).map_err(|error| error.to_string()));
+    Ok(Box::new(begun.unwrap_or_else(|| Err("is broken".to_owned()))?))
 }
 
 /// Somebody else's decoder, whose panics on broken input become errors.
@@ -225,8 +225,8 @@ struct Contained<R>(R);
 
 impl<R: Read> Read for Contained<R> {
     fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
-        let read = catch_unwind(AssertUnwindSafe(|| self.0.read(into)));
-        read.unwrap_or_else(|_| Err(Error::other("cannot be decompressed")))
+        let read = contained(|| self.0.read(into));
+        read.unwrap_or_else(|| Err(Error::other("cannot be decompressed")))
     }
 }
 

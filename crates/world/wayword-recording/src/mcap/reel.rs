@@ -9,12 +9,8 @@ use super::{
     records::{MESSAGE, Records},
 };
 use crate::reel::{Reel, Take};
-use std::{
-    fs::File,
-    panic::{AssertUnwindSafe, catch_unwind},
-    path::PathBuf,
-};
-use wayword_core::PlatformError;
+use std::{fs::File, path::PathBuf};
+use wayword_core::{PlatformError, contained};
 use wayword_platforms::files;
 
 /// Largest message of a picture: 64 megapixels of four bytes.
@@ -57,8 +53,8 @@ impl Reel for Pictures {
                 _ => self.stretches[place.stretch].open(&opened).map_err(wrong)?,
             };
             read(&mut records, place.at, &mut message).map_err(wrong)?;
-            let decoded = catch_unwind(AssertUnwindSafe(|| pixels::picture(self.kind, &message)));
-            let decoded = decoded.unwrap_or_else(|_| Err("is broken".to_owned()));
+            let decoded = contained(|| pixels::picture(self.kind, &message));
+            let decoded = decoded.unwrap_or_else(|| Err("is broken".to_owned()));
             let picture = decoded.map_err(|why| wrong(format!("message at {}: {why}", records.place(place.at))))?;
             take(number, picture)?;
             open = Some((place.stretch, records));

@@ -72,5 +72,5 @@ pub(super) fn size_is_possible(width_px: u32, height_px: u32) -> Result<(), Stri
 
 /// Runs a decoder, whose panics on broken input become a refusal.
 pub(super) fn contained<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(decode)).unwrap_or_else(|_| Err("is broken".to_owned()))
+    wayword_core::contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
 }

@@ -1,10 +1,8 @@
 //! Compressed pages, as large as they were before.
 
 use super::footer::Codec;
-use std::{
-    io::Read,
-    panic::{AssertUnwindSafe, catch_unwind},
-};
+use std::io::Read;
+use wayword_core::contained;
 
 /// Fills `place` with what was compressed. The place's size bounds what is unfolded.
 ///
@@ -12,7 +10,7 @@ use std::{
 /// In words, when it was less or more, is broken, or compressed in a way that is not read.
 pub(super) fn unfold(codec: Codec, folded: &[u8], place: &mut [u8]) -> Result<(), String> {
     // Decoders of others may panic on broken bytes.
-    catch_unwind(AssertUnwindSafe(|| match codec {
+    contained(|| match codec {
         Codec::None => copied(folded, place),
         Codec::Snappy => match snap::raw::Decoder::new().decompress(folded, place) {
             Ok(written) if written == place.len() => Ok(()),
@@ -22,8 +20,8 @@ pub(super) fn unfold(codec: Codec, folded: &[u8], place: &mut [u8]) -> Result<()
         Codec::Gzip => filled(flate2::read::MultiGzDecoder::new(folded), place),
         Codec::Zstandard => filled(ruzstd::StreamingDecoder::new(folded).map_err(|error| error.to_string())?, place),
         Codec::Other(number) => Err(format!("is compressed with {}, which is not read here", name(number))),
-    }))
-    .unwrap_or_else(|_| Err("is broken".to_owned()))
+    })
+    .unwrap_or_else(|| Err("is broken".to_owned()))
 }
 
 fn copied(bytes: &[u8], place: &mut [u8]) -> Result<(), String> {

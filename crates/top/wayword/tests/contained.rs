@@ -1,0 +1,28 @@
+//! A decoder that panics on a broken file is told of by an error about the file, and by nothing else.
+
+#![cfg(feature = "habitat")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::Building;
+
+#[test]
+fn a_decoder_that_panics_is_not_heard() {
+    let building = Building::new();
+    // The reader of glTF takes the header's twelve bytes from the length of none that it announces.
+    let glb = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &0_u32.to_le_bytes(), &[0; 20]].concat();
+    std::fs::write(building.path("broken.glb"), glb).unwrap();
+    let ran = building.wayword(&[
+        "generate",
+        "--platform",
+        "habitat",
+        "--data",
+        "broken.glb",
+        "--paths",
+        "1",
+        "--out",
+        "run",
+    ]);
+    assert!(ran.out.contains("broken.glb: is broken") && !ran.err.contains("panicked"), "{ran:?}");
+}
