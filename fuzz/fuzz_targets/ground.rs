@@ -1,0 +1,35 @@
+//! `.navmesh` files, walked on: islands, storeys, shortest ways, the viewpoint graph, frames along a way.
+//!
+//! The search for ways (`polyanya`) is another's code; its panics are contained. Memory: a polygon of 32 bytes may name the 255
+//! triangles of a list that others name too (72 bytes each); viewpoints and frames are bounded by number, whatever the area.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use wayword_core::rng;
+use wayword_fuzz::{Bound, begin, seeds};
+use wayword_habitat::{
+    Ground, NavMesh,
+    ground::{stops_along, viewpoint_graph},
+};
+
+const BOUND: Bound = Bound { flat: 96 << 20, per_byte: 4096 };
+
+fuzz_target!(init: begin("ground", &seeds::navmesh::all()), |data: &[u8]| {
+    BOUND.hold(data, || {
+        let Ok(mesh) = NavMesh::from_bytes(data) else { return };
+        let ground = Ground::new(&mesh);
+        let mut rng = rng(1, &["fuzz"]);
+        for island in 0..2 {
+            let places = [ground.random_place(island, &mut rng), ground.random_place(island, &mut rng)];
+            if let [Some(from), Some(to)] = places
+                && let Ok(way) = ground.geodesic(from.place, to.place)
+            {
+                let _ = stops_along(&ground, &way, 1.0);
+            }
+        }
+        // Over wide ground it takes half a second: done for a part of such inputs only, so that there is time for others.
+        if ground.area_m2() < 60.0 || data.ends_with(&[0]) {
+            let _ = viewpoint_graph(&ground, 0);
+        }
+    });
+});

@@ -1,0 +1,46 @@
+//! A building's files as Matterport3D and REVERIE have them. The first byte says which one the rest is: connectivity, `.house`,
+//! rooms, boxes, centres, or a skybox.
+//!
+//! No containment: JSON (`serde_json`) and pictures (`image`) are others' code, but panics in them would reach the user. Memory: a
+//! byte of JSON becomes a value of 72 bytes, in a list that is copied while it grows; a picture may take 256 MiB while it is
+//! decoded, which is the program's own limit for any file.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use wayword_core::{Gaze, Heading, Platform};
+use wayword_fuzz::{Bound, begin, scratch, seeds::words};
+use wayword_platforms::{Matterport, labels_around};
+
+const BOUND: Bound = Bound { flat: 300 << 20, per_byte: 1024 };
+
+fuzz_target!(init: begin("matterport", &words::building()), |data: &[u8]| {
+    let Some((which, file)) = data.split_first() else { return };
+    let folder = scratch::folder();
+    let places = [
+        ("connectivity/s_connectivity.json", words::CONNECTIVITY),
+        ("scans/s/house_segmentations/s.house", words::HOUSE),
+        ("scans/s/house_segmentations/panorama_to_region.txt", words::ROOMS),
+        ("BBox/s_a.json", words::BOXES),
+        ("objpos.json", words::CENTRES),
+        ("scans/s/matterport_skybox_images/a_skybox_small.jpg", ""),
+    ];
+    for (number, (place, usual)) in places.into_iter().enumerate() {
+        if number == usize::from(which % 6) {
+            scratch::write(folder.path(), place, file);
+        } else if !usual.is_empty() {
+            scratch::write(folder.path(), place, usual.as_bytes());
+        }
+    }
+    BOUND.hold(data, || {
+        let Ok(platform) = Matterport::open(folder.path()) else { return };
+        let Some(scene) = platform.scenes().ok().and_then(|scenes| scenes.into_iter().next()) else { return };
+        let Ok(graph) = platform.graph(&scene) else { return };
+        let Some(first) = graph.viewpoints().next() else { return };
+        let frames = graph.walk(std::slice::from_ref(first), None).expect("a viewpoint of the graph");
+        let _ = labels_around(&platform, &scene, &frames[0]);
+        let _ = platform.look(&scene, &frames[0], Gaze::quarter(Heading::NORTH));
+        for object in ["5", "6"].map(|name| wayword_core::ObjectId::new(name).expect("a name")) {
+            let _ = platform.visible_from(&scene, &object);
+        }
+    });
+});

@@ -1,0 +1,46 @@
+//! What a child process says: greeting, scenes, a graph, a view, a path. The child is `cat`, which says the whole input at once.
+//!
+//! No containment: JSON (`serde_json`) and pictures (`image`) are others' code, but panics in them would reach the user. Memory: a
+//! byte of JSON becomes a value of 72 bytes, in a list that is copied while it grows, and then what it means.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use std::{sync::Arc, time::Duration};
+use wayword_core::{DVec3, Frame, Gaze, Heading, ObjectId, PathRequest, Platform, Pose, SceneId};
+use wayword_fuzz::{Bound, begin, scratch, seeds::words};
+use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
+
+const BOUND: Bound = Bound { flat: 16 << 20, per_byte: 2048 };
+
+fn seeds() -> Vec<Vec<u8>> {
+    [words::CHILD, words::WALKER, words::NEIGHBOUR].map(|text| text.as_bytes().to_vec()).to_vec()
+}
+
+fuzz_target!(init: begin("process", &seeds()), |data: &[u8]| {
+    let folder = scratch::folder();
+    scratch::write(folder.path(), "said", data);
+    let patience = Duration::from_secs(5);
+    let options = ProcessOptions {
+        arguments: vec![folder.path().join("said").display().to_string()],
+        width_px: 16,
+        height_px: 16,
+        start_within: patience,
+        answer_within: patience,
+        restarts: 0,
+        ..ProcessOptions::new("cat")
+    };
+    BOUND.hold(data, || {
+        let Ok(platform) = ProcessPlatform::start(options, Arc::new(|_: &str| ())) else { return };
+        let _ = platform.scenes();
+        let scene = SceneId::new("s").expect("a name");
+        let _ = platform.graph(&scene);
+        let pose = Pose::level(DVec3::new(0.0, 0.0, 1.5), Heading::NORTH);
+        let frame = Frame { pose, viewpoint: None, level: None };
+        let _ = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH));
+        let _ = platform.look_without_picture(&scene, &frame, Gaze::quarter(Heading::NORTH));
+        let _ = platform.sample_path(&scene, &PathRequest { hops: 1..=4, length_m: 0.5..=9.0 }, 3);
+        let object = ObjectId::new("7").expect("a name");
+        let _ = platform.object_name(&scene, &frame, &object);
+        let _ = platform.visible_from(&scene, &object);
+    });
+});

@@ -1,0 +1,35 @@
+//! VirtualHome's graph of a home, as JSON over HTTP: read, made a floor, and walked on.
+//!
+//! No containment: JSON (`serde_json`) and HTTP (`ureq`) are others' code, but panics in them would reach the user. Memory: a floor
+//! has at most 80 x 80 m of 10 cm, whatever the graph; JSON becomes up to some hundred times its length.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use std::{sync::OnceLock, time::Duration};
+use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
+use wayword_fuzz::{Bound, begin, seeds, virtualhome};
+use wayword_live::{
+    Pictures,
+    virtualhome::{VirtualHomeOptions, VirtualHomePlatform},
+};
+
+const BOUND: Bound = Bound { flat: 96 << 20, per_byte: 1024 };
+
+static URL: OnceLock<String> = OnceLock::new();
+
+fuzz_target!(init: begin("virtualhome", &[seeds::words::HOME.into()]), |data: &[u8]| {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let url = URL.get_or_init(virtualhome::start).clone();
+    virtualhome::set_graph(text.to_owned());
+    BOUND.hold(data, || {
+        let pictures = Pictures { width_px: 16, height_px: 12, ..Pictures::default() };
+        let options = VirtualHomeOptions { url, timeout: Duration::from_secs(60), pictures };
+        let platform = VirtualHomePlatform::new(options);
+        let home = SceneId::new("home_0").expect("a name");
+        let Ok(graph) = platform.graph(&home) else { return };
+        let Some(first) = graph.viewpoints().next() else { return };
+        let frames = graph.walk(std::slice::from_ref(first), None).expect("a viewpoint of the graph");
+        let _ = platform.look(&home, &frames[0], Gaze::quarter(Heading::NORTH));
+        let _ = platform.sample_path(&home, &PathRequest { hops: 0..=9, length_m: 0.5..=4.0 }, 3);
+    });
+});

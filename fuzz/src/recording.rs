@@ -1,0 +1,18 @@
+//! The same way into recordings that the program takes.
+
+use std::{path::Path, sync::Arc};
+use wayword_core::{Gaze, PathRequest, Platform, PlatformError};
+use wayword_recording::RecordingPlatform;
+
+/// Opens what lies under a path, walks along its first two recordings and looks twice on each.
+pub fn walk(path: &Path) -> Result<(), PlatformError> {
+    let platform = RecordingPlatform::open(path, Arc::new(|_: &str| ()))?;
+    for scene in platform.scenes()?.iter().take(2) {
+        platform.graph(scene)?;
+        let walk = platform.sample_path(scene, &PathRequest { hops: 1..=200, length_m: 0.01..=1e6 }, 1)?;
+        for frame in walk.frames.iter().take(2) {
+            platform.look(scene, frame, Gaze::quarter(frame.pose.heading))?;
+        }
+    }
+    Ok(())
+}
