@@ -90,7 +90,10 @@ fn look_at(
 ) -> Result<Vec<Look>, ObserveError> {
     let looks = gazes.iter().map(|gaze| {
         let view = platform.look(&path.scene, frame, *gaze)?;
-        Ok(Look { gaze: *gaze, caption: talk_about(&view, minds)? })
+        // A camera's picture shows what the camera looked at, which need not be quite what was asked for.
+        let shown = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
+        let gaze = if view.image.is_some() { shown } else { *gaze };
+        Ok(Look { gaze, caption: talk_about(&view, minds)? })
     });
     looks.collect()
 }

@@ -1,6 +1,6 @@
 //! Files from outside, read with a bound, and the words for what is wrong with them.
 
-use image::{ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::{
     fs::File,
     io::{Cursor, ErrorKind, Read},
@@ -62,6 +62,50 @@ pub fn picture(bytes: &[u8]) -> Result<Image, String> {
     limits.max_image_height = Some(MAX_SIDE_PX);
     limits.max_alloc = Some(MAX_DECODED_BYTES);
     reader.limits(limits);
-    let picture = reader.decode().map_err(|error| format!("is no picture that can be read: {error}"))?.into_rgb8();
+    let unread = |error: ImageError| format!("is no picture that can be read: {error}");
+    let mut decoder = reader.into_decoder().map_err(unread)?;
+    if decoder.total_bytes() > MAX_DECODED_BYTES {
+        return Err(format!("has more than {MAX_DECODED_BYTES} bytes once it is unpacked"));
+    }
+    // A telephone that was held upright writes down that its picture lies on its side.
+    let orientation = decoder.orientation().map_err(unread)?;
+    let mut picture = DynamicImage::from_decoder(decoder).map_err(unread)?;
+    picture.apply_orientation(orientation);
+    let picture = picture.into_rgb8();
     Image::new(picture.width(), picture.height(), picture.into_raw()).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageEncoder, Rgb, RgbImage, codecs::jpeg::JpegEncoder};
+
+    /// Exif with one entry: the orientation.
+    fn exif(orientation: u8) -> Vec<u8> {
+        let mut exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0".to_vec();
+        exif.extend([orientation, 0, 0, 0, 0, 0, 0, 0]);
+        exif
+    }
+
+    #[test]
+    fn a_picture_that_was_taken_upright_stands_upright() {
+        let lying = RgbImage::from_fn(32, 16, |x, _| Rgb([if x < 16 { 250 } else { 5 }; 3]));
+        for (orientation, size, top_left) in
+            [(1, (32, 16), 250), (6, (16, 32), 250), (8, (16, 32), 5), (3, (32, 16), 5)]
+        {
+            let mut bytes = Vec::new();
+            let mut encoder = JpegEncoder::new_with_quality(&mut bytes, 95);
+            encoder.set_exif_metadata(exif(orientation)).unwrap();
+            encoder.write_image(lying.as_raw(), 32, 16, image::ExtendedColorType::Rgb8).unwrap();
+            let read = picture(&bytes).unwrap();
+            assert_eq!((read.width_px(), read.height_px()), size, "{orientation}");
+            assert!(read.rgb()[0].abs_diff(top_left) < 10, "{orientation}: {}", read.rgb()[0]);
+        }
+    }
+
+    #[test]
+    fn what_is_no_picture_is_refused() {
+        assert!(picture(b"GIF89a").unwrap_err().contains("neither PNG nor JPEG"));
+        assert!(picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("no picture that can be read"));
+    }
 }

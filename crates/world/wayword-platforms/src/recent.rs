@@ -18,7 +18,8 @@ impl<K: PartialEq, V> Recent<K, V> {
         Self { capacity, kept: Mutex::new(VecDeque::new()) }
     }
 
-    /// The value of a key, made if it is not remembered. Two threads that ask at once may both make it.
+    /// The value of a key, made if it is not remembered. Two threads that ask at once may both make it, and the
+    /// first one's counts.
     ///
     /// # Errors
     /// When it cannot be made.
@@ -28,6 +29,9 @@ impl<K: PartialEq, V> Recent<K, V> {
         }
         let value = Arc::new(make()?);
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, made)) = kept.iter().find(|(other, _)| *other == key) {
+            return Ok(Arc::clone(made));
+        }
         kept.push_back((key, Arc::clone(&value)));
         while kept.len() > self.capacity {
             kept.pop_front();

@@ -15,7 +15,9 @@ use wayword_core::{PlatformError, SceneId};
 use wayword_platforms::files;
 
 /// Subfolders in which datasets keep their pictures.
-const WITHIN: [&str; 4] = ["rgb", "images", "color", "frames"];
+const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
+/// What stands in the names of pictures that datasets keep beside photographs.
+const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
 /// TUM's list of pictures with their times.
 const LIST: &str = "rgb.txt";
 const MAX_LIST_BYTES: u64 = 64 << 20;
@@ -41,6 +43,7 @@ impl Folder {
         for pictures in places.filter(|place| place.is_dir()) {
             let mut names = entries(&pictures)?;
             names.retain(|name| is_picture(name));
+            let names = photographs(names);
             if !names.is_empty() {
                 return Ok(Some(Self { scene: scene_of(root)?, root: root.to_owned(), pictures, names }));
             }
@@ -147,6 +150,13 @@ fn is_picture(name: &str) -> bool {
     !name.starts_with('.') && ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
+/// Names without those of depth maps and the like, unless there is nothing else.
+fn photographs(names: Vec<String>) -> Vec<String> {
+    let is_other = |name: &&String| NO_PHOTOGRAPHS.iter().any(|word| name.to_ascii_lowercase().contains(word));
+    let photographs: Vec<String> = names.iter().filter(|name| !is_other(name)).cloned().collect();
+    if photographs.is_empty() { names } else { photographs }
+}
+
 /// The time that a picture's name is: `1305031102.175304.png` in seconds, `1403636579763555584.png` in nanoseconds. Names that
 /// count (`000012.png`) are no times.
 fn time_of(name: &str) -> Option<f64> {
@@ -234,6 +244,14 @@ mod tests {
         recording.reel.pictures(&[0, 1], take).unwrap();
         assert_eq!(reds, [(0, 1), (1, 0)]);
         assert!(recording.track.is_none());
+    }
+
+    #[test]
+    fn depth_maps_beside_photographs_are_no_pictures() {
+        let both = folder(&["rgb_0.png", "depth_0.png", "rgb_1.png", "depth_1.png"]);
+        let recording = open(both.path());
+        assert_eq!([0, 1].map(|at| recording.reel.name(at)), ["rgb_0.png", "rgb_1.png"]);
+        assert_eq!(open(folder(&["in_depth_1.png"]).path()).reel.times_s().len(), 1);
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
     (marks, times_s.len() - posed.len())
 }
 
-/// Marks that lie one interval or a bit more apart: a tracker trembles while a robot stands, so what counts is how far it got
+/// Marks that lie about one interval apart: a tracker trembles while a robot stands, so what counts is how far it got
 /// from the last mark, and not how long its track is.
 fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) -> Vec<Mark> {
     let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return Vec::new() };
@@ -58,6 +58,16 @@ fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) 
     let mut marks = vec![0];
     let mut from = *first;
     for (at, picture) in pictures.iter().enumerate() {
+        let over = off(from, *picture) - interval;
+        if over < 0.0 {
+            continue;
+        }
+        // Of pictures that are far apart the one before may lie nearer to where a frame is due.
+        let before = at.saturating_sub(1);
+        if marks.last() != Some(&before) && interval - off(from, pictures[before]) < over {
+            marks.push(before);
+            from = pictures[before];
+        }
         if off(from, *picture) >= interval {
             marks.push(at);
             from = *picture;

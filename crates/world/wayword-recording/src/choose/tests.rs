@@ -75,6 +75,13 @@ fn with_poses_frames_are_equally_far_apart_in_space_and_standing_makes_none() {
 }
 
 #[test]
+fn pictures_that_are_nearly_an_interval_apart_are_all_frames() {
+    let fixes = (0..=4).map(|at| fix(at, 0.94 * at as f64, 90.0)).collect();
+    let choice = chosen(&recording(5, |number| stripes(number, 0), Some(fixes)));
+    assert_eq!(choice.stops, [0, 1, 2, 3, 4]);
+}
+
+#[test]
 fn a_blurred_picture_gives_way_to_a_sharp_neighbour_and_a_blurred_place_is_left_out() {
     let paint = |number: usize| stripes(number, if number == 20 || (35..=45).contains(&number) { 9 } else { 0 });
     let choice = chosen(&recording(101, paint, None));

@@ -65,6 +65,9 @@ impl Edge {
     }
 }
 
+/// Longest silence over which the way is taken to be straight, nanoseconds: as long as tf2 remembers.
+const MAX_GAP_NS: i64 = 10_000_000_000;
+
 /// An edge on one clock.
 pub(crate) struct Timed {
     samples: Vec<(i64, Placing)>,
@@ -72,7 +75,8 @@ pub(crate) struct Timed {
 }
 
 impl Timed {
-    /// Where the frame is at a time; between two placings on the straight way. `None` before the first and after the last.
+    /// Where the frame is at a time; between two placings that are near in time on the straight way. `None` before the first, after
+    /// the last, and where nothing was said for long.
     fn at(&self, time_ns: i64) -> Option<Placing> {
         if !self.moves {
             return self.samples.first().map(|(_, placing)| *placing);
@@ -83,6 +87,9 @@ impl Timed {
             return Some(after);
         }
         let (before_ns, before) = *self.samples.get(next.checked_sub(1)?)?;
+        if after_ns.saturating_sub(before_ns) > MAX_GAP_NS {
+            return None;
+        }
         let share = time_ns.saturating_sub(before_ns) as f64 / after_ns.saturating_sub(before_ns) as f64;
         Some(before.towards(after, share))
     }

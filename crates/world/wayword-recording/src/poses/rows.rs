@@ -69,11 +69,9 @@ pub(super) fn stem(name: &str) -> String {
     stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// A finite number, or the words for what is wrong with it.
+/// A number, or the words for what is wrong with it. Trackers write `nan` while they are lost; such a row is none in the end.
 pub(super) fn number(text: &str) -> Result<f64, String> {
-    let number: f64 =
-        text.trim().parse().map_err(|_| format!("{:?} is no number", text.chars().take(40).collect::<String>()))?;
-    if number.is_finite() { Ok(number) } else { Err(format!("{number} is no place or time")) }
+    text.trim().parse().map_err(|_| format!("{:?} is no number", text.chars().take(40).collect::<String>()))
 }
 
 /// A time by a number and the unit that its column names; without a unit, seconds, unless the number can only be a time of day in

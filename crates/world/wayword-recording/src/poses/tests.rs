@@ -58,6 +58,13 @@ fn kitti_counts_pictures_and_has_y_down() {
 }
 
 #[test]
+fn a_tracker_that_was_lost_leaves_no_pose() {
+    let text = "10 0 0 1.5 -0.5 0.5 -0.5 0.5\n11 nan nan nan nan nan nan nan\n12 2 0 1.5 -0.5 0.5 -0.5 0.5\n";
+    let track = read("poses.tum", text, 10.0, &Description::default()).unwrap();
+    assert_eq!(at(&track, 11.0).0, DVec3::new(1.0, 0.0, 1.5));
+}
+
+#[test]
 fn clocks_that_never_meet_are_told_with_both_their_times() {
     let error = read("poses.csv", "time,x,y\n5,0,0\n6,1,1\n", 1_700_000_000.0, &Description::default()).unwrap_err();
     assert!(error.contains("from 5 to 6 s") && error.contains("from 1700000000"), "{error}");
