@@ -19,8 +19,9 @@ fn walk(stage: &Stage, poses: bool) {
     fs::create_dir(&folder).unwrap();
     let mut csv = String::from("image,x,y,z,heading_deg\n");
     for at in 0..=8_u32 {
-        let pixel =
-            |x: u32, y: u32| Rgb([if (x + 13 * at) / 16 % 2 == 0 { 210 } else { 30 }, (y / 2) as u8, 20 * at as u8]);
+        let pixel = |x: u32, y: u32| {
+            Rgb([if ((x + 13 * at) / 16).is_multiple_of(2) { 210 } else { 30 }, (y / 2) as u8, 20 * at as u8])
+        };
         RgbImage::from_fn(320, 240, pixel).save(folder.join(format!("{at}.png"))).unwrap();
         let (north, east) = (at.min(4), at.saturating_sub(4));
         csv += &format!("{at}.png,{east},{north},1.5,{}\n", if at > 4 { 90 } else { 0 });
