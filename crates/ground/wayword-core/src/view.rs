@@ -72,6 +72,12 @@ impl View {
         Self { pose, horizontal_fov_rad, image, truth }
     }
 
+    /// Whether nothing is known of it, as of what a camera did not look at.
+    #[must_use]
+    pub fn is_blank(&self) -> bool {
+        self.image.is_none() && self.truth.is_none()
+    }
+
     /// What the platform knows. Only the `labels` minds and the checks' evidence may ask: a test in wayword-synthesis holds
     /// every other mind to the picture.
     #[must_use]

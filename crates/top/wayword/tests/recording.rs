@@ -65,6 +65,18 @@ fn a_walk_with_poses_becomes_instructions_with_turns_that_hold() {
 }
 
 #[test]
+fn looking_around_finds_what_the_camera_saw_and_fails_on_nothing_else() {
+    let stage = Stage::new(cast());
+    walk(&stage, true);
+    let ran = generate(&stage, "walk", &["--frames", "panoramic"]);
+    assert_eq!(ran.json()["errors"], 0, "{ran:?}");
+    let walked = stage.building.lines("run/walks.jsonl").remove(0);
+    for observation in walked["observations"].as_array().unwrap() {
+        assert_eq!(observation["looks"].as_array().unwrap().len(), 1);
+    }
+}
+
+#[test]
 fn a_walk_without_poses_claims_no_turn() {
     let mut texts = Vec::new();
     for seed in ["1", "2", "3"] {

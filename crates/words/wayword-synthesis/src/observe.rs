@@ -88,8 +88,11 @@ fn look_at(
     gazes: &[Gaze],
     minds: Minds<'_>,
 ) -> Result<Vec<Look>, ObserveError> {
-    let looks = gazes.iter().map(|gaze| {
-        let view = platform.look(&path.scene, frame, *gaze)?;
+    let views = gazes.iter().map(|gaze| Ok((gaze, platform.look(&path.scene, frame, *gaze)?)));
+    let views: Vec<(&Gaze, View)> = views.collect::<Result<_, PlatformError>>()?;
+    // A camera shows one direction of a place; the others are left out, unless there is nothing else to fail on.
+    let all_blank = views.iter().all(|(_, view)| view.is_blank());
+    let looks = views.into_iter().filter(|(_, view)| all_blank || !view.is_blank()).map(|(gaze, view)| {
         // A camera's picture shows what the camera looked at, which need not be quite what was asked for.
         let shown = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
         let gaze = if view.image.is_some() { shown } else { *gaze };
