@@ -1,6 +1,6 @@
 //! What robots leave behind: pictures in the order of their times, with or without poses.
 //!
-//! Every kind of recording ([`folder`], `video`, `mcap`, `lerobot`) gives the same: times, pictures, and where the camera was if that
+//! Every kind of recording (`folder`, `video`, `mcap`, `lerobot`) gives the same: times, pictures, and where the camera was if that
 //! is known (`reel`). What is done with them is the same for all: pictures at equal distances or times, the blurred and the doubled
 //! left out (`choose`), and a [`RecordingPlatform`] that walks along them.
 
