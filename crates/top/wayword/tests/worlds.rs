@@ -46,6 +46,8 @@ fn what_is_missing_is_told() {
         (&["--platform", "tdw", "--at", "here"], "--at here"),
         (&["--platform", "virtualhome", "--at", "here"], "--at here"),
         (&["--platform", "moon"], "virtualhome"),
+        (&["--data", "data"], "takes no --data"),
+        (&["--at", "127.0.0.1:1071"], "takes no --at"),
     ] {
         let ran = building.wayword(&[&["generate", "--paths", "1", "--out", "run"], args].concat());
         assert!(ran.refused().contains(told), "{args:?}: {ran:?}");

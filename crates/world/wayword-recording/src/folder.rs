@@ -51,6 +51,11 @@ impl Folder {
         Ok(None)
     }
 
+    /// The first file of a kind that lies among the pictures.
+    pub(crate) fn beside_pictures(&self, is_wanted: fn(&str) -> bool) -> Result<Option<String>, PlatformError> {
+        Ok(entries(&self.pictures)?.into_iter().find(|name| is_wanted(name)))
+    }
+
     /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else one after
     /// another.
     fn timed(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
@@ -76,7 +81,7 @@ impl Source for Folder {
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         if *scene != self.scene {
-            return Err(unknown(scene));
+            return Err(unknown(scene, &self.scenes()));
         }
         let described = Description::read(&self.root.join("recording.toml"))?;
         let mut timed = self.timed(described.pictures_per_s.unwrap_or(1.0))?;

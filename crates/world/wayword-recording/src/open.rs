@@ -10,7 +10,10 @@ use std::{collections::BTreeSet, path::Path};
 use wayword_core::{PlatformError, SceneId};
 use wayword_platforms::files;
 
-const HINT: &str = "give a folder of pictures, a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file";
+const HINT: &str = "give a folder of pictures, a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file; \
+                    of another video, ffmpeg -i IN -c copy OUT.mp4 may make one";
+/// Most recordings that an error names.
+const MOST_NAMED: usize = 12;
 /// Most entries of a folder that are looked at.
 const MAX_ENTRIES: usize = 1_000_000;
 
@@ -46,17 +49,30 @@ fn one(path: &Path) -> Result<Option<Box<dyn Source>>, PlatformError> {
         if path.join("meta").join("info.json").is_file() {
             return lerobot(path).map(Some);
         }
-        return Ok(Folder::open(path)?.map(|folder| Box::new(folder) as Box<dyn Source>));
+        let Some(folder) = Folder::open(path)? else { return Ok(None) };
+        // Whoever keeps a picture beside her videos means these.
+        if let Some(file) = folder.beside_pictures(is_file_of_ours)? {
+            let reason = format!("holds pictures, and recordings as {file} too");
+            return Err(files::wrong(path, reason, "give the recording's own path, or move the pictures away"));
+        }
+        return Ok(Some(Box::new(folder)));
     }
     if !path.is_file() {
         return Ok(None);
     }
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    match ending.as_str() {
+    match ending(path).as_str() {
         "mp4" | "m4v" | "mov" => video(path).map(Some),
         "mcap" => mcap(path).map(Some),
         _ => Ok(None),
     }
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+fn is_file_of_ours(name: &str) -> bool {
+    !name.starts_with('.') && matches!(ending(Path::new(name)).as_str(), "mp4" | "m4v" | "mov" | "mcap")
 }
 
 #[cfg(feature = "lerobot")]
@@ -144,13 +160,15 @@ impl Source for Shelf {
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         let source = self.sources.iter().find(|source| source.scenes().contains(scene));
-        source.map_or_else(|| Err(unknown(scene)), |source| source.open(scene))
+        source.map_or_else(|| Err(unknown(scene, &self.scenes())), |source| source.open(scene))
     }
 }
 
-/// There is no such recording.
-pub(crate) fn unknown(scene: &SceneId) -> PlatformError {
-    let hint = "leave --scan out, or name one that `wayword view map` or a run has listed".to_owned();
+/// There is no such recording among those that there are.
+pub(crate) fn unknown(scene: &SceneId, there: &[SceneId]) -> PlatformError {
+    let names: Vec<&str> = there.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
+    let more = if there.len() > MOST_NAMED { ", ..." } else { "" };
+    let hint = format!("--data holds {}{more}", names.join(", "));
     PlatformError::UnknownScene { scene: scene.to_string(), hint }
 }
 
@@ -175,6 +193,22 @@ mod tests {
         std::fs::write(shelf.path().join("._a.mp4"), "").unwrap();
         let scenes = open(shelf.path()).map(|source| source.scenes()).unwrap();
         assert_eq!(scenes.iter().map(SceneId::as_str).collect::<Vec<_>>(), ["a", "b"]);
+    }
+
+    #[test]
+    fn pictures_beside_recordings_are_not_taken_for_what_is_meant() {
+        let shelf = shelf(&["map.png"]);
+        std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
+        let error = open(shelf.path()).err().unwrap().to_string();
+        assert!(error.contains("holds pictures, and recordings as walk.mp4 too"), "{error}");
+    }
+
+    #[test]
+    fn who_asks_for_another_recording_is_told_which_there_are() {
+        let shelf = shelf(&["b/1.png", "a/1.png"]);
+        let source = open(shelf.path()).unwrap();
+        let error = source.open(&SceneId::new("c").unwrap()).err().unwrap().to_string();
+        assert!(error.contains("--data holds a, b"), "{error}");
     }
 
     #[cfg(feature = "video")]

@@ -105,6 +105,10 @@ pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
 /// # Errors
 /// When there is none of that name in this build, or its data cannot be opened.
 pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<Box<dyn Platform>, Error> {
+    if let Some(flag) = unused(name, data, at) {
+        let problem = format!("platform {name} takes no {flag}");
+        return Err(Error::usage(problem, "name the world that it is for, as in --platform recording"));
+    }
     let data = || data.ok_or_else(|| no_data(name));
     match name {
         "house" => Ok(Box::new(HousePlatform::default())),
@@ -118,6 +122,16 @@ pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<B
             format!("there is no platform {other:?}"),
             format!("name one of: {}", PLATFORMS.map(|platform| platform.name).join(", ")),
         )),
+    }
+}
+
+/// The flag that a platform does not use. Whoever gives `--data` and no `--platform` would else get a generated house for it.
+fn unused(name: &str, data: Option<&Path>, at: Option<&str>) -> Option<&'static str> {
+    let runs = matches!(name, "tdw" | "virtualhome");
+    match (data, at) {
+        (Some(_), _) if matches!(name, "house" | "virtualhome") => Some("--data"),
+        (_, Some(_)) if !runs => Some("--at"),
+        _ => None,
     }
 }
 

@@ -87,7 +87,8 @@ impl Source for Dataset {
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
-        let (_, episode) = self.episodes.iter().find(|(known, _)| known == scene).ok_or_else(|| unknown(scene))?;
+        let (_, episode) =
+            self.episodes.iter().find(|(known, _)| known == scene).ok_or_else(|| unknown(scene, &self.scenes()))?;
         let table = Table::open(&episode.data)?;
         let rows = rows_of(&table, episode, self.info.layout())?;
         let times_s = times_s(&table, rows.clone())?;

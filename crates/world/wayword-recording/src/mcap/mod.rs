@@ -166,7 +166,7 @@ impl Source for File {
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         if *scene != self.scene {
-            return Err(open::unknown(scene));
+            return Err(open::unknown(scene, &self.scenes()));
         }
         self.read()
     }

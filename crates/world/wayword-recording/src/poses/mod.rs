@@ -70,8 +70,11 @@ pub(crate) fn track(
     if axes.world != World::ZUp && rows.iter().any(|row| matches!(row.facing, Facing::Yaw(_))) {
         return Err(wrong("a yaw turns about z, so the world of its poses must be z-up".into()));
     }
-    let none =
-        if rows.is_empty() { "holds no pose" } else { "none of its poses is at a place, and that of a picture here" };
+    let none = if rows.is_empty() {
+        "holds no pose"
+    } else {
+        "names pictures, or numbers of pictures, none of which is here, or no place at all"
+    };
     let track = on_clock(rows, axes, times_s, name).ok_or_else(|| wrong(none.into()))?;
     if !times_s.iter().any(|time_s| track.at(*time_s).is_some()) {
         let ((from, to), first, last) =

@@ -83,7 +83,7 @@ fn what_is_wrong_is_told_with_its_line() {
         ("poses.json", "{", "line 1"),
         ("poses.json", "{}", "expected `transforms.json`"),
         ("poses.tum", "", "holds no pose"),
-        ("poses.csv", "image,x,y\nother.png,1,2\n", "none of its poses is at a place, and that of a picture"),
+        ("poses.csv", "image,x,y\nother.png,1,2\n", "names pictures, or numbers of pictures, none of which is here"),
     ] {
         let error = read(name, text, 0.0, &usual).unwrap_err();
         assert!(error.contains(told), "{name} {text:?}: {error}");

@@ -51,7 +51,7 @@ impl Source for File {
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         if *scene != self.scene {
-            return Err(unknown(scene));
+            return Err(unknown(scene, &self.scenes()));
         }
         let described = self.described.clone();
         let reel = Film::open(&self.path, described.camera.as_deref())?;

@@ -112,8 +112,7 @@ fn check(view: &View, gaze: Gaze) -> Result<(), Error> {
     if view.image.is_some() && (is_turned || is_wider) {
         let (heading, fov) = (view.pose.heading.deg(), view.horizontal_fov_rad.to_degrees());
         let problem = format!(
-            "the world gave a view of {fov:.0} degrees along {heading:.0}, not of 90 along {:.0}",
-            gaze.heading.deg()
+            "this world shows only what a camera saw, {fov:.1} degrees wide along {heading:.1}, and a panorama needs four views of 90"
         );
         return Err(Error::usage(problem, "`wayword view path` shows what there is"));
     }
