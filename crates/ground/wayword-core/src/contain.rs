@@ -19,6 +19,14 @@ pub fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     done.ok()
 }
 
+/// Runs somebody else's decoder, whose panics on broken input become a refusal.
+///
+/// # Errors
+/// In words, when it refuses what it was given, or panicked.
+pub fn decoded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
+}
+
 /// Whether this thread runs what is contained. A program's panic hook says nothing then: there is an answer without a panic's words.
 #[must_use]
 pub fn is_contained() -> bool {
@@ -35,5 +43,7 @@ mod tests {
         assert_eq!(contained(|| contained(panics).map_or_else(is_contained, |_| false)), Some(true));
         assert!(!is_contained());
         assert_eq!(contained(|| 7), Some(7));
+        assert_eq!(decoded(|| -> Result<u8, String> { panic!("broken") }), Err("is broken".to_owned()));
+        assert_eq!(decoded(|| Ok(7)), Ok(7));
     }
 }

@@ -56,8 +56,3 @@ pub(crate) fn text_if_there(file: &Path, most: u64, hint: &'static str) -> Resul
     text.map(Some)
         .map_err(|error| FileError::new(file, format!("byte {}: not UTF-8", error.utf8_error().valid_up_to()), hint))
 }
-
-/// Runs somebody else's decoder, whose panics on broken input become a refusal.
-pub(crate) fn contained<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    wayword_core::contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
-}

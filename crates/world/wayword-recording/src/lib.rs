@@ -16,6 +16,8 @@ mod open;
 mod platform;
 mod poses;
 mod reel;
+#[cfg(any(feature = "mcap", feature = "video"))]
+mod size;
 mod track;
 #[cfg(feature = "video")]
 mod video;

@@ -4,7 +4,6 @@ mod contours;
 
 use crate::{
     axes::habitat_from_wayword,
-    fault::contained,
     navmesh::{
         MAX_CORNERS, NavMesh, NavMeshSettings,
         build::{Piece, Surface, single_tile},
@@ -13,6 +12,7 @@ use crate::{
 };
 use glam::{UVec3, Vec3};
 use rerecast::{Aabb3d, AreaType, DetailNavmesh, HeightfieldBuilder, PolygonNavmesh, SubMesh, TriMesh};
+use wayword_core::contain::decoded;
 
 /// Columns of voxels, at most: 250 m x 250 m at Habitat's 5 cm.
 const MAX_COLUMNS: f32 = 25e6;
@@ -65,7 +65,7 @@ pub fn bake(model: &Model, settings: &NavMeshSettings) -> Result<NavMesh, BakeEr
     let bounds = mesh.compute_aabb().ok_or(BakeError::Empty)?;
     check_size(&bounds, settings)?;
     let recast = || voxels.polygons(mesh, bounds).map_err(|error| error.to_string());
-    let (polygons, detail) = contained(recast).map_err(|reason| BakeError::Recast { reason })?;
+    let (polygons, detail) = decoded(recast).map_err(|reason| BakeError::Recast { reason })?;
     Ok(single_tile(&surface(&polygons, &detail), *settings))
 }
 

@@ -6,11 +6,10 @@
 //! known by their polygon.
 
 use super::{Foothold, polygon::Polygon};
-use crate::fault::contained;
 use glam::{DVec2, Vec2};
 use polyanya::{Mesh, Vertex};
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::DVec3;
+use wayword_core::{DVec3, contain::decoded};
 
 /// Two vertices on doors between tiles are one when they lie this near, metres.
 const WELD_M: f64 = 1e-3;
@@ -51,7 +50,7 @@ impl Maze {
             .zip(&outlines.rings)
             .map(|(polygon, ring)| polyanya::Polygon::new(ring.clone(), one_way(polygon)));
         let pieces = pieces.collect();
-        let mut mesh = contained(|| Mesh::new(vertices, pieces).map_err(|error| error.to_string())).ok()?;
+        let mut mesh = decoded(|| Mesh::new(vertices, pieces).map_err(|error| error.to_string())).ok()?;
         let heights = outlines.places.iter().map(|place| place.z as f32).collect();
         mesh.layers.first_mut()?.set_heights(heights).ok()?;
         mesh.set_search_delta(1e-3);
@@ -75,7 +74,7 @@ impl Maze {
 
     fn searched(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         let (from, to) = (self.coords(start)?, self.coords(end)?);
-        let path = contained(|| Ok(self.mesh.path(from, to))).ok()??;
+        let path = decoded(|| Ok(self.mesh.path(from, to))).ok()??;
         let layer = self.mesh.layers.first()?;
         let rings: Vec<&[u32]> = path
             .polygons()

@@ -8,6 +8,7 @@ use std::{
     path::{Component, Path, PathBuf},
     rc::Rc,
 };
+use wayword_core::contain::decoded;
 
 const HINT: &str = "export the scene again as GLB";
 /// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
@@ -27,9 +28,8 @@ impl Asset {
         let wrong = |reason: String| FileError::new(file, reason, HINT);
         let bytes = fault::bytes(file, MAX_BYTES, "take a GLB or glTF file")?;
         // Validation refuses GOOGLE_texture_basis; what it would have checked is checked here, where it is used.
-        let gltf =
-            fault::contained(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
-                .map_err(&wrong)?;
+        let gltf = decoded(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
+            .map_err(&wrong)?;
         let (root, mut blob) = (gltf.document.into_json(), gltf.blob);
         let foreign = |name: &&String| !KNOWN.iter().any(|known| name.starts_with(known));
         if let Some(name) = root.extensions_required.iter().find(foreign) {

@@ -1,9 +1,9 @@
 //! Textures: PNG and JPEG, and Basis as HM3D has it (`GOOGLE_texture_basis`).
 
 use super::asset::Asset;
-use crate::fault::contained;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use std::io::Cursor;
+use wayword_core::contain::decoded;
 use wayword_render::{MAX_TEXTURE_SIDE, Texture};
 
 /// Texels that any picture may have.
@@ -52,7 +52,7 @@ fn check(width: u32, height: u32, bytes: usize) -> Result<(), String> {
 
 fn common(bytes: &[u8]) -> Result<Texture, String> {
     let open = || image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string());
-    let picture = contained(|| {
+    let picture = decoded(|| {
         let (width, height) = open()?.into_dimensions().map_err(|error| error.to_string())?;
         check(width, height, bytes.len())?;
         open()?.decode().map_err(|error| error.to_string())
@@ -63,7 +63,7 @@ fn common(bytes: &[u8]) -> Result<Texture, String> {
 }
 
 fn basis(bytes: &[u8]) -> Result<Texture, String> {
-    contained(|| {
+    decoded(|| {
         let transcoder = Transcoder::new(bytes).map_err(|error| format!("Basis: {error:?}"))?;
         let (width, height) = transcoder.base_dimensions();
         check(width, height, bytes.len())?;

@@ -1,11 +1,9 @@
 //! Pictures as ROS writes them (`sensor_msgs/include/sensor_msgs/image_encodings.hpp`), as RGB.
 
 use super::messages::{self, Kind, Raw};
+use crate::size;
 use wayword_core::Image;
 use wayword_platforms::files;
-
-const MAX_SIDE_PX: u32 = 12_288;
-const MAX_PIXELS: u64 = 64_000_000;
 
 /// Why a camera's messages are no pictures, by their encoding; `None` where they are.
 pub(crate) fn unfit(kind: Kind, encoding: &str) -> Option<String> {
@@ -79,8 +77,7 @@ impl Layout {
 fn raw(raw: &Raw<'_>) -> Result<Image, String> {
     let layout = Layout::of(&raw.encoding).ok_or_else(|| format!("has the encoding {:?}", raw.encoding))?;
     let (width_px, height_px) = (raw.width_px, raw.height_px);
-    let fits = width_px.max(height_px) <= MAX_SIDE_PX && u64::from(width_px) * u64::from(height_px) <= MAX_PIXELS;
-    if !fits || width_px == 0 || height_px == 0 {
+    if !size::is_possible(width_px, height_px) || width_px == 0 || height_px == 0 {
         return Err(format!("has {width_px} x {height_px} pixels; 1 x 1 to 64 megapixels can be read"));
     }
     let (width, height, stride) = (width_px as usize, height_px as usize, raw.row_bytes as usize);

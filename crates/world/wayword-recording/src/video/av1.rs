@@ -2,8 +2,9 @@
 
 use super::{
     colour::{Chroma, Colour, Plane, Planes},
-    decoder::{Coded, Decode, MAX_PIXELS, Out, size_is_possible},
+    decoder::{Coded, Decode, Out, size_is_possible},
 };
+use crate::size::MAX_PIXELS;
 use re_rav1d::dav1d::{Decoder, Error, Picture, PixelLayout, PlanarImageComponent, Settings, pixel::YUVRange};
 
 /// A decoder of one stream.

@@ -5,11 +5,7 @@ use super::{
     colour::{Colour, Planes},
     h264::{self, H264},
 };
-
-/// Longest side of a picture, pixels.
-const MAX_SIDE_PX: u32 = 12_288;
-/// Most pixels of a picture.
-pub(super) const MAX_PIXELS: u32 = 64_000_000;
+use crate::size;
 
 /// A sample on its way into a decoder.
 #[derive(Debug, Clone, Copy)]
@@ -61,16 +57,9 @@ impl Codec {
 
 /// Refuses pictures of sizes that no camera has.
 pub(super) fn size_is_possible(width_px: u32, height_px: u32) -> Result<(), String> {
-    let is_possible =
-        width_px <= MAX_SIDE_PX && height_px <= MAX_SIDE_PX && width_px.saturating_mul(height_px) <= MAX_PIXELS;
-    if is_possible {
+    if size::is_possible(width_px, height_px) {
         Ok(())
     } else {
         Err(format!("has pictures of {width_px} x {height_px} pixels, which is too large"))
     }
-}
-
-/// Runs a decoder, whose panics on broken input become a refusal.
-pub(super) fn contained<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    wayword_core::contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
 }

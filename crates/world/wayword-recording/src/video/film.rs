@@ -2,7 +2,7 @@
 
 use super::{
     colour,
-    decoder::{Coded, Decode, contained},
+    decoder::{Coded, Decode},
     edits::Shown,
     movie::{HINT, Movie, bytes_at},
 };
@@ -13,7 +13,7 @@ use std::{
     ops::Range,
     path::{Path, PathBuf},
 };
-use wayword_core::{Image, PlatformError};
+use wayword_core::{Image, PlatformError, contain::decoded};
 use wayword_platforms::files;
 
 /// Pictures that decoders hold back at most (ITU-T H.264, annex A.3.1).
@@ -65,7 +65,7 @@ impl Film {
                 desk.hand_over(take)?;
             }
         }
-        contained(|| decoder.finish(&mut |sample, planes| desk.put(sample, planes))).map_err(wrong)?;
+        decoded(|| decoder.finish(&mut |sample, planes| desk.put(sample, planes))).map_err(wrong)?;
         desk.hand_over(take)?;
         match desk.missing() {
             Some(number) => Err(wrong(format!("picture {number} (from 0) could not be decoded"))),
@@ -83,7 +83,7 @@ impl Film {
     ) -> Result<(), String> {
         let bytes = self.sample(file, sample)?;
         let coded = Coded { sample, shown: self.movie.samples[sample].shown, bytes: &bytes };
-        contained(|| decoder.feed(coded, &mut |sample, planes| desk.put(sample, planes)))
+        decoded(|| decoder.feed(coded, &mut |sample, planes| desk.put(sample, planes)))
     }
 
     fn sample(&self, file: &mut File, sample: usize) -> Result<Vec<u8>, String> {

@@ -1,0 +1,11 @@
+//! How large a picture of a camera can be: what claims to be larger is broken, or means harm.
+
+/// Longest side of a picture, pixels.
+const MAX_SIDE_PX: u32 = 12_288;
+/// Most pixels of a picture.
+pub(crate) const MAX_PIXELS: u32 = 64_000_000;
+
+/// Whether a camera's picture can have this size.
+pub(crate) fn is_possible(width_px: u32, height_px: u32) -> bool {
+    width_px.max(height_px) <= MAX_SIDE_PX && width_px.saturating_mul(height_px) <= MAX_PIXELS
+}
