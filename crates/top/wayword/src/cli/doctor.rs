@@ -31,13 +31,6 @@ impl Doctor {
     /// What the flags ask for.
     #[must_use]
     pub fn asked(&self) -> Asked {
-        Asked {
-            platform: self.world.platform.clone(),
-            data: self.world.data.clone(),
-            at: self.world.at.clone(),
-            roles: self.roles.clone(),
-            service: self.service.clone(),
-            ..Asked::default()
-        }
+        Asked { roles: self.roles.clone(), service: self.service.clone(), ..self.world.asked() }
     }
 }

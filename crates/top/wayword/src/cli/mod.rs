@@ -11,7 +11,7 @@ mod perceive;
 mod similarity;
 mod view;
 
-use crate::settings::{Against, Asked, AskedRoles, Perception, Providers, Service, TargetMode};
+use crate::settings::{Against, Asked, AskedRoles, Perception, Service, TargetMode};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use wayword_synthesis::walk::FrameSelection;
@@ -136,6 +136,20 @@ pub struct World {
     pub at: Option<String>,
 }
 
+impl World {
+    /// What the flags ask for, and nothing else.
+    #[must_use]
+    pub fn asked(&self) -> Asked {
+        Asked { platform: self.platform.clone(), data: self.data.clone(), at: self.at.clone(), ..Asked::default() }
+    }
+
+    /// Its name, where no settings but these flags give it.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.platform.as_deref().unwrap_or("house")
+    }
+}
+
 /// `wayword generate`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
@@ -228,9 +242,6 @@ impl Generate {
             Frames::Panoramic => FrameSelection::Panoramic,
         });
         Asked {
-            platform: self.world.platform.clone(),
-            data: self.world.data.clone(),
-            at: self.world.at.clone(),
             episodes: self.episodes.clone(),
             paths: self.paths,
             scan: self.scan.clone(),
@@ -247,7 +258,7 @@ impl Generate {
             evidence: self.evidence,
             roles: self.roles.clone(),
             service: self.service.clone(),
-            providers: Providers::new(),
+            ..self.world.asked()
         }
     }
 }

@@ -55,16 +55,13 @@ impl Perceive {
     #[must_use]
     pub fn asked(&self) -> Asked {
         Asked {
-            platform: self.world.platform.clone(),
-            data: self.world.data.clone(),
-            at: self.world.at.clone(),
             episodes: self.episodes.clone(),
             scan: self.scan.clone(),
             questions: self.questions,
             seed: self.seed,
             roles: self.roles.clone(),
             service: self.service.clone(),
-            ..Asked::default()
+            ..self.world.asked()
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::{
     error::{Error, Exit},
     output::Output,
     pipeline::panoramas,
-    settings::{Asked, Settings},
+    settings::Settings,
     styles,
     world::{self, Remembering},
 };
@@ -24,13 +24,7 @@ use wayword_synthesis::{
 };
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
-    let asked = Asked {
-        platform: args.world.platform.clone(),
-        data: args.world.data.clone(),
-        at: args.world.at.clone(),
-        ..Asked::default()
-    };
-    let report = check_file(&args.file, &asked.resolve()?, args.style.as_deref(), output)?;
+    let report = check_file(&args.file, &args.world.asked().resolve()?, args.style.as_deref(), output)?;
     output.data(&report, Shown { report: &report, most: args.show });
     Ok(if report.failed == 0 { Exit::Done } else { Exit::WithLoss })
 }

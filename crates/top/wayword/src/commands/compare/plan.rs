@@ -84,7 +84,7 @@ impl Plan {
         let parameters = super::agents::parameters(&args.agents, &args.grounder, args.parameters.as_deref())?;
         Ok(Self {
             format: FORMAT,
-            platform: args.world.platform.clone().unwrap_or_else(|| "house".to_owned()),
+            platform: args.world.name().to_owned(),
             data: args.world.data.as_deref().map(absolute).transpose()?,
             at: args.world.at.clone(),
             episodes: absolute(&args.episodes)?,

@@ -53,8 +53,7 @@ pub(super) fn run(args: &View, output: &Output) -> Result<Exit, Error> {
 }
 
 fn open(world: &World) -> Result<Box<dyn Platform>, Error> {
-    let name = world.platform.as_deref().unwrap_or("house");
-    world::open_named(name, world.data.as_deref(), world.at.as_deref())
+    world::open_named(world.name(), world.data.as_deref(), world.at.as_deref())
 }
 
 /// The scene of a name, or the world's first.

@@ -25,16 +25,13 @@ pub(super) fn path(walk: &Walk, world: &World, platform: &dyn Platform) -> Resul
         return recorded(file, walk);
     }
     let asked = Asked {
-        platform: world.platform.clone(),
-        data: world.data.clone(),
-        at: world.at.clone(),
         episodes: walk.episodes.clone(),
         paths: walk.episodes.is_none().then_some(1),
         scan: walk.scan.clone().map(|scan| vec![scan]),
         hops: walk.hops.clone(),
         metres: walk.metres.clone(),
         seed: walk.seed,
-        ..Asked::default()
+        ..world.asked()
     };
     let settings = asked.resolve()?;
     let items = item::items(&settings, platform)?;
