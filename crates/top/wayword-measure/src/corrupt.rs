@@ -9,7 +9,8 @@ use rand::{Rng, seq::IndexedRandom};
 use std::collections::BTreeSet;
 use wayword_core::{MentionKind, Style};
 use wayword_formats::jsonl::Record;
-use wayword_synthesis::{evidence::Evidence, lexicon::agree};
+use wayword_language::lexicon::agree;
+use wayword_synthesis::evidence::Evidence;
 
 /// The ways to make an instruction wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

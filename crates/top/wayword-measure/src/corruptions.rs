@@ -17,10 +17,10 @@ use wayword::{
 };
 use wayword_core::{Platform, SceneId, Style, Verdict, rng};
 use wayword_formats::jsonl::{self, Record};
+use wayword_language::lexicon::thing;
 use wayword_synthesis::{
     checks::{Subject, check},
     evidence::Evidence,
-    lexicon::thing,
 };
 
 /// A run's good records with what is needed to check them again.

@@ -10,11 +10,8 @@ use wayword::{
     settings::{Job, Perception, Settings},
 };
 use wayword_core::Platform;
-use wayword_synthesis::{
-    evidence::Evidence,
-    reading::{What, read},
-    repair::Outcome,
-};
+use wayword_language::reading::{What, read};
+use wayword_synthesis::{evidence::Evidence, repair::Outcome};
 
 /// Objects that instructions name, and those of them that no label along the path agrees with.
 #[derive(Debug, Default)]

@@ -245,7 +245,7 @@ fn a_wrong_colour_is_caught_in_a_house() {
     for thing in evidence.frames.iter().flat_map(|frame| &frame.things) {
         colours.entry(&thing.name).or_default().extend(thing.colour.as_deref());
     }
-    let of_one_word = |name: &str| !name.contains(' ') && wayword_synthesis::lexicon::thing(name).is_some();
+    let of_one_word = |name: &str| !name.contains(' ') && wayword_language::lexicon::thing(name).is_some();
     let (name, known) = colours.iter().find(|(name, colours)| of_one_word(name) && colours.len() == 1).unwrap();
     let right = known.first().unwrap();
     let wrong = ["purple", "orange", "green", "yellow"].into_iter().find(|colour| !right.contains(colour)).unwrap();

@@ -7,7 +7,7 @@ mod common;
 use common::{Building, EPISODES, files};
 use std::{fs, fs::File};
 use wayword_core::{Instruction, MentionKind, Verdict};
-use wayword_synthesis::text::{sentence_count, word_count};
+use wayword_language::text::{sentence_count, word_count};
 
 fn spoken(instruction: &Instruction, kind: MentionKind) -> Vec<&str> {
     let mentions = instruction.mentions.iter().filter(|mention| mention.kind == kind);
@@ -46,7 +46,7 @@ fn episodes_get_an_instruction_in_each_style_that_passes_every_check() {
             let target = &record.path.target.as_ref().unwrap().name;
             let named = spoken(instruction, MentionKind::Target);
             assert!(
-                named.iter().any(|name| wayword_synthesis::lexicon::agree(target, name)),
+                named.iter().any(|name| wayword_language::lexicon::agree(target, name)),
                 "{named:?} for {target} in {}",
                 instruction.text
             );

@@ -5,15 +5,12 @@
 pub mod checks;
 pub mod dialogue;
 pub mod evidence;
-pub mod lexicon;
 pub mod minds;
 pub mod models;
 pub mod observe;
 pub mod perception;
 pub mod prompts;
-pub mod reading;
 pub mod repair;
 pub mod style;
-pub mod text;
 pub mod walk;
 pub mod writer;

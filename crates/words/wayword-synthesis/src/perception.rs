@@ -5,10 +5,10 @@
 use crate::{
     dialogue::{OPENING, sightings},
     evidence::SeenThing,
-    lexicon::{Class, agree, thing},
 };
 use serde::Serialize;
 use wayword_core::{Exchange, Witness};
+use wayword_language::lexicon::{Class, agree, thing};
 
 /// What a caption got right.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]

@@ -8,7 +8,7 @@ use crate::{
 };
 use rand::{Rng, seq::IndexedRandom};
 use wayword_core::{Gaze, Heading, Platform, ViewpointGraph, ViewpointId};
-use wayword_synthesis::lexicon::same_room;
+use wayword_language::lexicon::same_room;
 
 /// So many hops to any neighbour, each as likely as the others.
 #[must_use]

@@ -1,7 +1,7 @@
 //! Clauses as people mean them: the reader's, mended where an "and" or a mark belongs to a noun phrase.
 
 use std::{collections::BTreeSet, ops::Range};
-use wayword_synthesis::{
+use wayword_language::{
     reading::{clauses, read},
     text::{Token, tokens},
 };

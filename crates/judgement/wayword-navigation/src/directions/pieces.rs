@@ -2,7 +2,7 @@
 
 use super::clauses::{Clause, ends_in_task, has_object, mended, without_joints};
 use std::{collections::BTreeSet, ops::Range};
-use wayword_synthesis::{
+use wayword_language::{
     reading::{Event, Link, Place, Reading, What, read},
     text::{Token, tokens},
 };

@@ -3,7 +3,7 @@
 use super::{MOST_BYTES_READ, beginning};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
-use wayword_synthesis::reading::{What, read};
+use wayword_language::reading::{What, read};
 
 /// A thing or a room that a phrase names.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

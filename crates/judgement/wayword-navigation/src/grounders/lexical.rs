@@ -7,7 +7,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{Grounder, Label, ModelError, ObjectId, View};
-use wayword_synthesis::lexicon::{agree, normal, same_room};
+use wayword_language::lexicon::{agree, normal, same_room};
 
 /// What a name is worth that means the same by another word ("couch" for a sofa, "chair" for an armchair).
 const AKIN: f32 = 0.8;

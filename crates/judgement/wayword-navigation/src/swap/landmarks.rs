@@ -4,7 +4,7 @@ use super::casing::{Case, replaced};
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::rng;
-use wayword_synthesis::{
+use wayword_language::{
     lexicon::{Class, agree, normal_word, room_name, same_room, thing},
     reading::{Place, What, read},
 };

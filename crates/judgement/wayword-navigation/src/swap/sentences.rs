@@ -4,7 +4,7 @@ use super::casing::{capitalised, uncapitalised};
 use crate::directions::clause_texts;
 use rand::Rng;
 use wayword_core::rng;
-use wayword_synthesis::text::words;
+use wayword_language::text::words;
 
 /// The text with none of its sentences where it was; its clauses, where it has one sentence. `None` where that changes nothing.
 pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {

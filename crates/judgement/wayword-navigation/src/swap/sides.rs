@@ -6,7 +6,7 @@
 use super::casing::{Case, replaced};
 use std::collections::BTreeSet;
 use wayword_core::Side;
-use wayword_synthesis::{
+use wayword_language::{
     reading::{What, read},
     text::{Token, tokens},
 };

@@ -1,11 +1,9 @@
 //! Floors and stairs.
 
 use super::{finding, or_pass};
-use crate::{
-    evidence::Evidence,
-    reading::{Event, Floor, Reading, What},
-};
+use crate::evidence::Evidence;
 use wayword_core::{Check, Climb, Finding, Motion, Verdict};
+use wayword_language::reading::{Event, Floor, Reading, What};
 
 pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
     let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();

@@ -1,8 +1,8 @@
 //! Sentences and words, as the style demands.
 
 use super::{finding, or_pass};
-use crate::text::{sentence_count, word_count};
 use wayword_core::{Check, Constraints, Finding, Verdict};
+use wayword_language::text::{sentence_count, word_count};
 
 pub(super) fn form(text: &str, constraints: &Constraints) -> Vec<Finding> {
     let (sentences, words) = (sentence_count(text), word_count(text));

@@ -1,12 +1,12 @@
 //! Each landmark needs a frame that shows it.
 
 use super::{finding, or_pass, sides};
-use crate::{
-    evidence::{Evidence, Source},
+use crate::evidence::{Evidence, Source};
+use wayword_core::{Check, Finding, Verdict};
+use wayword_language::{
     lexicon::{Class, agree, thing},
     reading::{Link, Place, Reading, What},
 };
-use wayword_core::{Check, Finding, Verdict};
 
 /// What was found about the places of a text.
 pub(super) struct Places {

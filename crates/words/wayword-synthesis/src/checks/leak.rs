@@ -1,9 +1,9 @@
 //! Words copied from the reference texts.
 
 use super::{finding, pass};
-use crate::text::{Token, tokens};
 use std::collections::BTreeSet;
 use wayword_core::{Check, Finding, Verdict};
+use wayword_language::text::{Token, tokens};
 
 /// A run of this many words that a text shares with a reference is a copy.
 pub const SHARED_RUN: usize = 5;

@@ -1,12 +1,12 @@
 //! What a text tells of a motion that nobody knows.
 
 use super::finding;
-use crate::{
+use std::collections::BTreeSet;
+use wayword_core::{Check, Finding, Verdict};
+use wayword_language::{
     reading::{Event, What, read},
     text::{Token, tokens},
 };
-use std::collections::BTreeSet;
-use wayword_core::{Check, Finding, Verdict};
 
 /// Words that count what is walked.
 const COUNTS: &[&str] =

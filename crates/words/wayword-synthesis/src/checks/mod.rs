@@ -12,13 +12,13 @@ mod task;
 #[cfg(test)]
 mod tests;
 
-use crate::{
-    evidence::Evidence,
+use crate::evidence::Evidence;
+use std::collections::BTreeSet;
+use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
+use wayword_language::{
     lexicon::normal,
     reading::{Event, Reading, What, read},
 };
-use std::collections::BTreeSet;
-use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
 
 pub use leak::{SHARED_RUN, shared_run};
 

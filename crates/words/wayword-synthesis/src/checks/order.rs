@@ -6,11 +6,9 @@ use super::{
     landmarks::Shown,
     pass,
 };
-use crate::{
-    evidence::Evidence,
-    reading::{Event, Link, Reading, What},
-};
+use crate::evidence::Evidence;
 use wayword_core::{Check, Finding, Side, Verdict};
+use wayword_language::reading::{Event, Link, Reading, What};
 
 /// What was found about the order of a text.
 pub(super) struct Order {

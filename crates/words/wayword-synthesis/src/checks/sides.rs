@@ -1,8 +1,9 @@
 //! Left and right of somebody who walks the path.
 
-use crate::{evidence::Evidence, lexicon::agree, reading::Place};
+use crate::evidence::Evidence;
 use std::f64::consts::{PI, TAU};
 use wayword_core::Side;
+use wayword_language::{lexicon::agree, reading::Place};
 
 /// Whether a direction from the heading (radians, positive right) is on a side as people tell it: roughly, and not ahead.
 pub(super) fn lies_on(side: Side, turn_rad: f64) -> bool {

@@ -4,12 +4,12 @@ use super::{
     finding, pass,
     sides::{self, lies_on, word},
 };
-use crate::{
-    evidence::Evidence,
+use crate::evidence::Evidence;
+use wayword_core::{Check, Finding, Target, Verdict};
+use wayword_language::{
     lexicon::agree,
     reading::{Reading, What},
 };
-use wayword_core::{Check, Finding, Target, Verdict};
 
 pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Target>) -> Finding {
     let fail = |reason: String, span| finding(Check::Task, Verdict::Fail, reason, span);

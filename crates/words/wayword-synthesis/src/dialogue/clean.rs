@@ -1,6 +1,6 @@
 //! Takes from what models say what was asked of them: one question, or one answer.
 
-use crate::text::words;
+use wayword_language::text::words;
 
 /// Longest question, characters. A longer one is no question.
 const QUESTION_CHARS: usize = 300;

@@ -1,12 +1,12 @@
 //! Holds a summary against what was said.
 
 use super::answers::{Mention, denies, mentions};
-use crate::{
+use std::{collections::BTreeSet, fmt};
+use wayword_core::{Sighting, Witness};
+use wayword_language::{
     lexicon::{Class, agree, normal, thing},
     text::words,
 };
-use std::{collections::BTreeSet, fmt};
-use wayword_core::{Sighting, Witness};
 
 /// Something that a caption says and its dialogue does not hold. As text, it is a reason that a model understands.
 #[derive(Debug, Clone, PartialEq, Eq)]

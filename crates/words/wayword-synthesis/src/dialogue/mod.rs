@@ -11,8 +11,8 @@ mod questions;
 mod summary;
 mod trouble;
 
-use crate::text::words;
 use wayword_core::{Caption, Exchange, ModelError, Trouble};
+use wayword_language::text::words;
 
 pub(crate) use answers::{Asked, Wanted, asked, counted, plural, sightings, with_article};
 pub use faults::{CaptionFault, caption_faults};

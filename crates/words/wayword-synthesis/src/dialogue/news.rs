@@ -1,12 +1,12 @@
 //! Whether an exchange brings anything new.
 
 use super::answers::{Asked, asked, room, sightings};
-use crate::{
+use std::collections::BTreeSet;
+use wayword_core::{Exchange, Witness};
+use wayword_language::{
     lexicon::{agree, normal_word},
     text::words,
 };
-use std::collections::BTreeSet;
-use wayword_core::{Exchange, Witness};
 
 /// Words that tell nothing of a picture.
 const EMPTY_WORDS: &str = "a an the this that these those it its am is are was were be been being there here i you we they he she him \

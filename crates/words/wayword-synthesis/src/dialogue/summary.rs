@@ -5,8 +5,8 @@ use super::{
     answers::{counted, denies, room, sightings, with_article},
     faults::caption_faults,
 };
-use crate::lexicon::thing;
 use wayword_core::{Caption, Exchange, ModelError, Sighting, Where, Witness};
+use wayword_language::lexicon::thing;
 
 /// Writes a caption from what was said to be there, and leaves out what was denied or not known: [`caption_faults`] finds nothing
 /// in it.
@@ -92,7 +92,7 @@ fn condense(captions: &[&Caption], fewer_words_than: usize) -> String {
         let room = room.map_or("a place".to_owned(), with_article);
         if items.is_empty() { room } else { format!("{room} with {}", enumerate(&items)) }
     };
-    let fits = |count: &usize| crate::text::word_count(&text(*count)) < fewer_words_than;
+    let fits = |count: &usize| wayword_language::text::word_count(&text(*count)) < fewer_words_than;
     (0..=names.len()).rev().find(fits).map_or_else(String::new, text)
 }
 
@@ -124,7 +124,7 @@ mod tests {
         let transcript = [exchange(super::super::OPENING, list), exchange("Which room is this?", "It is a bedroom.")];
         let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
         let short = condense(&[&caption, &caption], 20);
-        assert!(crate::text::word_count(&short) < 20, "{short}");
+        assert!(wayword_language::text::word_count(&short) < 20, "{short}");
         assert!(short.starts_with("a bedroom with a bed"), "{short}");
     }
 

@@ -1,7 +1,7 @@
 //! Answers that cannot be used, and how such a question is asked again.
 
-use crate::text::words;
 use wayword_core::{Exchange, Trouble};
+use wayword_language::text::words;
 
 /// Longest phrase, in words, of an answer that says the same over and over.
 const LOOP_WORDS: usize = 8;

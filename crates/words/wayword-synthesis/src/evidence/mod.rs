@@ -3,8 +3,8 @@
 mod from_captions;
 mod from_labels;
 
-use crate::lexicon::{Class, agree, room_name, same_room, thing};
 use wayword_core::{Climb, Motion, Move, ObjectId, Path, motion};
+use wayword_language::lexicon::{Class, agree, room_name, same_room, thing};
 
 /// What is known of a path, frame by frame.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! How a target can be told from its likes, by ground truth.
 
-use crate::lexicon::{Class, agree, thing};
 use wayword_core::{Distinction, Frame, Label, Side, Target, View};
+use wayword_language::lexicon::{Class, agree, thing};
 
 /// A neighbour has to be this near to the target, metres.
 const NEAR_M: f64 = 1.5;

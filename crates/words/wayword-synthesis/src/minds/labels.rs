@@ -1,10 +1,8 @@
 //! Answers from ground truth. Named `labels` wherever it takes part: it perceives nothing.
 
-use crate::{
-    dialogue::{Asked, Wanted, asked, counted, plural, with_article},
-    lexicon::{agree, normal, same_room},
-};
+use crate::dialogue::{Asked, Wanted, asked, counted, plural, with_article};
 use wayword_core::{Answer, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
+use wayword_language::lexicon::{agree, normal, same_room};
 
 /// The answerer that reads a view's labels.
 #[derive(Debug, Clone, Copy, Default)]

@@ -7,12 +7,11 @@ use super::{
 };
 use crate::{
     dialogue::{Condensed, RulesSummariser, Summariser, caption_faults},
-    lexicon::agree,
     prompts::Prompts,
-    text::word_count,
 };
 use std::sync::Arc;
 use wayword_core::{Caption, Exchange, LanguageModel, Message, ModelError, Sampling, Sighting, Witness};
+use wayword_language::{lexicon::agree, text::word_count};
 
 /// Has a language model sum up. A caption that names what was denied, or what nobody named, is asked for once more with the
 /// reason; if it still does, rules sum up, and the caption says so.

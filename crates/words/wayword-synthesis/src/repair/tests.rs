@@ -194,7 +194,11 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
                 let Outcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
                 assert_eq!(instruction.verdict, Verdict::Pass, "{instruction:?}");
                 for word in ["go", "walk", "head", "enter", "straight", "move", "proceed", "step"] {
-                    assert!(!crate::text::words(&instruction.text).contains(&word.to_owned()), "{}", instruction.text);
+                    assert!(
+                        !wayword_language::text::words(&instruction.text).contains(&word.to_owned()),
+                        "{}",
+                        instruction.text
+                    );
                 }
             }
         }
@@ -261,7 +265,7 @@ proptest! {
             };
             let told = text.to_lowercase().replace("stop right there", "stop");
             for word in ["left", "right", "straight", "forward", "around", "upstairs", "downstairs", "floor", "level"] {
-                prop_assert!(!crate::text::words(&told).contains(&word.to_owned()), "{}", text);
+                prop_assert!(!wayword_language::text::words(&told).contains(&word.to_owned()), "{}", text);
             }
             let stays = text.to_lowercase().split_whitespace().any(|word| word == "stay" || word == "remain");
             prop_assert_eq!(stays, sights.len() == 1, "{}", text);

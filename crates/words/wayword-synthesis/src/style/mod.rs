@@ -96,7 +96,11 @@ pub fn hash(style: &Style) -> String {
 mod tests {
     use super::*;
     use crate::checks::shared_run;
-    use crate::text::{sentence_count, word_count};
+    use std::collections::BTreeSet;
+    use wayword_language::{
+        reading::read,
+        text::{sentence_count, word_count},
+    };
 
     #[test]
     fn the_built_in_references_keep_their_own_constraints() {
@@ -116,6 +120,13 @@ mod tests {
             for (at, text) in style.references.iter().enumerate() {
                 assert_eq!(shared_run(text, &style.references[at + 1..]), None, "{text}");
             }
+        }
+    }
+
+    #[test]
+    fn no_reference_without_a_task_is_read_as_one() {
+        for text in built_in("r2r").unwrap().references {
+            assert_eq!(read(&text, &BTreeSet::new()).task, None, "{text}");
         }
     }
 

@@ -1,11 +1,11 @@
 //! What the reference texts of a style are like: the parameters that the writer interprets.
 
-use crate::{
+use serde::Serialize;
+use std::collections::BTreeSet;
+use wayword_language::{
     reading::{What, read},
     text::{sentence_count, word_count},
 };
-use serde::Serialize;
-use std::collections::BTreeSet;
 
 /// Measured on reference texts; shares are of texts, from 0 to 1.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,13 +1,11 @@
 //! Which of the things that were seen are worth naming.
 
 use super::Brief;
-use crate::{
-    lexicon::{agree, is_room, normal, thing},
-    walk::Seen,
-};
+use crate::walk::Seen;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Side, Verdict};
+use wayword_language::lexicon::{agree, is_room, normal, thing};
 
 /// Chooses landmarks, each kind of thing once in a text.
 pub(super) struct Landmarks<'a> {

@@ -4,10 +4,10 @@ use super::{
     landmarks::Landmark,
     route::{Step, Within, side_word},
 };
-use crate::lexicon::room_name;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Climb, Motion, Side, Turn};
+use wayword_language::lexicon::room_name;
 
 const TURN: &[&str] = &["turn {s}", "take a {s}", "make a {s}", "go {s}", "make a {s} turn", "head {s}", "hang a {s}"];
 const TURN_AGAIN: &[&str] = &["turn {s} again", "take another {s}", "make another {s}", "go {s} again"];

@@ -1,10 +1,11 @@
 //! What there is to tell about a walk, step by step.
 
 use super::landmarks::{Landmark, Landmarks};
-use crate::{lexicon::room_name, walk::Walk};
+use crate::walk::Walk;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Climb, Motion, Side, Turn, motion};
+use wayword_language::lexicon::room_name;
 
 /// Something to tell.
 #[derive(Debug, Clone, PartialEq, Eq)]

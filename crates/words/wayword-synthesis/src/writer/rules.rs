@@ -8,10 +8,10 @@ use super::{
     route::{Step, Weighed, last_climb, stands_still, steps, usable_room},
     task,
 };
-use crate::{lexicon::room_name, text::word_count};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Climb, Motion, rng};
+use wayword_language::{lexicon::room_name, text::word_count};
 
 /// Writes from captions and moves. Where the references tell turns it tells the way step by step; where they don't, it
 /// names the place at the end. Length, sentences, floors, task and full stop are drawn from the references too.

@@ -5,10 +5,10 @@ use super::{
     phrases::{pick, the},
     route::side_word,
 };
-use crate::lexicon::{Class, agree, normal, thing};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Distinction, Side, Verdict};
+use wayword_language::lexicon::{Class, agree, normal, thing};
 
 /// Things to do with a class of things; `{o}` is the thing with its article. They are what people ask for most in REVERIE's train
 /// split, where a class comes up often enough there, the commonest first: a picture is brought, taken down or removed far more

@@ -5,13 +5,13 @@ use crate::{cli::By, demands::Demands, episodes, error::Error, texts};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::Platform;
 use wayword_formats::Episode;
+use wayword_language::text::word_count;
 use wayword_metrics::Distances;
 use wayword_navigation::{
     agents::Start,
     comparison::{Set, swapped_set},
     swap::{Candidate, Swap, other_path, swapped},
 };
-use wayword_synthesis::text::word_count;
 
 /// Goals nearer to each other than this are one goal, metres: what R2R takes for an arrival.
 const SAME_GOAL_M: f64 = 3.0;

@@ -1,6 +1,6 @@
 //! Colours in answers.
 
-use crate::reading::vocabulary::COLOURS;
+use wayword_language::reading::vocabulary::COLOURS;
 
 /// Colours that the reader of instructions does not look for.
 const MORE: [&str; 24] = [

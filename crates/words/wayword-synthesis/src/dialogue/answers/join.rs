@@ -1,7 +1,7 @@
 //! What several answers say of one thing, joined.
 
-use crate::lexicon::{is_thing, kinds, normal};
 use wayword_core::{Sighting, Witness};
+use wayword_language::lexicon::{is_thing, kinds, normal};
 
 /// A sighting, and whether it answers a question for that very thing.
 pub(super) struct Told {

@@ -6,15 +6,15 @@ use super::{
     nouns::{Noun, nouns},
     place::{Phrase, phrases},
     scope::Sentence,
-    vocabulary::{NUMBERS, OTHERS, PERCEIVING, TELLS_NOTHING},
 };
-use crate::{
+use std::{collections::BTreeSet, ops::Range};
+use wayword_core::{Where, Witness};
+use wayword_language::{
+    answers::{NUMBERS, OTHERS, PERCEIVING, TELLS_NOTHING},
     lexicon::agree,
     reading::vocabulary::BREAKERS,
     text::{Token, tokens},
 };
-use std::{collections::BTreeSet, ops::Range};
-use wayword_core::{Where, Witness};
 
 /// Something that a text names.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,16 +13,16 @@ mod scope;
 #[cfg(test)]
 mod tests;
 mod verdict;
-mod vocabulary;
+
 mod wanted;
 
-use crate::lexicon::{agree, normal, thing};
 use colour::{bare_colour, first_colour};
 use join::Told;
 use listed::listed;
 use std::collections::BTreeSet;
 use verdict::{Verdict, is_unsure, verdict};
 use wayword_core::{Exchange, Sighting, Where, Witness};
+use wayword_language::lexicon::{agree, normal, thing};
 
 pub(super) use {
     join::denies,

@@ -1,6 +1,6 @@
 //! Names with their articles and numbers.
 
-use crate::{lexicon::normal_word, text::words};
+use wayword_language::{lexicon::normal_word, text::words};
 
 /// Numbers in words, from two on; the last stand for any greater one.
 pub(super) const COUNTS: [&str; 7] = ["two", "three", "four", "five", "six", "several", "many"];

@@ -1,12 +1,12 @@
 //! Which words of a text name things and rooms.
 
-use super::vocabulary::{BRINGS_IN, NO_OBJECTS};
-use crate::{
+use std::{collections::BTreeSet, ops::Range};
+use wayword_language::{
+    answers::{BRINGS_IN, NO_OBJECTS},
     lexicon::{normal, thing},
     reading::{What, read, vocabulary::ABSTRACT},
     text::Token,
 };
-use std::{collections::BTreeSet, ops::Range};
 
 /// Longest name that counts as one, bytes.
 const MOST_NAME_BYTES: usize = 60;

@@ -1,7 +1,7 @@
 //! Places in a view: "on the left", "in the centre of the room", but not "to the left of the sofa".
 
-use super::vocabulary::{BEFORE_SIDE, PREPOSITIONS, SIDE_PARTS, WHOLES};
 use wayword_core::Where;
+use wayword_language::answers::{BEFORE_SIDE, PREPOSITIONS, SIDE_PARTS, WHOLES};
 
 /// A phrase that says where in the view something is: its words, from and to, and the third.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +47,7 @@ fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
         return Some((Some(place), at));
     }
     let whole = if matches!(word(at + 1), "the" | "this" | "your" | "my") { at + 2 } else { at + 1 };
-    let room = crate::lexicon::is_room(word(whole)) || word(whole + 1) == "room";
+    let room = wayword_language::lexicon::is_room(word(whole)) || word(whole + 1) == "room";
     let of_view = WHOLES.contains(&word(whole)) || room;
     Some(if of_view { (Some(place), whole + 1) } else { (None, at + 1) })
 }

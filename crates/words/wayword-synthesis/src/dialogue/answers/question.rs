@@ -3,14 +3,14 @@
 use super::{
     colour::{colour_at, first_colour},
     place::phrases,
-    vocabulary::LEADS,
     wanted::{Wanted, list, noun, phrase, wanted},
 };
-use crate::{
+use wayword_core::Where;
+use wayword_language::{
+    answers::LEADS,
     lexicon::{is_room, normal},
     text::tokens,
 };
-use wayword_core::Where;
 
 /// What a question asks for.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,9 +6,9 @@ use super::{
     question::{Asked, asked},
     verdict::{Verdict, is_unsure, verdict},
 };
-use crate::text::words;
 use std::collections::BTreeSet;
 use wayword_core::{Exchange, Witness};
+use wayword_language::text::words;
 
 /// Longest name of a room, bytes.
 const MOST_BYTES: usize = 40;

@@ -3,12 +3,12 @@
 //! Triggers and the words that end their reach, after NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029), for the ways in
 //! which people and models speak of pictures.
 
-use super::vocabulary::{
+use std::ops::Range;
+use wayword_core::Witness;
+use wayword_language::answers::{
     AFTER_NOUN, AUXILIARIES, DOUBTS, ENDS, IS_NOT, MEANWHILE, NEW_NOUN, NO_DENIAL, NO_OBJECT, PERCEIVING, SHORT, SIGNS,
     STOPPERS,
 };
-use std::ops::Range;
-use wayword_core::Witness;
 
 /// A sentence: its words and marks in lower case, and where in it things and rooms are named, in order.
 pub(super) struct Sentence<'a> {

@@ -1,10 +1,10 @@
 //! Yes, no, or neither.
 
-use super::{
-    scope::doubt_at,
-    vocabulary::{AFTER_NOUN, MAYBE, NO, YES, YES_ALONE},
+use super::scope::doubt_at;
+use wayword_language::{
+    answers::{AFTER_NOUN, MAYBE, NO, YES, YES_ALONE},
+    text::words,
 };
-use crate::text::words;
 
 /// What an answer says to a question that wants a yes or a no.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,13 +4,13 @@ use super::{
     colour::colour_at,
     names::{says_several, singular},
     place::phrases,
-    vocabulary::{ANYTHING, FILLERS},
 };
-use crate::{
+use wayword_core::Where;
+use wayword_language::{
+    answers::{ANYTHING, FILLERS},
     lexicon::{is_thing, normal},
     reading::vocabulary::{ABSTRACT, BREAKERS},
 };
-use wayword_core::Where;
 
 /// Longest name that is asked for, bytes.
 const MOST_NAME_BYTES: usize = 60;

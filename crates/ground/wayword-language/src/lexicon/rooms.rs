@@ -1,7 +1,10 @@
 //! Rooms and their names.
 
 use super::normal;
+use crate::data;
 use std::{collections::BTreeMap, sync::LazyLock};
+
+const LIST: &str = include_str!("../words/rooms.txt");
 
 struct Rooms {
     /// Normal name to the line it stands on.
@@ -13,17 +16,16 @@ struct Rooms {
 }
 
 static ROOMS: LazyLock<Rooms> = LazyLock::new(|| {
-    let lines = include_str!("rooms.txt").lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty());
     let (mut line_of, mut names, mut confused) = (BTreeMap::new(), Vec::new(), Vec::new());
-    for (number, line) in lines.enumerate() {
-        let (same, others) = line.split_once('|').unwrap_or((line, ""));
-        for name in same.split(',').map(str::trim) {
+    for (number, line) in data::lines(LIST).enumerate() {
+        let [same, others] = data::columns(line);
+        for name in data::names(same) {
             line_of.entry(normal(name)).or_insert(number);
         }
-        names.push(same.split(',').next().unwrap_or(same).trim());
+        names.push(data::names(same).next().unwrap_or_default());
         confused.push(others);
     }
-    let lines_of = |others: &str| others.split(',').filter_map(|name| line_of.get(&normal(name)).copied()).collect();
+    let lines_of = |others| data::names(others).filter_map(|name| line_of.get(&normal(name)).copied()).collect();
     let taken_for = confused.into_iter().map(lines_of).collect();
     Rooms { line_of, names, taken_for }
 });
@@ -39,7 +41,8 @@ pub fn room_name(name: &str) -> Option<&'static str> {
 }
 
 /// Whether a phrase in normal spelling names a room.
-pub(crate) fn is_room(normal_name: &str) -> bool {
+#[must_use]
+pub fn is_room(normal_name: &str) -> bool {
     ROOMS.line_of.contains_key(normal_name)
 }
 
@@ -69,9 +72,9 @@ mod tests {
 
     #[test]
     fn every_confusion_names_a_room_of_the_list() {
-        for line in include_str!("rooms.txt").lines().filter(|line| !line.starts_with('#')) {
-            let others = line.split_once('|').map_or("", |(_, others)| others);
-            for name in others.split(',').map(str::trim).filter(|name| !name.is_empty()) {
+        for line in data::lines(LIST) {
+            let [_, others] = data::columns(line);
+            for name in data::names(others) {
                 assert!(room_name(name).is_some(), "{name} is no room of rooms.txt");
             }
         }

@@ -1,7 +1,10 @@
 //! Objects, what they are kinds of, and what one can do with them.
 
 use super::normal;
+use crate::data;
 use std::{collections::BTreeMap, sync::LazyLock};
+
+const LIST: &str = include_str!("../words/objects.txt");
 
 /// What one can do with a thing; the writer's tasks go by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,18 +69,15 @@ struct Things {
 
 static THINGS: LazyLock<Things> = LazyLock::new(|| {
     let (mut things, mut by_name): (Vec<Thing>, BTreeMap<String, usize>) = Default::default();
-    let lines = include_str!("objects.txt").lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty());
-    for line in lines {
-        let mut columns = line.split('|').map(str::trim);
-        let mut column = || columns.next().unwrap_or("");
-        let (name, class, salience, others, parent) = (column(), column(), column(), column(), column());
+    for line in data::lines(LIST) {
+        let [name, class, salience, others, parent] = data::columns(line);
         let thing = Thing {
             name,
             class: class_named(class),
             salience: salience.parse().unwrap_or(0),
             parent: Some(parent).filter(|parent| !parent.is_empty()),
         };
-        for name in std::iter::once(name).chain(others.split(',')).map(normal).filter(|name| !name.is_empty()) {
+        for name in std::iter::once(name).chain(data::names(others)).map(normal).filter(|name| !name.is_empty()) {
             by_name.entry(name).or_insert(things.len());
         }
         things.push(thing);
@@ -176,7 +176,8 @@ pub fn agree(a: &str, b: &str) -> bool {
 }
 
 /// Whether a phrase in normal spelling is the name of a thing.
-pub(crate) fn is_thing(normal_name: &str) -> bool {
+#[must_use]
+pub fn is_thing(normal_name: &str) -> bool {
     THINGS.by_name.contains_key(normal_name)
 }
 
@@ -211,7 +212,7 @@ mod tests {
 
     #[test]
     fn every_line_of_the_lexicon_is_whole() {
-        for line in include_str!("objects.txt").lines().filter(|line| !line.starts_with('#') && !line.is_empty()) {
+        for line in data::lines(LIST) {
             let columns: Vec<_> = line.split('|').collect();
             assert!((3..=5).contains(&columns.len()), "{line}");
             assert_ne!(class_named(columns[1]), Class::Unknown, "{line}");
