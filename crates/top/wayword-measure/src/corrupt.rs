@@ -7,10 +7,10 @@ mod by_path;
 
 use rand::{Rng, seq::IndexedRandom};
 use std::collections::BTreeSet;
+use wayword_checks::Evidence;
 use wayword_core::{MentionKind, Style};
 use wayword_formats::jsonl::Record;
 use wayword_language::lexicon::agree;
-use wayword_synthesis::evidence::Evidence;
 
 /// The ways to make an instruction wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

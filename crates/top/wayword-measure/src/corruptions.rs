@@ -15,13 +15,10 @@ use wayword::{
     styles,
     world::{self, Remembering},
 };
+use wayword_checks::{Evidence, Subject, check};
 use wayword_core::{Platform, SceneId, Style, Verdict, rng};
 use wayword_formats::jsonl::{self, Record};
 use wayword_language::lexicon::thing;
-use wayword_synthesis::{
-    checks::{Subject, check},
-    evidence::Evidence,
-};
 
 /// A run's good records with what is needed to check them again.
 struct Run {

@@ -9,9 +9,10 @@ use wayword::{
     pipeline::{Made, panoramas},
     settings::{Job, Perception, Settings},
 };
+use wayword_checks::Evidence;
 use wayword_core::Platform;
 use wayword_language::reading::{What, read};
-use wayword_synthesis::{evidence::Evidence, repair::Outcome};
+use wayword_synthesis::repair::Outcome;
 
 /// Objects that instructions name, and those of them that no label along the path agrees with.
 #[derive(Debug, Default)]

@@ -9,9 +9,9 @@ use crate::{
     team::Team,
     world::Remembering,
 };
+use wayword_checks::Evidence;
 use wayword_core::{Frame, Gaze, Motion, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
-    evidence::Evidence,
     minds::distinguish,
     observe::observe,
     repair::{Order, Outcome, write_and_repair},

@@ -8,7 +8,8 @@ use common::{Building, Ran};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword::{pipeline::panoramas, run::settings_of, world};
-use wayword_synthesis::{evidence::Evidence, style::built_in};
+use wayword_checks::Evidence;
+use wayword_synthesis::style::built_in;
 use wayword_testkit::{SCAN, viewpoint_id};
 
 /// From the refrigerator through the kitchen and the hallway to the entryway, and right into the living room.

@@ -2,9 +2,7 @@
 //!
 //! Architecture invariant: nothing here opens a file or a connection, and nothing knows a platform beyond the trait.
 
-pub mod checks;
 pub mod dialogue;
-pub mod evidence;
 pub mod minds;
 pub mod models;
 pub mod observe;

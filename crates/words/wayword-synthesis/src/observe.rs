@@ -2,10 +2,11 @@
 
 use crate::{
     dialogue::{Asker, Condensed, Dialogue, Mode, Need, RulesSummariser, Summariser},
-    walk::{FrameSelection, Look, Observation},
+    walk::FrameSelection,
 };
 use wayword_core::{
-    Answerer, Ask, Caption, Exchange, Frame, Gaze, ModelError, Path, Platform, PlatformError, Side, View, Witness,
+    Answerer, Ask, Caption, Exchange, Frame, Gaze, Look, ModelError, Observation, Path, Platform, PlatformError, Side,
+    View, Witness,
 };
 
 /// Who asks, sees and sums up, and how.

@@ -2,11 +2,9 @@
 //!
 //! The paper claims that its dialogue removes ghosts and does not measure it; this does, for any answerer.
 
-use crate::{
-    dialogue::{OPENING, sightings},
-    evidence::SeenThing,
-};
+use crate::dialogue::{OPENING, sightings};
 use serde::Serialize;
+use wayword_checks::SeenThing;
 use wayword_core::{Exchange, Witness};
 use wayword_language::lexicon::{Class, agree, thing};
 

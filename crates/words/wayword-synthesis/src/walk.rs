@@ -1,8 +1,8 @@
 //! A path together with what was seen along it: all that a writer is told.
 
-use crate::evidence::Evidence;
 use serde::{Deserialize, Serialize};
-use wayword_core::{Caption, Distinction, Gaze, Heading, Move, Path, Side, Sighting, Witness};
+use wayword_checks::Evidence;
+use wayword_core::{Distinction, Heading, Move, Observation, Path, Side, Sighting, Witness};
 
 /// Which views of each frame are captioned.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -13,27 +13,6 @@ pub enum FrameSelection {
     Central,
     /// Four views, north east south west, condensed (arXiv 2403.11487, "panoramic").
     Panoramic,
-}
-
-/// A captioned view.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Look {
-    /// Where it looked.
-    pub gaze: Gaze,
-    /// What was said of it.
-    pub caption: Caption,
-}
-
-/// What was seen from one frame.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Observation {
-    /// One look where the central view was captioned, four where the panorama was.
-    pub looks: Vec<Look>,
-    /// The frame in words: the caption of the only look, or the four condensed to under 20 words.
-    pub summary: String,
-    /// Who condensed them, where that is another than the run's summariser, which failed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub by: Option<String>,
 }
 
 /// All that a writer is told about a path.
@@ -92,16 +71,5 @@ impl Walk {
     #[must_use]
     pub fn evidence(&self) -> Option<Evidence> {
         Evidence::from_captions(&self.path, &self.observations)
-    }
-}
-
-impl Look {
-    fn side_of(&self, sighting: &Sighting, heading: Heading) -> Option<Side> {
-        let place = sighting.place?;
-        let off_rad = heading.turn_to(self.gaze.heading);
-        if off_rad.abs() < 0.1 {
-            return Some(place.side());
-        }
-        Some(heading.side_of(self.gaze.heading.turned(place.turn_rad(self.gaze.horizontal_fov_rad))))
     }
 }

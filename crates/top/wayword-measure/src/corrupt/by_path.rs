@@ -2,9 +2,9 @@
 
 use super::ABSENT;
 use rand::{Rng, seq::IndexedRandom};
+use wayword_checks::Evidence;
 use wayword_core::{Path, Style};
 use wayword_language::lexicon::agree;
-use wayword_synthesis::evidence::Evidence;
 
 /// A path that rises and falls by less than this in all has no stairs, metres.
 const FLAT_M: f64 = 0.4;

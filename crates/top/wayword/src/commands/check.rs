@@ -12,16 +12,13 @@ use crate::{
 use rayon::prelude::*;
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path as FilePath};
+use wayword_checks::{Evidence, Subject, check};
 use wayword_core::{Check, Constraints, Finding, Path, Platform, Style, Verdict};
 use wayword_formats::{
     Format,
     jsonl::{self, Record},
 };
 use wayword_platforms::path_of;
-use wayword_synthesis::{
-    checks::{Subject, check},
-    evidence::Evidence,
-};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = check_file(&args.file, &args.world.asked().resolve()?, args.style.as_deref(), output)?;

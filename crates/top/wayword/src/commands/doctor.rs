@@ -14,9 +14,9 @@ use crate::{
 };
 use serde::Serialize;
 use std::fmt;
+use wayword_checks::Evidence;
 use wayword_core::{Gaze, Path};
 use wayword_remote::Level;
-use wayword_synthesis::evidence::Evidence;
 
 /// How good or bad a finding is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -7,8 +7,9 @@ use super::{
 };
 use crate::run::WalkRecord;
 use serde::Serialize;
-use wayword_core::{Climb, Compass, Exchange, Heading, Move, Sighting, Trouble, Turn, Where, Witness};
-use wayword_synthesis::walk::{Look, Observation};
+use wayword_core::{
+    Climb, Compass, Exchange, Heading, Look, Move, Observation, Sighting, Trouble, Turn, Where, Witness,
+};
 
 /// Most sightings that a frame's card names.
 const MOST_ON_CARD: usize = 6;

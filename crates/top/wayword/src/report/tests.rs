@@ -7,11 +7,10 @@ use crate::{
 };
 use std::collections::BTreeSet;
 use wayword_core::{
-    Caption, Check, DVec3, Exchange, Finding, Gaze, Heading, Instruction, Mention, MentionKind, Motion,
-    Path as WalkPath, Provenance, SceneId, Sighting, Target, Verdict, Where, Witness, path::Stop,
+    Caption, Check, DVec3, Exchange, Finding, Gaze, Heading, Instruction, Look, Mention, MentionKind, Motion,
+    Observation, Path as WalkPath, Provenance, SceneId, Sighting, Target, Verdict, Where, Witness, path::Stop,
 };
 use wayword_formats::jsonl::Record;
-use wayword_synthesis::walk::{Look, Observation};
 
 const SCRIPT: &str = "<script>alert('x')</script>";
 

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map as JsonMap, Value, json};
-use wayword_core::{DVec3, Instruction, Path, Platform, PlatformError, ViewpointGraph};
-use wayword_synthesis::walk::Observation;
+use wayword_core::{DVec3, Instruction, Observation, Path, Platform, PlatformError, ViewpointGraph};
 
 /// A path and what was seen along it: a line of `walks.jsonl`.
 #[derive(Debug, Clone, Serialize, Deserialize)]

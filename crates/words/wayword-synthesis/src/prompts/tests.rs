@@ -2,11 +2,12 @@ use super::*;
 use crate::{
     dialogue::OPENING,
     style::{Profile, built_in},
-    walk::{Observation, Walk},
+    walk::Walk,
     writer::Complaint,
 };
 use wayword_core::{
-    Check, DVec3, Distinction, Finding, Motion, ObjectId, Path, SceneId, Side, Target, Verdict, path::Stop,
+    Check, DVec3, Distinction, Finding, Motion, ObjectId, Observation, Path, SceneId, Side, Target, Verdict,
+    path::Stop,
 };
 
 fn transcript() -> Vec<Exchange> {

@@ -4,11 +4,12 @@
 use super::{Manner, PromptError, Prompts};
 use crate::{
     style::{Profile, built_in},
-    walk::{Observation, Walk},
+    walk::Walk,
     writer::{Brief, Complaint},
 };
 use wayword_core::{
-    Check, DVec3, Exchange, Finding, Motion, ObjectId, Path, SceneId, Sighting, Target, Verdict, Witness, path::Stop,
+    Check, DVec3, Exchange, Finding, Motion, ObjectId, Observation, Path, SceneId, Sighting, Target, Verdict,
+    Witness, path::Stop,
 };
 
 pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {

@@ -1,14 +1,13 @@
 //! Write, check, and write again what failed.
 
 use crate::{
-    checks::{Subject, check_own},
     dialogue::Mode,
-    evidence::Evidence,
     observe::Minds,
     style::{Profile, hash},
     walk::Walk,
     writer::{Brief, Complaint, RulesWriter, WriteError, Writer},
 };
+use wayword_checks::{Evidence, Subject, check_own};
 use wayword_core::{Check, Finding, Instruction, ModelError, Provenance, Style, Verdict};
 
 /// Everything that one instruction is made from.

@@ -3,12 +3,13 @@ use crate::{
     dialogue::{RulesAsker, RulesSummariser},
     minds::Labels,
     style::built_in,
-    walk::{Look, Observation},
     writer::RulesWriter,
 };
 use proptest::prelude::*;
 use std::sync::Mutex;
-use wayword_core::{Caption, DVec3, Gaze, Motion, Path, SceneId, Sighting, Where, Witness, path::Stop};
+use wayword_core::{
+    Caption, DVec3, Gaze, Look, Motion, Observation, Path, SceneId, Sighting, Where, Witness, path::Stop,
+};
 
 /// A writer that says what it was told to say, in order, and counts the complaints that it heard.
 struct Scripted {

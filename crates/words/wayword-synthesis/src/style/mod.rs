@@ -95,8 +95,8 @@ pub fn hash(style: &Style) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::checks::shared_run;
     use std::collections::BTreeSet;
+    use wayword_checks::shared_run;
     use wayword_language::{
         reading::read,
         text::{sentence_count, word_count},

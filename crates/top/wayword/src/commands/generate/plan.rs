@@ -12,11 +12,11 @@ use crate::{
 };
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
-use wayword_core::{Exchange, Gaze, Path};
+use wayword_core::{Exchange, Gaze, Observation, Path};
 use wayword_synthesis::{
     observe::gazes,
     prompts::{Manner, PromptError, Prompts},
-    walk::{FrameSelection, Observation, Walk},
+    walk::{FrameSelection, Walk},
     writer::Brief,
 };
 

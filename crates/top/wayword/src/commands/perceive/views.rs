@@ -6,8 +6,8 @@ use crate::{
     settings::Settings,
 };
 use std::collections::BTreeSet;
+use wayword_checks::{Evidence, SeenThing};
 use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
-use wayword_synthesis::evidence::{Evidence, SeenThing};
 
 /// A view with what its labels say.
 pub(super) struct Labelled {

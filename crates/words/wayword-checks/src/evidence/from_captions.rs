@@ -1,8 +1,7 @@
 //! Evidence from what was seen and told.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
-use crate::walk::{Look, Observation};
-use wayword_core::{Path, Where, Witness};
+use wayword_core::{Look, Observation, Path, Where, Witness};
 
 impl Evidence {
     /// Evidence from captions, one observation per frame of the path. `None` where no caption tells of anything.

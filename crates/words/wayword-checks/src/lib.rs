@@ -1,6 +1,12 @@
 //! Holds a text against the evidence of its path. Works on the words alone, whoever wrote them.
+//!
+//! [`Evidence`] says what is known of a path, from labels or from captions. Each check is a file here; `align` lays a text along
+//! the walk for those that ask where it speaks of what.
+//!
+//! Architecture invariant: nothing here knows a writer, a prompt or a plan.
 
 mod align;
+mod evidence;
 mod floors;
 mod form;
 mod landmarks;
@@ -12,7 +18,6 @@ mod task;
 #[cfg(test)]
 mod tests;
 
-use crate::evidence::Evidence;
 use std::collections::BTreeSet;
 use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
 use wayword_language::{
@@ -20,6 +25,7 @@ use wayword_language::{
     reading::{Event, Reading, What, read},
 };
 
+pub use evidence::{Evidence, FrameEvidence, SeenThing, Source};
 pub use leak::{SHARED_RUN, shared_run};
 
 /// What a text is checked against.

@@ -1,0 +1,38 @@
+//! What was seen from a place, in words.
+
+use crate::{Caption, Gaze, Heading, Side, Sighting};
+use serde::{Deserialize, Serialize};
+
+/// A captioned view.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Look {
+    /// Where it looked.
+    pub gaze: Gaze,
+    /// What was said of it.
+    pub caption: Caption,
+}
+
+/// What was seen from one frame.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Observation {
+    /// One look where the central view was captioned, four where the panorama was.
+    pub looks: Vec<Look>,
+    /// The frame in words: the caption of the only look, or the four condensed to under 20 words.
+    pub summary: String,
+    /// Who condensed them, where that is another than the run's summariser, which failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
+}
+
+impl Look {
+    /// The side of a walker who looks along `heading` on which a thing of this view is said to be; none where that was not told.
+    #[must_use]
+    pub fn side_of(&self, sighting: &Sighting, heading: Heading) -> Option<Side> {
+        let place = sighting.place?;
+        let off_rad = heading.turn_to(self.gaze.heading);
+        if off_rad.abs() < 0.1 {
+            return Some(place.side());
+        }
+        Some(heading.side_of(self.gaze.heading.turned(place.turn_rad(self.gaze.horizontal_fov_rad))))
+    }
+}
