@@ -9,7 +9,8 @@
 use libfuzzer_sys::fuzz_target;
 use wayword_core::{Gaze, Heading, Platform};
 use wayword_fuzz::{Bound, begin, scratch, seeds::words};
-use wayword_platforms::{Matterport, labels_around};
+use wayword_platforms::Matterport;
+use wayword_world::labels_around;
 
 const BOUND: Bound = Bound { flat: 300 << 20, per_byte: 1024 };
 

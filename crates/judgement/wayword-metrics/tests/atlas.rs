@@ -4,8 +4,8 @@
 
 use std::{sync::Arc, thread};
 use wayword_core::{Platform, PlatformError, SceneId};
+use wayword_house::HousePlatform;
 use wayword_metrics::{Atlas, Distances};
-use wayword_platforms::HousePlatform;
 
 #[test]
 fn threads_share_one_and_the_same_distances_of_a_scene() {

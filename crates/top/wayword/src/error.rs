@@ -66,7 +66,7 @@ pub enum Error {
     Observe(#[from] ObserveError),
     /// A house could not be saved.
     #[error(transparent)]
-    House(#[from] wayword_platforms::house::SaveError),
+    House(#[from] wayword_house::SaveError),
     /// The file system would not.
     #[error("{}: cannot {doing}: {source}", path.display())]
     Io {

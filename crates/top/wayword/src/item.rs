@@ -4,7 +4,7 @@ use crate::{error::Error, settings::Settings};
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, seed};
 use wayword_formats::Episode;
-use wayword_platforms::path_of;
+use wayword_world::path_of;
 
 /// Something to write instructions for.
 #[derive(Debug, Clone)]

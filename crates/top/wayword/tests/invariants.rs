@@ -39,7 +39,8 @@ fn only_labels_and_evidence_look_at_ground_truth() {
         "crates/words/wayword-checks/src/evidence/from_labels.rs",
         "crates/words/wayword-synthesis/src/minds/distinguish.rs",
         "crates/words/wayword-synthesis/src/minds/labels.rs",
-        "crates/world/wayword-platforms/src/",
+        "crates/world/wayword-house/src/",
+        "crates/world/wayword-world/src/episode_path.rs",
     ];
     let root = workspace();
     let mut used: BTreeSet<&str> = BTreeSet::new();
@@ -75,7 +76,7 @@ fn edges() -> BTreeMap<String, BTreeSet<String>> {
 
 #[test]
 fn no_crate_is_built_on_one_above_it() {
-    let allowed: [(&str, &[&str]); 18] = [
+    let allowed: [(&str, &[&str]); 20] = [
         ("wayword-core", &[]),
         ("wayword-testkit", &["wayword-core"]),
         ("wayword-ledger", &[]),
@@ -84,10 +85,13 @@ fn no_crate_is_built_on_one_above_it() {
         ("wayword-formats", &["wayword-core"]),
         ("wayword-language", &["wayword-core"]),
         ("wayword-render", &["wayword-core"]),
-        ("wayword-platforms", &["wayword-core", "wayword-formats", "wayword-render"]),
-        ("wayword-habitat", &["wayword-core", "wayword-platforms", "wayword-render"]),
-        ("wayword-recording", &["wayword-core", "wayword-platforms"]),
-        ("wayword-live", &["wayword-core", "wayword-platforms", "wayword-render"]),
+        ("wayword-world", &["wayword-core"]),
+        ("wayword-house", &["wayword-core", "wayword-render", "wayword-world"]),
+        ("wayword-platforms", &["wayword-core", "wayword-render", "wayword-world"]),
+        ("wayword-habitat", &["wayword-core", "wayword-render", "wayword-world"]),
+        ("wayword-recording", &["wayword-core", "wayword-world"]),
+        // Its stand-ins, which no program ships, draw generated houses.
+        ("wayword-live", &["wayword-core", "wayword-house", "wayword-render", "wayword-world"]),
         ("wayword-checks", &["wayword-core", "wayword-language"]),
         ("wayword-synthesis", &["wayword-checks", "wayword-core", "wayword-language"]),
         ("wayword-metrics", &["wayword-core"]),
@@ -99,6 +103,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-core",
                 "wayword-formats",
                 "wayword-habitat",
+                "wayword-house",
                 "wayword-language",
                 "wayword-ledger",
                 "wayword-live",
@@ -110,6 +115,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-remote",
                 "wayword-render",
                 "wayword-synthesis",
+                "wayword-world",
             ],
         ),
         (

@@ -9,7 +9,7 @@ use image::{AnimationDecoder, ImageReader, RgbImage, codecs::gif::GifDecoder};
 use serde_json::Value;
 use std::{collections::BTreeSet, fs, io::Cursor, path::Path, time::Duration};
 use wayword_core::Platform;
-use wayword_platforms::house::HousePlatform;
+use wayword_house::HousePlatform;
 
 /// A house with two storeys.
 const TALL: &str = "house-3";

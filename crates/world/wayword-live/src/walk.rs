@@ -6,7 +6,7 @@ use wayword_core::{
     DVec3, Frame, Gaze, Heading, Label, ObjectId, Path, PathRequest, PlatformError, Pose, SceneId, Target,
     ViewpointGraph, ViewpointId, path::Stop, rng,
 };
-use wayword_platforms::wander::{Wander, no_such_walk, wander};
+use wayword_world::wander::{Wander, no_such_walk, wander};
 
 /// Height of the eye above the ground, metres.
 pub(crate) const EYE_M: f64 = 1.5;

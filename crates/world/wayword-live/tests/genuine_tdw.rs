@@ -10,11 +10,11 @@ use std::{
     process::Command,
 };
 use wayword_core::Platform;
+use wayword_house::{HouseScene, Role, generate};
 use wayword_live::tdw::{
     Command as TdwCommand, Controller, ControllerOptions, Frequency, TdwOptions, TdwPlatform,
     stand_in::{StandIn, StandInOptions},
 };
-use wayword_platforms::house::{HouseScene, Role, generate};
 
 fn drive(python: &str, version: &'static str) -> (Value, Vec<String>) {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();

@@ -6,8 +6,8 @@
 use serde_json::Value;
 use std::{collections::BTreeSet, path::Path, process::Command};
 use wayword_core::DVec3;
+use wayword_house::{HouseScene, Role, generate};
 use wayword_live::virtualhome::stand_in::StandIn;
-use wayword_platforms::house::{HouseScene, Role, generate};
 use wayword_render::Camera;
 
 #[test]

@@ -4,6 +4,7 @@
 
 use std::{collections::BTreeSet, net::SocketAddr, time::Duration};
 use wayword_core::{Gaze, Heading, ObjectId, PathRequest, Platform, SceneId};
+use wayword_house::{Ground, HouseOptions, HousePlatform, HouseScene, Role, generate};
 use wayword_live::{
     Pictures,
     tdw::{
@@ -11,7 +12,6 @@ use wayword_live::{
         stand_in::{StandIn, StandInOptions},
     },
 };
-use wayword_platforms::house::{Ground, HouseOptions, HousePlatform, HouseScene, Role, generate};
 
 fn start(options: StandInOptions) -> (TdwPlatform, StandIn) {
     let controller = ControllerOptions {

@@ -9,11 +9,11 @@ use std::{
     time::Duration,
 };
 use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
+use wayword_house::{Ground, HouseScene, generate};
 use wayword_live::{
     Pictures,
     virtualhome::{Client, VirtualHomeOptions, VirtualHomePlatform, stand_in::StandIn},
 };
-use wayword_platforms::house::{Ground, HouseScene, generate};
 
 fn start() -> (VirtualHomePlatform, StandIn) {
     let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();

@@ -5,8 +5,9 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use tempfile::TempDir;
 use wayword_core::{Frame, Gaze, Heading, ObjectId, PathRequest, Platform, PlatformError, SceneId, ViewpointId};
-use wayword_platforms::{Matterport, labels_around, path_of};
+use wayword_platforms::Matterport;
 use wayword_testkit::{SCAN, viewpoint_id, wall_colour, write_building, write_skyboxes};
+use wayword_world::{labels_around, path_of};
 
 fn building() -> (TempDir, Matterport) {
     let folder = tempfile::tempdir().unwrap();

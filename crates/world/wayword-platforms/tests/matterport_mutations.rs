@@ -10,8 +10,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::{fs, path::Path};
 use wayword_core::{Gaze, Heading, Platform, PlatformError, SceneId};
-use wayword_platforms::{Matterport, labels_around};
+use wayword_platforms::Matterport;
 use wayword_testkit::{SCAN, viewpoint_id, write_building};
+use wayword_world::labels_around;
 
 const ROUNDS: u64 = 1000;
 

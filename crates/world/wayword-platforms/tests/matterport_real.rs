@@ -10,7 +10,8 @@
 use serde_json::Value;
 use std::path::PathBuf;
 use wayword_core::{Gaze, Heading, ObjectId, Path, PathRequest, Platform, SceneId, Side, ViewpointId};
-use wayword_platforms::{Matterport, labels_around, path_of};
+use wayword_platforms::Matterport;
+use wayword_world::{labels_around, path_of};
 
 fn data() -> Option<PathBuf> {
     let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data"));

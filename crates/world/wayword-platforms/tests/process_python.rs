@@ -18,7 +18,8 @@ use std::{
     sync::Arc,
 };
 use wayword_core::{Frame, Gaze, Image, PathRequest, Platform, SceneId};
-use wayword_platforms::{ProcessPlatform, labels_around, process::ProcessOptions};
+use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
+use wayword_world::labels_around;
 
 fn kit() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../python").canonicalize().unwrap()

@@ -4,7 +4,7 @@ use crate::axes::{Axes, Body, World};
 use serde::Deserialize;
 use std::path::Path;
 use wayword_core::PlatformError;
-use wayword_platforms::files;
+use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
 pub(crate) const HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";

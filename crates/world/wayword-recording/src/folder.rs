@@ -12,7 +12,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 use wayword_core::{PlatformError, SceneId};
-use wayword_platforms::files;
+use wayword_world::files;
 
 /// Subfolders in which datasets keep their pictures.
 const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];

@@ -8,7 +8,7 @@ use crate::{
 };
 use std::{collections::BTreeSet, path::Path};
 use wayword_core::{PlatformError, SceneId};
-use wayword_platforms::files;
+use wayword_world::files;
 
 const HINT: &str = "give a folder of pictures, a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file; \
                     of another video, ffmpeg -i IN -c copy OUT.mp4 may make one";

@@ -17,7 +17,7 @@ use wayword_core::{
     DVec3, Frame, Gaze, Heading, Image, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
     View, ViewpointGraph, ViewpointId, path::Stop, rng,
 };
-use wayword_platforms::{files, process::Hear, recent::Recent};
+use wayword_world::{files, recent::Recent, said::Hear};
 
 /// Recordings that are kept open.
 const OPEN: usize = 8;

@@ -18,7 +18,7 @@ use wayword_formats::{
     Format,
     jsonl::{self, Record},
 };
-use wayword_platforms::path_of;
+use wayword_world::path_of;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = check_file(&args.file, &args.world.asked().resolve()?, args.style.as_deref(), output)?;

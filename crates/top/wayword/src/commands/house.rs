@@ -5,7 +5,7 @@ use crate::{
     error::{Error, Exit},
     output::Output,
 };
-use wayword_platforms::house::{generate, save};
+use wayword_house::{generate, save};
 
 pub(super) fn run(args: &House, output: &Output) -> Result<Exit, Error> {
     std::fs::create_dir_all(&args.out).map_err(Error::io(&args.out, "make the folder"))?;

@@ -15,7 +15,8 @@ mod remembering;
 use crate::{error::Error, output, settings::Settings};
 use std::{path::Path, sync::Arc};
 use wayword_core::Platform;
-use wayword_platforms::{house::HousePlatform, matterport::Matterport, process::ProcessPlatform};
+use wayword_house::HousePlatform;
+use wayword_platforms::{matterport::Matterport, process::ProcessPlatform};
 use wayword_recording::RecordingPlatform;
 
 pub use remembering::Remembering;

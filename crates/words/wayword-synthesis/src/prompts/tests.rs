@@ -6,8 +6,7 @@ use crate::{
     writer::Complaint,
 };
 use wayword_core::{
-    Check, DVec3, Distinction, Finding, Motion, ObjectId, Observation, Path, SceneId, Side, Target, Verdict,
-    path::Stop,
+    Check, DVec3, Distinction, Finding, Motion, ObjectId, Observation, Path, SceneId, Side, Target, Verdict, path::Stop,
 };
 
 fn transcript() -> Vec<Exchange> {

@@ -8,8 +8,8 @@ use crate::{
     writer::{Brief, Complaint},
 };
 use wayword_core::{
-    Check, DVec3, Exchange, Finding, Motion, ObjectId, Observation, Path, SceneId, Sighting, Target, Verdict,
-    Witness, path::Stop,
+    Check, DVec3, Exchange, Finding, Motion, ObjectId, Observation, Path, SceneId, Sighting, Target, Verdict, Witness,
+    path::Stop,
 };
 
 pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {

@@ -4,8 +4,8 @@ use super::home::Home;
 use crate::ground::stops_along;
 use rand::Rng;
 use wayword_core::{DVec3, Frame, Path, PathRequest, PlatformError, Target, path::Stop, rng};
-use wayword_platforms::{
-    matterport::sample::target,
+use wayword_world::{
+    graph_walk::target,
     wander::{Wander, wander},
 };
 

@@ -12,8 +12,8 @@ pub(crate) use load::{SemanticFiles, load};
 
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, ObjectId};
-use wayword_platforms::matterport::{names, rooms};
 use wayword_render::{Camera, Picture, RenderError, Scene, render};
+use wayword_world::{object_names, region};
 
 /// An object of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub(crate) struct Thing {
 
 impl Thing {
     fn new(id: ObjectId, raw: &str) -> Self {
-        let name = names::plain(raw).filter(|name| names::is_furnishing(name));
+        let name = object_names::plain(raw).filter(|name| object_names::is_furnishing(name));
         Self { id, name, bounds: None }
     }
 
@@ -80,6 +80,6 @@ impl Semantics {
         let holds = |region: &&Region| region.low.cmple(place).all() && region.high.cmpge(place).all();
         let size = |region: &Region| (region.high - region.low).element_product();
         let inside = self.regions.iter().filter(holds).min_by(|a, b| size(a).total_cmp(&size(b)))?;
-        rooms::name(inside.letter)
+        region::room(inside.letter)
     }
 }

@@ -4,10 +4,11 @@
 //! h], ...]}}}`. View `i` looks along `(i mod 12) * 30` degrees with elevation `(i / 12 - 1) * 30` degrees; boxes are in
 //! pixels of its 640x480 picture, whose vertical field of view is 60 degrees.
 
-use super::{names, read};
+use super::read;
 use serde_json::{Map, Value};
 use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Heading, ObjectId, PlatformError, ViewpointId};
+use wayword_world::object_names;
 
 /// Number of views of a panorama.
 pub(crate) const VIEWS: usize = 36;
@@ -134,7 +135,7 @@ fn listed(object: &str, entry: &Value) -> Result<Listed, String> {
     }
     Ok(Listed {
         object: ObjectId::new(object).map_err(|error| error.to_string())?,
-        name: names::plain(read::text(entry, "name")?),
+        name: object_names::plain(read::text(entry, "name")?),
         boxes: views.iter().zip(boxes).map(|(view, found)| seen(view, found)).collect::<Result<_, _>>()?,
     })
 }

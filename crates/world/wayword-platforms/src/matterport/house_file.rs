@@ -3,10 +3,11 @@
 //! Format: Matterport3D's `data_organization.md`, "house_segmentations": ASCII, one record per line, its first word the
 //! kind. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts in `H` are not trusted.
 
-use super::{names, read};
+use super::read;
 use glam::DVec3;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{ObjectId, PlatformError, ViewpointId};
+use wayword_world::object_names;
 
 const MAX_BYTES: u64 = 64 << 20;
 /// Longest line that is read: the records have under 40 words.
@@ -120,7 +121,7 @@ fn add(
             objects.push((object, record.index(3)?));
         }
         "C" => {
-            categories.insert(record.index(1)?, names::plain(record.word(3)?));
+            categories.insert(record.index(1)?, object_names::plain(record.word(3)?));
         }
         _ => {}
     }

@@ -9,13 +9,11 @@ mod house_file;
 mod labels;
 mod layout;
 mod levels;
-pub mod names;
 mod object_positions;
 mod photographs;
 mod platform;
 pub(crate) mod read;
-pub mod rooms;
-pub mod sample;
+mod rooms;
 mod scene;
 mod thirty_six;
 

@@ -6,11 +6,11 @@ use super::{
     read,
     thirty_six::ThirtySix,
 };
-use crate::files;
 use glam::DMat3;
 use std::path::Path;
 use wayword_core::{Gaze, Image, PlatformError, SceneId};
 use wayword_render::{CubeMap, Face, sample_view};
+use wayword_world::files;
 
 const WIDTH_PX: u32 = 640;
 const HEIGHT_PX: u32 = 480;

@@ -7,10 +7,8 @@ use super::{
     layout::Layout,
     object_positions::{self, ObjectPositions},
     photographs::Photographs,
-    sample,
     scene::{Everywhere, Scene},
 };
-use crate::recent::Recent;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
@@ -20,6 +18,7 @@ use wayword_core::{
     Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId, View,
     ViewpointGraph, ViewpointId,
 };
+use wayword_world::{graph_walk, recent::Recent};
 
 /// How many viewpoints' boxes are kept in memory.
 const BOXES_KEPT: usize = 256;
@@ -143,7 +142,7 @@ impl Platform for Matterport {
 
     fn sample_path(&self, id: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
         let scene = self.scene(id)?;
-        sample::path(id, &scene.graph, request, seed, |viewpoint| {
+        graph_walk::path(id, &scene.graph, request, seed, |viewpoint| {
             Ok(self.labels(id, &scene, viewpoint)?.unwrap_or_default())
         })
     }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-pub(crate) use crate::files::{bytes_if_there, text_if_there, wrong};
+pub(crate) use wayword_world::files::{bytes_if_there, text_if_there, wrong};
 
 /// Numbers beyond this are no place in a building, metres.
 const MAX_COORDINATE_M: f64 = 1e6;

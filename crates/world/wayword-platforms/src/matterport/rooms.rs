@@ -51,51 +51,15 @@ fn entry(words: &[&str]) -> Result<(ViewpointId, char), String> {
     }
 }
 
-/// The everyday word for a region's letter; `None` for what is no room that a person would name.
-#[must_use]
-pub fn name(letter: char) -> Option<&'static str> {
-    Some(match letter {
-        'a' => "bathroom",
-        'b' => "bedroom",
-        'c' => "closet",
-        'd' => "dining room",
-        'e' => "entryway",
-        'f' => "family room",
-        'g' => "garage",
-        'h' => "hallway",
-        'i' => "library",
-        'j' => "laundry room",
-        'k' => "kitchen",
-        'l' => "living room",
-        'm' => "meeting room",
-        'n' => "lounge",
-        'o' => "office",
-        'p' => "porch",
-        'r' => "game room",
-        's' => "stairs",
-        't' => "toilet",
-        'u' => "utility room",
-        'v' => "tv room",
-        'w' => "gym",
-        'x' => "outdoor area",
-        'y' => "balcony",
-        'B' => "bar",
-        'C' => "classroom",
-        'D' => "dining booth",
-        'S' => "spa",
-        // z "other", Z "junk", - "no label"
-        _ => return None,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wayword_world::region;
 
     #[test]
     fn a_line_gives_a_viewpoint_its_room() {
         let rooms = parse("0 aa 3 k\n1 bb 0 Z\n\n").unwrap();
-        let words: Vec<_> = rooms.values().map(|letter| name(*letter)).collect();
+        let words: Vec<_> = rooms.values().map(|letter| region::room(*letter)).collect();
         assert_eq!(words, [Some("kitchen"), None]);
     }
 

@@ -11,6 +11,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 use wayword_core::{ObjectId, PlatformError, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
+use wayword_world::region;
 
 /// A building.
 pub(crate) struct Scene {
@@ -64,7 +65,7 @@ impl Scene {
     pub(crate) fn room(&self, viewpoint: &ViewpointId) -> Option<&'static str> {
         let listed = self.rooms.as_ref().and_then(|rooms| rooms.get(viewpoint)).copied();
         let letter = listed.or_else(|| self.house.as_ref()?.room_letter(viewpoint))?;
-        rooms::name(letter)
+        region::room(letter)
     }
 }
 

@@ -1,10 +1,10 @@
 //! One child that runs: its pipes, and one request at a time.
 
 use super::{
+    answer::{Answer, MAX_LINE_BYTES, answer},
     fault::Fault,
-    line::{self, Answer, Line, MAX_LINE_BYTES},
     options::ProcessOptions,
-    stderr::{Hear, LastWords},
+    stderr::LastWords,
     stop,
 };
 use serde_json::{Value, json};
@@ -15,6 +15,7 @@ use std::{
     thread::{self, JoinHandle},
     time::Duration,
 };
+use wayword_world::said::{Hear, Line, plain, read_line};
 
 /// How long a child whose input was closed may take to end by itself.
 const FAREWELL: Duration = Duration::from_millis(500);
@@ -75,7 +76,7 @@ impl Running {
         // If it cannot be sent, the child is gone, and its output says the same.
         let _ = self.requests.as_ref().map(|requests| requests.try_send(request.into_bytes()));
         let answer = match self.lines.recv_timeout(within) {
-            Ok(Line::Whole(line)) => line::answer(&line)?,
+            Ok(Line::Whole(line)) => answer(&line)?,
             Ok(Line::Half(line)) => return Err(self.half(&line)),
             Ok(Line::TooLong) => return Err(Fault::LongLine(MAX_LINE_BYTES)),
             Ok(Line::End) | Err(RecvTimeoutError::Disconnected) => return Err(self.end()),
@@ -85,7 +86,7 @@ impl Running {
             Answer { id: found, .. } if found != id => Err(Fault::WrongId { asked: id, found }),
             Answer { outcome: Ok(result), .. } => Ok(result),
             Answer { outcome: Err(refusal), .. } => {
-                Err(Fault::Refused { code: refusal.code, message: line::plain(&refusal.message, 1000) })
+                Err(Fault::Refused { code: refusal.code, message: plain(&refusal.message, 1000) })
             }
         }
     }
@@ -100,7 +101,7 @@ impl Running {
 
     fn half(&mut self, line: &[u8]) -> Fault {
         let end = self.end();
-        match line::answer(line) {
+        match answer(line) {
             Err(Fault::Nonsense { start, .. }) => {
                 Fault::Nonsense { reason: format!("half a line, and then it {end}"), start }
             }
@@ -141,7 +142,7 @@ fn write_all(mut pipe: impl Write, requests: &Receiver<Vec<u8>>) {
 fn read_all(pipe: impl Read, lines: &SyncSender<Line>) {
     let mut pipe = BufReader::new(pipe);
     loop {
-        let line = line::read(&mut pipe, MAX_LINE_BYTES);
+        let line = read_line(&mut pipe, MAX_LINE_BYTES);
         let goes_on = matches!(line, Line::Whole(_));
         if lines.send(line).is_err() || !goes_on {
             return;

@@ -8,7 +8,6 @@ use super::{
     fault::Fault,
     options::ProcessOptions,
     protocol::{FRAME, Greeting, PROTOCOL, World},
-    stderr::Hear,
 };
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -18,6 +17,7 @@ use std::{
     time::Duration,
 };
 use wayword_core::PlatformError;
+use wayword_world::said::Hear;
 
 /// So many answers earn a restart back.
 const ANSWERS_FOR_A_RESTART: u32 = 200;

@@ -7,12 +7,12 @@
 //! The child is not trusted: lines, pictures, counts and times are bounded, and one that dies, hangs, floods or sends
 //! nonsense costs the request that was under way and is started anew, a bounded number of times (`keeper.rs`).
 
+mod answer;
 mod child;
 mod fault;
 mod graph;
 mod keeper;
 mod labels;
-mod line;
 mod options;
 mod path;
 mod picture;
@@ -24,4 +24,3 @@ mod stop;
 pub use options::ProcessOptions;
 pub use platform::ProcessPlatform;
 pub use protocol::{Offer, PROTOCOL, World};
-pub use stderr::Hear;

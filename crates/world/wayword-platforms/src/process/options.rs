@@ -7,6 +7,7 @@ use std::{
     time::Duration,
 };
 use wayword_core::PlatformError;
+use wayword_world::said::plain;
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
 const HINT: &str = "a world file holds a JSON object with \"command\": [PROGRAM, ARGUMENT, ...], see docs/PROCESS.md";
@@ -77,7 +78,7 @@ impl ProcessOptions {
     /// The command as errors name it: a script says more than the interpreter that runs it.
     pub(crate) fn shown(&self) -> PathBuf {
         let script = self.arguments.first().filter(|first| Path::new(first).extension().is_some());
-        script.map_or_else(|| self.program.clone(), |script| PathBuf::from(super::line::plain(script, 200)))
+        script.map_or_else(|| self.program.clone(), |script| PathBuf::from(plain(script, 200)))
     }
 
     /// What a file says: a world file where its name ends in `.json`, else the program itself. A world file's command runs

@@ -1,13 +1,13 @@
 //! Random paths that a child draws itself.
 
 use super::{keeper::Keeper, labels::place};
-use crate::{episode_path, matterport::sample};
 use serde::Deserialize;
 use serde_json::json;
 use wayword_core::{
     Heading, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId,
     path::Stop,
 };
+use wayword_world::{episode_path, graph_walk};
 
 /// Most stops of a path.
 const MAX_STOPS: usize = 1000;
@@ -56,7 +56,7 @@ pub(crate) fn drawn(
     });
     let Drawn { path } = keeper.ask("sample_path", &asked)?;
     let Some(walk) = path else {
-        return Err(PlatformError::NoSuchPath { scene: scene.clone(), request: sample::in_words(request) });
+        return Err(PlatformError::NoSuchPath { scene: scene.clone(), request: graph_walk::in_words(request) });
     };
     let misfit = |reason: String| keeper.misfit("sample_path", reason);
     if !(2..=MAX_STOPS).contains(&walk.stops.len()) {
@@ -100,7 +100,10 @@ fn fits(path: &Path, request: &PathRequest) -> Result<(), String> {
     let (least, most) = (request.length_m.start() - SLACK_M, request.length_m.end() + SLACK_M);
     let on_graph = path.frames.iter().all(|frame| frame.viewpoint.is_some());
     if !(least..=most).contains(&length_m) || (on_graph && !request.hops.contains(&hops)) {
-        return Err(format!("a path of {hops} hops and {length_m:.3} metres, not of {}", sample::in_words(request)));
+        return Err(format!(
+            "a path of {hops} hops and {length_m:.3} metres, not of {}",
+            graph_walk::in_words(request)
+        ));
     }
     Ok(())
 }

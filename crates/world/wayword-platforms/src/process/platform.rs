@@ -7,9 +7,7 @@ use super::{
     options::ProcessOptions,
     path, picture,
     protocol::{self, Offer, World},
-    stderr::Hear,
 };
-use crate::{episode_path::labels_around, matterport::sample};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::{
@@ -21,6 +19,7 @@ use wayword_core::{
     Frame, Gaze, GroundTruth, Heading, Image, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
     View, ViewpointGraph, ViewpointId,
 };
+use wayword_world::{episode_path::labels_around, graph_walk, said::Hear};
 
 /// Most scenes that a child may list.
 const MAX_SCENES: usize = 10_000;
@@ -227,7 +226,7 @@ impl Platform for ProcessPlatform {
             return path::drawn(&self.keeper, self, scene, request, seed);
         }
         let graph = self.graph(scene)?;
-        sample::path(scene, &graph, request, seed, |viewpoint| self.labels_at(scene, &graph, viewpoint))
+        graph_walk::path(scene, &graph, request, seed, |viewpoint| self.labels_at(scene, &graph, viewpoint))
     }
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {

@@ -1,8 +1,8 @@
 //! What both sides agree on: the greeting, and what a world can offer. `docs/PROCESS.md` is the same in words.
 
-use super::line::plain;
 use serde::Deserialize;
 use std::{collections::BTreeSet, fmt, path::PathBuf};
+use wayword_world::said::plain;
 
 /// Version of the protocol.
 pub const PROTOCOL: u64 = 1;

@@ -1,11 +1,11 @@
 //! What a child says on its standard error: passed on while it speaks, and its last words kept for errors.
 
-use super::line::plain;
 use std::{
     collections::VecDeque,
     io::{BufRead, BufReader, Read},
     sync::{Arc, Mutex, PoisonError},
 };
+use wayword_world::said::{Hear, plain};
 
 /// Lines that are kept for errors.
 const KEPT_LINES: usize = 12;
@@ -13,9 +13,6 @@ const KEPT_LINES: usize = 12;
 const MAX_LINE_CHARS: usize = 400;
 /// Lines of one child that are passed on. One that says more is not heard, but its last words are still kept.
 const MAX_HEARD_LINES: usize = 2000;
-
-/// Who is told each line that a child writes on its standard error; without control characters.
-pub type Hear = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// The last lines of a child's standard error.
 #[derive(Clone, Default)]

@@ -3,7 +3,7 @@
 use super::info::Info;
 use std::path::Path;
 use wayword_core::PlatformError;
-use wayword_platforms::files;
+use wayword_world::files;
 
 const CHOOSE: &str = "write camera = \"NAME\" into a recording.toml in the dataset's folder";
 const NONE: &str = "give a dataset with a feature of dtype video or image";

@@ -10,7 +10,7 @@ use crate::open::entries;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use wayword_core::PlatformError;
-use wayword_platforms::files;
+use wayword_world::files;
 
 const MAX_LIST_BYTES: u64 = 512 << 20;
 const HINT: &str = "fetch the dataset again, with its folder meta, or write it again with the library of LeRobot";

@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_core::PlatformError;
-use wayword_platforms::files;
+use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 16 << 20;
 const HINT: &str = "give a dataset of LeRobot, versions 2.0, 2.1 or 3.0, as its library writes it";

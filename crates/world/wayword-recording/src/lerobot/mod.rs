@@ -24,7 +24,7 @@ use pictures::{Stills, Stretch};
 use place::Place;
 use std::{ops::Range, path::Path};
 use wayword_core::{PlatformError, SceneId};
-use wayword_platforms::files;
+use wayword_world::files;
 
 const HINT: &str = "fetch the dataset again, or write it again with the library of LeRobot";
 

@@ -6,7 +6,7 @@ use crate::{
     video::Film,
 };
 use wayword_core::PlatformError;
-use wayword_platforms::files;
+use wayword_world::files;
 
 const HINT: &str = "fetch the dataset again, or write it again with the library of LeRobot";
 

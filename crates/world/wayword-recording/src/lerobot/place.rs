@@ -8,7 +8,7 @@ use crate::{
 };
 use std::path::Path;
 use wayword_core::{DVec3, PlatformError};
-use wayword_platforms::files;
+use wayword_world::files;
 
 const HINT: &str = "docs/RECORDINGS.md tells how a feature's elements have to be called in meta/info.json";
 /// Words in the name of an element that make it something else than a place in the world.

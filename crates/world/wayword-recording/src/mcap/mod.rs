@@ -38,7 +38,7 @@ use std::{
 use topics::Heads;
 use tree::{Clock, Times};
 use wayword_core::{DVec3, PlatformError, SceneId};
-use wayword_platforms::files;
+use wayword_world::files;
 
 const HINT: &str = "give a file that `ros2 bag record --storage mcap` has written";
 /// What is read of a picture to know its time, frame and encoding.

@@ -3,7 +3,7 @@
 use super::messages::{self, Kind, Raw};
 use crate::size;
 use wayword_core::Image;
-use wayword_platforms::files;
+use wayword_world::files;
 
 /// Why a camera's messages are no pictures, by their encoding; `None` where they are.
 pub(crate) fn unfit(kind: Kind, encoding: &str) -> Option<String> {

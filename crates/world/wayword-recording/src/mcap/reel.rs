@@ -11,7 +11,7 @@ use super::{
 use crate::reel::{Reel, Take};
 use std::{fs::File, path::PathBuf};
 use wayword_core::{PlatformError, contained};
-use wayword_platforms::files;
+use wayword_world::files;
 
 /// Largest message of a picture: 64 megapixels of four bytes.
 const MAX_MESSAGE_BYTES: u64 = 257 << 20;

@@ -13,7 +13,7 @@ use crate::{
 use rows::{Facing, Of, Rows};
 use std::path::{Component, Path, PathBuf};
 use wayword_core::PlatformError;
-use wayword_platforms::files;
+use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 256 << 20;
 const HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";

@@ -14,7 +14,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_core::{Image, PlatformError, contain::decoded};
-use wayword_platforms::files;
+use wayword_world::files;
 
 /// Pictures that decoders hold back at most (ITU-T H.264, annex A.3.1).
 const MAX_HELD: usize = 17;

@@ -9,7 +9,7 @@ use super::{
 use crate::unity::wayword_forward_from_unity_rotation;
 use serde_json::Value;
 use wayword_core::DVec3;
-use wayword_platforms::house::Object;
+use wayword_house::Object;
 
 const UNITY: &str = "2020.3.24f1";
 /// The finest occupancy map that is drawn, metres.

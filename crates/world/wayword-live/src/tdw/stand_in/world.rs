@@ -2,7 +2,7 @@
 
 use crate::unity::{unity_from_wayword, wayword_from_unity};
 use wayword_core::DVec3;
-use wayword_platforms::house::{Ground, HouseScene, Object, Role, generate};
+use wayword_house::{Ground, HouseScene, Object, Role, generate};
 
 /// Steps in which a position on the navmesh is looked for, metres.
 const SNAP_STEP_M: f64 = 0.05;

@@ -7,7 +7,7 @@ use crate::{
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Map, Value, json};
 use wayword_core::DVec3;
-use wayword_platforms::house::Role;
+use wayword_house::Role;
 use wayword_render::Camera;
 
 /// Numbers of rooms begin here: above those of things.

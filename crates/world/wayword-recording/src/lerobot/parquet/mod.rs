@@ -21,7 +21,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_core::PlatformError;
-use wayword_platforms::files;
+use wayword_world::files;
 
 const MAGIC: &[u8; 4] = b"PAR1";
 const MAX_FOOTER_BYTES: u64 = 64 << 20;

@@ -1,5 +1,7 @@
 use super::super::model::House;
 use super::*;
+use crate::{generate, graph::EYE_M};
+use wayword_core::{DVec3, Heading, Pose};
 
 fn small() -> HousePlatform {
     HousePlatform::new(HouseOptions { width_px: 160, height_px: 120, ..HouseOptions::default() })

@@ -1,14 +1,14 @@
 //! Writes views of generated houses into a folder, to be looked at, with their labels beside them.
 //!
 //! ```text
-//! cargo run --release -p wayword-platforms --example house_pictures -- FOLDER FIRST_SEED HOUSES VIEWS_EACH
+//! cargo run --release -p wayword-house --example house_pictures -- FOLDER FIRST_SEED HOUSES VIEWS_EACH
 //! ```
 //!
 //! Each is taken at a random viewpoint: of the four views by the compass, the one that shows the most different things. `FOLDER/labels.txt` holds what they show, one line for each.
 
 use std::{collections::BTreeSet, error::Error, fmt::Write, path::PathBuf, time::Instant};
 use wayword_core::{Gaze, Platform, View, seed::derive};
-use wayword_platforms::house::HousePlatform;
+use wayword_house::HousePlatform;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);

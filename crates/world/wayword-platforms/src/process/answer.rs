@@ -1,9 +1,9 @@
-//! Lines from a child: read with a bound, and taken apart.
+//! What a child answers, taken apart.
 
 use super::fault::Fault;
 use serde::Deserialize;
 use serde_json::Value;
-use std::io::{BufRead, Read};
+use wayword_world::said::plain;
 
 /// Longest line of a child, bytes: an answer with a large picture in base64.
 pub(crate) const MAX_LINE_BYTES: usize = 48 << 20;
@@ -11,36 +11,6 @@ pub(crate) const MAX_LINE_BYTES: usize = 48 << 20;
 const MAX_VALUES: usize = 1_000_000;
 /// How much of a line an error repeats, characters.
 const SHOWN_CHARS: usize = 80;
-
-/// What came out of a pipe.
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Line {
-    /// A line without its end.
-    Whole(Vec<u8>),
-    /// Bytes, and then the pipe's end.
-    Half(Vec<u8>),
-    /// A line without an end in sight.
-    TooLong,
-    /// The pipe's end.
-    End,
-}
-
-/// The next line. No more than `max_bytes` of it are ever held.
-pub(crate) fn read(from: &mut impl BufRead, max_bytes: usize) -> Line {
-    let mut line = Vec::new();
-    // A pipe that cannot be read any more has ended, whatever the reason is.
-    let read = from.take(max_bytes as u64 + 1).read_until(b'\n', &mut line);
-    match line.last() {
-        _ if read.is_err() => Line::End,
-        None => Line::End,
-        Some(b'\n') => {
-            line.pop();
-            Line::Whole(line)
-        }
-        Some(_) if line.len() > max_bytes => Line::TooLong,
-        Some(_) => Line::Half(line),
-    }
-}
 
 /// What a child answered, and to which request.
 #[derive(Debug, PartialEq)]
@@ -90,29 +60,13 @@ fn start_of(line: &[u8]) -> String {
     plain(&start, SHOWN_CHARS)
 }
 
-/// A text without what could move a cursor or break a line, and not too long.
-pub(crate) fn plain(text: &str, max_chars: usize) -> String {
-    text.chars().filter(|c| !c.is_control()).take(max_chars).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
     use serde_json::json;
     use std::io::Cursor;
-
-    #[test]
-    fn lines_are_cut_at_their_bound_and_half_lines_are_told_from_whole_ones() {
-        let mut pipe = Cursor::new(b"one\n\ntwelve chars\nhalf".to_vec());
-        assert_eq!(read(&mut pipe, 12), Line::Whole(b"one".to_vec()));
-        assert_eq!(read(&mut pipe, 12), Line::Whole(Vec::new()));
-        assert_eq!(read(&mut pipe, 12), Line::Whole(b"twelve chars".to_vec()), "the end of a line does not count");
-        assert_eq!(read(&mut pipe, 12), Line::Half(b"half".to_vec()));
-        assert_eq!(read(&mut pipe, 12), Line::End);
-        assert_eq!(read(&mut Cursor::new(b"thirteen char\n"), 12), Line::TooLong);
-        assert_eq!(read(&mut std::io::BufReader::new(std::io::repeat(b'x')), 12), Line::TooLong);
-    }
+    use wayword_world::said::{Line, read_line};
 
     #[test]
     fn an_answer_has_an_id_and_either_a_result_or_an_error() {
@@ -175,7 +129,7 @@ mod tests {
             let line = serde_json::to_vec(&json!({"id": id, "result": {"name": text}})).unwrap();
             let mut pipe = line.clone();
             pipe.push(b'\n');
-            let Line::Whole(read) = read(&mut Cursor::new(pipe), MAX_LINE_BYTES) else { panic!("half a line") };
+            let Line::Whole(read) = read_line(&mut Cursor::new(pipe), MAX_LINE_BYTES) else { panic!("half a line") };
             prop_assert_eq!(&read, &line);
             prop_assert_eq!(answer(&read).unwrap(), Answer { id, outcome: Ok(json!({"name": text})) });
         }

@@ -7,6 +7,7 @@ mod drawing;
 mod furnish;
 mod graph;
 mod ground;
+mod home;
 mod labels;
 mod layout;
 mod light;

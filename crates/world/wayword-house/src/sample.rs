@@ -1,11 +1,10 @@
 //! Random walks through a house: a shortest way between two places, with frames along it.
 
-use super::{dice::Dice, graph::EYE_M, ground::Way, objects::Role, platform::Home};
-use crate::wander::{Wander, no_such_walk, wander};
+use super::{dice::Dice, graph::EYE_M, ground::Way, home::Home, objects::Role};
 use wayword_core::{
-    DVec3, Frame, Label, Path, PathRequest, PlatformError, Pose, SceneId, Target, ViewpointGraph, ViewpointId,
-    path::Stop, seed::derive,
+    DVec3, Frame, Label, Path, PathRequest, PlatformError, Pose, SceneId, Target, path::Stop, seed::derive,
 };
+use wayword_world::wander::{Wander, no_such_walk, wander};
 
 /// A corner so near to the frame before it gets none of its own, metres.
 const CROWDED_M: f64 = 0.4;
@@ -109,13 +108,4 @@ fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, Pl
         told_by: Vec::new(),
         has_namesake: namesakes(label) > 0,
     }))
-}
-
-impl Home {
-    /// Ground under every viewpoint.
-    fn standing_places(&self) -> Vec<DVec3> {
-        let graph: &ViewpointGraph = self.viewpoints();
-        let ids: Vec<&ViewpointId> = graph.viewpoints().collect();
-        ids.into_iter().filter_map(|id| graph.position(id)).map(|eye| eye - DVec3::Z * EYE_M).collect()
-    }
 }

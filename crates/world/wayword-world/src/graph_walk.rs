@@ -1,6 +1,6 @@
 //! Random paths through a building.
 
-use super::names;
+use crate::object_names;
 use rand::{Rng, seq::SliceRandom};
 use std::f64::consts::TAU;
 use wayword_core::{
@@ -15,7 +15,7 @@ const MAX_BARE_ENDS: usize = 64;
 ///
 /// # Errors
 /// When no two nodes lie as far apart as asked, or `labels_at` fails.
-pub(crate) fn path(
+pub fn path(
     scene: &SceneId,
     graph: &ViewpointGraph,
     request: &PathRequest,
@@ -74,7 +74,7 @@ fn walked(
 /// there is one.
 pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     let has_namesake = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() > 1;
-    let rank = |label: &Label| (!names::is_furnishing(&label.name), has_namesake(label));
+    let rank = |label: &Label| (!object_names::is_furnishing(&label.name), has_namesake(label));
     let best = labels.iter().map(rank).min()?;
     let candidates: Vec<&Label> = labels.iter().filter(|label| rank(label) == best).collect();
     let chosen = candidates[rng.random_range(0..candidates.len())];
@@ -86,7 +86,9 @@ pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     })
 }
 
-pub(crate) fn in_words(request: &PathRequest) -> String {
+/// What was asked of a path, in words.
+#[must_use]
+pub fn in_words(request: &PathRequest) -> String {
     let (hops, length_m) = (&request.hops, &request.length_m);
     format!("{} to {} hops and {} to {} metres", hops.start(), hops.end(), length_m.start(), length_m.end())
 }

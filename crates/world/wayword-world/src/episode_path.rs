@@ -41,7 +41,11 @@ pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) ->
     Ok(labels)
 }
 
-pub(crate) fn target(
+/// The object that an episode is about, with its name; `None` where the platform has no name for it.
+///
+/// # Errors
+/// When the platform cannot be looked at.
+pub fn target(
     platform: &dyn Platform,
     scene: &SceneId,
     last: &Frame,

@@ -1,0 +1,153 @@
+//! A house, drawn up and surveyed.
+
+use super::{
+    generate,
+    graph::{EYE_M, viewpoint_graph},
+    ground::Ground,
+    labels::labels,
+    model::Opening,
+    scene::HouseScene,
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{Arc, OnceLock},
+};
+use wayword_core::{
+    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
+    ViewpointGraph, ViewpointId,
+};
+use wayword_render::Camera;
+
+/// Who stands no farther from the middle of a wall stands in its opening, centimetres.
+const THRESHOLD_CM: i32 = 25;
+
+/// A house, drawn up and surveyed.
+#[derive(Debug)]
+pub(super) struct Home {
+    pub(super) id: SceneId,
+    pub(super) scene: HouseScene,
+    pub(super) ground: Ground,
+    pub(super) graph: Arc<ViewpointGraph>,
+    /// The viewpoints from which each object is seen; looked for when first asked for.
+    seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
+}
+
+impl Home {
+    /// The home that a scene names.
+    pub(super) fn build(scene: &SceneId) -> Result<Self, PlatformError> {
+        let house = generate(seed_of(scene).ok_or_else(|| unknown(scene.as_str()))?);
+        let ground = Ground::of(&house);
+        let graph =
+            viewpoint_graph(&house, &ground).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+        let scene_of = |error: wayword_render::SceneError| PlatformError::UnknownScene {
+            scene: scene.to_string(),
+            hint: error.to_string(),
+        };
+        let drawn = HouseScene::new(house).map_err(scene_of)?;
+        Ok(Self { id: scene.clone(), scene: drawn, ground, graph: Arc::new(graph), seen_from: OnceLock::new() })
+    }
+
+    /// What is seen from a pose, in a picture of a size.
+    pub(super) fn view(&self, pose: Pose, gaze: Gaze, (width, height): (u32, u32)) -> Result<View, PlatformError> {
+        let aspect = f64::from(height) / f64::from(width.max(1));
+        let camera = Camera {
+            position: pose.position,
+            heading_rad: gaze.heading.rad(),
+            elevation_rad: 0.0,
+            vertical_fov_rad: 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect),
+            width,
+            height,
+        };
+        let picture = self.scene.picture(&camera).map_err(|error| self.refused(&error))?;
+        let truth = GroundTruth {
+            lists_objects: true,
+            labels: labels(&self.scene, &camera, gaze, &picture),
+            room: self.room_seen(pose.position, gaze.heading),
+        };
+        let image = Image::new(width, height, picture.rgb).map_err(|error| self.refused(&error))?;
+        let pose = Pose::level(pose.position, gaze.heading);
+        Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
+    }
+
+    /// The error that something of this home cannot be drawn.
+    pub(super) fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
+        PlatformError::UnknownScene { scene: self.id.to_string(), hint: error.to_string() }
+    }
+
+    fn room_name(&self, eye: DVec3) -> Option<String> {
+        let room = self.scene.house.room_at(eye.x, eye.y, eye.z - EYE_M)?;
+        Some(room.kind.word().to_owned())
+    }
+
+    /// The room of an eye; of one that stands in an opening, the room into which it looks.
+    pub(super) fn room_seen(&self, eye: DVec3, heading: Heading) -> Option<String> {
+        let house = &self.scene.house;
+        let floor_cm = (eye.z - EYE_M) * 100.0;
+        let stands_in = |opening: &Opening| {
+            opening.span.thickened(THRESHOLD_CM).holds_m(eye.x, eye.y)
+                && (f64::from(opening.base_cm) - floor_cm).abs() < 50.0
+        };
+        let ahead = DVec3::new(libm::sin(heading.rad()), libm::cos(heading.rad()), 0.0) * 0.5;
+        let in_opening = house.openings.iter().any(stands_in);
+        in_opening.then(|| self.room_name(eye + ahead)).flatten().or_else(|| self.room_name(eye))
+    }
+
+    /// Everything visible from a pose, in small pictures: what counts there counts in large ones.
+    pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<Label>, PlatformError> {
+        let mut all = Vec::new();
+        for gaze in Gaze::around(pose.heading) {
+            let view = self.view(pose, gaze, (320, 240))?;
+            all.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
+        }
+        Ok(all)
+    }
+
+    /// The viewpoints from which each object is seen.
+    pub(super) fn seen_from(&self) -> Result<&BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
+        if let Some(seen_from) = self.seen_from.get() {
+            return Ok(seen_from);
+        }
+        let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
+        for viewpoint in self.graph.viewpoints() {
+            let eye = self.graph.position(viewpoint).unwrap_or_default();
+            for label in self.labels_around(Pose::level(eye, Heading::NORTH))? {
+                seen_from.entry(label.object).or_default().insert(viewpoint.clone());
+            }
+        }
+        Ok(self.seen_from.get_or_init(|| seen_from))
+    }
+
+    /// Refuses poses outside the house.
+    pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
+        let eye = frame.pose.position;
+        if eye.is_finite() && self.room_name(eye).is_some() {
+            return Ok(());
+        }
+        let place = format!("{:.2} {:.2} {:.2}", eye.x, eye.y, eye.z);
+        let named = frame.viewpoint.clone().map_or_else(|| ViewpointId::new(place), Ok);
+        Err(named.map_or_else(
+            |_| PlatformError::NotAViewpoint { scene: self.id.clone() },
+            |viewpoint| PlatformError::UnknownViewpoint { scene: self.id.clone(), viewpoint },
+        ))
+    }
+
+    /// Ground under every viewpoint.
+    pub(super) fn standing_places(&self) -> Vec<DVec3> {
+        let eyes = self.graph.viewpoints().filter_map(|id| self.graph.position(id));
+        eyes.map(|eye| eye - DVec3::Z * EYE_M).collect()
+    }
+}
+
+/// The seed in a scene's name, which must be written as [`HousePlatform::scene_of`] does.
+fn seed_of(scene: &SceneId) -> Option<u64> {
+    let digits = scene.as_str().strip_prefix("house-")?;
+    let seed: u64 = digits.parse().ok()?;
+    (seed.to_string() == digits).then_some(seed)
+}
+
+pub(super) fn unknown(scene: &str) -> PlatformError {
+    PlatformError::UnknownScene {
+        scene: scene.to_owned(),
+        hint: "houses are named by their seed, as in house-7".to_owned(),
+    }
+}

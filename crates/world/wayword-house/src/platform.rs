@@ -1,0 +1,127 @@
+//! The built-in platform.
+
+use super::{
+    home::{Home, unknown},
+    sample,
+};
+use std::{
+    collections::{BTreeSet, VecDeque},
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph,
+    ViewpointId,
+};
+
+/// Houses that are kept ready at a time; each takes about 15 MB.
+const READY: usize = 6;
+/// Widest gaze that one flat picture can show, radians.
+const WIDEST_RAD: f64 = 2.6;
+
+/// Homes from seeds: scene `house-7` is the home of seed 7.
+#[derive(Debug)]
+pub struct HousePlatform {
+    options: HouseOptions,
+    ready: Mutex<VecDeque<Arc<Home>>>,
+}
+
+/// What can be chosen about the platform.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HouseOptions {
+    /// How many scenes it lists, from `house-0` on; any other seed can be asked for by its name.
+    pub scenes: u64,
+    /// Width of pictures, pixels.
+    pub width_px: u32,
+    /// Height of pictures, pixels.
+    pub height_px: u32,
+    /// Distance between two frames of a random path, metres.
+    pub interval_m: f64,
+}
+
+impl Default for HouseOptions {
+    fn default() -> Self {
+        Self { scenes: 20, width_px: 640, height_px: 480, interval_m: 1.0 }
+    }
+}
+
+impl HousePlatform {
+    /// The platform with its default options.
+    #[must_use]
+    pub fn new(options: HouseOptions) -> Self {
+        Self { options, ready: Mutex::new(VecDeque::new()) }
+    }
+
+    /// The scene of a seed.
+    ///
+    /// # Errors
+    /// Never: every seed has a house. The signature is that of ids.
+    pub fn scene_of(seed: u64) -> Result<SceneId, PlatformError> {
+        let name = format!("house-{seed}");
+        SceneId::new(name.clone()).map_err(|_| unknown(&name))
+    }
+
+    fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
+        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(at) = ready.iter().position(|home| home.id == *scene) {
+            let home = ready.remove(at).ok_or_else(|| unknown(scene.as_str()))?;
+            ready.push_front(home.clone());
+            return Ok(home);
+        }
+        let home = Arc::new(Home::build(scene)?);
+        ready.push_front(home.clone());
+        ready.truncate(READY);
+        Ok(home)
+    }
+}
+
+impl Default for HousePlatform {
+    fn default() -> Self {
+        Self::new(HouseOptions::default())
+    }
+}
+
+impl Platform for HousePlatform {
+    fn name(&self) -> &'static str {
+        "house"
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        let mut scenes = (0..self.options.scenes).map(Self::scene_of).collect::<Result<Vec<_>, _>>()?;
+        scenes.sort();
+        Ok(scenes)
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.home(scene)?.graph.clone())
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        sample::path(scene, &*self.home(scene)?, request, seed, self.options.interval_m)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let home = self.home(scene)?;
+        home.check(from)?;
+        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
+        home.view(from.pose, gaze, (self.options.width_px, self.options.height_px))
+    }
+
+    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        let home = self.home(scene)?;
+        home.scene.look_down(&home.graph, level).map_err(|error| home.refused(&error))
+    }
+
+    fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        let home = self.home(scene)?;
+        let number: Option<u32> = object.as_str().parse().ok();
+        Ok(number.and_then(|id| home.scene.objects.get(&id)).map(|object| object.name.clone()))
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        let home = self.home(scene)?;
+        Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

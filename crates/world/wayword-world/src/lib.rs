@@ -1,0 +1,18 @@
+//! What all platforms share.
+//!
+//! [`files`] reads other people's files with a bound. [`said`] reads what a child or a socket says, likewise. [`wander`] walks at
+//! random over open ground, [`graph_walk`] along a viewpoint graph, and [`episode_path`] turns an episode of a dataset into a path.
+//! [`object_names`] and [`region`] put into plain words what Matterport3D's annotators wrote, which other scenes carry too.
+//!
+//! Architecture invariant: nothing here knows one platform.
+
+pub mod episode_path;
+pub mod files;
+pub mod graph_walk;
+pub mod object_names;
+pub mod recent;
+pub mod region;
+pub mod said;
+pub mod wander;
+
+pub use episode_path::{labels_around, path_of};

@@ -1,0 +1,38 @@
+//! The letters by which Matterport3D labels regions, as rooms (`house_segmentations`, data organisation, "region labels").
+
+/// The everyday word for a region's letter; `None` for what is no room that a person would name.
+#[must_use]
+pub fn room(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        'a' => "bathroom",
+        'b' => "bedroom",
+        'c' => "closet",
+        'd' => "dining room",
+        'e' => "entryway",
+        'f' => "family room",
+        'g' => "garage",
+        'h' => "hallway",
+        'i' => "library",
+        'j' => "laundry room",
+        'k' => "kitchen",
+        'l' => "living room",
+        'm' => "meeting room",
+        'n' => "lounge",
+        'o' => "office",
+        'p' => "porch",
+        'r' => "game room",
+        's' => "stairs",
+        't' => "toilet",
+        'u' => "utility room",
+        'v' => "tv room",
+        'w' => "gym",
+        'x' => "outdoor area",
+        'y' => "balcony",
+        'B' => "bar",
+        'C' => "classroom",
+        'D' => "dining booth",
+        'S' => "spa",
+        // z "other", Z "junk", - "no label"
+        _ => return None,
+    })
+}
