@@ -7,13 +7,23 @@ use std::{path::PathBuf, sync::Arc};
 pub enum LocalError {
     /// A name that is none.
     #[error(
-        "{name:?} is no model in process: {problem}\nhint: names are hf/ORG/NAME, hf/ORG/NAME@REVISION, hf/ORG/NAME:FILE.gguf, or hf/PATH of a local folder that begins with / or ."
+        "{name:?} is no model in process: {problem}\nhint: names are hf/ORG/NAME, hf/ORG/NAME@REVISION, or hf/PATH of a local folder that begins with / or ."
     )]
     Name {
         /// What was given.
         name: String,
         /// What is wrong with it.
         problem: String,
+    },
+    /// The name of a file that only servers run.
+    #[error(
+        "{name:?} is a GGUF file, which no model in process is made of\nhint: start it with a server, and name it by that server:{servers}"
+    )]
+    Gguf {
+        /// What was given.
+        name: String,
+        /// A line for each server: how it is started, and the model's name then.
+        servers: String,
     },
     /// A file that has to be there is not.
     #[error("{}: {what} is missing\nhint: {hint}", file.display())]

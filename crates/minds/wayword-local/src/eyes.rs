@@ -1,18 +1,35 @@
 //! BLIP and BLIP-2 as minds that answer requests with a picture.
 
 use crate::{
-    LocalError, Spoken,
+    LocalError,
     blip::{BlipCaptioner, BlipVqa},
     blip2::Blip2,
-    engine::{Engine, Kind},
 };
-use wayword_core::{Finish, Image, Reply, Request};
+use wayword_core::{Image, Request};
 
 /// Most tokens of an answer: these models were trained on short ones, and repeat themselves after.
 const MOST_TOKENS: u32 = 40;
 
 /// What one that only answers is asked where a description is wanted.
 const DESCRIBE: &str = "what is in the picture?";
+
+/// A model that answers about a picture.
+pub(crate) trait Eye: Send + Sync {
+    /// How it wants to be asked.
+    fn kind(&self) -> EyeKind;
+
+    /// The reply to a request.
+    fn reply(&self, request: &Request) -> Result<String, LocalError>;
+}
+
+/// How a model that sees wants to be asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EyeKind {
+    /// With a picture and a bare question; with a picture and no words it describes.
+    Questions,
+    /// With a picture and a text to go on with.
+    Texts,
+}
 
 /// BLIP: one checkpoint answers, another one describes.
 pub(crate) struct BlipEye {
@@ -21,21 +38,20 @@ pub(crate) struct BlipEye {
     pub(crate) describes: Option<BlipCaptioner>,
 }
 
-impl Engine for BlipEye {
-    fn kind(&self) -> Kind {
-        Kind::SeesQuestions
+impl Eye for BlipEye {
+    fn kind(&self) -> EyeKind {
+        EyeKind::Questions
     }
 
-    fn reply(&self, request: &Request) -> Result<Spoken, LocalError> {
+    fn reply(&self, request: &Request) -> Result<String, LocalError> {
         let (picture, words) = shown(&self.name, request)?;
         let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
-        let text = match (&self.answers, &self.describes, words.is_empty()) {
-            (_, Some(describes), true) => describes.caption(picture, "", most)?,
-            (Some(answers), _, false) => answers.answer(picture, words, most)?,
-            (Some(answers), None, true) => answers.answer(picture, DESCRIBE, most)?,
-            (None, _, _) => return Err(self.cannot_answer()),
-        };
-        Ok(spoken(text))
+        match (&self.answers, &self.describes, words.is_empty()) {
+            (_, Some(describes), true) => describes.caption(picture, "", most),
+            (Some(answers), _, false) => answers.answer(picture, words, most),
+            (Some(answers), None, true) => answers.answer(picture, DESCRIBE, most),
+            (None, _, _) => Err(self.cannot_answer()),
+        }
     }
 }
 
@@ -53,15 +69,15 @@ pub(crate) struct Blip2Eye {
     pub(crate) model: Blip2,
 }
 
-impl Engine for Blip2Eye {
-    fn kind(&self) -> Kind {
-        Kind::SeesTexts
+impl Eye for Blip2Eye {
+    fn kind(&self) -> EyeKind {
+        EyeKind::Texts
     }
 
-    fn reply(&self, request: &Request) -> Result<Spoken, LocalError> {
+    fn reply(&self, request: &Request) -> Result<String, LocalError> {
         let (picture, words) = shown(&self.name, request)?;
         let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
-        Ok(spoken(self.model.answer(picture, words, most)?))
+        self.model.answer(picture, words, most)
     }
 }
 
@@ -72,9 +88,4 @@ fn shown<'a>(name: &str, request: &'a Request) -> Result<(&'a Image, &'a str), L
     let picture = message.image.as_deref();
     let picture = picture.ok_or_else(|| wrong("it answers about pictures and writes no texts; use it with --see"))?;
     Ok((picture, message.text.trim()))
-}
-
-/// Nobody is charged by the token here, so they are not counted.
-fn spoken(text: String) -> Spoken {
-    Spoken { reply: Reply { text, finish: Finish::Stop }, tokens_in: 0, tokens_out: 0 }
 }

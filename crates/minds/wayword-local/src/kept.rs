@@ -1,6 +1,6 @@
 //! Calls of a model in process, each made once and kept in the ledger: they cost no money, but minutes.
 
-use crate::{LocalError, Spoken, engine::Engine, picture_cache::digest};
+use crate::{EyeKind, LocalError, eyes::Eye, picture_cache::digest};
 use serde_json::{Value, json};
 use std::{
     sync::{Arc, Mutex, PoisonError},
@@ -15,7 +15,7 @@ pub struct LocalModel {
     name: String,
     /// Which weights these are, and in which numbers: what else could change an answer.
     origin: String,
-    engine: Arc<dyn Engine>,
+    eye: Arc<dyn Eye>,
     /// One call at a time: each uses all threads, and two would need twice the memory.
     turn: Mutex<()>,
     run: Run,
@@ -31,14 +31,14 @@ enum Unanswered {
 }
 
 impl LocalModel {
-    pub(crate) fn new(name: &str, origin: String, engine: Arc<dyn Engine>, run: Run) -> Self {
-        Self { name: name.to_owned(), origin, engine, turn: Mutex::new(()), run }
+    pub(crate) fn new(name: &str, origin: String, eye: Arc<dyn Eye>, run: Run) -> Self {
+        Self { name: name.to_owned(), origin, eye, turn: Mutex::new(()), run }
     }
 
-    /// How it wants to be spoken to.
+    /// How it wants to be asked.
     #[must_use]
-    pub fn kind(&self) -> crate::Kind {
-        self.engine.kind()
+    pub fn kind(&self) -> EyeKind {
+        self.eye.kind()
     }
 
     /// Which weights it has, and in which numbers.
@@ -52,8 +52,8 @@ impl LocalModel {
             let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
             attempts.begin(Some(0.0)).map_err(Unanswered::Refused)?;
             let begun = Instant::now();
-            let spoken = self.engine.reply(request).map_err(Unanswered::Failed)?;
-            Ok(answer(spoken, begun))
+            let text = self.eye.reply(request).map_err(Unanswered::Failed)?;
+            Ok(answer(text, begun))
         });
         asked.map(reply).map_err(|error| self.error(error))
     }
@@ -106,12 +106,13 @@ impl LanguageModel for LocalModel {
     }
 }
 
-fn answer(spoken: Spoken, begun: Instant) -> Answer {
+/// Nobody is charged by the token here, so they are not counted.
+fn answer(text: String, begun: Instant) -> Answer {
     Answer {
-        text: spoken.reply.text,
-        finish: if spoken.reply.finish == Finish::Length { "length" } else { "stop" }.to_owned(),
-        tokens_in: spoken.tokens_in,
-        tokens_out: spoken.tokens_out,
+        text,
+        finish: "stop".to_owned(),
+        tokens_in: 0,
+        tokens_out: 0,
         usd: Some(0.0),
         latency_ms: u64::try_from(begun.elapsed().as_millis()).unwrap_or(u64::MAX),
         attempts: 1,

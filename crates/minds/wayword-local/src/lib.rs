@@ -1,4 +1,4 @@
-//! Models in process, from the public checkpoints as they are: MiniLM, CLIP, BLIP, BLIP-2 and small instruct models.
+//! Models in process, from the public checkpoints as they are: MiniLM, CLIP, BLIP and BLIP-2.
 //!
 //! candle holds tensors and devices; the models are files of our own on operators of our own (`ops`), because candle's stock
 //! code is several times slower on a processor and lacks half of them.
@@ -11,7 +11,6 @@ mod blip;
 mod blip2;
 mod clip;
 mod device;
-mod engine;
 mod error;
 mod eyes;
 mod gguf;
@@ -32,9 +31,8 @@ pub use blip::{BlipCaptioner, BlipVqa};
 pub use blip2::Blip2;
 pub use clip::{Clip, ClipGrounder};
 pub use device::{Device, Precision};
-pub use engine::Kind;
 pub use error::LocalError;
-pub use gguf::{GgufModel, Spoken};
+pub use eyes::EyeKind;
 pub use hub::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs, Progress};
 pub use kept::LocalModel;
 pub use minds::{Loading, Minds};

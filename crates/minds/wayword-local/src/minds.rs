@@ -4,9 +4,8 @@ use crate::{
     Device, LocalError, Precision,
     blip::{BlipCaptioner, BlipVqa},
     blip2::Blip2,
-    engine::Engine,
-    eyes::{Blip2Eye, BlipEye},
-    gguf::GgufModel,
+    eyes::{Blip2Eye, BlipEye, Eye},
+    gguf,
     hub::{Hub, ModelFolder, ModelName, Needs, Progress},
     json,
     kept::LocalModel,
@@ -72,7 +71,7 @@ impl Minds {
         Self { hub, device, precision, progress, run, loaded: Mutex::new(loaded) }
     }
 
-    /// Whether a name is one of a model that could talk or see in process.
+    /// Whether a name is one of a model that could see in process.
     ///
     /// # Errors
     /// When it is none.
@@ -80,31 +79,26 @@ impl Minds {
         parts(name).map(drop)
     }
 
-    /// A model by its name: `hf/ORG/NAME`, two of BLIP as `hf/ORG/ANSWERS+ORG/DESCRIBES`, or `hf/ORG/NAME:FILE.gguf`. It is
-    /// fetched where it is not at hand, and loaded at the first call of this.
+    /// A model by its name: `hf/ORG/NAME`, or two of BLIP as `hf/ORG/ANSWERS+ORG/DESCRIBES`. It is fetched where it is not at
+    /// hand, and loaded at the first call of this.
     ///
     /// # Errors
-    /// When it cannot be had, is damaged, or neither talks nor sees.
+    /// When it cannot be had, is damaged, or does not see.
     pub fn model(&self, name: &str) -> Result<Arc<LocalModel>, LocalError> {
         let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(model) = loaded.models.get(name) {
             return Ok(Arc::clone(model));
         }
-        let (engine, origin) = self.load(name, &mut loaded.budget)?;
-        let model = Arc::new(LocalModel::new(name, origin, engine, self.run.clone()));
+        let (eye, origin) = self.load(name, &mut loaded.budget)?;
+        let model = Arc::new(LocalModel::new(name, origin, eye, self.run.clone()));
         loaded.models.insert(name.to_owned(), Arc::clone(&model));
         Ok(model)
     }
 
-    fn load(&self, name: &str, budget: &mut Budget) -> Result<(Arc<dyn Engine>, String), LocalError> {
+    fn load(&self, name: &str, budget: &mut Budget) -> Result<(Arc<dyn Eye>, String), LocalError> {
         let parts = parts(name)?;
         let get = |part| self.hub.folder(part, &Needs::of_any(part), &*self.progress);
         let folders: Vec<ModelFolder> = parts.iter().map(get).collect::<Result<_, _>>()?;
-        if let [ModelFolder { file: Some(file), .. }] = &folders[..] {
-            let length = std::fs::metadata(file).map_err(|error| LocalError::io(file, "read", error))?.len();
-            budget.take(name, length)?;
-            return Ok((Arc::new(GgufModel::load(file, &self.device)?), origin(&folders, None)));
-        }
         let roles = folders.iter().map(|folder| Architecture::read(&folder.path));
         let roles: Vec<Architecture> = roles.collect::<Result<_, _>>()?;
         let usual = if roles.contains(&Architecture::Blip2) { Precision::Bf16 } else { Precision::F32 };
@@ -113,7 +107,7 @@ impl Minds {
             budget.take(name, memory::of_checkpoint(&folder.path, precision)?)?;
         }
         let paths: Vec<&Path> = folders.iter().map(|folder| folder.path.as_path()).collect();
-        Ok((self.eye(name, &paths, &roles, precision)?, origin(&folders, Some(precision))))
+        Ok((self.eye(name, &paths, &roles, precision)?, origin(&folders, precision)))
     }
 
     fn eye(
@@ -122,7 +116,7 @@ impl Minds {
         paths: &[&Path],
         roles: &[Architecture],
         precision: Precision,
-    ) -> Result<Arc<dyn Engine>, LocalError> {
+    ) -> Result<Arc<dyn Eye>, LocalError> {
         use Architecture::{Blip2 as Both, BlipAnswers as Answers, BlipDescribes as Describes};
         let answers = |path: &Path| BlipVqa::load(name, path, &self.device, precision).map(Some);
         let describes = |path: &Path| BlipCaptioner::load(name, path, &self.device, precision).map(Some);
@@ -157,7 +151,7 @@ impl Architecture {
                     other.unwrap_or("(none)"),
                     architectures
                 ),
-                hint: "BLIP and BLIP-2 see; to talk, name a GGUF file of Qwen2.5, Qwen3 or Llama as hf/ORG/NAME:FILE.gguf",
+                hint: "name BLIP or BLIP-2 to see, and a model of a server to talk, as ollama/qwen3",
             }),
         }
     }
@@ -168,7 +162,10 @@ fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
     let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
     let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));
     let parts: Vec<ModelName> = parts.collect::<Result<_, _>>()?;
-    if parts.len() > 2 || parts.len() == 2 && parts.iter().any(ModelName::is_gguf) {
+    if let Some(file) = parts.iter().find(|part| part.is_gguf()) {
+        return Err(gguf::refused(&file.to_string()));
+    }
+    if parts.len() > 2 {
         return Err(no_name(name, "two parts are one BLIP that answers and one that describes"));
     }
     Ok(parts)
@@ -179,9 +176,7 @@ fn no_name(name: &str, problem: &str) -> LocalError {
 }
 
 /// What could change a model's answers: its weights, and the numbers that hold them.
-fn origin(folders: &[ModelFolder], precision: Option<Precision>) -> String {
+fn origin(folders: &[ModelFolder], precision: Precision) -> String {
     let identities: Vec<&str> = folders.iter().map(|folder| folder.identity.as_str()).collect();
-    let precision =
-        precision.map_or("as the file has them".to_owned(), |precision| format!("{precision:?}").to_lowercase());
-    format!("in process: {} ({precision})", identities.join("+"))
+    format!("in process: {} ({})", identities.join("+"), format!("{precision:?}").to_lowercase())
 }

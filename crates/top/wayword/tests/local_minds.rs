@@ -86,11 +86,15 @@ fn one_that_only_describes_says_how_to_use_it() {
 }
 
 #[test]
-fn a_model_that_cannot_read_so_much_is_an_error_of_the_item() {
+fn a_gguf_file_is_refused_with_the_servers_that_run_it() {
     let building = building();
-    let talks = format!("hf/{}", fixture("gguf/qwen3.gguf"));
-    let ran = generate(&building, "labels", "talks", &["--write", &talks]);
-    assert_eq!(ran.json()["errors"], 2, "{ran:?}");
-    let errors = building.lines("talks/errors.jsonl");
-    assert!(errors[0]["reason"].as_str().unwrap().contains("tokens"), "{errors:?}");
+    for (name, server, model) in [
+        ("hf/org/name:x-q4.gguf", "ollama run hf.co/org/name:x-q4.gguf", "--llm ollama/hf.co/org/name:x-q4.gguf"),
+        ("hf/org/name:x-q4.gguf", "llama-server -hf org/name -hff x-q4.gguf", "--llm llamacpp/x-q4"),
+        ("hf//models/x.gguf", "llama-server -m /models/x.gguf", "--llm llamacpp/x"),
+    ] {
+        let ran = generate(&building, "labels", "talks", &["--write", name]);
+        let told = ran.refused();
+        assert!(told.contains(name) && told.contains(server) && told.contains(model), "{told}");
+    }
 }

@@ -9,7 +9,7 @@ use crate::{
 use std::sync::Arc;
 use wayword_core::LanguageModel;
 use wayword_ledger::Run;
-use wayword_local::{Device, Hub, HubConfig, Kind, Loading, Minds, Precision};
+use wayword_local::{Device, EyeKind, Hub, HubConfig, Loading, Minds, Precision};
 use wayword_remote::Finding;
 use wayword_synthesis::prompts::Manner;
 
@@ -39,9 +39,8 @@ impl Local {
     /// How a model is spoken to.
     pub(super) fn manner(&self, name: &str) -> Result<Manner, Error> {
         Ok(match self.minds.model(name)?.kind() {
-            Kind::Talks => Manner::Chat,
-            Kind::SeesQuestions => Manner::Question,
-            Kind::SeesTexts => Manner::Completion,
+            EyeKind::Questions => Manner::Question,
+            EyeKind::Texts => Manner::Completion,
         })
     }
 
@@ -52,12 +51,12 @@ impl Local {
             Err(error) => return vec![Finding::error(&error.to_string())],
         };
         let mut findings = vec![Finding::ok(format!("{name} is loaded, {}", model.origin()))];
-        if model.kind() == Kind::Talks {
-            findings.push(Finding::of_speaking(model.as_ref()));
+        if !is_to_see {
+            findings.push(Finding::error(&format!(
+                "{name} answers about pictures and writes no texts\nhint: use it with --see"
+            )));
         }
-        if model.kind() != Kind::Talks || is_to_see {
-            findings.extend(Finding::of_seeing(model.as_ref()));
-        }
+        findings.extend(Finding::of_seeing(model.as_ref()));
         findings
     }
 }

@@ -8,7 +8,6 @@ use clap::{Args, Subcommand};
 Examples:
   wayword models list
   wayword models fetch hf/Salesforce/blip-vqa-base
-  wayword models fetch hf/Qwen/Qwen2.5-0.5B-Instruct-GGUF:qwen2.5-0.5b-instruct-q4_k_m.gguf
   wayword models path hf/Salesforce/blip-vqa-base@main
 
 Models lie in the cache of the hub's own client for Python, which shares them: HF_HUB_CACHE, else hub in HF_HOME, else
@@ -28,7 +27,7 @@ pub enum ModelsCommand {
     List,
     /// Fetch a model, or what its branch stands for now; a fetch that was cut off goes on where it ended.
     Fetch {
-        /// Its name: hf/ORG/NAME, hf/ORG/NAME@REVISION, or hf/ORG/NAME:FILE.gguf.
+        /// Its name: hf/ORG/NAME or hf/ORG/NAME@REVISION.
         name: String,
     },
     /// Where a model lies, or which file is missing where. Nothing is fetched.

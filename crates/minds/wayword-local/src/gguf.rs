@@ -1,0 +1,116 @@
+//! GGUF files: small instruct models. This program runs none of them; it says how a server does, and what the model's name is then.
+//!
+//! candle reads the format, but what turns a file into words (positions, tokenizers, templates, draws) was over a thousand lines,
+//! slower than what llama.cpp does with the same file.
+
+use crate::LocalError;
+use std::{borrow::Cow, path::Path};
+
+/// Longest tag that Ollama takes.
+const LONGEST_TAG: usize = 80;
+
+/// The error for a name that is one of a model in process, and ends in a GGUF file.
+pub(crate) fn refused(name: &str) -> LocalError {
+    let rest = name.strip_prefix("hf/").unwrap_or(name);
+    let is_path = rest.starts_with(['/', '.']);
+    let servers = match rest.split_once(':').filter(|_| !is_path) {
+        Some((repo, file)) => on_hub(repo.split_once('@').map_or(repo, |(repo, _)| repo), file),
+        None => on_disk(rest),
+    };
+    LocalError::Gguf { name: name.to_owned(), servers }
+}
+
+/// A file of a repository: both servers fetch it themselves.
+fn on_hub(repo: &str, file: &str) -> String {
+    let alias = alias(file);
+    let mut servers = String::new();
+    // What has to be escaped, or lies in a folder, is no tag of Ollama's.
+    if file.len() <= LONGEST_TAG && file.chars().all(is_plain) {
+        servers = line("Ollama", &format!("ollama run hf.co/{repo}:{file}"), &format!("ollama/hf.co/{repo}:{file}"));
+    }
+    let starts = format!("llama-server -hf {repo} -hff {} --alias {alias}", quoted(file));
+    servers + &line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
+}
+
+/// A file on this machine.
+fn on_disk(path: &str) -> String {
+    let (alias, path) = (alias(path), quoted(path));
+    let creates = format!("echo FROM {path} > {alias}.Modelfile && ollama create {alias} -f {alias}.Modelfile");
+    let starts = format!("llama-server -m {path} --alias {alias}");
+    line("Ollama", &creates, &format!("ollama/{alias}")) + &line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
+}
+
+fn line(server: &str, command: &str, name: &str) -> String {
+    format!("\n  {server}: `{command}`, then --llm {name}")
+}
+
+/// What a model is called after its file.
+fn alias(file: &str) -> String {
+    let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+    stem.chars().map(|c| if is_plain(c) { c } else { '-' }).take(LONGEST_TAG).collect()
+}
+
+fn is_plain(c: char) -> bool {
+    c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.')
+}
+
+/// As a shell takes it for one word.
+fn quoted(word: &str) -> Cow<'_, str> {
+    if word.chars().all(|c| is_plain(c) || c == '/') {
+        return Cow::Borrowed(word);
+    }
+    Cow::Owned(format!("'{}'", word.replace('\'', r"'\''")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The hint's lines for a name.
+    fn told(name: &str) -> Vec<String> {
+        let error = refused(name).to_string();
+        let (problem, hint) = error.split_once("\nhint: ").unwrap();
+        assert!(problem.contains(name), "{problem}");
+        hint.lines().skip(1).map(|line| line.trim().to_owned()).collect()
+    }
+
+    #[test]
+    fn a_file_of_the_hub_is_fetched_by_either_server() {
+        for name in
+            ["hf/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf", "hf/Qwen/Qwen3-1.7B-GGUF@main:Qwen3-1.7B-Q8_0.gguf"]
+        {
+            assert_eq!(
+                told(name),
+                [
+                    "Ollama: `ollama run hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf`, then --llm \
+                     ollama/hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf",
+                    "llama.cpp: `llama-server -hf Qwen/Qwen3-1.7B-GGUF -hff Qwen3-1.7B-Q8_0.gguf --alias Qwen3-1.7B-Q8_0`, \
+                     then --llm llamacpp/Qwen3-1.7B-Q8_0",
+                ]
+            );
+        }
+    }
+
+    #[test]
+    fn what_ollama_has_no_tag_for_is_left_to_llama_cpp() {
+        assert_eq!(
+            told("hf/org/name:q4/it's(x).gguf"),
+            [
+                r"llama.cpp: `llama-server -hf org/name -hff 'q4/it'\''s(x).gguf' --alias it-s-x-`, then --llm llamacpp/it-s-x-"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_file_on_this_machine_is_named_by_its_path() {
+        assert_eq!(
+            told("hf/./my models/a:b.gguf"),
+            [
+                "Ollama: `echo FROM './my models/a:b.gguf' > a-b.Modelfile && ollama create a-b -f a-b.Modelfile`, then --llm \
+                 ollama/a-b",
+                "llama.cpp: `llama-server -m './my models/a:b.gguf' --alias a-b`, then --llm llamacpp/a-b",
+            ]
+        );
+        assert!(told("hf//models/x.GGUF")[1].contains("-m /models/x.GGUF --alias x`"));
+    }
+}
