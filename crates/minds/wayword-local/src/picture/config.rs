@@ -42,7 +42,7 @@ enum Edges {
 
 /// Whose processor it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum Maker {
     Clip,
     Blip,
 }
@@ -62,11 +62,11 @@ impl Config {
     }
 
     fn build(&self) -> Result<Processor, String> {
-        let kind = self.kind()?;
+        let maker = self.maker()?;
         if self.do_resize == Some(false) {
             return Err("do_resize: pictures that are not resized are not supported".to_owned());
         }
-        let (size, (height_px, width_px)) = self.sizes(kind)?;
+        let (size, (height_px, width_px)) = self.sizes(maker)?;
         let filter = match self.resample.unwrap_or(3) {
             2 => Filter::Bilinear,
             3 => Filter::Bicubic,
@@ -76,27 +76,27 @@ impl Config {
     }
 
     /// CLIP's where it is not said: the oldest files do not.
-    fn kind(&self) -> Result<Kind, String> {
+    fn maker(&self) -> Result<Maker, String> {
         match self.image_processor_type.as_deref() {
-            None => Ok(Kind::Clip),
-            Some(name) if name.starts_with("CLIP") => Ok(Kind::Clip),
-            Some(name) if name.starts_with("Blip") => Ok(Kind::Blip),
+            None => Ok(Maker::Clip),
+            Some(name) if name.starts_with("CLIP") => Ok(Maker::Clip),
+            Some(name) if name.starts_with("Blip") => Ok(Maker::Blip),
             Some(name) => Err(format!("image_processor_type: {name} is neither CLIP's nor BLIP's")),
         }
     }
 
     /// What to resize to, and the height and width of what is handed out.
-    fn sizes(&self, kind: Kind) -> Result<(Size, (usize, usize)), String> {
-        let size = self.size.unwrap_or(match kind {
-            Kind::Clip => Edges::Shortest { shortest_edge: 224 },
-            Kind::Blip => Edges::Both { height: 384, width: 384 },
+    fn sizes(&self, maker: Maker) -> Result<(Size, (usize, usize)), String> {
+        let size = self.size.unwrap_or(match maker {
+            Maker::Clip => Edges::Shortest { shortest_edge: 224 },
+            Maker::Blip => Edges::Both { height: 384, width: 384 },
         });
-        let size = match (size, kind) {
-            (Edges::One(edge), Kind::Clip) => Edges::Shortest { shortest_edge: edge },
-            (Edges::One(edge), Kind::Blip) => Edges::Both { height: edge, width: edge },
+        let size = match (size, maker) {
+            (Edges::One(edge), Maker::Clip) => Edges::Shortest { shortest_edge: edge },
+            (Edges::One(edge), Maker::Blip) => Edges::Both { height: edge, width: edge },
             (size, _) => size,
         };
-        let crops = self.do_center_crop.unwrap_or(kind == Kind::Clip);
+        let crops = self.do_center_crop.unwrap_or(maker == Maker::Clip);
         let crop = match self.crop_size.unwrap_or(Edges::One(224)) {
             _ if !crops => None,
             Edges::One(edge) | Edges::Shortest { shortest_edge: edge } => Some((edge, edge)),

@@ -26,14 +26,15 @@ const LONGEST_INDEX: u64 = 64 << 20;
 pub(crate) struct Weights {
     /// What to name where a tensor is in no file.
     path: PathBuf,
-    files: Vec<File>,
+    files: Vec<WeightFile>,
     /// Where each tensor is.
     at: BTreeMap<String, usize>,
     device: candle_core::Device,
     dtype: DType,
 }
 
-enum File {
+/// A file of tensors.
+enum WeightFile {
     Safe(SafeFile),
     Pickled(Pickled),
 }
@@ -53,13 +54,13 @@ impl Weights {
         let index = folder.join("model.safetensors.index.json");
         let pickled = folder.join("pytorch_model.bin");
         let (path, files) = if whole.exists() {
-            let file = File::Safe(SafeFile::open(&whole)?);
+            let file = WeightFile::Safe(SafeFile::open(&whole)?);
             (whole, vec![file])
         } else if index.exists() {
             let files = parts(folder, &index)?;
             (index, files)
         } else if pickled.exists() {
-            let file = File::Pickled(Pickled::open(&pickled)?);
+            let file = WeightFile::Pickled(Pickled::open(&pickled)?);
             (pickled, vec![file])
         } else {
             let hint =
@@ -97,8 +98,8 @@ impl Weights {
         let lacks = || LocalError::tensor(&self.path, name, "it is missing");
         let file = self.at.get(name).and_then(|&at| self.files.get(at)).ok_or_else(lacks)?;
         let tensor = match file {
-            File::Safe(file) => file.read(name, shape)?,
-            File::Pickled(file) => file.read(name, shape)?,
+            WeightFile::Safe(file) => file.read(name, shape)?,
+            WeightFile::Pickled(file) => file.read(name, shape)?,
         };
         let wrong = |error: candle_core::Error| LocalError::tensor(file.path(), name, error.to_string());
         tensor.to_dtype(self.dtype).and_then(|tensor| tensor.to_device(&self.device)).map_err(wrong)
@@ -107,13 +108,13 @@ impl Weights {
     /// The shape of a tensor, where there is one.
     fn shape(&self, name: &str) -> Option<Vec<usize>> {
         match self.files.get(*self.at.get(name)?)? {
-            File::Safe(file) => file.shape(name),
-            File::Pickled(file) => file.shape(name),
+            WeightFile::Safe(file) => file.shape(name),
+            WeightFile::Pickled(file) => file.shape(name),
         }
     }
 }
 
-impl File {
+impl WeightFile {
     fn path(&self) -> &Path {
         match self {
             Self::Safe(file) => file.path(),
@@ -130,8 +131,8 @@ impl File {
 }
 
 /// The files that an index names, each opened once.
-fn parts(folder: &Path, index: &Path) -> Result<Vec<File>, LocalError> {
-    let open = |name: &String| SafeFile::open(&folder.join(name)).map(File::Safe);
+fn parts(folder: &Path, index: &Path) -> Result<Vec<WeightFile>, LocalError> {
+    let open = |name: &String| SafeFile::open(&folder.join(name)).map(WeightFile::Safe);
     part_names(index)?.iter().map(open).collect()
 }
 
