@@ -1,6 +1,6 @@
 //! Activation functions.
 
-use super::slices::{PIECE, is_ours, slice};
+use super::kernels::{PIECE, is_ours, slice};
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdUnaryOp;

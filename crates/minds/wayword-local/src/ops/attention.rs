@@ -1,9 +1,6 @@
 //! Attention over heads.
 
-use super::{
-    linear::{Options, product},
-    slices::{is_ours, slice},
-};
+use super::kernels::{Options, is_ours, product, slice};
 use candle_core::{CpuStorage, CustomOp3, Device, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 use rten_gemm::{GemmInputA, GemmInputB};

@@ -1,6 +1,6 @@
 //! Weights in 16 bits on the processor: half the memory, and a product that reads half as much.
 
-use super::linear::{Options, product};
+use super::kernels::{Options, product};
 use candle_core::{DType, Result, Tensor, bail};
 use half::{bf16, f16, slice::HalfFloatSliceExt};
 use rayon::prelude::*;

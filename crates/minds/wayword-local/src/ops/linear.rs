@@ -3,29 +3,11 @@
 use super::{
     Activation,
     half::HalfMatrix,
-    slices::{rows, slice},
+    kernels::{Options, packed, product, rows, slice},
 };
 use candle_core::{CpuStorage, CustomOp1, DType, Layout, Result, Shape, Tensor, bail};
-use rten_gemm::{BiasVector, GemmExecutor, GemmInputA, GemmInputB, GemmOptions, PackedBMatrix};
+use rten_gemm::{BiasVector, GemmInputA, GemmInputB, PackedBMatrix};
 use rten_tensor::NdTensorView;
-
-thread_local! {
-    /// The kernels for this processor; they may not be shared between threads, and cost nothing to make.
-    static KERNELS: GemmExecutor = GemmExecutor::default();
-}
-
-/// a times b into y, on all threads.
-pub(super) fn product(
-    y: &mut [f32],
-    a: GemmInputA<'_, f32>,
-    b: GemmInputB<'_, f32>,
-    options: Options<'_>,
-) -> Result<()> {
-    KERNELS.with(|kernels| kernels.gemm(y, a, b, options)).map_err(candle_core::Error::wrap)
-}
-
-/// What is done beside a product.
-pub(super) type Options<'a> = GemmOptions<'a, f32, f32, f32>;
 
 /// x times a matrix, plus a bias: [.., inputs] to [.., outputs].
 pub(crate) struct Linear {
@@ -54,12 +36,7 @@ impl Linear {
             let weight = weight.contiguous()?;
             let (storage, layout) = weight.storage_and_layout();
             let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a weight is not where its device says") };
-            let numbers = slice::<f32>(storage, layout)?;
-            Matrix::Packed(
-                KERNELS.with(|kernels| {
-                    kernels.prepack_b(NdTensorView::from_data([outputs, inputs], numbers).transposed())
-                }),
-            )
+            Matrix::Packed(packed(slice::<f32>(storage, layout)?, outputs, inputs))
         } else {
             Matrix::Half(HalfMatrix::new(weight)?)
         };

@@ -8,11 +8,11 @@ mod activation;
 mod attention;
 mod embedding;
 mod half;
+mod kernels;
 mod linear;
 mod norm;
 mod past;
 mod patches;
-mod slices;
 
 pub(crate) use activation::Activation;
 pub(crate) use attention::{Attention, causal};

@@ -1,6 +1,6 @@
 //! Norms over the last axis.
 
-use super::slices::{is_ours, rows, rows_per_piece, slice};
+use super::kernels::{is_ours, rows, rows_per_piece, slice};
 use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdOp;

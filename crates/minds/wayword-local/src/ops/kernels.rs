@@ -1,6 +1,32 @@
-//! From candle's tensors to slices of numbers and back.
+//! The processor's kernels: what they multiply, and candle's tensors as the slices of numbers that they take.
 
 use candle_core::{CpuStorage, Layout, Result, Tensor, WithDType, bail};
+use rten_gemm::{GemmExecutor, GemmInputA, GemmInputB, GemmOptions, PackedBMatrix};
+use rten_tensor::NdTensorView;
+
+thread_local! {
+    /// The kernels for this processor; they may not be shared between threads, and cost nothing to make.
+    static KERNELS: GemmExecutor = GemmExecutor::default();
+}
+
+/// What is done beside a product.
+pub(super) type Options<'a> = GemmOptions<'a, f32, f32, f32>;
+
+/// a times b into y, on all threads.
+pub(super) fn product(
+    y: &mut [f32],
+    a: GemmInputA<'_, f32>,
+    b: GemmInputB<'_, f32>,
+    options: Options<'_>,
+) -> Result<()> {
+    KERNELS.with(|kernels| kernels.gemm(y, a, b, options)).map_err(candle_core::Error::wrap)
+}
+
+/// A weight [outputs, inputs], packed for products that it stands right in.
+pub(super) fn packed(weight: &[f32], outputs: usize, inputs: usize) -> PackedBMatrix<f32> {
+    let weight = NdTensorView::from_data([outputs, inputs], weight).transposed();
+    KERNELS.with(|kernels| kernels.prepack_b(weight))
+}
 
 /// Pieces of work are at least so long, numbers: below it another thread costs more than it brings.
 pub(super) const PIECE: usize = 16 << 10;
