@@ -40,7 +40,7 @@ pub struct WrongItem {
     /// Which file.
     pub file: PathBuf,
     /// Where in the file.
-    pub place: Place,
+    pub place: ItemPlace,
     /// The item's own id, where that could be read.
     pub id: Option<String>,
     /// The field, with the way into it (`path[3]`).
@@ -53,14 +53,14 @@ pub struct WrongItem {
 
 /// Where an item stands in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum ItemPlace {
     /// Its index in a JSON list, from 0.
     Item(usize),
     /// Its line in a JSON Lines file, from 1.
     Line(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for ItemPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Item(index) => write!(f, "item {index}"),

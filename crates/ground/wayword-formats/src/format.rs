@@ -1,10 +1,6 @@
 //! Which format a file is in.
 
-use crate::{
-    Episode, FormatError, input, jsonl, limits, r2r, reverie, rxr,
-    strict::{Strict, Trail},
-    vlnce,
-};
+use crate::{Episode, FormatError, input, jsonl, r2r, reverie, rxr, strict::Strict, vlnce};
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::{cell::RefCell, fmt, path::Path, str::FromStr};
@@ -112,8 +108,7 @@ impl<'de> Visitor<'de> for Beginning<'_> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
-        let trail = Trail::new(limits::VALUES_PER_ITEM);
-        if let Some(Value::Object(item)) = list.next_element_seed(Strict(&trail))? {
+        if let Some(Value::Object(item)) = list.next_element_seed(Strict(&RefCell::default()))? {
             *self.0.borrow_mut() = Some(if is_reverie(&item) { Format::Reverie } else { Format::R2r });
         }
         Ok(())

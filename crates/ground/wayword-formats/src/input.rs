@@ -1,13 +1,11 @@
 //! Files in: bounded, unzipped where they are gzip, item by item.
 
-use crate::{
-    FormatError, Item, Place, WrongItem, limits,
-    strict::{Strict, Trail},
-};
+use crate::{FormatError, Item, ItemPlace, WrongItem, limits, strict::Strict};
 use flate2::bufread::MultiGzDecoder;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::{
+    cell::RefCell,
     fmt,
     fs::File,
     io::{self, BufRead, BufReader, Read},
@@ -64,7 +62,7 @@ pub(crate) fn each_item(
 /// Reads a file that is one JSON list of anything, and hands on each with its place.
 pub(crate) fn each_value(
     file: &Path,
-    mut take: impl FnMut(Place, Value) -> Result<(), FormatError>,
+    mut take: impl FnMut(ItemPlace, Value) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
     let mut parser = serde_json::Deserializer::from_reader(open(file)?);
     let items = Items::new(file, &mut take);
@@ -114,14 +112,14 @@ pub(crate) fn each_line(
 }
 
 fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<Item<'a>, FormatError> {
-    let trail = Trail::new(limits::VALUES_PER_ITEM);
+    let field = RefCell::default();
     let mut parser = serde_json::Deserializer::from_slice(line);
-    let value = Strict(&trail).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
+    let value = Strict(&field).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
     let value = value.map_err(|error| {
         let problem = format!("{} (column {})", bare(&error), error.column());
-        broken(file, Place::Line(number), &trail, problem)
+        broken(file, ItemPlace::Line(number), field.take(), problem)
     })?;
-    Item::new(file, Place::Line(number), value)
+    Item::new(file, ItemPlace::Line(number), value)
 }
 
 /// `serde_json`'s message without its own account of the place.
@@ -130,23 +128,24 @@ fn bare(error: &serde_json::Error) -> String {
     text.rfind(" at line ").map_or(text.clone(), |end| text[..end].to_owned())
 }
 
-fn broken(file: &Path, place: Place, trail: &Trail, problem: String) -> FormatError {
-    match trail.field() {
-        field if field.is_empty() => FormatError::document(file, format!("{place}: {problem}"), NOT_JSON),
-        field => Box::new(WrongItem { file: file.to_owned(), place, id: None, field, problem, hint: NOT_JSON }).into(),
+fn broken(file: &Path, place: ItemPlace, field: String, problem: String) -> FormatError {
+    if field.is_empty() {
+        return FormatError::document(file, format!("{place}: {problem}"), NOT_JSON);
     }
+    Box::new(WrongItem { file: file.to_owned(), place, id: None, field, problem, hint: NOT_JSON }).into()
 }
 
-type Take<'a> = &'a mut dyn FnMut(Place, Value) -> Result<(), FormatError>;
+type Take<'a> = &'a mut dyn FnMut(ItemPlace, Value) -> Result<(), FormatError>;
 
 /// Reads a JSON list without ever holding more than one of its items as JSON.
 pub(crate) struct Items<'a> {
     file: &'a Path,
-    trail: Trail,
-    state: std::cell::RefCell<State<'a>>,
+    /// The way to what is wrong within an item.
+    field: RefCell<String>,
+    progress: RefCell<Progress<'a>>,
 }
 
-struct State<'a> {
+struct Progress<'a> {
     take: Take<'a>,
     index: usize,
     inside: bool,
@@ -155,31 +154,31 @@ struct State<'a> {
 
 impl<'a> Items<'a> {
     pub(crate) fn new(file: &'a Path, take: Take<'a>) -> Self {
-        let state = State { take, index: 0, inside: false, refused: None };
-        Self { file, trail: Trail::new(0), state: state.into() }
+        let progress = Progress { take, index: 0, inside: false, refused: None };
+        Self { file, field: RefCell::default(), progress: progress.into() }
     }
 
     /// What a failure of the parser was about: an item that was refused, or JSON that is none.
     pub(crate) fn explain(&self, error: &serde_json::Error) -> FormatError {
-        let mut state = self.state.borrow_mut();
-        if let Some(refused) = state.refused.take() {
+        let mut progress = self.progress.borrow_mut();
+        if let Some(refused) = progress.refused.take() {
             return refused;
         }
         let problem = format!("{} (line {}, column {})", bare(error), error.line(), error.column());
-        if state.inside {
-            broken(self.file, Place::Item(state.index), &self.trail, problem)
+        if progress.inside {
+            broken(self.file, ItemPlace::Item(progress.index), self.field.take(), problem)
         } else {
             FormatError::document(self.file, problem, NOT_JSON)
         }
     }
 
     fn hand_on(&self, value: Value) -> Result<(), FormatError> {
-        let state = &mut *self.state.borrow_mut();
-        if state.index >= limits::ITEMS {
+        let progress = &mut *self.progress.borrow_mut();
+        if progress.index >= limits::ITEMS {
             return Err(FormatError::document(self.file, "it has more than 1,000,000 items", "split it into parts"));
         }
-        (state.take)(Place::Item(state.index), value)?;
-        state.index += 1;
+        (progress.take)(ItemPlace::Item(progress.index), value)?;
+        progress.index += 1;
         Ok(())
     }
 }
@@ -200,16 +199,14 @@ impl<'de> Visitor<'de> for &Items<'_> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
-        self.state.borrow_mut().inside = true;
-        loop {
-            self.trail.restart(limits::VALUES_PER_ITEM);
-            let Some(value) = list.next_element_seed(Strict(&self.trail))? else { break };
+        self.progress.borrow_mut().inside = true;
+        while let Some(value) = list.next_element_seed(Strict(&self.field))? {
             if let Err(refused) = self.hand_on(value) {
-                self.state.borrow_mut().refused = Some(refused);
+                self.progress.borrow_mut().refused = Some(refused);
                 return Err(A::Error::custom("refused"));
             }
         }
-        self.state.borrow_mut().inside = false;
+        self.progress.borrow_mut().inside = false;
         Ok(())
     }
 }
@@ -246,8 +243,7 @@ impl<'de> Visitor<'de> for Within<'_, '_> {
                 found = true;
                 entries.next_value_seed(self.items)?;
             } else {
-                let trail = Trail::new(limits::VALUES_PER_ITEM);
-                rest.insert(key, entries.next_value_seed(Strict(&trail))?);
+                rest.insert(key, entries.next_value_seed(Strict(&RefCell::default()))?);
             }
         }
         if found { Ok(rest) } else { Err(A::Error::custom(format_args!("field {:?} is missing", self.field))) }

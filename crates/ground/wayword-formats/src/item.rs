@@ -1,6 +1,6 @@
 //! One item of a file, and its fields as what they should be.
 
-use crate::{FormatError, Place, WrongItem, limits};
+use crate::{FormatError, ItemPlace, WrongItem, limits};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -9,13 +9,13 @@ use wayword_core::{DVec3, Heading, ObjectId, SceneId, ViewpointId};
 /// An object of a dataset file. Fields are taken out of it; what nobody took is kept as unknown.
 pub(crate) struct Item<'a> {
     file: &'a Path,
-    place: Place,
+    place: ItemPlace,
     id: Option<String>,
     fields: Map<String, Value>,
 }
 
 impl<'a> Item<'a> {
-    pub(crate) fn new(file: &'a Path, place: Place, value: Value) -> Result<Self, FormatError> {
+    pub(crate) fn new(file: &'a Path, place: ItemPlace, value: Value) -> Result<Self, FormatError> {
         let Value::Object(fields) = value else {
             let problem = format!("{place}: expected an object, found {}", told(&value));
             return Err(FormatError::document(file, problem, "each item of a dataset is a JSON object"));

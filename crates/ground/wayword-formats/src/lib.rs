@@ -26,7 +26,7 @@ pub mod vlnce;
 mod vocabulary;
 
 pub use episode::Episode;
-pub use error::{FormatError, Place, WrongItem};
+pub use error::{FormatError, ItemPlace, WrongItem};
 pub use format::{Format, UnknownFormat, detect, read};
 pub(crate) use item::Item;
 pub use output::write_sidecar;

@@ -1,79 +1,66 @@
 //! JSON as `serde_json` reads it, but a key given twice is refused, the size of a value is bounded, and an error knows the
 //! way into the value at which it happened.
 
+use crate::limits;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
+use serde_path_to_error::{Path, Segment, Track};
 use std::{
     cell::{Cell, RefCell},
     fmt::{self, Write as _},
 };
 
-/// Where the parser is within the value that it reads, and how many more parts that value may have.
-pub(crate) struct Trail {
-    steps: RefCell<Vec<Step>>,
-    values_left: Cell<usize>,
-}
-
-enum Step {
-    Key(String),
-    Index(usize),
-}
-
-impl Trail {
-    pub(crate) fn new(values: usize) -> Self {
-        Self { steps: RefCell::default(), values_left: Cell::new(values) }
-    }
-
-    /// Begins the next value.
-    pub(crate) fn restart(&self, values: usize) {
-        self.steps.borrow_mut().clear();
-        self.values_left.set(values);
-    }
-
-    /// The way into the value, as `path[3]`; empty at its root.
-    pub(crate) fn field(&self) -> String {
-        let mut field = String::new();
-        for step in self.steps.borrow().iter() {
-            let dot = if field.is_empty() { "" } else { "." };
-            // Writing to a String cannot fail.
-            let _ = match step {
-                // A hostile key may be as long as its file.
-                Step::Key(key) => write!(field, "{dot}{key:.40}"),
-                Step::Index(index) => write!(field, "[{index}]"),
-            };
-        }
-        field
-    }
-
-    /// Reads a part; the step to it is taken back only where that went well, so that a failure leaves the way behind.
-    fn within<T, E>(&self, step: Step, read: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
-        self.steps.borrow_mut().push(step);
-        let value = read()?;
-        self.steps.borrow_mut().pop();
-        Ok(value)
-    }
-
-    fn count<E: Error>(&self) -> Result<(), E> {
-        let left = self.values_left.get().checked_sub(1).ok_or_else(|| E::custom("it has too many parts"))?;
-        self.values_left.set(left);
-        Ok(())
-    }
-}
-
-/// Reads one value.
+/// Reads one value. Where that fails, the text becomes the way into it, as `path[3]`; it stays empty at its root.
 #[derive(Clone, Copy)]
-pub(crate) struct Strict<'t>(pub(crate) &'t Trail);
+pub(crate) struct Strict<'f>(pub(crate) &'f RefCell<String>);
 
 impl<'de> DeserializeSeed<'de> for Strict<'_> {
     type Value = Value;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
-        self.0.count()?;
+        let (mut track, left) = (Track::new(), Cell::new(limits::VALUES_PER_ITEM));
+        let part = Part { left: &left, is_twice: false };
+        let read = part.deserialize(serde_path_to_error::Deserializer::new(deserializer, &mut track));
+        read.inspect_err(|_| *self.0.borrow_mut() = field(&track.path()))
+    }
+}
+
+fn field(path: &Path) -> String {
+    let mut field = String::new();
+    for segment in path {
+        let dot = if field.is_empty() { "" } else { "." };
+        // Writing to a String cannot fail.
+        let _ = match segment {
+            // A hostile key may be as long as its file.
+            Segment::Map { key } => write!(field, "{dot}{key:.40}"),
+            Segment::Seq { index } => write!(field, "[{index}]"),
+            _ => Ok(()),
+        };
+    }
+    field
+}
+
+/// Reads a part of a value, which may have so many more.
+#[derive(Clone, Copy)]
+struct Part<'l> {
+    left: &'l Cell<usize>,
+    is_twice: bool,
+}
+
+impl<'de> DeserializeSeed<'de> for Part<'_> {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
+        if self.is_twice {
+            return Err(D::Error::custom("it is given twice"));
+        }
+        let left = self.left.get().checked_sub(1).ok_or_else(|| D::Error::custom("it has too many parts"))?;
+        self.left.set(left);
         deserializer.deserialize_any(self)
     }
 }
 
-impl<'de> Visitor<'de> for Strict<'_> {
+impl<'de> Visitor<'de> for Part<'_> {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -106,7 +93,7 @@ impl<'de> Visitor<'de> for Strict<'_> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Value, A::Error> {
         let mut values = Vec::new();
-        while let Some(value) = self.0.within(Step::Index(values.len()), || list.next_element_seed(self))? {
+        while let Some(value) = list.next_element_seed(self)? {
             values.push(value);
         }
         Ok(Value::Array(values))
@@ -115,13 +102,7 @@ impl<'de> Visitor<'de> for Strict<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
         let mut map = Map::new();
         while let Some(key) = entries.next_key::<String>()? {
-            let value = self.0.within(Step::Key(key.clone()), || {
-                if map.contains_key(&key) {
-                    Err(A::Error::custom("it is given twice"))
-                } else {
-                    entries.next_value_seed(self)
-                }
-            })?;
+            let value = entries.next_value_seed(Part { is_twice: map.contains_key(&key), ..self })?;
             map.insert(key, value);
         }
         Ok(Value::Object(map))

@@ -58,7 +58,7 @@ fn values(value: &Value) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Place;
+    use crate::ItemPlace;
     use serde_json::json;
     use std::path::Path;
 
@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn what_is_held_of_a_file_has_a_limit() {
         let mut tally = Tally::default();
-        let item = || Item::new(Path::new("big.json"), Place::Item(0), json!({"a": [0, 0]})).unwrap();
+        let item = || Item::new(Path::new("big.json"), ItemPlace::Item(0), json!({"a": [0, 0]})).unwrap();
         assert_eq!(tally.rest(item(), limits::VALUES_KEPT - 3).unwrap().len(), 1);
         let error = tally.rest(item(), 0).unwrap_err().to_string();
         assert!(error.starts_with("big.json: it holds more than 20,000,000 values"), "{error}");
