@@ -1,6 +1,7 @@
 //! How a service says when to come back.
 
 use super::Dialect;
+use jiff::{Timestamp, fmt::rfc2822};
 use serde_json::{Value, json};
 use std::time::{Duration, SystemTime};
 
@@ -34,11 +35,11 @@ impl RetryAfter {
             Self::Silent | Self::RetryInfo => Vec::new(),
             Self::Seconds => vec![("retry-after", whole_seconds(wait).as_secs().to_string())],
             Self::Decimal => vec![("retry-after", format!("{:.3}", wait.as_secs_f64()))],
-            Self::HttpDate => vec![("retry-after", httpdate::fmt_http_date(moment(wait)))],
+            Self::HttpDate => vec![("retry-after", http_date(moment(wait)))],
             Self::Milliseconds => vec![("retry-after-ms", wait.as_millis().max(1).to_string())],
             Self::Reset if dialect == Dialect::Anthropic => vec![
                 ("anthropic-ratelimit-requests-remaining", "0".to_owned()),
-                ("anthropic-ratelimit-requests-reset", rfc_3339(moment(wait))),
+                ("anthropic-ratelimit-requests-reset", moment(wait).to_string()),
             ],
             Self::Reset => vec![
                 ("x-ratelimit-remaining-requests", "0".to_owned()),
@@ -59,19 +60,14 @@ fn whole_seconds(wait: Duration) -> Duration {
     Duration::from_secs(wait.as_millis().div_ceil(1000).max(1).try_into().unwrap_or(u64::MAX))
 }
 
-/// The first whole second that is no sooner than the wait.
-fn moment(wait: Duration) -> SystemTime {
-    SystemTime::now() + whole_seconds(wait + Duration::from_millis(999))
+/// The first whole second that is no sooner than the wait; none later than a clock can tell.
+fn moment(wait: Duration) -> Timestamp {
+    let at = Timestamp::try_from(SystemTime::now() + whole_seconds(wait + Duration::from_millis(999)));
+    at.and_then(|at| Timestamp::from_second(at.as_second())).unwrap_or(Timestamp::MAX)
 }
 
-/// A moment as RFC 3339 has it, from the date that HTTP writes.
-fn rfc_3339(at: SystemTime) -> String {
-    let http = httpdate::fmt_http_date(at);
-    let parts: Vec<&str> = http.split(' ').collect();
-    let [_, day, month, year, time, _] = parts.as_slice() else { return http };
-    let months = "JanFebMarAprMayJunJulAugSepOctNovDec";
-    let month = months.find(month).map_or(1, |at| at / 3 + 1);
-    format!("{year}-{month:02}-{day}T{time}Z")
+fn http_date(at: Timestamp) -> String {
+    rfc2822::DateTimePrinter::new().timestamp_to_rfc9110_string(&at).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -80,8 +76,9 @@ mod tests {
 
     #[test]
     fn moments_are_written_in_both_ways() {
-        let at = SystemTime::UNIX_EPOCH + Duration::from_secs(1_767_323_045);
-        assert_eq!(rfc_3339(at), "2026-01-02T03:04:05Z");
+        let at = Timestamp::from_second(1_767_323_045).unwrap();
+        assert_eq!(at.to_string(), "2026-01-02T03:04:05Z");
+        assert_eq!(http_date(at), "Fri, 02 Jan 2026 03:04:05 GMT");
     }
 
     #[test]
@@ -95,7 +92,8 @@ mod tests {
         let wait = Duration::from_millis(1500);
         let before = SystemTime::now();
         let said = RetryAfter::HttpDate.headers(wait, Dialect::OpenAi)[0].1.clone();
-        let until = httpdate::parse_http_date(&said).unwrap().duration_since(before).unwrap();
+        let said = rfc2822::DateTimeParser::new().parse_timestamp(&said).unwrap();
+        let until = SystemTime::from(said).duration_since(before).unwrap();
         assert!(until >= wait && until <= Duration::from_secs(60), "{until:?}");
     }
 }

@@ -1,69 +1,45 @@
 //! Times as services write them.
 
+use jiff::{
+    SpanRelativeTo, Timestamp,
+    fmt::{friendly::SpanParser, rfc2822::DateTimeParser},
+};
 use std::time::{Duration, SystemTime};
-use toml::value::{Datetime, Offset};
 
 /// Longest text that is taken for a time.
 const LONGEST: usize = 64;
 
-/// Largest time that is told apart from a larger one, seconds: a year.
-const MOST_S: f64 = 366.0 * 86_400.0;
+/// Largest time that is told apart from a larger one: a year.
+const MOST: Duration = Duration::from_secs(366 * 24 * 60 * 60);
 
 /// A length of time with units (`1s`, `6m0s`, `20ms`, `1h2m3.5s`).
 pub(super) fn duration(text: &str) -> Option<Duration> {
-    let mut rest = text.trim();
-    if rest.is_empty() || rest.len() > LONGEST {
-        return None;
-    }
-    let mut total_s = 0.0;
-    while !rest.is_empty() {
-        let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.')?;
-        let (number, tail) = rest.split_at(end);
-        let unit_end = tail.find(|c: char| c.is_ascii_digit() || c == '.').unwrap_or(tail.len());
-        let (unit, tail) = tail.split_at(unit_end);
-        let unit_s = match unit {
-            "ns" => 1e-9,
-            "us" | "µs" => 1e-6,
-            "ms" => 1e-3,
-            "s" => 1.0,
-            "m" => 60.0,
-            "h" => 3600.0,
-            "d" => 86_400.0,
-            _ => return None,
-        };
-        total_s += number.parse::<f64>().ok()? * unit_s;
-        rest = tail;
-    }
-    seconds(total_s)
+    let text = short(text)?;
+    // Blanks, signs and "ago" are of people's durations, which are read too.
+    let plain = text.chars().all(|c| c.is_alphanumeric() || c == '.');
+    let span = plain.then(|| SpanParser::new().parse_span(text).ok()).flatten()?;
+    let length = span.to_duration(SpanRelativeTo::days_are_24_hours()).ok()?;
+    Duration::try_from(length).ok().map(|length| length.min(MOST))
 }
 
 /// A bare number of seconds, whole or not.
 pub(super) fn bare_seconds(text: &str) -> Option<Duration> {
-    let text = text.trim();
-    let plain =
-        !text.is_empty() && text.len() <= LONGEST && text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
-    seconds(plain.then(|| text.parse().ok()).flatten()?)
+    let text = short(text)?;
+    let plain = text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    let s: f64 = plain.then(|| text.parse().ok()).flatten()?;
+    Some(Duration::from_secs_f64(s.min(MOST.as_secs_f64())))
 }
 
-/// How long it is until a moment that is written as an HTTP date.
+/// How long it is until a moment that is written as an HTTP date (RFC 9110, section 5.6.7, without its obsolete forms).
 pub(super) fn until_http_date(text: &str, now: SystemTime) -> Option<Duration> {
-    let at = (text.len() <= LONGEST).then(|| httpdate::parse_http_date(text.trim()).ok()).flatten()?;
-    Some(until(at, now))
+    let at = DateTimeParser::new().relaxed_weekday(true).parse_timestamp(short(text)?).ok()?;
+    Some(until(at.into(), now))
 }
 
 /// How long it is until a moment that is written as RFC 3339 has it.
 pub(super) fn until_rfc_3339(text: &str, now: SystemTime) -> Option<Duration> {
-    let at: Datetime = (text.len() <= LONGEST).then(|| text.trim().parse().ok()).flatten()?;
-    let (date, time) = (at.date?, at.time?);
-    let offset_min = match at.offset? {
-        Offset::Z => 0,
-        Offset::Custom { minutes } => i64::from(minutes),
-    };
-    let days = days_from_civil(i64::from(date.year), i64::from(date.month), i64::from(date.day));
-    let minutes = days * 1440 + i64::from(time.hour) * 60 + i64::from(time.minute) - offset_min;
-    let seconds = u64::try_from(minutes * 60 + i64::from(time.second)).ok()?;
-    let nanos = time.nanosecond.min(999_999_999);
-    Some(until(SystemTime::UNIX_EPOCH.checked_add(Duration::new(seconds, nanos))?, now))
+    let at: Timestamp = short(text)?.parse().ok()?;
+    Some(until(at.into(), now))
 }
 
 /// How long it is until a moment that is a number of seconds, or milliseconds, since 1970.
@@ -81,17 +57,8 @@ fn until(at: SystemTime, now: SystemTime) -> Duration {
     at.duration_since(now).unwrap_or_default()
 }
 
-fn seconds(s: f64) -> Option<Duration> {
-    s.is_finite().then(|| Duration::from_secs_f64(s.clamp(0.0, MOST_S)))
-}
-
-/// Days since 1970-01-01 (Howard Hinnant, "chrono-Compatible Low-Level Date Algorithms").
-fn days_from_civil(year: i64, month: i64, day: i64) -> i64 {
-    let year = if month <= 2 { year - 1 } else { year };
-    let era = year.div_euclid(400);
-    let of_era = year.rem_euclid(400);
-    let of_year = (153 * (month + if month > 2 { -3 } else { 9 }) + 2) / 5 + day - 1;
-    era * 146_097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719_468
+fn short(text: &str) -> Option<&str> {
+    Some(text.trim()).filter(|text| text.len() <= LONGEST)
 }
 
 #[cfg(test)]
@@ -146,7 +113,7 @@ mod tests {
         fn no_text_is_too_odd(text in ".{0,80}", s in 0_u64..4_000_000_000) {
             let now = at(s);
             let (duration, bare) = (duration(&text), bare_seconds(&text));
-            prop_assert!(duration.or(bare).is_none_or(|d| d.as_secs_f64() <= MOST_S));
+            prop_assert!(duration.or(bare).is_none_or(|d| d <= MOST));
             let _ = (until_http_date(&text, now), until_rfc_3339(&text, now), until_unix(&text, now));
         }
 
@@ -160,9 +127,9 @@ mod tests {
         #[test]
         fn dates_are_where_the_http_dates_are(s in 0_u64..4_000_000_000, early in 0_u64..1_000_000) {
             let now = at(s.saturating_sub(early));
-            let text = httpdate::fmt_http_date(at(s));
-            let parsed = httpdate::parse_http_date(&text).unwrap();
-            prop_assert_eq!(until_http_date(&text, now).unwrap(), parsed.duration_since(now).unwrap());
+            let at = Timestamp::from_second(s as i64).unwrap();
+            let text = jiff::fmt::rfc2822::DateTimePrinter::new().timestamp_to_rfc9110_string(&at).unwrap();
+            prop_assert_eq!(until_http_date(&text, now).unwrap(), SystemTime::from(at).duration_since(now).unwrap());
         }
     }
 }
