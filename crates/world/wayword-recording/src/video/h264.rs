@@ -6,6 +6,7 @@ use super::{
     decoder::{Coded, Decode, Out, size_is_possible},
     sps::Sps,
 };
+use h264_reader::nal::sps::ChromaFormat;
 use openh264::{
     OpenH264API,
     decoder::{DecodedYUV, Decoder, DecoderConfig, Flush},
@@ -95,9 +96,9 @@ fn possible(unit: &[u8]) -> Result<Sps, String> {
     let cannot = |what: &str| Err(format!("is H.264 {what}, which is not read"));
     match sps {
         Sps { bits: 9.., .. } => cannot(&format!("with {} bits", sps.bits)),
-        Sps { chroma_format: 2.., .. } => cannot("with 4:2:2 or 4:4:4 colours"),
         Sps { is_interlaced: true, .. } => cannot("with interlaced pictures"),
-        _ => Ok(sps),
+        Sps { chroma_format: ChromaFormat::Monochrome | ChromaFormat::YUV420, .. } => Ok(sps),
+        _ => cannot("with 4:2:2 or 4:4:4 colours"),
     }
 }
 

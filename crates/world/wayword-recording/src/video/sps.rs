@@ -1,19 +1,27 @@
 //! What an H.264 stream says of itself: sequence parameter sets (ITU-T H.264, section 7.3.2.1.1 and annex E).
+//!
+//! `h264-reader` reads the bits and how colours are sampled. It would read a whole parameter set too, but it refuses those whose
+//! level is too low for their size, that are cut off behind the colours, or whose bytes could be a false start. Cameras write such,
+//! and they can be decoded.
 
 use super::colour::Colour;
+use h264_reader::{
+    nal::sps::{ChromaFormat, ChromaInfo, SpsError},
+    rbsp::{BitRead, BitReader},
+};
+use wayword_core::contained;
 
-/// Profiles whose parameter sets say how colours are sampled.
-const HIGH_PROFILES: [u32; 12] = [100, 110, 122, 244, 44, 83, 86, 118, 128, 138, 139, 134];
+/// What matters stands in so many bytes.
+const LONGEST: usize = 1 << 14;
 
 /// The part of a sequence parameter set that matters here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Sps {
     /// Coded, which may be a little more than is shown.
     pub(super) width_px: u32,
     pub(super) height_px: u32,
-    /// 0 is grey, 1 is 4:2:0.
-    pub(super) chroma_format: u32,
-    pub(super) bits: u32,
+    pub(super) chroma_format: ChromaFormat,
+    pub(super) bits: u8,
     /// Whether rows of a picture are coded in two halves.
     pub(super) is_interlaced: bool,
     pub(super) colour: Colour,
@@ -22,159 +30,85 @@ pub(super) struct Sps {
 impl Sps {
     /// Reads a NAL unit of type 7; `None` where it is broken.
     pub(super) fn read(unit: &[u8]) -> Option<Self> {
-        let mut bits = Bits::new(unit.get(1..)?);
-        let profile = bits.read(8)?;
-        bits.read(16)?;
-        bits.code()?;
-        let (mut chroma_format, mut depth) = (1, 8);
-        if HIGH_PROFILES.contains(&profile) {
-            (chroma_format, depth) = sampling(&mut bits)?;
-        }
-        bits.code()?;
-        order(&mut bits)?;
-        bits.code()?;
-        bits.read(1)?;
-        let width = bits.code()?.checked_add(1)?.checked_mul(16)?;
-        let height = bits.code()?.checked_add(1)?.checked_mul(16)?;
-        let is_interlaced = bits.read(1)? == 0;
-        if is_interlaced {
-            bits.read(1)?;
-        }
-        bits.read(1)?;
-        if bits.read(1)? == 1 {
-            for _ in 0..4 {
-                bits.code()?;
-            }
-        }
-        let height_px = if is_interlaced { height.checked_mul(2)? } else { height };
-        // Parameters of use end where they are broken off.
-        let colour = if bits.read(1)? == 1 { usability(&mut bits).unwrap_or_default() } else { Colour::default() };
-        Some(Self { width_px: width, height_px, chroma_format, bits: depth, is_interlaced, colour })
+        let mut zeros = 0;
+        let plain = unit.iter().skip(1).take(LONGEST).copied().filter(|byte| {
+            // Written against false starts (section 7.4.1).
+            let is_put_in = zeros >= 2 && *byte == 3;
+            zeros = if *byte == 0 { zeros + 1 } else { 0 };
+            !is_put_in
+        });
+        let plain: Vec<u8> = plain.collect();
+        contained(|| parameters(&mut BitReader::new(plain.as_slice())).ok()).flatten()
     }
 }
 
-/// Chroma format and bits of a sample, of the higher profiles.
-fn sampling(bits: &mut Bits<'_>) -> Option<(u32, u32)> {
-    let chroma_format = bits.code()?;
-    if chroma_format == 3 {
-        bits.read(1)?;
+fn parameters(bits: &mut impl BitRead) -> Result<Sps, SpsError> {
+    let profile = bits.read::<8, u8>("profile_idc")?;
+    bits.skip(16, "level_idc")?;
+    bits.read_ue("seq_parameter_set_id")?;
+    let sampling = ChromaInfo::read(bits, profile.into())?;
+    bits.read_ue("log2_max_frame_num_minus4")?;
+    order(bits)?;
+    bits.read_ue("max_num_ref_frames")?;
+    bits.read_bit("gaps_in_frame_num_value_allowed_flag")?;
+    let width = bits.read_ue("pic_width_in_mbs_minus1")?;
+    let height = bits.read_ue("pic_height_in_map_units_minus1")?;
+    let is_interlaced = !bits.read_bit("frame_mbs_only_flag")?;
+    if is_interlaced {
+        bits.read_bit("mb_adaptive_frame_field_flag")?;
     }
-    let depth = bits.code()?.max(bits.code()?).checked_add(8)?;
-    bits.read(1)?;
-    if bits.read(1)? == 1 {
-        let lists = if chroma_format == 3 { 12 } else { 8 };
-        for list in 0..lists {
-            if bits.read(1)? == 1 {
-                skip_scaling_list(bits, if list < 6 { 16 } else { 64 })?;
-            }
+    bits.read_bit("direct_8x8_inference_flag")?;
+    if bits.read_bit("frame_cropping_flag")? {
+        for edge in ["left_offset", "right_offset", "top_offset", "bottom_offset"] {
+            bits.read_ue(edge)?;
         }
     }
-    Some((chroma_format, depth))
-}
-
-/// Section 7.3.2.1.1.1.
-fn skip_scaling_list(bits: &mut Bits<'_>, size: u32) -> Option<()> {
-    let (mut last, mut next) = (8, 8);
-    for _ in 0..size {
-        if next != 0 {
-            next = (last + bits.signed()?).rem_euclid(256);
-        }
-        last = if next == 0 { last } else { next };
-    }
-    Some(())
+    // Sizes that overflow are refused for being too large. Parameters of use end where they are broken off.
+    let pixels = |blocks: u32, px: u32| blocks.saturating_add(1).saturating_mul(px);
+    let has_usability = bits.read_bit("vui_parameters_present_flag")?;
+    Ok(Sps {
+        width_px: pixels(width, 16),
+        height_px: pixels(height, if is_interlaced { 32 } else { 16 }),
+        chroma_format: sampling.chroma_format,
+        bits: 8 + sampling.bit_depth_luma_minus8.max(sampling.bit_depth_chroma_minus8),
+        is_interlaced,
+        colour: if has_usability { usability(bits).unwrap_or_default() } else { Colour::default() },
+    })
 }
 
 /// How the order of pictures is coded.
-fn order(bits: &mut Bits<'_>) -> Option<()> {
-    match bits.code()? {
-        0 => {
-            bits.code()?;
-        }
+fn order(bits: &mut impl BitRead) -> Result<(), SpsError> {
+    match bits.read_ue("pic_order_cnt_type")? {
+        0 => drop(bits.read_ue("log2_max_pic_order_cnt_lsb_minus4")?),
         1 => {
-            bits.read(1)?;
-            bits.signed()?;
-            bits.signed()?;
-            for _ in 0..bits.code()?.min(255) {
-                bits.signed()?;
+            bits.read_bit("delta_pic_order_always_zero_flag")?;
+            bits.read_se("offset_for_non_ref_pic")?;
+            bits.read_se("offset_for_top_to_bottom_field")?;
+            for _ in 0..bits.read_ue("num_ref_frames_in_pic_order_cnt_cycle")?.min(255) {
+                bits.read_se("offset_for_ref_frame")?;
             }
         }
         _ => {}
     }
-    Some(())
+    Ok(())
 }
 
 /// Annex E.1.1, up to the colours.
-fn usability(bits: &mut Bits<'_>) -> Option<Colour> {
-    if bits.read(1)? == 1 && bits.read(8)? == 255 {
-        bits.read(32)?;
+fn usability(bits: &mut impl BitRead) -> Result<Colour, SpsError> {
+    if bits.read_bit("aspect_ratio_info_present_flag")? && bits.read::<8, u8>("aspect_ratio_idc")? == 255 {
+        bits.skip(32, "sar_width")?;
     }
-    if bits.read(1)? == 1 {
-        bits.read(1)?;
+    if bits.read_bit("overscan_info_present_flag")? {
+        bits.read_bit("overscan_appropriate_flag")?;
     }
     let mut colour = Colour::default();
-    if bits.read(1)? == 1 {
-        bits.read(3)?;
-        colour.full_range = Some(bits.read(1)? == 1);
-        if bits.read(1)? == 1 {
-            bits.read(16)?;
-            colour.matrix = Colour::coded(bits.read(8)?);
+    if bits.read_bit("video_signal_type_present_flag")? {
+        bits.skip(3, "video_format")?;
+        colour.full_range = Some(bits.read_bit("video_full_range_flag")?);
+        if bits.read_bit("colour_description_present_flag")? {
+            bits.skip(16, "colour_primaries")?;
+            colour.matrix = Colour::coded(bits.read::<8, u8>("matrix_coefficients")?.into());
         }
     }
-    Some(colour)
-}
-
-/// Bits of a NAL unit, from which the bytes against false starts are taken out (section 7.4.1).
-struct Bits<'a> {
-    bytes: std::slice::Iter<'a, u8>,
-    zeros: u32,
-    current: u8,
-    left: u32,
-}
-
-impl<'a> Bits<'a> {
-    fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes: bytes.iter(), zeros: 0, current: 0, left: 0 }
-    }
-
-    fn byte(&mut self) -> Option<u8> {
-        let mut byte = *self.bytes.next()?;
-        if self.zeros >= 2 && byte == 3 {
-            self.zeros = 0;
-            byte = *self.bytes.next()?;
-        }
-        self.zeros = if byte == 0 { self.zeros + 1 } else { 0 };
-        Some(byte)
-    }
-
-    /// A number of up to 32 bits.
-    fn read(&mut self, count: u32) -> Option<u32> {
-        let mut number = 0;
-        for _ in 0..count {
-            if self.left == 0 {
-                (self.current, self.left) = (self.byte()?, 8);
-            }
-            self.left -= 1;
-            number = number << 1 | u32::from(self.current >> self.left & 1);
-        }
-        Some(number)
-    }
-
-    /// An unsigned Exp-Golomb code (section 9.1).
-    fn code(&mut self) -> Option<u32> {
-        let mut zeros = 0;
-        while self.read(1)? == 0 {
-            zeros += 1;
-            if zeros > 31 {
-                return None;
-            }
-        }
-        Some(((1_u64 << zeros) - 1) as u32 + self.read(zeros)?)
-    }
-
-    /// A signed Exp-Golomb code.
-    fn signed(&mut self) -> Option<i32> {
-        let code = i64::from(self.code()?);
-        let size = (code + 1) / 2;
-        i32::try_from(if code % 2 == 1 { size } else { -size }).ok().filter(|number| number.abs() < 1 << 30)
-    }
+    Ok(colour)
 }
