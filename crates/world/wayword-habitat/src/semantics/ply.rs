@@ -1,6 +1,15 @@
 //! `*_semantic.ply` of Matterport3D: a mesh whose faces name objects. Binary, little-endian, as Habitat's files are.
+//!
+//! `ply-rs-bw` reads the header and one entry after the other. How many entries there are is held against the bytes that are
+//! left, so that a file cannot ask for more memory than a multiple of its own length.
 
 use glam::Vec3;
+use ply_rs_bw::{
+    parser::{ParseError, Parser, Reader},
+    ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult},
+};
+use std::io::ErrorKind;
+use wayword_core::contain::decoded;
 
 /// Longest header, bytes.
 const MAX_HEADER: usize = 1 << 14;
@@ -12,171 +21,109 @@ pub(super) struct Faces {
     pub(super) triangles: Vec<([u32; 3], u32)>,
 }
 
-/// A property: its name, the type of its entries, and for a list the type of its length.
-struct Property {
-    name: String,
-    kind: Kind,
-    length: Option<Kind>,
-}
-
-#[derive(Clone, Copy)]
-enum Kind {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
-
-struct Element {
-    name: String,
-    count: usize,
-    properties: Vec<Property>,
+/// What a vertex or a face says.
+struct Entry {
+    position: Vec3,
+    corners: Vec<u32>,
+    object: u32,
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Result<Faces, String> {
-    let (elements, at) = header(bytes)?;
-    let mut body = Body { bytes, at };
+    decoded(|| {
+        let faces = read(bytes)?;
+        let vertices = faces.positions.len();
+        let mut corners = faces.triangles.iter().flat_map(|(corners, _)| corners);
+        match corners.find(|corner| **corner as usize >= vertices) {
+            Some(corner) => Err(format!("a face names vertex {corner} of {vertices}")),
+            None => Ok(faces),
+        }
+    })
+}
+
+fn read(bytes: &[u8]) -> Result<Faces, String> {
+    let (header, mut rest) = header(bytes)?;
+    let parser = Parser::<Entry>::new();
     let mut faces = Faces::default();
-    for element in &elements {
+    for element in header.elements.values() {
         // Every entry takes at least a byte: more of them than bytes cannot be.
-        if element.properties.is_empty() || element.count > body.bytes.len() - body.at {
-            return Err(format!("{} entries of {} do not fit into the file", element.count, element.name));
+        if element.properties.is_empty() || element.count > rest.len() {
+            return Err(format!("{} entries of {:.40} do not fit into the file", element.count, element.name));
         }
         for _ in 0..element.count {
+            let at = bytes.len() - rest.len();
+            let entry = parser.read_little_endian_element(&mut rest, element).map_err(|error| match error.kind() {
+                ErrorKind::UnexpectedEof => format!("byte {at}: the file is cut off"),
+                _ => format!("byte {at}: {}", brief(&error)),
+            })?;
             match element.name.as_str() {
-                "vertex" => faces.positions.push(body.vertex(element)?),
-                "face" => body.face(element, &mut faces)?,
-                _ => body.skip(element)?,
-            }
-        }
-    }
-    let vertices = faces.positions.len();
-    let astray = faces.triangles.iter().flat_map(|(corners, _)| corners).find(|corner| **corner as usize >= vertices);
-    astray.map_or(Ok(()), |corner| Err(format!("a face names vertex {corner} of {vertices}")))?;
-    Ok(faces)
-}
-
-fn header(bytes: &[u8]) -> Result<(Vec<Element>, usize), String> {
-    let end = b"end_header\n";
-    let within = &bytes[..bytes.len().min(MAX_HEADER)];
-    let at =
-        within.windows(end.len()).position(|window| window == end).ok_or("has no header of a PLY file")? + end.len();
-    let text = std::str::from_utf8(&bytes[..at]).map_err(|_| "its header is no text")?;
-    if !text.starts_with("ply") || !text.contains("format binary_little_endian") {
-        return Err("is no binary little-endian PLY file".to_owned());
-    }
-    let mut elements: Vec<Element> = Vec::new();
-    for line in text.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match (words.as_slice(), elements.last_mut()) {
-            (["element", name, count], _) => {
-                let count = count.parse().map_err(|_| format!("{count:.20?} is no count"))?;
-                elements.push(Element { name: (*name).to_owned(), count, properties: Vec::new() });
-            }
-            (["property", "list", length, kind, name], Some(element)) => {
-                let length = Some(Kind::of(length)?);
-                element.properties.push(Property { name: (*name).to_owned(), kind: Kind::of(kind)?, length });
-            }
-            (["property", kind, name], Some(element)) => {
-                element.properties.push(Property { name: (*name).to_owned(), kind: Kind::of(kind)?, length: None });
-            }
-            _ => {}
-        }
-    }
-    Ok((elements, at))
-}
-
-impl Kind {
-    fn of(word: &str) -> Result<Self, String> {
-        Ok(match word {
-            "char" | "int8" => Self::I8,
-            "uchar" | "uint8" => Self::U8,
-            "short" | "int16" => Self::I16,
-            "ushort" | "uint16" => Self::U16,
-            "int" | "int32" => Self::I32,
-            "uint" | "uint32" => Self::U32,
-            "float" | "float32" => Self::F32,
-            "double" | "float64" => Self::F64,
-            _ => return Err(format!("{word:.20?} is no type of PLY")),
-        })
-    }
-}
-
-struct Body<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-impl Body<'_> {
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], String> {
-        let taken = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk::<N>());
-        let array = *taken.ok_or_else(|| format!("byte {}: the file is cut off", self.at))?;
-        self.at += N;
-        Ok(array)
-    }
-
-    fn number(&mut self, kind: Kind) -> Result<f64, String> {
-        Ok(match kind {
-            Kind::I8 => f64::from(i8::from_le_bytes(self.array()?)),
-            Kind::U8 => f64::from(u8::from_le_bytes(self.array()?)),
-            Kind::I16 => f64::from(i16::from_le_bytes(self.array()?)),
-            Kind::U16 => f64::from(u16::from_le_bytes(self.array()?)),
-            Kind::I32 => f64::from(i32::from_le_bytes(self.array()?)),
-            Kind::U32 => f64::from(u32::from_le_bytes(self.array()?)),
-            Kind::F32 => f64::from(f32::from_le_bytes(self.array()?)),
-            Kind::F64 => f64::from_le_bytes(self.array()?),
-        })
-    }
-
-    /// The numbers of a property: one, or those of a list.
-    fn numbers(&mut self, property: &Property) -> Result<Vec<f64>, String> {
-        let count = match property.length {
-            None => 1,
-            Some(kind) => self.number(kind)?.max(0.0) as usize,
-        };
-        if count > self.bytes.len() - self.at {
-            return Err(format!("byte {}: a list of {count} entries does not fit into the file", self.at));
-        }
-        (0..count).map(|_| self.number(property.kind)).collect()
-    }
-
-    fn skip(&mut self, element: &Element) -> Result<(), String> {
-        element.properties.iter().try_for_each(|property| self.numbers(property).map(|_| ()))
-    }
-
-    fn vertex(&mut self, element: &Element) -> Result<Vec3, String> {
-        let mut position = Vec3::ZERO;
-        for property in &element.properties {
-            let numbers = self.numbers(property)?;
-            let axis = ["x", "y", "z"].iter().position(|name| *name == property.name);
-            if let (Some(axis), Some(number)) = (axis, numbers.first()) {
-                position[axis] = *number as f32;
-            }
-        }
-        Ok(position)
-    }
-
-    fn face(&mut self, element: &Element, faces: &mut Faces) -> Result<(), String> {
-        let (mut corners, mut object) = (Vec::new(), u32::MAX);
-        for property in &element.properties {
-            let numbers = self.numbers(property)?;
-            match (property.name.as_str(), numbers.first()) {
-                ("vertex_indices" | "vertex_index", _) => {
-                    corners = numbers.iter().map(|number| *number as u32).collect();
+                "vertex" => faces.positions.push(entry.position),
+                "face" => {
+                    let fan = entry.corners.get(1..).unwrap_or_default().windows(2);
+                    let triangle = |pair: &[u32]| ([entry.corners[0], pair[0], pair[1]], entry.object);
+                    faces.triangles.extend(fan.map(triangle));
                 }
-                // Casts saturate; -1, which is no object, becomes one that nobody has.
-                ("object_id", Some(number)) if *number >= 0.0 => object = *number as u32,
                 _ => {}
             }
         }
-        let fan = corners.get(1..).unwrap_or_default().windows(2);
-        faces.triangles.extend(fan.map(|pair| ([corners[0], pair[0], pair[1]], object)));
-        Ok(())
     }
+    Ok(faces)
+}
+
+/// The header, and what stands behind it.
+fn header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
+    let within = &bytes[..bytes.len().min(MAX_HEADER)];
+    let mut reader = Reader::new(within);
+    let header = Parser::<Entry>::new().read_header(&mut reader);
+    let header = header.map_err(|error| format!("has no header of a PLY file: {}", brief(&error)))?;
+    if header.encoding != Encoding::BinaryLittleEndian {
+        return Err("is no binary little-endian PLY file".to_owned());
+    }
+    let (text, rest) = bytes.split_at(within.len() - reader.into_inner().len());
+    // Of two with one name the reader keeps the last alone, and would take every later byte for another one.
+    let lines = |word: &[u8]| text.split(|byte| *byte == b'\n').filter(|line| line.starts_with(word)).count();
+    let properties: usize = header.elements.values().map(|element| element.properties.len()).sum();
+    if lines(b"element") != header.elements.len() || lines(b"property") != properties {
+        return Err("its header gives a name twice".to_owned());
+    }
+    Ok((header, rest))
+}
+
+/// The reader's words without the line that they are about, which may be as long as the header.
+fn brief(error: &ParseError) -> String {
+    error.to_string().lines().next().unwrap_or_default().chars().take(200).collect()
+}
+
+impl PropertyAccess for Entry {
+    fn new() -> Self {
+        Self { position: Vec3::ZERO, corners: Vec::new(), object: u32::MAX }
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let is_known = match name {
+            "x" => value.to_f32_lossy().map(|x| self.position.x = x),
+            "y" => value.to_f32_lossy().map(|y| self.position.y = y),
+            "z" => value.to_f32_lossy().map(|z| self.position.z = z),
+            "vertex_indices" | "vertex_index" => value.to_u32_list().map(|corners| self.corners = corners),
+            // Casts saturate; -1, which is no object, becomes one that nobody has.
+            "object_id" => number(&value).map(|id| self.object = if id >= 0.0 { id as u32 } else { u32::MAX }),
+            _ => return PropertyAccessResult::Ignored,
+        };
+        if is_known.is_some() { PropertyAccessResult::Set } else { PropertyAccessResult::UnsupportedType }
+    }
+}
+
+fn number(property: &Property) -> Option<f64> {
+    Some(match *property {
+        Property::Char(number) => number.into(),
+        Property::UChar(number) => number.into(),
+        Property::Short(number) => number.into(),
+        Property::UShort(number) => number.into(),
+        Property::Int(number) => number.into(),
+        Property::UInt(number) => number.into(),
+        Property::Float(number) => number.into(),
+        Property::Double(number) => number,
+        _ => return None,
+    })
 }
 
 #[cfg(test)]
