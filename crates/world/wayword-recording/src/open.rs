@@ -88,7 +88,7 @@ fn lerobot(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
 
 #[cfg(feature = "video")]
 fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Ok(Box::new(crate::video::File::open(path, description_beside(path)?)?))
+    Ok(Box::new(crate::video::FilmFile::open(path, description_beside(path)?)?))
 }
 
 #[cfg(not(feature = "video"))]

@@ -8,7 +8,7 @@ use wayword_core::DVec3;
 /// Either file.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum File {
+enum PoseFile {
     Transforms { frames: Vec<Framed> },
     Poses { poses: Vec<Posed> },
     List(Vec<Posed>),
@@ -47,12 +47,12 @@ const EXPECTED: &str = "expected `transforms.json`, or a list of {\"image\" or \
 pub(super) fn read(text: &str) -> Result<Rows, String> {
     // An untagged enum tells nothing of what is wrong, so what is no JSON at all is told first.
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
-    match File::deserialize(value).map_err(|_| EXPECTED.to_owned())? {
-        File::Transforms { frames } => {
+    match PoseFile::deserialize(value).map_err(|_| EXPECTED.to_owned())? {
+        PoseFile::Transforms { frames } => {
             let rows = frames.into_iter().enumerate().map(|(at, framed)| framed.row().ok_or((at, "frame")));
             rows_of(Axes::of(Body::OpenGl), rows)
         }
-        File::Poses { poses } | File::List(poses) => {
+        PoseFile::Poses { poses } | PoseFile::List(poses) => {
             let rows = poses.into_iter().enumerate().map(|(at, posed)| posed.row().ok_or((at, "pose")));
             rows_of(Axes::of(Body::Robot), rows)
         }

@@ -28,13 +28,13 @@ use std::path::{Path, PathBuf};
 use wayword_core::{PlatformError, SceneId};
 
 /// A video, with poses in a file beside it or without any.
-pub(crate) struct File {
+pub(crate) struct FilmFile {
     path: PathBuf,
     scene: SceneId,
     described: Description,
 }
 
-impl File {
+impl FilmFile {
     /// The recording that an MP4 file is.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl File {
     }
 }
 
-impl Source for File {
+impl Source for FilmFile {
     fn scenes(&self) -> Vec<SceneId> {
         vec![self.scene.clone()]
     }

@@ -1,6 +1,6 @@
 //! Videos that ffmpeg made (`fixtures/make_video.py`): each picture tells its number in bars.
 
-use super::{File, Film};
+use super::{Film, FilmFile};
 use crate::{describe::Description, reel::Source};
 use proptest::prelude::*;
 use rand::Rng;
@@ -158,7 +158,7 @@ fn what_cannot_be_read_is_named_with_what_to_do() {
 
 #[test]
 fn a_video_is_a_recording_of_one_scene() {
-    let file = File::open(&fixture("uneven.mp4"), Description::default()).unwrap();
+    let file = FilmFile::open(&fixture("uneven.mp4"), Description::default()).unwrap();
     let scenes = file.scenes();
     assert_eq!(scenes.iter().map(ToString::to_string).collect::<Vec<_>>(), ["uneven"]);
     let recording = file.open(&scenes[0]).unwrap();
@@ -172,7 +172,7 @@ fn poses_beside_a_video_count_from_its_start() {
     let path = folder.path().join("walk.mp4");
     std::fs::copy(fixture("uneven.mp4"), &path).unwrap();
     std::fs::write(folder.path().join("walk.tum"), "0.0 0 0 0 0 0 0 1\n2.0 4 0 0 0 0 0 1\n").unwrap();
-    let file = File::open(&path, Description::default()).unwrap();
+    let file = FilmFile::open(&path, Description::default()).unwrap();
     let recording = file.open(&file.scenes()[0]).unwrap();
     let fix = recording.track.unwrap().at(recording.reel.times_s()[4]).unwrap();
     assert!((fix.position.x - 1.2).abs() < 1e-3, "{fix:?}");
