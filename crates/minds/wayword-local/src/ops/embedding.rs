@@ -1,4 +1,4 @@
-//! Tables that are looked up by ids.
+//! What enters a model: rows of a table by ids, and squares of a picture.
 
 use candle_core::{DType, Result, Tensor};
 
@@ -24,4 +24,17 @@ impl Embedding {
     pub(crate) fn table(&self) -> &Tensor {
         &self.table
     }
+}
+
+/// Cuts pictures [batch, 3, height, width] into squares of `size` pixels: [batch, patches, 3 * size * size], rows from the top.
+/// A convolution whose stride is its size is a product with a matrix: what a kernel [outputs, 3, size, size] does to them is a layer of
+/// weight [outputs, 3 * size * size].
+pub(crate) fn patches(pictures: &Tensor, size: usize) -> Result<Tensor> {
+    let (batch, channels, height, width) = pictures.dims4()?;
+    let (down, across) = (height / size, width / size);
+    pictures.reshape((batch, channels, down, size, across, size))?.permute((0, 2, 4, 1, 3, 5))?.reshape((
+        batch,
+        down * across,
+        channels * size * size,
+    ))
 }

@@ -11,16 +11,12 @@ mod half;
 mod kernels;
 mod linear;
 mod norm;
-mod past;
-mod patches;
 
 pub(crate) use activation::Activation;
-pub(crate) use attention::{Attention, causal};
-pub(crate) use embedding::Embedding;
+pub(crate) use attention::{Attention, Past, causal};
+pub(crate) use embedding::{Embedding, patches};
 pub(crate) use linear::Linear;
 pub(crate) use norm::{LayerNorm, RmsNorm};
-pub(crate) use past::Past;
-pub(crate) use patches::patches;
 
 #[cfg(test)]
 mod tests;
