@@ -1,240 +1,250 @@
-//! What a Parquet file says about itself: its columns, and where they lie (apache/parquet-format, `parquet.thrift`).
+//! What a Parquet file says about itself, held against its length before and after the crate reads it.
+//!
+//! The schema is a tree that is written down from the root on, each node with the number of its children (apache/parquet-format,
+//! `parquet.thrift`). The crate reserves memory for as many children as are announced, and recurses as deeply as they are nested.
+//! So the tree is built here, and the crate is handed it.
 
-use super::thrift::{self, Thing};
+use super::pages;
+use parquet::{
+    basic::{Repetition, Type as Physical},
+    file::metadata::{ParquetMetaData, ParquetMetaDataOptions, ParquetMetaDataReader, ParquetStatisticsPolicy},
+    schema::types::{SchemaDescriptor, Type},
+};
+use std::{
+    fs::File,
+    io::{Read, Seek, SeekFrom},
+    sync::Arc,
+};
+use wayword_core::contain::decoded;
 
-/// Most columns of a file, and deepest nesting of one.
-const MAX_COLUMNS: usize = 100_000;
+const MAGIC: &[u8; 4] = b"PAR1";
+const MAX_FOOTER_BYTES: u64 = 64 << 20;
+/// Deepest nesting of a column.
 const MAX_NESTING: usize = 16;
 /// Most rows for each byte of a file. A dataset counts its rows in at least one column, which takes more than a bit for each; a
 /// file with more announces what it does not hold.
 const MAX_ROWS_PER_BYTE: u64 = 16;
 
-/// How a column's values are stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Physical {
-    Int32,
-    Int64,
-    Float,
-    Double,
-    Bytes,
-    /// What datasets of LeRobot do not need: truths, times of 96 bits, bytes of a fixed length.
-    Other,
-}
-
-impl Physical {
-    /// Bytes of a value; `None` where its length is written before it, or it is not read.
-    pub(super) const fn size(self) -> Option<usize> {
-        match self {
-            Self::Int32 | Self::Float => Some(4),
-            Self::Int64 | Self::Double => Some(8),
-            Self::Bytes | Self::Other => None,
-        }
+/// Reads what a file says about itself.
+///
+/// # Errors
+/// When it is no Parquet file, or contradicts itself or its length.
+pub(super) fn read(mut file: &File) -> Result<ParquetMetaData, String> {
+    let wrong = |error: std::io::Error| error.to_string();
+    let length = file.metadata().map_err(wrong)?.len();
+    let end = length.checked_sub(8).ok_or("is too short for a Parquet file")?;
+    file.seek(SeekFrom::Start(end)).map_err(wrong)?;
+    let mut tail = [0; 8];
+    file.read_exact(&mut tail).map_err(wrong)?;
+    let [a, b, c, d, magic @ ..] = tail;
+    if magic != *MAGIC {
+        return Err(format!("byte {}: is no Parquet file, or only a part of one: it does not end in PAR1", end + 4));
     }
+    let size = u64::from(u32::from_le_bytes([a, b, c, d]));
+    let start = end.checked_sub(size).filter(|_| size <= MAX_FOOTER_BYTES);
+    let start = start.ok_or_else(|| format!("byte {end}: a footer of {size} bytes in a file of {length}"))?;
+    file.seek(SeekFrom::Start(start)).map_err(wrong)?;
+    let mut bytes = Vec::new();
+    file.take(size).read_to_end(&mut bytes).map_err(wrong)?;
+    decode(&bytes, length).map_err(|reason| format!("footer at byte {start}: {reason}"))
 }
 
-/// How pages are compressed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Codec {
-    None,
-    Snappy,
-    Gzip,
-    Zstandard,
-    /// Its number in `parquet.thrift`.
-    Other(i64),
-}
-
-/// A column that holds values.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Leaf {
-    /// Names from the outermost on.
-    pub(super) path: Vec<String>,
-    pub(super) physical: Physical,
-    /// Highest definition and repetition level.
-    pub(super) max_definition: u32,
-    pub(super) max_repetition: u32,
-}
-
-/// Where the values of a column lie, for a group of rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Chunk {
-    pub(super) codec: Codec,
-    /// First byte, and the byte after the last.
-    pub(super) start: u64,
-    pub(super) end: u64,
-}
-
-/// Rows that lie together.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Group {
-    pub(super) rows: u64,
-    /// One for each leaf.
-    pub(super) chunks: Vec<Chunk>,
-}
-
-/// What a file says about itself.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Footer {
-    pub(super) leaves: Vec<Leaf>,
-    pub(super) groups: Vec<Group>,
-}
-
-impl Footer {
-    /// Reads the footer of a file of some length.
-    ///
-    /// # Errors
-    /// When it contradicts itself or the file's length.
-    pub(super) fn read(bytes: &[u8], file_bytes: u64) -> Result<Self, String> {
-        let (thing, _) = thrift::read(bytes)?;
-        let leaves = leaves(thing.list(2))?;
-        let groups = thing.list(4).iter().map(|group| read_group(group, leaves.len(), file_bytes));
-        let groups: Vec<Group> = groups.collect::<Result<_, _>>()?;
-        check_sizes(&groups, file_bytes)?;
-        Ok(Self { leaves, groups })
-    }
+fn decode(footer: &[u8], file_bytes: u64) -> Result<ParquetMetaData, String> {
+    let root = schema(footer)?;
+    let about = decoded(|| {
+        let options = ParquetMetaDataOptions::new()
+            .with_schema(Arc::new(SchemaDescriptor::new(Arc::new(root))))
+            .with_column_stats_policy(ParquetStatisticsPolicy::SkipAll)
+            .with_encoding_stats_policy(ParquetStatisticsPolicy::SkipAll)
+            .with_size_stats_policy(ParquetStatisticsPolicy::SkipAll);
+        let about = ParquetMetaDataReader::decode_metadata_with_options(footer, Some(&options));
+        about.map_err(|error| error.to_string())
+    })?;
+    check(&about, file_bytes)?;
+    Ok(about)
 }
 
 /// Refuses what a file of this length cannot hold.
-fn check_sizes(groups: &[Group], file_bytes: u64) -> Result<(), String> {
-    let rows = groups.iter().fold(0_u64, |rows, group| rows.saturating_add(group.rows));
+fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
+    let (mut rows, mut bytes) = (0_u64, 0_u64);
+    for group in about.row_groups() {
+        let more = u64::try_from(group.num_rows()).map_err(|_| "a group of rows has no number of rows")?;
+        rows = rows.saturating_add(more);
+        for chunk in group.columns() {
+            let wrong = |reason: &str| format!("column {:?} {reason}", chunk.column_path().string());
+            if chunk.file_path().is_some() {
+                return Err(wrong("lies in another file"));
+            }
+            let place = pages::place(chunk).filter(|place| place.end <= file_bytes);
+            let place = place.ok_or_else(|| wrong("is to lie where the file has no bytes"))?;
+            bytes = bytes.saturating_add(place.end - place.start);
+        }
+    }
     if rows > file_bytes.saturating_mul(MAX_ROWS_PER_BYTE) {
         return Err(format!("announces {rows} rows in {file_bytes} bytes"));
     }
     // Else a short file could have the same bytes unfolded again and again.
-    let chunks = groups.iter().flat_map(|group| &group.chunks);
-    let bytes = chunks.fold(0_u64, |bytes, chunk| bytes.saturating_add(chunk.end - chunk.start));
     if bytes > file_bytes {
         return Err(format!("announces columns of {bytes} bytes in all, in a file of {file_bytes}"));
     }
     Ok(())
 }
 
-fn read_group(group: &Thing<'_>, leaves: usize, file_bytes: u64) -> Result<Group, String> {
-    let rows = group.count(3).ok_or("a group of rows has no number of rows")?;
-    let chunks = group.list(1).iter().map(|chunk| read_chunk(chunk, file_bytes));
-    let chunks: Vec<Chunk> = chunks.collect::<Result<_, _>>()?;
-    if chunks.len() != leaves {
-        return Err(format!("a group of rows has {} columns where the file has {leaves}", chunks.len()));
-    }
-    Ok(Group { rows, chunks })
-}
-
-fn read_chunk(chunk: &Thing<'_>, file_bytes: u64) -> Result<Chunk, String> {
-    if chunk.field(1).is_some() || chunk.field(8).is_some() {
-        return Err("a column is encrypted or lies in another file".to_owned());
-    }
-    let about = chunk.field(3).ok_or("a column says nothing about itself")?;
-    let data = about.count(9).ok_or("a column has no place")?;
-    // Some writers say 0 where there is no dictionary.
-    let start = about.count(11).filter(|dictionary| (1..data).contains(dictionary)).unwrap_or(data);
-    let length = about.count(7).ok_or("a column has no length")?;
-    let end = start.checked_add(length).filter(|end| *end <= file_bytes);
-    let end =
-        end.ok_or_else(|| format!("a column is to lie at bytes {start} to {start} + {length}, of {file_bytes}"))?;
-    let codec = match about.number(4) {
-        Some(0) => Codec::None,
-        Some(1) => Codec::Snappy,
-        Some(2) => Codec::Gzip,
-        Some(6) => Codec::Zstandard,
-        other => Codec::Other(other.unwrap_or(-1)),
-    };
-    Ok(Chunk { codec, start, end })
-}
-
-/// The columns that hold values, from the schema: a tree whose nodes are written down from the root on, each with the number of
-/// its children.
-fn leaves(elements: &[Thing<'_>]) -> Result<Vec<Leaf>, String> {
-    let (root, elements) = elements.split_first().ok_or("has no schema")?;
-    if elements.len() > MAX_COLUMNS {
-        return Err(format!("has more than {MAX_COLUMNS} columns"));
-    }
-    let mut leaves = Vec::new();
-    // Nodes above the next one: how many of their children are still to come, their name, and their levels.
-    let mut above = vec![(root.count(5).unwrap_or(0), String::new(), 0, 0)];
-    for element in elements {
-        while above.last().is_some_and(|(left, ..)| *left == 0) {
-            above.pop();
+/// The root of a footer's schema.
+fn schema(footer: &[u8]) -> Result<Type, String> {
+    let mut thrift = Thrift { rest: footer };
+    let mut number = 0;
+    while let Some(kind) = thrift.field(&mut number)? {
+        if (number, kind) != (2, Thrift::LIST) {
+            thrift.pass(kind, 0)?;
+            continue;
         }
-        let (left, _, definition, repetition) = above.last_mut().ok_or("the schema has more columns than it says")?;
-        *left -= 1;
-        let name = element.text(4).ok_or("a column has no name")?.to_owned();
-        // 0 required, 1 optional, 2 repeated.
-        let kind = element.number(3).unwrap_or(0);
-        let levels = (*definition + u32::from(kind != 0), *repetition + u32::from(kind == 2));
-        match element.count(5) {
-            None | Some(0) => {
-                let names = above.iter().skip(1).map(|(_, name, ..)| name.clone());
-                let path = names.chain([name]).collect();
-                let (max_definition, max_repetition) = levels;
-                leaves.push(Leaf { path, physical: physical(element.number(1)), max_definition, max_repetition });
-            }
-            Some(_) if above.len() == MAX_NESTING => {
-                return Err(format!("columns are nested more than {MAX_NESTING} deep"));
-            }
-            Some(children) => above.push((children, name, levels.0, levels.1)),
+        let header = thrift.byte()?;
+        let elements = if header >> 4 == 15 { thrift.varint()? } else { u64::from(header >> 4) };
+        let mut tree = Tree { thrift, elements, names_bytes: 0 };
+        let root = tree.node(0, 0)?;
+        return if tree.elements == 0 { Ok(root) } else { Err("the schema has more columns than it says".to_owned()) };
+    }
+    Err("has no schema".to_owned())
+}
+
+/// A schema that is being read.
+struct Tree<'a> {
+    thrift: Thrift<'a>,
+    /// That are still to be read.
+    elements: u64,
+    /// Of all names from the root on, for every column: a descriptor keeps its own copy of them.
+    names_bytes: u64,
+}
+
+impl Tree<'_> {
+    /// The next node with all that is below it. `depth` nodes are above it, whose names have `above_bytes`.
+    fn node(&mut self, depth: usize, above_bytes: u64) -> Result<Type, String> {
+        if depth > MAX_NESTING {
+            return Err(format!("columns are nested more than {MAX_NESTING} deep"));
         }
+        self.elements = self.elements.checked_sub(1).ok_or("the schema has fewer columns than it says")?;
+        let (mut name, mut physical, mut repetition, mut children) = ("", None, Repetition::REQUIRED, 0);
+        let mut number = 0;
+        while let Some(kind) = self.thrift.field(&mut number)? {
+            match (number, kind) {
+                (1, Thrift::I32) => physical = Some(physical_of(self.thrift.number()?)?),
+                (3, Thrift::I32) => repetition = repetition_of(self.thrift.number()?)?,
+                (4, Thrift::BYTES) => {
+                    name = std::str::from_utf8(self.thrift.bytes()?).map_err(|_| "a column's name is no text")?;
+                }
+                (5, Thrift::I32) => children = self.thrift.number()?,
+                _ => self.thrift.pass(kind, 0)?,
+            }
+        }
+        let names_bytes = above_bytes + name.len() as u64;
+        if let (0, Some(physical), true) = (children, physical, depth > 0) {
+            self.names_bytes += names_bytes;
+            if self.names_bytes > MAX_FOOTER_BYTES {
+                return Err(format!("names of columns have more than {MAX_FOOTER_BYTES} bytes"));
+            }
+            // The length matters to values of a fixed length alone, which are not read here.
+            let leaf = Type::primitive_type_builder(name, physical).with_repetition(repetition).with_length(0);
+            return leaf.build().map_err(|error| error.to_string());
+        }
+        let fields = (0..children).map(|_| self.node(depth + 1, names_bytes).map(Arc::new));
+        let fields = fields.collect::<Result<_, _>>()?;
+        let group = Type::group_type_builder(name).with_fields(fields);
+        let group = if depth > 0 { group.with_repetition(repetition) } else { group };
+        group.build().map_err(|error| error.to_string())
     }
-    if above.iter().any(|(left, ..)| *left > 0) {
-        return Err("the schema has fewer columns than it says".to_owned());
-    }
-    Ok(leaves)
 }
 
-fn physical(kind: Option<i64>) -> Physical {
-    match kind {
-        Some(1) => Physical::Int32,
-        Some(2) => Physical::Int64,
-        Some(4) => Physical::Float,
-        Some(5) => Physical::Double,
-        Some(6) => Physical::Bytes,
-        _ => Physical::Other,
+fn repetition_of(number: i64) -> Result<Repetition, String> {
+    match number {
+        0 => Ok(Repetition::REQUIRED),
+        1 => Ok(Repetition::OPTIONAL),
+        2 => Ok(Repetition::REPEATED),
+        other => Err(format!("a column has a repetition of kind {other}")),
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn physical_of(number: i64) -> Result<Physical, String> {
+    use Physical::{BOOLEAN, BYTE_ARRAY, DOUBLE, FIXED_LEN_BYTE_ARRAY, FLOAT, INT32, INT64, INT96};
+    let kinds = [BOOLEAN, INT32, INT64, INT96, FLOAT, DOUBLE, BYTE_ARRAY, FIXED_LEN_BYTE_ARRAY];
+    let kind = kinds.into_iter().find(|kind| *kind as i64 == number);
+    kind.ok_or_else(|| format!("a column holds values of kind {number}"))
+}
 
-    fn element(name: &'static str, children: i64, kind: i64) -> Thing<'static> {
-        let fields = vec![
-            (1, Thing::Number(5)),
-            (3, Thing::Number(kind)),
-            (4, Thing::Bytes(name.as_bytes())),
-            (5, Thing::Number(children)),
-        ];
-        Thing::Fields(fields)
+/// Thrift's compact protocol, as far as schemas use it. Nothing is kept of what is passed over.
+struct Thrift<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Thrift<'a> {
+    const I32: u8 = 5;
+    const BYTES: u8 = 8;
+    const LIST: u8 = 9;
+
+    fn take(&mut self, count: u64) -> Result<&'a [u8], String> {
+        let taken = usize::try_from(count).ok().and_then(|count| self.rest.split_at_checked(count));
+        let (taken, rest) = taken.ok_or_else(|| format!("{count} bytes are to follow where {} do", self.rest.len()))?;
+        self.rest = rest;
+        Ok(taken)
     }
 
-    #[test]
-    fn levels_count_what_is_optional_and_what_repeats() {
-        let schema = [
-            element("schema", 2, 0),
-            element("a", 1, 1),
-            element("list", 1, 2),
-            element("element", 0, 1),
-            element("b", 0, 0),
-        ];
-        let leaves = leaves(&schema).unwrap();
-        assert_eq!(leaves[0].path, ["a", "list", "element"]);
-        assert_eq!((leaves[0].max_definition, leaves[0].max_repetition), (3, 1));
-        assert_eq!(leaves[1].path, ["b"]);
-        assert_eq!((leaves[1].max_definition, leaves[1].max_repetition), (0, 0));
+    fn byte(&mut self) -> Result<u8, String> {
+        Ok(self.take(1)?[0])
     }
 
-    #[test]
-    fn a_tree_that_does_not_close_is_refused() {
-        assert!(leaves(&[element("schema", 2, 0), element("a", 0, 0)]).unwrap_err().contains("fewer"));
-        assert!(leaves(&[element("schema", 0, 0), element("a", 0, 0)]).unwrap_err().contains("more"));
-        assert!(leaves(&vec![element("a", 1, 0); 100]).unwrap_err().contains("deep"));
-        // What is announced is not reserved.
-        assert!(leaves(&[element("schema", i64::MAX, 0)]).is_err());
+    fn varint(&mut self) -> Result<u64, String> {
+        let mut value = 0_u64;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                return Ok(value);
+            }
+        }
+        Err("a number has more than 64 bits".to_owned())
     }
 
-    #[test]
-    fn more_than_a_file_can_hold_is_refused() {
-        let group = |rows| Group { rows, chunks: vec![Chunk { codec: Codec::None, start: 4, end: 44 }] };
-        assert_eq!(check_sizes(&[group(700), group(700)], 100), Ok(()));
-        assert!(check_sizes(&[group(u64::MAX), group(1)], 100).unwrap_err().contains("rows in 100 bytes"));
-        let again = check_sizes(&[group(1), group(1), group(1)], 100);
-        assert!(again.unwrap_err().contains("columns of 120 bytes in all"));
+    /// Zigzag: the sign is the lowest bit.
+    fn number(&mut self) -> Result<i64, String> {
+        let value = self.varint()?;
+        Ok((value >> 1) as i64 ^ -((value & 1) as i64))
+    }
+
+    fn bytes(&mut self) -> Result<&'a [u8], String> {
+        let length = self.varint()?;
+        self.take(length)
+    }
+
+    /// The kind of the next field of a struct, whose number follows on that of the last; `None` after the last.
+    fn field(&mut self, number: &mut i16) -> Result<Option<u8>, String> {
+        let header = self.byte()?;
+        if header & 0x0f == 0 {
+            return Ok(None);
+        }
+        *number = match header >> 4 {
+            0 => i16::try_from(self.number()?).map_err(|_| "a field has no number")?,
+            step => number.saturating_add(i16::from(step)),
+        };
+        Ok(Some(header & 0x0f))
+    }
+
+    /// Passes over a field's value.
+    fn pass(&mut self, kind: u8, depth: usize) -> Result<(), String> {
+        match kind {
+            // A truth is in the kind itself.
+            1 | 2 => Ok(()),
+            3 => self.byte().map(drop),
+            4..=6 => self.varint().map(drop),
+            7 => self.take(8).map(drop),
+            Self::BYTES => self.bytes().map(drop),
+            12 if depth < MAX_NESTING => {
+                let mut number = 0;
+                while let Some(kind) = self.field(&mut number)? {
+                    self.pass(kind, depth + 1)?;
+                }
+                Ok(())
+            }
+            other => Err(format!("values of kind {other} are not known before a schema or in one")),
+        }
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use proptest::prelude::*;
-use std::{cell::RefCell, fs};
+use std::{cell::RefCell, fs, io::Write};
 
 /// The rows that `fixtures/make_parquet.py` describes, as pyarrow, polars, DuckDB and fastparquet write them.
 const FILES: [&str; 7] = [
@@ -100,6 +100,128 @@ fn what_is_no_parquet_file_is_refused() {
     assert!(open(b"version https://git-lfs.github.com/spec/v1").unwrap_err().contains("does not end in PAR1"));
     assert!(open(b"PAR1\xff\xff\xff\x7fPAR1").unwrap_err().contains("a footer of 2147483647 bytes"));
     assert!(open(b"PAR1\x00\x00\x00\x00\x00PAR1").is_err());
+}
+
+/// A number as Thrift writes it: zigzag, seven bits to a byte.
+fn int(number: i64) -> Vec<u8> {
+    let mut left = (number << 1 ^ number >> 63) as u64;
+    let mut bytes = Vec::new();
+    while left > 0x7f {
+        bytes.push(left as u8 | 0x80);
+        left >>= 7;
+    }
+    bytes.push(left as u8);
+    bytes
+}
+
+/// A node of a schema, of INT32 if it is a column.
+fn node(name: &str, repetition: i64, children: i64) -> Vec<u8> {
+    let name = [&[0x18, name.len() as u8], name.as_bytes()].concat();
+    [vec![0x15, 2, 0x25], int(repetition), name, vec![0x15], int(children), vec![0]].concat()
+}
+
+/// Where a column of some bytes lies: behind the file's first four.
+fn chunk(codec: i64, bytes: i64) -> Vec<u8> {
+    let about = [vec![0x1c, 0x15, 2, 0x19, 5, 0x19, 8, 0x15], int(codec), vec![0x16, 2, 0x16, 2, 0x16], int(bytes)];
+    [vec![0x26, 0], about.concat(), vec![0x26, 8, 0, 0]].concat()
+}
+
+/// A file with groups of rows that all lie in the same bytes.
+fn file(schema: &[Vec<u8>], chunk: &[u8], rows: &[i64], pages: &[u8]) -> Vec<u8> {
+    let group = |rows: &i64| [&[0x19, 0x1c], chunk, &[0x16, 0, 0x16], &int(*rows), &[0]].concat();
+    let groups: Vec<u8> = rows.iter().flat_map(group).collect();
+    let schema = [vec![0x15, 2, 0x19, 0xfc, schema.len() as u8], schema.concat()].concat();
+    let footer = [schema, vec![0x16, 0, 0x19, 0xfc, rows.len() as u8], groups, vec![0]].concat();
+    [b"PAR1", pages, &footer, &(footer.len() as u32).to_le_bytes(), b"PAR1"].concat()
+}
+
+/// A page of some kind with its header, that of values in the first version's layout if `kind` is 0, a dictionary if it is 2.
+fn page(kind: i64, values: i64, encoding: i64, bytes: &[u8]) -> Vec<u8> {
+    let begins = [vec![0x15], int(kind), vec![0x15, 2, 0x15], int(bytes.len() as i64)].concat();
+    let about = [vec![if kind == 0 { 0x2c } else { 0x4c }, 0x15], int(values), vec![0x15], int(encoding)].concat();
+    let levels: &[u8] = if kind == 0 { &[0x15, 6, 0x15, 6] } else { &[] };
+    [&begins, &about, levels, &[0, 0], bytes].concat()
+}
+
+/// What is read of a file with a column `x`: its numbers, if they do not repeat.
+fn read_x(bytes: &[u8]) -> Result<Vec<f64>, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("x.parquet");
+    fs::write(&file, bytes).unwrap();
+    let table = Table::open(&file).map_err(|error| error.to_string())?;
+    let rows = 0..table.rows();
+    match table.leaves()[0].max_rep_level() {
+        0 => numbers(&table, "x", rows),
+        _ => table.lists("x", rows, 3, &[0]).map_err(|error| error.to_string()),
+    }
+}
+
+/// A file with one column, `x`, of two rows.
+fn with_pages(repetition: i64, codec: i64, pages: &[u8]) -> Result<Vec<f64>, String> {
+    let schema = [node("schema", 0, 1), node("x", repetition, 0)];
+    read_x(&file(&schema, &chunk(codec, pages.len() as i64), &[2], pages))
+}
+
+#[test]
+fn a_schema_that_does_not_close_is_refused() {
+    let read = |schema: &[Vec<u8>]| read_x(&file(schema, &chunk(0, 0), &[], &[])).unwrap_err();
+    assert!(read(&[node("schema", 0, 2), node("x", 0, 0)]).contains("fewer columns"));
+    assert!(read(&[node("schema", 0, 0), node("x", 0, 0)]).contains("more columns"));
+    assert!(read(&vec![node("x", 1, 1); 100]).contains("nested more than 16 deep"));
+    // What is announced is not reserved.
+    assert!(read(&[node("schema", 0, i64::from(i32::MAX)), node("x", 0, 0)]).contains("fewer columns"));
+    assert!(read(&[node("schema", 0, i64::MAX)]).contains("fewer columns"));
+}
+
+#[test]
+fn more_than_a_file_can_hold_is_refused() {
+    let schema = [node("schema", 0, 1), node("x", 0, 0)];
+    let read = |bytes: i64, rows: &[i64]| read_x(&file(&schema, &chunk(0, bytes), rows, &[0; 64])).unwrap_err();
+    assert!(read(64, &[i64::MAX, 1]).contains("rows in "));
+    assert!(read(64, &[-1]).contains("no number of rows"));
+    assert!(read(64, &[1; 9]).contains("announces columns of 576 bytes in all"));
+    for bytes in [500, i64::MAX, -1] {
+        assert!(read(bytes, &[1]).contains("column \"x\" is to lie where the file has no bytes"));
+    }
+}
+
+#[test]
+fn a_file_that_was_put_together_by_hand_is_read() {
+    let numbers = [[7, 0, 0, 0], [8, 0, 0, 0]].concat();
+    assert_eq!(with_pages(0, 0, &page(0, 2, 0, &numbers)), Ok(vec![7.0, 8.0]));
+    // A page without values is passed over.
+    let pages = [page(0, 1, 0, &numbers[..4]), page(0, 0, 0, &[]), page(0, 1, 0, &numbers[4..])];
+    assert_eq!(with_pages(0, 0, &pages.concat()), Ok(vec![7.0, 8.0]));
+    let entries = [page(2, 2, 0, &numbers), page(0, 2, 8, &[1, 3, 2])].concat();
+    assert_eq!(with_pages(0, 0, &entries), Ok(vec![7.0, 8.0]));
+}
+
+#[test]
+fn a_page_that_is_to_become_too_large_is_refused() {
+    let gigabyte = [0x80, 0x80, 0x80, 0x80, 4, 0, 0];
+    let error = with_pages(0, 1, &page(0, 2, 0, &gigabyte)).unwrap_err();
+    assert!(error.contains("column \"x\": at row 0 or soon after it"), "{error}");
+    assert!(error.contains("a page of 7 bytes unfolds to more than 8388608"), "{error}");
+    let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    gzip.write_all(&vec![0; 20 << 20]).unwrap();
+    let error = with_pages(0, 2, &page(0, 2, 0, &gzip.finish().unwrap())).unwrap_err();
+    assert!(error.contains("unfolds to more than 8388608"), "{error}");
+    assert!(with_pages(0, 4, &page(0, 2, 0, &[0; 9])).unwrap_err().contains("is compressed with BROTLI"));
+}
+
+#[test]
+fn what_a_page_announces_must_be_there() {
+    let entries = page(2, i64::from(i32::MAX), 0, &[0; 40]);
+    assert!(with_pages(0, 0, &entries).unwrap_err().contains("a dictionary of 2147483647 entries in 40 bytes"));
+    assert!(with_pages(0, 0, &page(0, 2, 8, &[1, 3, 2])).unwrap_err().contains("is broken"));
+    assert!(with_pages(0, 0, &page(0, 2, 0, &[0; 7])).unwrap_err().contains("at row 0"));
+    assert!(with_pages(0, 0, &page(0, 1, 0, &[0; 4])).unwrap_err().contains("ends before row 1"));
+    assert!(with_pages(0, 0, &page(0, 2, 6, &[0; 8])).unwrap_err().contains("encoded as DELTA_LENGTH_BYTE_ARRAY"));
+    // Two runs, of a list that goes on and of values that are not there: a few bytes for any number of them.
+    let run = [5, 0, 0, 0, 0xfe, 0xff, 0xff, 0xff, 0x0f];
+    let lists = [&run[..], &[1], &run, &[0]].concat();
+    let error = with_pages(2, 0, &page(0, i64::from(i32::MAX), 0, &lists)).unwrap_err();
+    assert!(error.contains("announce 2147483647 values for a few rows"), "{error}");
 }
 
 /// Everything that is read of a file.

@@ -1,0 +1,227 @@
+//! Parquet files, as far as datasets of LeRobot need them: whole numbers, fractions and bytes, and lists of fractions.
+//!
+//! The crate `parquet` reads them, by its readers of columns. Its panics are contained. Files come from outside, and it believes some of
+//! what they announce. Version 60.1 was weighed, place by place:
+//!
+//! | announced | the crate | here |
+//! |---|---|---|
+//! | the footer's length | holds it against the file's | and at most 64 MiB (`footer`) |
+//! | a column's number of children in the schema | reserves memory for up to 2^31, and recurses as deep as they nest | the schema is built from the footer here, 16 deep, and handed to the crate, which then passes over the footer's (`footer`) |
+//! | lists in the footer | holds their lengths against the bytes that are left | |
+//! | rows, and where columns lie | believes it | held against the file's length (`footer`) |
+//! | the length of a page | holds it against the column's, so the file's | |
+//! | the length of a page once it is unfolded | reserves up to 2 GiB; unfolds gzip without a bound | pages are unfolded here, to 8 MiB or 256 times their length (`pages`) |
+//! | entries of a dictionary | reserves memory for up to 2^31 | held against the dictionary's length (`pages`) |
+//! | values of a page | takes memory for those of the rows that are asked for; a row's list may go on over all pages | rows are asked for in steps, and their pages may not announce more than a file of this length holds (`pages`) |
+//! | lengths of texts that are encoded as differences | reserves memory for any number | such encodings are refused (`pages`) |
+//! | statistics of a page | passes over them by default | |
+//!
+//! So memory keeps to a multiple of the file's length. Time does not in one place: a list of truths in a field that the crate does
+//! not know costs it two seconds for nine bytes of a file that was made for this.
+
+mod column;
+mod footer;
+mod pages;
+
+use column::Column;
+use parquet::{
+    basic::Type,
+    file::metadata::ParquetMetaData,
+    schema::types::{ColumnDescPtr, ColumnDescriptor},
+};
+use std::{
+    fs::File,
+    ops::Range,
+    path::{Path, PathBuf},
+};
+use wayword_core::PlatformError;
+use wayword_world::files;
+
+const HINT: &str = "fetch the file again; if it is whole, write it again with pyarrow and Snappy, as LeRobot does";
+/// Rows that are read at a time.
+const STEP_ROWS: u64 = 1024;
+
+/// Who is handed the bytes of a row, if it has some.
+pub(super) type TakeBytes<'a> = dyn FnMut(u64, Option<&[u8]>) -> Result<(), PlatformError> + 'a;
+
+/// A Parquet file: rows with named columns.
+#[derive(Debug)]
+pub(super) struct Table {
+    path: PathBuf,
+    about: ParquetMetaData,
+}
+
+impl Table {
+    /// Opens a file and reads what it says about itself.
+    ///
+    /// # Errors
+    /// When it is no Parquet file.
+    pub(super) fn open(path: &Path) -> Result<Self, PlatformError> {
+        let about = File::open(path).map_err(|error| error.to_string()).and_then(|file| footer::read(&file));
+        Ok(Self { path: path.to_owned(), about: about.map_err(|reason| files::wrong(path, reason, HINT))? })
+    }
+
+    /// The file.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number of rows.
+    pub(super) fn rows(&self) -> u64 {
+        self.about.row_groups().iter().map(|group| group.num_rows() as u64).sum()
+    }
+
+    /// Whether there is a column of this name.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.leaves().iter().any(|leaf| is_named(leaf, name))
+    }
+
+    /// Hands out a column of numbers, row by row.
+    ///
+    /// # Errors
+    /// When there is no such column, a number is missing, the file is broken, or `take` refuses a number.
+    pub(super) fn numbers(
+        &self,
+        name: &str,
+        rows: Range<u64>,
+        take: &mut dyn FnMut(u64, f64) -> Result<(), String>,
+    ) -> Result<(), PlatformError> {
+        let leaf =
+            self.leaf(name, |leaf| is_number(leaf) && leaf.path().parts().len() == 1 && leaf.max_rep_level() == 0)?;
+        self.each(leaf, rows, |column, group, rows| {
+            column.pass(rows.start - group.start).map_err(|reason| near(rows.start, &reason))?;
+            let mut row = rows.start;
+            while row < rows.end {
+                let cells = column.numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near(row, &reason))?;
+                if cells.is_empty() {
+                    return Err(format!("ends before row {row}"));
+                }
+                for (_, number) in cells {
+                    take(row, number.ok_or_else(|| format!("row {row} holds no number"))?)?;
+                    row += 1;
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Some elements of a column of lists of `width` numbers: `kept` of each row, one row after another.
+    ///
+    /// # Errors
+    /// When there is no such column, a list has another length, or the file is broken.
+    pub(super) fn lists(
+        &self,
+        name: &str,
+        rows: Range<u64>,
+        width: usize,
+        kept: &[usize],
+    ) -> Result<Vec<f64>, PlatformError> {
+        let leaf = self.leaf(name, |leaf| is_number(leaf) && leaf.max_rep_level() == 1)?;
+        let mut numbers = Vec::new();
+        self.each(leaf, rows, |column, group, rows| {
+            let mut row = group.start;
+            while row < rows.end {
+                let cells = column.numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near(row, &reason))?;
+                if cells.is_empty() {
+                    return Err(format!("ends before row {row}"));
+                }
+                // Whole rows are handed out, so each begins within the same cells.
+                for list in cells.chunk_by(|_, (begins_row, _)| !begins_row) {
+                    let list: Option<Vec<f64>> = list.iter().map(|(_, number)| *number).collect();
+                    let list = list.ok_or_else(|| format!("row {row} holds no number"))?;
+                    if list.len() != width {
+                        return Err(format!("row {row} is no list of {width} numbers"));
+                    }
+                    if rows.contains(&row) {
+                        numbers.extend(kept.iter().filter_map(|at| list.get(*at)));
+                    }
+                    row += 1;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(numbers)
+    }
+
+    /// Hands out the bytes of some rows, which ascend: those of a column of bytes, or of its part `bytes`, as pictures are kept.
+    /// `None` where a row holds none.
+    ///
+    /// # Errors
+    /// When there is no such column, the file is broken, or `take` fails.
+    pub(super) fn bytes(&self, name: &str, wanted: &[u64], take: &mut TakeBytes<'_>) -> Result<(), PlatformError> {
+        let flat = |leaf: &ColumnDescriptor| leaf.max_rep_level() == 0 && leaf.physical_type() == Type::BYTE_ARRAY;
+        let leaf =
+            self.leaf(name, |leaf| flat(leaf) && leaf.path().parts().get(1).is_none_or(|part| part == "bytes"))?;
+        let mut wanted = wanted.iter().copied().peekable();
+        let mut refused = None;
+        let read = self.each(leaf, 0..self.rows(), |column, _, rows| {
+            let mut at = rows.start;
+            while let Some(row) = wanted.next_if(|row| rows.contains(row)) {
+                column.pass(row.saturating_sub(at)).map_err(|reason| near(row, &reason))?;
+                let bytes = column.bytes().map_err(|reason| near(row, &reason))?;
+                let bytes = bytes.ok_or_else(|| format!("ends before row {row}"))?;
+                if let Err(error) = take(row, bytes.as_ref().map(|bytes| bytes.data())) {
+                    refused = Some(error);
+                    return Err(String::new());
+                }
+                at = row + 1;
+            }
+            Ok(())
+        });
+        refused.map_or(read, Err)
+    }
+
+    fn leaves(&self) -> &[ColumnDescPtr] {
+        self.about.file_metadata().schema_descr().columns()
+    }
+
+    /// The only column of a name that fits.
+    fn leaf(&self, name: &str, fits: impl Fn(&ColumnDescriptor) -> bool) -> Result<usize, PlatformError> {
+        let leaves = self.leaves().iter().enumerate();
+        let mut found = leaves.filter(|(_, leaf)| is_named(leaf, name) && fits(leaf)).map(|(at, _)| at);
+        match (found.next(), found.next()) {
+            (Some(leaf), None) => Ok(leaf),
+            _ if self.has(name) => {
+                Err(files::wrong(&self.path, format!("column {name:?} is of another kind than expected"), HINT))
+            }
+            _ => Err(files::wrong(&self.path, format!("has no column {name:?}"), HINT)),
+        }
+    }
+
+    /// Reads a column group by group. `read` is told which rows of the file its values are, and which of these are wanted.
+    fn each(
+        &self,
+        leaf: usize,
+        wanted: Range<u64>,
+        mut read: impl FnMut(&mut Column, Range<u64>, Range<u64>) -> Result<(), String>,
+    ) -> Result<(), PlatformError> {
+        let name = self.leaves()[leaf].path().string();
+        let wrong = |reason: String| files::wrong(&self.path, format!("column {name:?}: {reason}"), HINT);
+        let mut first = 0;
+        for group in self.about.row_groups() {
+            let rows = first..first + group.num_rows() as u64;
+            first = rows.end;
+            let within = wanted.start.max(rows.start)..wanted.end.min(rows.end);
+            if !within.is_empty() {
+                let file = File::open(&self.path).map_err(|error| wrong(error.to_string()))?;
+                Column::new(file, group, leaf).and_then(|mut column| read(&mut column, rows, within)).map_err(wrong)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn is_named(leaf: &ColumnDescriptor, name: &str) -> bool {
+    leaf.path().parts().first().is_some_and(|first| first == name)
+}
+
+fn is_number(leaf: &ColumnDescriptor) -> bool {
+    matches!(leaf.physical_type(), Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE)
+}
+
+fn near(row: u64, reason: &str) -> String {
+    format!("at row {row} or soon after it: {reason}")
+}
+
+#[cfg(test)]
+mod tests;

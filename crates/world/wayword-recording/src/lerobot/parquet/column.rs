@@ -1,0 +1,114 @@
+//! The values of a column in a group of rows, some rows at a time.
+
+use super::pages::Pages;
+use parquet::{
+    column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader},
+    data_type::{ByteArray, DataType},
+    file::metadata::RowGroupMetaData,
+};
+use std::{
+    fs::File,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering::Relaxed},
+    },
+};
+use wayword_core::contain::decoded;
+
+/// A column in a group of rows, and how far it was read.
+pub(super) struct Column {
+    reader: ColumnReader,
+    /// Values that pages announced since the last request.
+    announced: Arc<AtomicU64>,
+    max_definition: i16,
+}
+
+/// Some rows of a column: whether each value begins a row, and the value, if there is one.
+pub(super) type Cells<T> = Vec<(bool, Option<T>)>;
+
+impl Column {
+    /// Begins to read a column.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or the column is stored in a way that is not read here.
+    pub(super) fn new(file: File, group: &RowGroupMetaData, leaf: usize) -> Result<Self, String> {
+        let chunk = group.column(leaf);
+        let announced = Arc::<AtomicU64>::default();
+        let reader = decoded(|| {
+            let pages = Pages::new(file, chunk, announced.clone()).map_err(|error| error.to_string())?;
+            Ok(get_column_reader(chunk.column_descr_ptr(), Box::new(pages)))
+        })?;
+        Ok(Self { reader, announced, max_definition: chunk.column_descr().max_def_level() })
+    }
+
+    /// The numbers of the next rows, at most so many; of none after the last.
+    ///
+    /// # Errors
+    /// When the file is broken.
+    pub(super) fn numbers(&mut self, rows: u64) -> Result<Cells<f64>, String> {
+        self.announced.store(0, Relaxed);
+        let max = self.max_definition;
+        match &mut self.reader {
+            ColumnReader::Int32ColumnReader(reader) => cells(reader, rows, max, f64::from),
+            ColumnReader::Int64ColumnReader(reader) => cells(reader, rows, max, |value| value as f64),
+            ColumnReader::FloatColumnReader(reader) => cells(reader, rows, max, f64::from),
+            ColumnReader::DoubleColumnReader(reader) => cells(reader, rows, max, |value| value),
+            _ => Err("holds no numbers".to_owned()),
+        }
+    }
+
+    /// The bytes of the next row, if it has some; `None` after the last row.
+    ///
+    /// # Errors
+    /// When the file is broken.
+    pub(super) fn bytes(&mut self) -> Result<Option<Option<ByteArray>>, String> {
+        self.announced.store(0, Relaxed);
+        let ColumnReader::ByteArrayColumnReader(reader) = &mut self.reader else {
+            return Err("holds no bytes".to_owned());
+        };
+        let cells = cells(reader, 1, self.max_definition, |value| value)?;
+        Ok(cells.into_iter().next().map(|(_, value)| value))
+    }
+
+    /// Passes over some rows, of a column that does not repeat; pages of which nothing is wanted are not unfolded.
+    ///
+    /// # Errors
+    /// When the file is broken.
+    pub(super) fn pass(&mut self, rows: u64) -> Result<(), String> {
+        self.announced.store(0, Relaxed);
+        let rows = usize::try_from(rows).map_err(|error| error.to_string())?;
+        let passed = decoded(|| {
+            let passed = match &mut self.reader {
+                ColumnReader::Int32ColumnReader(reader) => reader.skip_records(rows),
+                ColumnReader::Int64ColumnReader(reader) => reader.skip_records(rows),
+                ColumnReader::FloatColumnReader(reader) => reader.skip_records(rows),
+                ColumnReader::DoubleColumnReader(reader) => reader.skip_records(rows),
+                ColumnReader::ByteArrayColumnReader(reader) => reader.skip_records(rows),
+                _ => Ok(0),
+            };
+            passed.map_err(|error| error.to_string())
+        })?;
+        if passed == rows { Ok(()) } else { Err("ends early".to_owned()) }
+    }
+}
+
+fn cells<T: DataType, V>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: u64,
+    max_definition: i16,
+    value: impl Fn(T::T) -> V,
+) -> Result<Cells<V>, String> {
+    let rows = usize::try_from(rows).map_err(|error| error.to_string())?;
+    let (mut definitions, mut repetitions, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    decoded(|| {
+        let read = reader.read_records(rows, Some(&mut definitions), Some(&mut repetitions), &mut values);
+        read.map_err(|error| error.to_string())
+    })?;
+    let count = if max_definition > 0 { definitions.len() } else { values.len() };
+    let mut values = values.into_iter().map(value);
+    let cell = |at: usize| {
+        let there = definitions.get(at).is_none_or(|definition| *definition == max_definition);
+        (repetitions.get(at).is_none_or(|repetition| *repetition == 0), if there { values.next() } else { None })
+    };
+    Ok((0..count).map(cell).collect())
+}
