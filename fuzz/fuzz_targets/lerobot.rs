@@ -1,8 +1,8 @@
 //! Datasets of LeRobot. The first byte says which file of which dataset the rest stands for: Parquet with rows, with pictures or with
 //! lists of episodes, or the JSON beside it.
 //!
-//! Parquet is read by code of our own; what it is packed with (`snap`, `ruzstd`, `flate2`) and pictures (`image`) by others', whose
-//! panics are contained. Memory: pages may unpack to 256 times their length.
+//! Parquet (`parquet`), what it is packed with (`snap`, `ruzstd`, `flate2`) and pictures (`image`) are read by others' code, whose panics
+//! are contained. Memory: pages may unpack to 256 times their length, and a few rows may have 64 values for each byte of a file.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
