@@ -32,11 +32,11 @@ const HEADER: &str = "the header needs a column `time_s` or `image`, and `x`, `y
 pub(super) fn read(text: &str) -> Result<Rows, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let (_, header) = lines.next().ok_or("is empty")?;
-    let names: Vec<String> = cells(header.trim_start_matches('\u{feff}')).map(name_of).collect();
+    let names = cells(header.trim_start_matches('\u{feff}')).map_err(|reason| format!("line 1: {reason}"))?;
+    let names: Vec<String> = names.into_iter().map(name_of).collect();
     let columns = Columns::of(&names).ok_or_else(|| format!("line 1: {HEADER}"))?;
     let rows = lines.filter(|(_, line)| !line.starts_with('#')).map(|(at, line)| {
-        let cells: Vec<&str> = cells(line).collect();
-        columns.row(&cells).map_err(|reason| format!("line {}: {reason}", at + 1))
+        cells(line).and_then(|cells| columns.row(&cells)).map_err(|reason| format!("line {}: {reason}", at + 1))
     });
     // The sensor of EuRoC has z ahead and x up (`body_T_cam` in its sensor.yaml).
     let is_euroc = header.to_ascii_lowercase().contains(EUROC_POSITION);
@@ -44,9 +44,13 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
     Ok(Rows { usual: Axes::of(body), rows: rows.collect::<Result<_, _>>()? })
 }
 
-fn cells(line: &str) -> impl Iterator<Item = &str> {
+/// The cells of a line. One that holds what stands between cells would shift all that follow, so it is refused.
+fn cells(line: &str) -> Result<Vec<&str>, String> {
     let between = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
-    line.split(between).map(|cell| cell.trim().trim_matches('"'))
+    let plain = |cell: &str| !cell.starts_with('"') || (cell.len() > 1 && cell.ends_with('"'));
+    let refused = || format!("a cell in quotes holds {between:?}, which is not read");
+    let cells = line.split(between).map(str::trim);
+    cells.map(|cell| plain(cell).then(|| cell.trim_matches('"')).ok_or_else(refused)).collect()
 }
 
 /// A column's name as it is compared: `#timestamp [ns]` is `timestamp_ns`, `p_RS_R_x [m]` is `x`.

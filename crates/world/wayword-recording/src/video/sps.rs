@@ -1,8 +1,8 @@
 //! What an H.264 stream says of itself: sequence parameter sets (ITU-T H.264, section 7.3.2.1.1 and annex E).
 //!
 //! `h264-reader` reads the bits and how colours are sampled. It would read a whole parameter set too, but it refuses those whose
-//! level is too low for their size, that are cut off behind the colours, or whose bytes could be a false start. Cameras write such,
-//! and they can be decoded.
+//! level is too low for their size, that are broken off behind the colours, or whose bytes could be a false start. Players show such
+//! videos all the same.
 
 use super::colour::Colour;
 use h264_reader::{
