@@ -90,6 +90,10 @@ impl LocalError {
         Self::Io { file: file.into(), doing, source: Arc::new(source) }
     }
 
+    pub(crate) fn download(address: impl Into<String>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self::Download { address: address.into(), problem: problem.into(), hint: hint.into() }
+    }
+
     pub(crate) fn compute(model: &str, error: &candle_core::Error) -> Self {
         // candle's errors may carry a backtrace.
         let problem = error.to_string().lines().next().unwrap_or("the computation failed").to_owned();

@@ -59,13 +59,19 @@ impl HubConfig {
     pub(super) fn read(variable: &dyn Fn(&str) -> Option<OsString>, home: Option<&Path>) -> Result<Self, LocalError> {
         let path = |name: &str| {
             let path = PathBuf::from(variable(name).filter(|value| !value.is_empty())?);
-            Some(in_home(&path, home))
+            // `~/` at the beginning is the home folder.
+            Some(match (path.strip_prefix("~"), home) {
+                (Ok(rest), Some(home)) => home.join(rest),
+                _ => path,
+            })
         };
         let text = |name: &str| {
             let text = variable(name)?.into_string().ok()?.trim().to_owned();
             (!text.is_empty()).then_some(text)
         };
-        let is_set = |name: &str| text(name).is_some_and(|value| is_true(&value));
+        // What the hub's own client takes for yes.
+        let yes = |value: String| ["1", "on", "yes", "true"].iter().any(|yes| value.eq_ignore_ascii_case(yes));
+        let is_set = |name: &str| text(name).is_some_and(yes);
         let usual = || Some(path("XDG_CACHE_HOME").or_else(|| Some(home?.join(".cache")))?.join("huggingface"));
         let cache = path("HF_HUB_CACHE")
             .or_else(|| path("HUGGINGFACE_HUB_CACHE"))
@@ -85,27 +91,14 @@ impl HubConfig {
     }
 }
 
-/// What the hub's own client takes for yes.
-fn is_true(value: &str) -> bool {
-    ["1", "on", "yes", "true"].iter().any(|yes| value.eq_ignore_ascii_case(yes))
-}
-
-/// `~/` at the beginning is the home folder.
-fn in_home(path: &Path, home: Option<&Path>) -> PathBuf {
-    match (path.strip_prefix("~"), home) {
-        (Ok(rest), Some(home)) => home.join(rest),
-        _ => path.to_owned(),
-    }
-}
-
 impl Token {
     pub(super) fn new(token: &str) -> Result<Self, LocalError> {
         if !token.bytes().all(|byte| (0x21..0x7f).contains(&byte)) {
-            return Err(LocalError::Download {
-                address: "HF_TOKEN".to_owned(),
-                problem: "the variable holds spaces or characters that no token has".to_owned(),
-                hint: "copy the token anew from the settings page of the hub, or unset the variable".to_owned(),
-            });
+            return Err(LocalError::download(
+                "HF_TOKEN",
+                "the variable holds spaces or characters that no token has",
+                "copy the token anew from the settings page of the hub, or unset the variable",
+            ));
         }
         Ok(Self(token.to_owned()))
     }

@@ -1,74 +1,162 @@
-//! Files that are fetched where they are not here.
+//! Files that are fetched where they are not here, each going on where an earlier try ended.
 
 use super::{
-    Progress,
-    blob::{self, Wanted},
-    client::{Answer, Client},
-    commit::Commit,
-    layout::RepoFolder,
+    cache::{Commit, RepoFolder, beside, make_parent},
+    client::{Answer, Client, Facts},
+    files::Files,
     name::OnHub,
-    needs::Files,
+    trouble::{Patience, TRY_LATER, Trouble},
 };
 use crate::LocalError;
-use std::path::PathBuf;
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{Read, Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+};
+
+/// Bytes that are taken where the hub does not say how many there are: it says so of every large file.
+const MOST_UNANNOUNCED: u64 = 64 << 20;
+
+/// So much has to come before earlier failures are forgotten, so that a server that gives byte after byte is given up.
+const A_GOOD_PIECE: u64 = 1 << 20;
+
+/// Is told how far a download is.
+pub trait Progress {
+    /// So many bytes of a file are here, of `total` where the hub has said how many there are.
+    fn bytes(&self, file: &str, done: u64, total: Option<u64>);
+
+    /// Another process fetches this file; it is waited for.
+    fn waiting(&self, file: &str) {
+        let _ = file;
+    }
+}
+
+/// Tells nobody.
+impl Progress for () {
+    fn bytes(&self, _: &str, _: u64, _: Option<u64>) {}
+}
 
 /// The files of one commit, which is the first that the hub names where none is known.
 pub(super) struct Fetching<'a> {
-    client: &'a Client,
-    place: &'a OnHub,
-    repo: RepoFolder,
-    commit: Option<Commit>,
-    symlinks: bool,
-    progress: &'a dyn Progress,
+    pub(super) client: &'a Client,
+    pub(super) model: &'a OnHub,
+    pub(super) repo: RepoFolder,
+    pub(super) commit: Option<Commit>,
+    pub(super) symlinks: bool,
+    pub(super) progress: &'a dyn Progress,
 }
 
-impl<'a> Fetching<'a> {
-    pub(super) fn new(
-        client: &'a Client,
-        place: &'a OnHub,
-        repo: RepoFolder,
-        commit: Option<Commit>,
-        symlinks: bool,
-        progress: &'a dyn Progress,
-    ) -> Self {
-        Self { client, place, repo, commit, symlinks, progress }
-    }
-
+impl Fetching<'_> {
     /// The commit. Only now, with everything there, does the revision stand for it: a fetch that is
     /// cut off leaves an older snapshot in use.
     pub(super) fn finish(self) -> Result<String, LocalError> {
         let Some(commit) = &self.commit else {
-            return Err(self.strange("", "nothing was asked for"));
+            return Err(LocalError::download(self.address(""), "nothing was asked for", TRY_LATER));
         };
-        if Commit::parse(&self.place.revision).is_none() {
-            self.repo.keep_ref(&self.place.revision, commit)?;
+        if Commit::parse(&self.model.revision).is_none() {
+            self.repo.keep_ref(&self.model.revision, commit)?;
         }
         Ok(commit.as_str().to_owned())
     }
 
     fn revision(&self) -> &str {
-        self.commit.as_ref().map_or(&self.place.revision, Commit::as_str)
+        self.commit.as_ref().map_or(&self.model.revision, Commit::as_str)
+    }
+
+    fn address(&self, file: &str) -> String {
+        self.client.address(self.model, self.revision(), file)
     }
 
     /// All files are of one commit.
-    fn agree(&mut self, file: &str, commit: Commit) -> Result<Commit, LocalError> {
-        match &self.commit {
-            Some(known) if *known != commit => {
-                Err(self.strange(file, "the hub answers with another commit than asked"))
-            }
-            _ => {
-                self.commit = Some(commit.clone());
-                Ok(commit)
-            }
+    fn agree(&mut self, file: &str, commit: &Commit) -> Result<(), LocalError> {
+        if *self.commit.get_or_insert_with(|| commit.clone()) == *commit {
+            return Ok(());
         }
+        let problem = "the hub answers with another commit than asked";
+        Err(LocalError::download(self.address(file), problem, TRY_LATER))
     }
 
-    fn strange(&self, file: &str, problem: &str) -> LocalError {
-        LocalError::Download {
-            address: self.client.address(self.place, self.revision(), file),
-            problem: problem.to_owned(),
-            hint: "try again later; see HF_ENDPOINT where you have set it".to_owned(),
+    /// Sees to it that the blob is in the cache.
+    fn fetch(&self, file: &str, facts: &Facts) -> Result<(), LocalError> {
+        let blob = self.repo.blob(&facts.hash);
+        if blob.is_file() {
+            return Ok(());
         }
+        let _lock = self.repo.lock(&facts.hash, || self.progress.waiting(file))?;
+        if blob.is_file() {
+            return Ok(());
+        }
+        make_parent(&blob)?;
+        let part = beside(&blob, ".incomplete");
+        let mut patience = self.client.patience();
+        let mut resumed = self.whole(file, facts.size, &part, &mut patience)?;
+        // The whole file is read again, because the beginning may be of another process, and a disk may be full or worse.
+        while !facts.hash.fits(&part).map_err(|error| LocalError::io(&part, "read", error))? {
+            fs::remove_file(&part).map_err(|error| LocalError::io(&part, "remove", error))?;
+            if !resumed {
+                let problem = format!("what came does not have the hash {}", facts.hash.as_str());
+                let hint = "try again; where it stays so, something on the way changes what is sent";
+                return Err(LocalError::download(self.address(file), problem, hint));
+            }
+            // What an earlier try left was wrong. Once more from the beginning, and then no more.
+            self.whole(file, facts.size, &part, &mut patience)?;
+            resumed = false;
+        }
+        fs::rename(&part, &blob).map_err(|error| LocalError::io(&blob, "write", error))
+    }
+
+    /// Fetches until all bytes are there. Whether some of them were there before.
+    fn whole(&self, file: &str, size: Option<u64>, part: &Path, patience: &mut Patience) -> Result<bool, LocalError> {
+        let io = |error| LocalError::io(part, "write", error);
+        let mut out = OpenOptions::new().create(true).append(true).open(part).map_err(io)?;
+        let length = |out: &File| out.metadata().map(|about| about.len()).map_err(io);
+        if size.is_some_and(|size| length(&out).is_ok_and(|length| length > size)) {
+            out.set_len(0).map_err(io)?;
+        }
+        let resumed = length(&out)? > 0;
+        loop {
+            let before = length(&out)?;
+            if before > 0 && size == Some(before) {
+                break;
+            }
+            let Err(trouble) = self.piece(file, size, &mut out, part) else { break };
+            if length(&out)? >= before.saturating_add(A_GOOD_PIECE) {
+                patience.restored();
+            }
+            patience.again(trouble, &self.address(file))?;
+        }
+        out.sync_all().map_err(io)?;
+        Ok(resumed)
+    }
+
+    /// Fetches what one connection gives.
+    fn piece(&self, file: &str, size: Option<u64>, out: &mut File, part: &Path) -> Result<(), Trouble> {
+        let io = |error| Trouble::Lasting(LocalError::io(part, "write", error));
+        let (address, there) = (self.address(file), out.seek(SeekFrom::End(0)).map_err(io)?);
+        let (mut done, mut body) = self.client.open(self.model, &address, there)?;
+        out.set_len(done).map_err(io)?;
+        let most = size.unwrap_or(MOST_UNANNOUNCED);
+        let mut buffer = vec![0; 1 << 18];
+        self.progress.bytes(file, done, size);
+        loop {
+            let read = body.read(&mut buffer).map_err(|error| Trouble::passing(format!("it broke off: {error}")))?;
+            if read == 0 {
+                break;
+            }
+            done += read as u64;
+            if done > most {
+                // None of it can be trusted.
+                out.set_len(0).map_err(io)?;
+                let problem = format!("it sends more than the {most} bytes that a file of this announcement has");
+                return Err(Trouble::Lasting(LocalError::download(address, problem, TRY_LATER)));
+            }
+            out.write_all(&buffer[..read]).map_err(io)?;
+            self.progress.bytes(file, done, size);
+        }
+        if size.is_some_and(|size| done < size) {
+            return Err(Trouble::passing(format!("it broke off after {done} bytes")));
+        }
+        Ok(())
     }
 }
 
@@ -89,27 +177,24 @@ impl Files for Fetching<'_> {
         if self.commit.as_ref().is_some_and(|commit| self.repo.is_absent(commit, file)) {
             return Ok(None);
         }
-        match self.client.ask(self.place, self.revision(), file)? {
+        match self.client.ask(self.model, self.revision(), file)? {
             Answer::Absent(None) => Ok(None),
             Answer::Absent(Some(commit)) => {
-                let commit = self.agree(file, commit)?;
+                self.agree(file, &commit)?;
                 self.repo.keep_absent(&commit, file)?;
                 Ok(None)
             }
             Answer::There(facts) => {
-                let commit = self.agree(file, facts.commit)?;
-                let wanted = Wanted { place: self.place, commit: &commit, file, hash: &facts.hash, size: facts.size };
-                blob::fetch(self.client, &self.repo, &wanted, self.progress)?;
-                self.repo.link(&facts.hash, &commit, file, self.symlinks).map(Some)
+                self.agree(file, &facts.commit)?;
+                self.fetch(file, &facts)?;
+                self.repo.link(&facts.hash, &facts.commit, file, self.symlinks).map(Some)
             }
         }
     }
 
     fn missing(&self, file: &str, what: &'static str) -> LocalError {
-        LocalError::Download {
-            address: self.client.address(self.place, self.revision(), file),
-            problem: format!("the model has no {file}, {what}"),
-            hint: "see that the name is right, and what files the hub's page of the model lists".to_owned(),
-        }
+        let problem = format!("the model has no {file}, {what}");
+        let hint = "see that the name is right, and what files the hub's page of the model lists";
+        LocalError::download(self.address(file), problem, hint)
     }
 }

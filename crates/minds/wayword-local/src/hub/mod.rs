@@ -13,37 +13,26 @@
 //! Architecture invariant: nothing is linked into a snapshot before its bytes have the hash that the hub gave them, and a token
 //! goes nowhere but to the hub's own address.
 
-mod address;
-mod blob;
+mod cache;
 mod client;
-mod commit;
 mod config;
 mod fetching;
-mod hash;
-mod identity;
-mod layout;
-mod list;
+mod files;
 mod name;
-mod needs;
-mod on_disk;
-mod progress;
-mod refusal;
 mod trouble;
 
+pub use cache::CachedModel;
 pub use config::HubConfig;
-pub use list::CachedModel;
+pub use fetching::Progress;
+pub use files::Needs;
 pub use name::ModelName;
-pub use needs::Needs;
-pub use progress::Progress;
 
 use crate::LocalError;
+use cache::{Commit, RepoFolder};
 use client::Client;
-use commit::Commit;
 use fetching::Fetching;
-use layout::RepoFolder;
-use name::{OnHub, Place};
-use needs::Gathered;
-use on_disk::OnDisk;
+use files::{Gathered, OnDisk};
+use name::{ModelSource, OnHub};
 use std::path::{Path, PathBuf};
 
 /// The way to models.
@@ -99,7 +88,7 @@ impl Hub {
     /// # Errors
     /// When a folder cannot be read.
     pub fn list(&self) -> Result<Vec<CachedModel>, LocalError> {
-        list::list(&self.config.cache)
+        cache::list(&self.config.cache)
     }
 
     /// Where the cache is.
@@ -115,49 +104,50 @@ impl Hub {
         progress: &dyn Progress,
         anew: bool,
     ) -> Result<ModelFolder, LocalError> {
-        let place = match &name.place {
-            Place::Hub(place) => place,
-            Place::Folder(path) => return on_disk(&mut OnDisk::local(path), needs, None, None),
-            Place::File(path) => {
+        let model = match &name.source {
+            ModelSource::Hub(model) => model,
+            ModelSource::Folder(path) => return on_disk(&mut OnDisk::local(path), needs, None, None),
+            ModelSource::File(path) => {
                 let folder = path.parent().unwrap_or(Path::new("."));
                 let file = path.file_name().map(|file| file.to_string_lossy());
                 return on_disk(&mut OnDisk::local(folder), needs, file.as_deref(), None);
             }
         };
-        let repo = RepoFolder::new(&self.config.cache, place);
-        let known = repo.commit_of(&place.revision);
+        let repo = RepoFolder::new(&self.config.cache, model);
+        let known = repo.commit_of(&model.revision);
         if self.config.offline {
-            return self.cached(place, &repo, known.as_ref(), needs);
+            return self.cached(model, &repo, known.as_ref(), needs);
         }
-        if known.is_none() && !anew && repo.snapshot(&place.revision).is_dir() {
+        if known.is_none() && !anew && repo.snapshot(&model.revision).is_dir() {
             // Somebody put files there by hand; where they are not enough, the hub is asked.
-            if let Ok(model) = self.cached(place, &repo, None, needs) {
-                return Ok(model);
+            if let Ok(found) = self.cached(model, &repo, None, needs) {
+                return Ok(found);
             }
         }
-        let start = if anew { Commit::parse(&place.revision) } else { known };
-        let mut files = Fetching::new(&self.client, place, repo, start, self.config.symlinks, progress);
-        let gathered = needs.gather(&mut files, place.file.as_deref())?;
-        Ok(model(gathered, place.file.is_some(), files.finish()?))
+        let commit = if anew { Commit::parse(&model.revision) } else { known };
+        let symlinks = self.config.symlinks;
+        let mut files = Fetching { client: &self.client, model, repo, commit, symlinks, progress };
+        let gathered = needs.gather(&mut files, model.file.as_deref())?;
+        Ok(folder(gathered, model.file.is_some(), files.finish()?))
     }
 
     /// Without the network. Where no commit is known, a snapshot that is named like the revision will do.
     fn cached(
         &self,
-        place: &OnHub,
+        model: &OnHub,
         repo: &RepoFolder,
         known: Option<&Commit>,
         needs: &Needs,
     ) -> Result<ModelFolder, LocalError> {
         let identity = known.map(|commit| commit.as_str().to_owned());
-        let folder = repo.snapshot(known.map_or(place.revision.as_str(), Commit::as_str));
+        let folder = repo.snapshot(known.map_or(model.revision.as_str(), Commit::as_str));
         let hint = |file: &str| {
             format!(
                 "put there what {} gives, or run `wayword models fetch NAME` where there is a network, and without WAYWORD_OFFLINE and HF_HUB_OFFLINE",
-                self.client.address(place, &place.revision, file)
+                self.client.address(model, &model.revision, file)
             )
         };
-        on_disk(&mut OnDisk::new(folder, &hint), needs, place.file.as_deref(), identity)
+        on_disk(&mut OnDisk::new(folder, &hint), needs, model.file.as_deref(), identity)
     }
 }
 
@@ -169,11 +159,11 @@ fn on_disk(
     identity: Option<String>,
 ) -> Result<ModelFolder, LocalError> {
     let gathered = needs.gather(files, file)?;
-    let identity = identity.map_or_else(|| identity::identity(&gathered), Ok)?;
-    Ok(model(gathered, file.is_some(), identity))
+    let identity = identity.map_or_else(|| gathered.identity(), Ok)?;
+    Ok(folder(gathered, file.is_some(), identity))
 }
 
-fn model(gathered: Gathered, is_file: bool, identity: String) -> ModelFolder {
+fn folder(gathered: Gathered, is_file: bool, identity: String) -> ModelFolder {
     let file = gathered.weights.into_iter().next().filter(|_| is_file);
     ModelFolder { path: gathered.folder, file, identity }
 }

@@ -28,11 +28,12 @@ const LONGEST_PATH: usize = 4096;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelName {
     text: String,
-    pub(super) place: Place,
+    pub(super) source: ModelSource,
 }
 
+/// What a name says of where the files are.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum ModelSource {
     Hub(OnHub),
     Folder(PathBuf),
     File(PathBuf),
@@ -54,20 +55,20 @@ impl ModelName {
     /// # Errors
     /// Says what is wrong with it.
     pub fn parse(text: &str) -> Result<Self, LocalError> {
-        let place = place(text).map_err(|problem| LocalError::Name {
+        let source = source(text).map_err(|problem| LocalError::Name {
             name: text.chars().take(LONGEST_REVISION).collect(),
             problem: problem.to_owned(),
         })?;
-        Ok(Self { text: text.to_owned(), place })
+        Ok(Self { text: text.to_owned(), source })
     }
 
     /// Whether it names one GGUF file.
     #[must_use]
     pub fn is_gguf(&self) -> bool {
-        match &self.place {
-            Place::Hub(place) => place.file.is_some(),
-            Place::Folder(_) => false,
-            Place::File(_) => true,
+        match &self.source {
+            ModelSource::Hub(model) => model.file.is_some(),
+            ModelSource::Folder(_) => false,
+            ModelSource::File(_) => true,
         }
     }
 }
@@ -78,15 +79,12 @@ impl fmt::Display for ModelName {
     }
 }
 
-fn place(text: &str) -> Result<Place, &'static str> {
+fn source(text: &str) -> Result<ModelSource, &'static str> {
     let rest = text.strip_prefix(PREFIX).ok_or("it does not begin with hf/")?;
     if ["/", "./", "../"].iter().any(|begin| rest.starts_with(begin)) {
         return local(rest);
     }
-    let (repo, file) = match rest.split_once(':') {
-        Some((repo, file)) => (repo, Some(file)),
-        None => (rest, None),
-    };
+    let (repo, file) = rest.split_once(':').map_or((rest, None), |(repo, file)| (repo, Some(file)));
     let (repo, revision) = repo.split_once('@').unwrap_or((repo, MAIN));
     let (org, name) = repo.split_once('/').ok_or("it has no organisation before the model's name")?;
     if !is_part(org) || !is_part(name) {
@@ -100,7 +98,7 @@ fn place(text: &str) -> Result<Place, &'static str> {
     if file.is_some_and(|file| !is_file(file)) {
         return Err("after the colon belongs a file of the repository that ends in .gguf");
     }
-    Ok(Place::Hub(OnHub {
+    Ok(ModelSource::Hub(OnHub {
         org: org.to_owned(),
         name: name.to_owned(),
         revision: revision.to_owned(),
@@ -108,12 +106,12 @@ fn place(text: &str) -> Result<Place, &'static str> {
     }))
 }
 
-fn local(path: &str) -> Result<Place, &'static str> {
+fn local(path: &str) -> Result<ModelSource, &'static str> {
     if path.chars().any(char::is_control) || path.len() > LONGEST_PATH {
         return Err("its path holds control characters or is too long");
     }
-    let place = if ends_in_gguf(path) { Place::File } else { Place::Folder };
-    Ok(place(PathBuf::from(path)))
+    let source = if ends_in_gguf(path) { ModelSource::File } else { ModelSource::Folder };
+    Ok(source(PathBuf::from(path)))
 }
 
 /// The hub's own rule for the parts of a repository's name. Two dashes would make the cache's folders ambiguous.

@@ -4,7 +4,7 @@ use super::{
     fake::{COMMIT, FakeHub, bytes, git, model, sha256},
     folder,
 };
-use crate::hub::{Hub, HubConfig, ModelName, Needs};
+use crate::hub::{Hub, HubConfig, ModelName, Needs, cache::BlobHash};
 use std::{fs, path::Path};
 
 const LATER: &str = "fedcba9876543210fedcba9876543210fedcba98";
@@ -165,4 +165,27 @@ fn the_list_tells_models_commits_and_lengths() {
     assert_eq!((&model.revisions[..], model.files), (&["main".to_owned()][..], 4));
     assert_eq!(model.bytes, (3 << 20) + 18 + 2 + 14);
     assert_eq!(model.folder, found.path);
+}
+
+#[test]
+fn files_are_held_against_both_kinds_of_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "hello\n").unwrap();
+    // `echo hello | git hash-object --stdin` and `echo hello | sha256sum`.
+    let git = "ce013625030ba8dba906f756967f9e9ca394464a";
+    let sha256 = "5891b5b522d5df086d0ff0b110fbd9d21bb4fc7163af34d08286a2e846f6be03";
+    for etag in [git, sha256, &format!("\"{git}\""), &format!("W/\"{sha256}\"")] {
+        assert!(BlobHash::from_etag(etag).unwrap().fits(&file).unwrap(), "{etag}");
+    }
+    let other = BlobHash::from_etag(&git.replace('c', "d")).unwrap();
+    assert!(!other.fits(&file).unwrap());
+}
+
+#[test]
+fn what_is_no_hash_is_refused() {
+    let etags = ["", "\"\"", "abc", "../../etc/passwd", "5D41402ABC4B2A76B9719D911017C592AAAAAAAA", "bb-bWMd8e2"];
+    for etag in etags {
+        assert_eq!(BlobHash::from_etag(etag), None, "{etag}");
+    }
 }

@@ -1,7 +1,7 @@
 //! A hub with one model, and a storage on another port that it sends large files' readers to.
 
 use super::server::{Reply, Request, Server};
-use crate::hub::{Hub, HubConfig, config::Token, hash::hex};
+use crate::hub::{Hub, HubConfig, config::Token};
 use sha1::Sha1;
 use sha2::{Digest, Sha256};
 use std::{
@@ -101,11 +101,12 @@ pub(super) fn is_large(file: &str) -> bool {
 }
 
 pub(super) fn sha256(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
+    format!("{:x}", Sha256::digest(bytes))
 }
 
 pub(super) fn git(bytes: &[u8]) -> String {
-    hex(&Sha1::new().chain_update(format!("blob {}\0", bytes.len())).chain_update(bytes).finalize())
+    let hash = Sha1::new().chain_update(format!("blob {}\0", bytes.len())).chain_update(bytes).finalize();
+    format!("{hash:x}")
 }
 
 fn resolve(repo: &Repo, store: &str, request: &Request) -> Reply {

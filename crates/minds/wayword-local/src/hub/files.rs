@@ -1,8 +1,13 @@
-//! Which files of a model a program reads.
+//! A model's files: which of them are needed, those on this machine, and what tells them from another model's.
 
 use super::ModelName;
 use crate::{LocalError, weights};
-use std::path::{Path, PathBuf};
+use sha2::{Digest, Sha256};
+use std::{
+    fs::File,
+    io::{self, Read, Seek, SeekFrom},
+    path::{Path, PathBuf},
+};
 
 const WHOLE: &str = "model.safetensors";
 const INDEX: &str = "model.safetensors.index.json";
@@ -19,6 +24,13 @@ const READ_WHERE_THERE: [&str; 8] = [
     "1_Pooling/config.json",
     "modules.json",
 ];
+
+/// Files up to this length count whole for a model's identity.
+const COUNTS_WHOLE: u64 = 1 << 20;
+/// Places of a longer file that count, from its beginning to its end.
+const SAMPLES: u64 = 256;
+/// Bytes of each.
+const SAMPLE: u64 = 4096;
 
 /// Which files of a model are needed. The file that a name names is always needed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -119,4 +131,80 @@ fn weights_of(files: &mut dyn Files) -> Result<Vec<PathBuf>, LocalError> {
 fn parts(files: &mut dyn Files, index: &Path) -> Result<Vec<PathBuf>, LocalError> {
     let names = weights::part_names(index)?;
     names.iter().map(|name| files.get(name)?.ok_or_else(|| files.missing(name, "a part of the weights"))).collect()
+}
+
+impl Gathered {
+    /// A hash over the names, lengths and contents of the small files, and over lengths and samples of the weights. Headers
+    /// stand at the beginning of safetensors and GGUF files, and the checksums of a pickled file at its end: both count.
+    pub(super) fn identity(&self) -> Result<String, LocalError> {
+        let mut hasher = Sha256::new();
+        let mut add =
+            |name: &str, path: &Path| add(&mut hasher, name, path).map_err(|error| LocalError::io(path, "read", error));
+        for (name, path) in &self.small {
+            add(name, path)?;
+        }
+        for path in &self.weights {
+            add(&path.file_name().unwrap_or_default().to_string_lossy(), path)?;
+        }
+        Ok(format!("sha256:{:x}", hasher.finalize()))
+    }
+}
+
+fn add(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    // Lengths before contents, so that no two sets of files run together alike.
+    hasher.update((name.len() as u64).to_le_bytes());
+    hasher.update(name);
+    hasher.update(length.to_le_bytes());
+    if length <= COUNTS_WHOLE {
+        return io::copy(&mut file.take(COUNTS_WHOLE), hasher).map(drop);
+    }
+    let last = length - SAMPLE;
+    for sample in 0..SAMPLES {
+        // 0 for the first sample, `last` for the last one, evenly between them.
+        let at = u128::from(last) * u128::from(sample) / u128::from(SAMPLES - 1);
+        file.seek(SeekFrom::Start(u64::try_from(at).unwrap_or(last)))?;
+        io::copy(&mut file.by_ref().take(SAMPLE), hasher)?;
+    }
+    Ok(())
+}
+
+/// A folder, and what to do about a file that it lacks.
+pub(super) struct OnDisk<'a> {
+    folder: PathBuf,
+    hint: &'a dyn Fn(&str) -> String,
+}
+
+impl<'a> OnDisk<'a> {
+    pub(super) fn new(folder: PathBuf, hint: &'a dyn Fn(&str) -> String) -> Self {
+        Self { folder, hint }
+    }
+}
+
+impl OnDisk<'static> {
+    /// A folder of the user's.
+    pub(super) fn local(folder: &Path) -> Self {
+        let hint = &|file: &str| format!("put the model's {file} there, or see whether the path is right");
+        Self { folder: folder.to_owned(), hint }
+    }
+}
+
+impl Files for OnDisk<'_> {
+    fn folder(&self) -> PathBuf {
+        self.folder.clone()
+    }
+
+    fn here(&self, file: &str) -> Option<PathBuf> {
+        let path = self.folder.join(file);
+        path.is_file().then_some(path)
+    }
+
+    fn get(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError> {
+        Ok(self.here(file))
+    }
+
+    fn missing(&self, file: &str, what: &'static str) -> LocalError {
+        LocalError::Missing { file: self.folder.join(file), what, hint: (self.hint)(file) }
+    }
 }
