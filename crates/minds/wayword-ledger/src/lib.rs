@@ -10,13 +10,14 @@ mod budget;
 mod call;
 mod error;
 mod flight;
+mod ledger;
 mod queries;
-mod recording;
 mod run;
 mod store;
 
 pub use budget::{Limits, Refused};
 pub use call::{Answer, Call, Key, Row};
 pub use error::LedgerError;
+pub use ledger::Ledger;
 pub use queries::{By, CostLine, Filter};
-pub use run::{Attempts, Ledger, OnceError, Run, Totals};
+pub use run::{Attempts, OnceError, Run, Totals};

@@ -3,16 +3,12 @@
 use crate::{
     LedgerError,
     call::Row,
-    run::Ledger,
+    ledger::{Ledger, now_unix_s},
     store::{COLUMNS, row},
 };
 use rusqlite::{ToSql, params_from_iter};
 use serde::Serialize;
-use std::{
-    io::Write,
-    path::Path,
-    time::{SystemTime, UNIX_EPOCH},
-};
+use std::{io::Write, path::Path};
 
 /// Which calls.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -79,11 +75,6 @@ impl Filter {
         }
         Where { sql, values }
     }
-}
-
-/// Seconds since 1970.
-pub(crate) fn now_unix_s() -> i64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| i64::try_from(since.as_secs()).unwrap_or(i64::MAX))
 }
 
 impl Ledger {

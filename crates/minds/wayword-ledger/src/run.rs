@@ -1,12 +1,11 @@
-//! A ledger at work: each call of a run is made once.
+//! A run at work: each of its calls is made once.
 
 use crate::{
     Answer, Call, Key, LedgerError, Limits, Refused, Row,
     budget::{Budget, known},
-    flight::Flights,
-    queries::{Filter, now_unix_s},
-    recording,
-    store::{Store, Write},
+    ledger::{Ledger, now_unix_s},
+    queries::Filter,
+    store::Write,
 };
 use std::{
     path::{Path, PathBuf},
@@ -16,29 +15,15 @@ use std::{
     },
 };
 
-/// Every call of all runs. Clones are the same ledger; when the last is dropped, what was to be written is.
-#[derive(Debug, Clone)]
-pub struct Ledger {
-    inner: Arc<Inner>,
-}
-
-#[derive(Debug)]
-struct Inner {
-    store: Store,
-    flights: Flights,
-    /// The recording that all answers have to come from.
-    recording: Option<PathBuf>,
-}
-
 /// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones are the same run.
 #[derive(Debug, Clone)]
 pub struct Run {
     ledger: Ledger,
-    state: Arc<State>,
+    state: Arc<RunState>,
 }
 
 #[derive(Debug)]
-struct State {
+struct RunState {
     id: String,
     budget: Budget,
     stopped: AtomicBool,
@@ -101,60 +86,18 @@ pub enum OnceError<E> {
 }
 
 impl Ledger {
-    /// Opens a ledger, or makes one that only its owner can read. Several programs may have it open.
-    ///
-    /// # Errors
-    /// When the file is something else, or cannot be read and written.
-    pub fn open(path: &Path) -> Result<Self, LedgerError> {
-        Ok(Self::of(Store::open(path)?, None))
-    }
-
-    /// A ledger that is gone with the process.
-    ///
-    /// # Errors
-    /// When there is no memory for it.
-    pub fn in_memory() -> Result<Self, LedgerError> {
-        Ok(Self::of(Store::in_memory()?, None))
-    }
-
-    /// A ledger that answers from a recording alone.
-    ///
-    /// # Errors
-    /// When the recording cannot be read.
-    pub fn replay(recording: &Path) -> Result<Self, LedgerError> {
-        let store = Store::in_memory()?;
-        recording::each(recording, |row| {
-            store.writer.note(Write::Answered { sent: None, row: Box::new(row) });
-            Ok(())
-        })?;
-        store.writer.flush()?;
-        Ok(Self::of(store, Some(recording.to_owned())))
-    }
-
-    fn of(store: Store, recording: Option<PathBuf>) -> Self {
-        Self { inner: Arc::new(Inner { store, flights: Flights::default(), recording }) }
-    }
-
     /// A run by its name; what earlier processes of that name have spent counts.
     ///
     /// # Errors
     /// When the ledger cannot be read.
     pub fn run(&self, id: &str, limits: Limits) -> Result<Run, LedgerError> {
-        let state = State {
+        let state = RunState {
             id: id.to_owned(),
             budget: Budget::new(limits, self.store().spent(id)?),
             stopped: AtomicBool::new(false),
             totals: Mutex::default(),
         };
         Ok(Run { ledger: self.clone(), state: Arc::new(state) })
-    }
-
-    pub(crate) fn store(&self) -> &Store {
-        &self.inner.store
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        self.inner.store.path()
     }
 }
 
@@ -175,12 +118,12 @@ impl Run {
             if let Some(answer) = self.stored(&key)? {
                 return Ok(answer);
             }
-            let Some(_flight) = self.ledger.inner.flights.take_off(&key) else { continue };
+            let Some(_flight) = self.ledger.flights().take_off(&key) else { continue };
             // It may have landed between the look and the start.
             if let Some(answer) = self.stored(&key)? {
                 return Ok(answer);
             }
-            if let Some(recording) = &self.ledger.inner.recording {
+            if let Some(recording) = self.ledger.recording() {
                 return Err(not_recorded(recording, call));
             }
             let mut attempts = Attempts { run: self, key: &key, open: None };
