@@ -5,7 +5,6 @@ mod chat;
 mod completions;
 mod gemini;
 mod ollama;
-mod thinking;
 
 use crate::{picture::Picture, provider::Provider};
 use serde::Deserialize;
@@ -146,7 +145,7 @@ impl Dialect {
             Self::Gemini => gemini::from_wire(body),
             Self::Ollama => ollama::from_wire(body),
         }?;
-        heard.text = thinking::removed(&heard.text).trim().to_owned();
+        heard.text = after_thinking(&heard.text).trim().to_owned();
         Ok(heard)
     }
 
@@ -185,6 +184,22 @@ impl Dialect {
             Self::Gemini => "extra = { generationConfig = { thinkingConfig = { thinkingBudget = 0 } } }",
             Self::Ollama => "extra = { think = false } (or \"low\" for models that always think)",
         }
+    }
+}
+
+/// A text without the thinking at its beginning.
+///
+/// Some servers open the thinking in their prompt template, so that only its end is in the text.
+fn after_thinking(text: &str) -> &str {
+    const OPEN: &str = "<think>";
+    const CLOSE: &str = "</think>";
+    let text = text.trim_start();
+    match (text.strip_prefix(OPEN), text.find(CLOSE)) {
+        (Some(_), Some(at)) => &text[at + CLOSE.len()..],
+        // Cut off while it was still thinking.
+        (Some(_), None) => "",
+        (None, Some(at)) if !text[..at].contains(OPEN) => &text[at + CLOSE.len()..],
+        _ => text,
     }
 }
 

@@ -1,17 +1,16 @@
 //! How many requests leave for an endpoint, and when.
 //!
-//! Everything that decides is in [`State`], which is given the time; here are the threads that wait for it.
+//! Everything that decides is in [`Gate`], which is given the time; here are the threads that wait for it.
 
 mod advertised;
 mod bucket;
+mod gate;
 mod pace;
-mod share;
-mod state;
 
 pub(crate) use advertised::Advertised;
-pub(crate) use state::{Outcome, Rules, Turn};
+pub(crate) use gate::{Outcome, Rules, Turn};
 
-use state::{State, Ticket};
+use gate::{Gate, Ticket};
 use std::{
     sync::{Condvar, Mutex, MutexGuard, PoisonError},
     time::{Duration, Instant},
@@ -22,7 +21,7 @@ const LOOK_UP: Duration = Duration::from_millis(100);
 
 /// Lets requests to one endpoint out, one after the other.
 pub(crate) struct Limiter {
-    state: Mutex<State>,
+    gate: Mutex<Gate>,
     /// Signalled when a request has come back.
     back: Condvar,
     /// Held by the one thread that is next. The others wait for it, not for the moment: else each moment would wake them all.
@@ -39,32 +38,32 @@ pub(crate) struct Permit<'a> {
 impl Limiter {
     /// A limiter that keeps rules.
     pub(crate) fn new(rules: Rules) -> Self {
-        Self { state: Mutex::new(State::new(rules, Instant::now())), back: Condvar::new(), next: Mutex::new(()) }
+        Self { gate: Mutex::new(Gate::new(rules, Instant::now())), back: Condvar::new(), next: Mutex::new(()) }
     }
 
     /// Waits until a request of about so many tokens may leave; nothing where `stopped` says so first.
     pub(crate) fn enter(&self, tokens: u64, stopped: impl Fn() -> bool) -> Option<Permit<'_>> {
         let _first_in_line = self.next.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut state = self.state();
+        let mut gate = self.gate();
         loop {
             if stopped() {
                 return None;
             }
             let now = Instant::now();
-            let wait = match state.turn(now) {
+            let wait = match gate.turn(now) {
                 Turn::Now => {
-                    let ticket = state.leave(now, tokens);
+                    let ticket = gate.leave(now, tokens);
                     return Some(Permit { limiter: self, ticket, outcome: None });
                 }
                 Turn::In(wait) => wait.min(LOOK_UP),
                 Turn::WhenOneIsBack => LOOK_UP,
             };
-            state = self.back.wait_timeout(state, wait).unwrap_or_else(PoisonError::into_inner).0;
+            gate = self.back.wait_timeout(gate, wait).unwrap_or_else(PoisonError::into_inner).0;
         }
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    fn gate(&self) -> MutexGuard<'_, Gate> {
+        self.gate.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -81,14 +80,14 @@ impl Permit<'_> {
 
     /// Takes to heart what the service says about its limits.
     pub(crate) fn learn(&self, advertised: Advertised) {
-        self.limiter.state().learn(advertised, Instant::now());
+        self.limiter.gate().learn(advertised, Instant::now());
     }
 }
 
 impl Drop for Permit<'_> {
     fn drop(&mut self) {
         let outcome = self.outcome.take().unwrap_or(Outcome::Failed);
-        self.limiter.state().back(self.ticket, Instant::now(), outcome);
+        self.limiter.gate().back(self.ticket, Instant::now(), outcome);
         self.limiter.back.notify_one();
     }
 }

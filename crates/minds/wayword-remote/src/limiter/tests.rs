@@ -1,4 +1,7 @@
-use super::{state::State, *};
+use super::{
+    gate::{Gate, Share},
+    *,
+};
 use crate::{Concurrency, faults::Load};
 use std::collections::BinaryHeap;
 
@@ -13,89 +16,89 @@ fn ms(ms: u64) -> Duration {
 #[test]
 fn a_fixed_limit_stays() {
     let start = Instant::now();
-    let mut state = State::new(rules(Concurrency::Fixed(2)), start);
-    assert_eq!(state.turn(start), Turn::Now);
-    state.leave(start, 0);
-    assert_eq!(state.turn(start), Turn::Now);
-    let ticket = state.leave(start, 0);
-    assert_eq!(state.turn(start), Turn::WhenOneIsBack);
-    state.back(ticket, start + ms(200), Outcome::Burdened { load: Load::Over, after: None });
-    assert_eq!(state.turn(start + ms(200)), Turn::Now);
-    state.leave(start + ms(200), 0);
-    assert_eq!(state.turn(start + ms(900)), Turn::WhenOneIsBack);
+    let mut gate = Gate::new(rules(Concurrency::Fixed(2)), start);
+    assert_eq!(gate.turn(start), Turn::Now);
+    gate.leave(start, 0);
+    assert_eq!(gate.turn(start), Turn::Now);
+    let ticket = gate.leave(start, 0);
+    assert_eq!(gate.turn(start), Turn::WhenOneIsBack);
+    gate.back(ticket, start + ms(200), Outcome::Burdened { load: Load::Over, after: None });
+    assert_eq!(gate.turn(start + ms(200)), Turn::Now);
+    gate.leave(start + ms(200), 0);
+    assert_eq!(gate.turn(start + ms(900)), Turn::WhenOneIsBack);
 }
 
 #[test]
 fn a_pause_holds_everybody() {
     let start = Instant::now();
-    let mut state = State::new(rules(Concurrency::Fixed(4)), start);
-    let ticket = state.leave(start, 0);
-    state.back(ticket, start + ms(50), Outcome::Burdened { load: Load::Over, after: Some(ms(1000)) });
-    assert_eq!(state.turn(start + ms(60)), Turn::In(ms(990)));
-    assert_eq!(state.turn(start + ms(1050)), Turn::Now);
+    let mut gate = Gate::new(rules(Concurrency::Fixed(4)), start);
+    let ticket = gate.leave(start, 0);
+    gate.back(ticket, start + ms(50), Outcome::Burdened { load: Load::Over, after: Some(ms(1000)) });
+    assert_eq!(gate.turn(start + ms(60)), Turn::In(ms(990)));
+    assert_eq!(gate.turn(start + ms(1050)), Turn::Now);
 }
 
 #[test]
 fn a_refusal_among_many_answers_holds_nobody_else() {
     let start = Instant::now();
-    let mut state = State::new(rules(Concurrency::Fixed(4)), start);
+    let mut gate = Gate::new(rules(Concurrency::Fixed(4)), start);
     let mut now = start;
-    let mut meet = |state: &mut State, outcome: Outcome| {
+    let mut meet = |gate: &mut Gate, outcome: Outcome| {
         now += ms(10);
-        let ticket = state.leave(now, 0);
-        state.back(ticket, now, outcome);
-        state.turn(now)
+        let ticket = gate.leave(now, 0);
+        gate.back(ticket, now, outcome);
+        gate.turn(now)
     };
     let refused = Outcome::Burdened { load: Load::Over, after: Some(ms(1000)) };
     for _ in 0..50 {
-        meet(&mut state, Outcome::Answered { tokens: 1 });
+        meet(&mut gate, Outcome::Answered { tokens: 1 });
     }
-    assert_eq!(meet(&mut state, refused), Turn::Now);
+    assert_eq!(meet(&mut gate, refused), Turn::Now);
     // In a row they are no chance.
-    assert!((0..10).any(|_| meet(&mut state, refused) == Turn::In(ms(1000))));
+    assert!((0..10).any(|_| meet(&mut gate, refused) == Turn::In(ms(1000))));
 }
 
 #[test]
 fn an_adaptive_limit_grows_shrinks_once_and_ignores_chance() {
     let start = Instant::now();
-    let mut state = State::new(rules(Concurrency::Adaptive { most: 16 }), start);
+    let mut gate = Gate::new(rules(Concurrency::Adaptive { most: 16 }), start);
     let mut now = start;
     // Everything that may leave leaves, and is back with the same outcome.
-    let mut round = |state: &mut State, outcome: Outcome| {
+    let mut round = |gate: &mut Gate, outcome: Outcome| {
         let mut out = Vec::new();
-        while state.turn(now) == Turn::Now {
-            out.push(state.leave(now, 0));
+        while gate.turn(now) == Turn::Now {
+            out.push(gate.leave(now, 0));
         }
         now += ms(200);
-        out.into_iter().for_each(|ticket| state.back(ticket, now, outcome));
+        out.into_iter().for_each(|ticket| gate.back(ticket, now, outcome));
         now += ms(200);
     };
     for _ in 0..40 {
-        round(&mut state, Outcome::Answered { tokens: 1 });
+        round(&mut gate, Outcome::Answered { tokens: 1 });
     }
-    assert_eq!(state.limit(), 16.0);
-    round(&mut state, Outcome::Failed);
-    assert_eq!(state.limit(), 16.0);
-    round(&mut state, Outcome::Burdened { load: Load::Slow, after: None });
-    assert!((state.limit() - 11.2).abs() < 1e-9, "{}", state.limit());
+    assert_eq!(gate.limit(), 16.0);
+    round(&mut gate, Outcome::Failed);
+    assert_eq!(gate.limit(), 16.0);
+    round(&mut gate, Outcome::Burdened { load: Load::Slow, after: None });
+    assert!((gate.limit() - 11.2).abs() < 1e-9, "{}", gate.limit());
     // The smallest limit is one, however bad it gets.
     for _ in 0..100 {
-        round(&mut state, Outcome::Burdened { load: Load::Slow, after: None });
+        round(&mut gate, Outcome::Burdened { load: Load::Slow, after: None });
     }
-    assert_eq!(state.limit(), 1.0);
+    assert_eq!(gate.limit(), 1.0);
 }
 
 #[test]
 fn rates_of_requests_and_tokens_are_kept() {
     let start = Instant::now();
     let minute = |rules: Rules, tokens: u64| {
-        let mut state = State::new(rules, start);
+        let mut gate = Gate::new(rules, start);
         let (mut now, mut left) = (start, 0);
         while now < start + Duration::from_secs(60) {
-            match state.turn(now) {
+            match gate.turn(now) {
                 Turn::Now => {
-                    let ticket = state.leave(now, tokens);
-                    state.back(ticket, now, Outcome::Answered { tokens });
+                    let ticket = gate.leave(now, tokens);
+                    gate.back(ticket, now, Outcome::Answered { tokens });
                     left += 1;
                 }
                 Turn::In(wait) => now += wait.max(ms(1)),
@@ -119,12 +122,12 @@ fn the_smaller_of_the_users_and_the_services_limit_counts() {
     let start = Instant::now();
     let own = Rules { requests_per_minute: Some(60.0), ..rules(Concurrency::Fixed(9)) };
     for (told, expected) in [(30.0, 2000), (600.0, 1000)] {
-        let mut state = State::new(own, start);
-        state.learn(Advertised { requests_per_minute: Some(told), tokens_per_minute: None }, start);
-        while state.turn(start) == Turn::Now {
-            state.leave(start, 0);
+        let mut gate = Gate::new(own, start);
+        gate.learn(Advertised { requests_per_minute: Some(told), tokens_per_minute: None }, start);
+        while gate.turn(start) == Turn::Now {
+            gate.leave(start, 0);
         }
-        assert_eq!(state.turn(start), Turn::In(ms(expected)), "{told}");
+        assert_eq!(gate.turn(start), Turn::In(ms(expected)), "{told}");
     }
 }
 
@@ -170,14 +173,14 @@ impl Storm {
 fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) {
     let start = Instant::now();
     let end = start + Duration::from_secs(seconds);
-    let mut state = State::new(rules(concurrency), start);
+    let mut gate = Gate::new(rules(concurrency), start);
     let (mut level, mut filled, mut answered, mut refused, mut drawn) = (storm.burst, start, 0, 0, 0_u64);
     // Requests on the wire by when they are back: the earliest first.
     let mut out: BinaryHeap<std::cmp::Reverse<(Instant, usize, Fate)>> = BinaryHeap::new();
     let mut tickets = Vec::new();
     let mut now = start;
     while now < end {
-        let wait = match state.turn(now) {
+        let wait = match gate.turn(now) {
             Turn::Now => {
                 level = (level + (now - filled).as_secs_f64() * storm.per_s).min(storm.burst);
                 filled = now;
@@ -192,7 +195,7 @@ fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) 
                     Fate::Answered | Fate::Failed | Fate::Whim => storm.latency,
                 };
                 out.push(std::cmp::Reverse((now + latency, tickets.len(), fate)));
-                tickets.push(state.leave(now, 0));
+                tickets.push(gate.leave(now, 0));
                 continue;
             }
             Turn::In(wait) => Some(now + wait.max(Duration::from_micros(50))),
@@ -210,7 +213,7 @@ fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) 
             };
             answered += u32::from(fate == Fate::Answered);
             refused += u32::from(fate == Fate::Refused);
-            state.back(tickets[ticket], at, outcome);
+            gate.back(tickets[ticket], at, outcome);
         }
     }
     (f64::from(answered) / seconds as f64, refused)
@@ -243,29 +246,29 @@ fn a_storm_at_an_unknown_rate_brings_most_of_what_is_possible() {
 #[test]
 fn a_pace_that_nobody_tried_is_forgotten() {
     let start = Instant::now();
-    let mut state = State::new(rules(Concurrency::Fixed(64)), start);
+    let mut gate = Gate::new(rules(Concurrency::Fixed(64)), start);
     let mut now = start;
     // Ten a second for so long, and then so many refused that it is no whim.
-    let mut ten_a_second = |state: &mut State, seconds: u64| {
+    let mut ten_a_second = |gate: &mut Gate, seconds: u64| {
         for _ in 0..10 * seconds {
             now += ms(100);
-            assert_eq!(state.turn(now), Turn::Now);
-            let ticket = state.leave(now, 0);
-            state.back(ticket, now + ms(20), Outcome::Answered { tokens: 1 });
+            assert_eq!(gate.turn(now), Turn::Now);
+            let ticket = gate.leave(now, 0);
+            gate.back(ticket, now + ms(20), Outcome::Answered { tokens: 1 });
         }
         for _ in 0..10 {
             now += ms(100);
-            let ticket = state.leave(now, 0);
-            state.back(ticket, now + ms(20), Outcome::Burdened { load: Load::Over, after: None });
+            let ticket = gate.leave(now, 0);
+            gate.back(ticket, now + ms(20), Outcome::Burdened { load: Load::Over, after: None });
         }
         now
     };
-    ten_a_second(&mut state, 60);
+    ten_a_second(&mut gate, 60);
     // In a day the learned pace has grown without bounds; the next refusal brings it back at once.
-    let refused_at = ten_a_second(&mut state, 86_400);
-    state.turn(refused_at + ms(100));
-    state.leave(refused_at + ms(100), 0);
-    let turn = state.turn(refused_at + ms(100));
+    let refused_at = ten_a_second(&mut gate, 86_400);
+    gate.turn(refused_at + ms(100));
+    gate.leave(refused_at + ms(100), 0);
+    let turn = gate.turn(refused_at + ms(100));
     assert!(matches!(turn, Turn::In(wait) if wait > ms(60)), "{turn:?}");
 }
 
@@ -312,4 +315,15 @@ fn no_more_are_out_than_the_limit() {
         }
     });
     assert_eq!(most.load(SeqCst), 3);
+}
+
+#[test]
+fn the_first_counts_whole_and_old_ones_hardly() {
+    let mut share = Share::default();
+    assert_eq!(share.count(true), 1.0);
+    let after_calm = (0..400).fold(1.0, |_, _| share.count(false));
+    assert!(after_calm < 0.01, "{after_calm}");
+    assert!((0.01..0.03).contains(&share.count(true)));
+    let after_storm = (0..400).fold(0.0, |_, _| share.count(true));
+    assert!(after_storm > 0.99, "{after_storm}");
 }

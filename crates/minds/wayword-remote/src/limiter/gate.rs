@@ -1,6 +1,6 @@
 //! What decides when a request leaves. It has no clock: every function is told the time.
 
-use super::{advertised::Advertised, bucket::Bucket, pace::Pace, share::Share};
+use super::{advertised::Advertised, bucket::Bucket, pace::Pace};
 use crate::{Concurrency, faults::Load};
 use std::time::{Duration, Instant};
 
@@ -16,6 +16,9 @@ const SHORTEST_WINDOW: Duration = Duration::from_millis(100);
 /// Less than this share of refusals, or of answers that came too late, is chance and no limit: it holds back the request that met
 /// it, and no other. Services in trouble refuse at random, and each such refusal would else stop everybody for as long as it asks.
 const CHANCE: f64 = 0.125;
+
+/// About so many requests are remembered in a [`Share`].
+const REMEMBERED: f64 = 64.0;
 
 /// What is to be kept.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +70,7 @@ pub(super) struct Ticket {
 
 /// One endpoint's limits, and what is on its way.
 #[derive(Debug)]
-pub(super) struct State {
+pub(super) struct Gate {
     rules: Rules,
     /// How many on the wire the service bears; a fraction, because it grows by less than one at a time. Where the number is
     /// fixed, it spaces requests out after a refusal, and bounds nothing.
@@ -88,7 +91,7 @@ pub(super) struct State {
     pace: Pace,
 }
 
-impl State {
+impl Gate {
     pub(super) fn new(rules: Rules, now: Instant) -> Self {
         let bucket = |rate: Option<f64>| rate.map(|rate| Bucket::per_minute(rate, now));
         let limit = match rules.concurrency {
@@ -216,8 +219,30 @@ impl State {
     }
 }
 
+/// A share of the latest requests, in which older ones count for less and less.
+#[derive(Debug, Default)]
+pub(super) struct Share {
+    met: f64,
+    all: f64,
+}
+
+impl Share {
+    /// Counts a request; returns the share with it.
+    pub(super) fn count(&mut self, met: bool) -> f64 {
+        let kept = 1.0 - 1.0 / REMEMBERED;
+        self.met = self.met * kept + f64::from(u8::from(met));
+        self.all = self.all * kept + 1.0;
+        self.met / self.all
+    }
+
+    /// Takes what was met so far as dealt with.
+    pub(super) fn settle(&mut self) {
+        self.met = 0.0;
+    }
+}
+
 #[cfg(test)]
-impl State {
+impl Gate {
     pub(super) fn limit(&self) -> f64 {
         self.limit
     }
