@@ -9,12 +9,12 @@ const PLANES_M: [f32; 2] = [0.1, 100.0];
 
 /// The passes that are asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PassKind {
     Img,
     Id,
 }
 
-impl Kind {
+impl PassKind {
     /// Its number in `imag`.
     pub(super) fn mask(self) -> i32 {
         match self {
@@ -36,7 +36,7 @@ impl Kind {
 ///
 /// # Errors
 /// When it cannot be decoded, or is not of the size that was announced with it.
-pub(super) fn rgb(pass: &Pass<'_>, kind: Kind, size: (u32, u32)) -> Result<Vec<u8>, TdwError> {
+pub(super) fn rgb(pass: &Pass<'_>, kind: PassKind, size: (u32, u32)) -> Result<Vec<u8>, TdwError> {
     let format = if pass.extension == 2 { ImageFormat::Jpeg } else { ImageFormat::Png };
     decode::rgb(pass.bytes, format, size).map_err(|reason| TdwError::Picture { pass: kind.name(), reason })
 }

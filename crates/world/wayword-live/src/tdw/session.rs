@@ -5,7 +5,7 @@ use super::{
     controller::{Controller, Response},
     error::TdwError,
     output::{Bounds, NavMeshPath, Occupancy, OnNavMesh, Output, Segment},
-    pictures::{self, Kind},
+    pictures::{self, PassKind},
 };
 use crate::{
     live::{Shot, Survey},
@@ -35,7 +35,7 @@ pub(super) fn load(
     mut commands: Vec<Command>,
     (width, height): (u32, u32),
 ) -> Result<(), TdwError> {
-    let passes = [Kind::Img, Kind::Id].map(Kind::name).to_vec();
+    let passes = [PassKind::Img, PassKind::Id].map(PassKind::name).to_vec();
     commands.extend([
         Command::SetScreenSize { width, height },
         Command::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: AVATAR.to_owned() },
@@ -152,15 +152,15 @@ pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot
     })?;
     if (images.width, images.height) != size {
         let reason = format!("{} x {} pixels: expected {} x {}", images.width, images.height, size.0, size.1);
-        return Err(TdwError::Picture { pass: Kind::Img.name(), reason });
+        return Err(TdwError::Picture { pass: PassKind::Img.name(), reason });
     }
-    let pixels = |kind: Kind| {
+    let pixels = |kind: PassKind| {
         let pass = images.passes.iter().find(|pass| pass.mask == kind.mask());
         let missing = || TdwError::Picture { pass: kind.name(), reason: "it was not sent".to_owned() };
         pictures::rgb(pass.ok_or_else(missing)?, kind, size)
     };
-    let ids = pixels(Kind::Id)?.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect();
-    Ok(Shot { rgb: pixels(Kind::Img)?, ids })
+    let ids = pixels(PassKind::Id)?.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect();
+    Ok(Shot { rgb: pixels(PassKind::Img)?, ids })
 }
 
 fn vector(place: DVec3) -> Vector3 {

@@ -3,7 +3,7 @@
 use super::{
     flat::{Field, buffer},
     pictures,
-    state::{Avatar, Pictures, State, vector},
+    state::{Avatar, BuildState, Pictures, vector},
     world::unity_f32,
 };
 use crate::unity::wayword_forward_from_unity_rotation;
@@ -16,7 +16,7 @@ const UNITY: &str = "2020.3.24f1";
 const FINEST_CELL_M: f64 = 0.1;
 
 /// The frame that answers a command; none where it asks for nothing, or for what the stand-in does not have.
-pub(super) fn to(state: &State, kind: &str, command: &Value) -> Vec<Vec<u8>> {
+pub(super) fn to(state: &BuildState, kind: &str, command: &Value) -> Vec<Vec<u8>> {
     let id = command["id"].as_i64().unwrap_or(0) as i32;
     let avatars = || state.avatars.iter();
     match kind {
@@ -38,7 +38,7 @@ pub(super) fn to(state: &State, kind: &str, command: &Value) -> Vec<Vec<u8>> {
 }
 
 /// The pictures that are due with this answer.
-pub(super) fn pictures(state: &mut State) -> Vec<Vec<u8>> {
+pub(super) fn pictures(state: &mut BuildState) -> Vec<Vec<u8>> {
     let ids = match &state.pictures {
         Pictures::None => return Vec::new(),
         Pictures::Once(ids) | Pictures::Always(ids) => ids.clone(),
@@ -50,7 +50,7 @@ pub(super) fn pictures(state: &mut State) -> Vec<Vec<u8>> {
     wanted.filter_map(|avatar| images(state, avatar)).collect()
 }
 
-fn images(state: &State, avatar: &Avatar) -> Option<Vec<u8>> {
+fn images(state: &BuildState, avatar: &Avatar) -> Option<Vec<u8>> {
     let (width, height) = state.size;
     let picture = state.world.scene.picture(&avatar.camera(state.size)).ok()?;
     let is_object = |id| state.world.is_object(id);
@@ -76,15 +76,15 @@ fn version(version: &str) -> Vec<u8> {
     [b"\0\0\0\0vers\x01", &[version.len() as u8][..], version.as_bytes(), UNITY.as_bytes()].concat()
 }
 
-fn ids(state: &State) -> Vec<i32> {
+fn ids(state: &BuildState) -> Vec<i32> {
     state.world.objects().map(|(id, _)| id as i32).collect()
 }
 
-fn texts(state: &State, text: impl Fn(&Object) -> String) -> Field {
+fn texts(state: &BuildState, text: impl Fn(&Object) -> String) -> Field {
     Field::Texts(state.world.objects().map(|(_, object)| text(object)).collect())
 }
 
-fn segmentation(state: &State) -> Vec<u8> {
+fn segmentation(state: &BuildState) -> Vec<u8> {
     let colours = state.world.objects().flat_map(|(id, _)| pictures::id_colour(id).map(i32::from));
     let name = |object: &Object| {
         let colour = object.colour.map(|colour| format!("{colour}_")).unwrap_or_default();
@@ -99,7 +99,7 @@ fn segmentation(state: &State) -> Vec<u8> {
     buffer(b"segm", fields)
 }
 
-fn categories(state: &State) -> Vec<u8> {
+fn categories(state: &BuildState) -> Vec<u8> {
     let mut names: Vec<&str> = state.world.objects().map(|(_, object)| object.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
@@ -110,7 +110,7 @@ fn categories(state: &State) -> Vec<u8> {
     buffer(b"cate", vec![Field::Tables(names.into_iter().enumerate().map(category).collect())])
 }
 
-fn regions(state: &State) -> Vec<u8> {
+fn regions(state: &BuildState) -> Vec<u8> {
     let raw = state.world.rooms().flat_map(|(id, centre, size)| {
         let numbers = centre.into_iter().chain(size).flat_map(f32::to_le_bytes);
         id.to_le_bytes().into_iter().chain(numbers).collect::<Vec<u8>>()
@@ -126,12 +126,12 @@ fn points(object: &Object) -> [[f32; 3]; 7] {
     sides.map(|side| unity_f32(centre + side * half))
 }
 
-fn bounds(state: &State) -> Vec<u8> {
+fn bounds(state: &BuildState) -> Vec<u8> {
     let numbers = state.world.objects().flat_map(|(_, object)| points(object)).flatten();
     buffer(b"boun", vec![Field::I32s(ids(state)), Field::F32s(numbers.collect())])
 }
 
-fn transforms(state: &State) -> Vec<u8> {
+fn transforms(state: &BuildState) -> Vec<u8> {
     let each = |numbers: &dyn Fn(&Object) -> Vec<f32>| {
         Field::F32s(state.world.objects().flat_map(|(_, object)| numbers(object)).collect())
     };
@@ -144,7 +144,7 @@ fn transforms(state: &State) -> Vec<u8> {
     buffer(b"tran", fields)
 }
 
-fn occupancy(state: &State, cell_m: f64) -> Vec<u8> {
+fn occupancy(state: &BuildState, cell_m: f64) -> Vec<u8> {
     let cell_m = if cell_m.is_finite() { cell_m.max(FINEST_CELL_M) } else { 0.5 };
     let (low, high) = state.world.extent();
     let count = |from: f64, to: f64| ((to - from) / cell_m).ceil() as usize;
@@ -184,7 +184,7 @@ fn sensors(avatar: &Avatar) -> Vec<u8> {
 }
 
 /// Unity's own matrices: camera space is right-handed, looking along -z.
-fn camera_matrices(state: &State, avatar: &Avatar) -> Vec<u8> {
+fn camera_matrices(state: &BuildState, avatar: &Avatar) -> Vec<u8> {
     let camera = avatar.camera(state.size);
     let axes = camera.world_from_camera();
     let rows = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| {
@@ -208,14 +208,14 @@ fn camera_matrices(state: &State, avatar: &Avatar) -> Vec<u8> {
     buffer(b"cama", fields)
 }
 
-fn on_nav_mesh(state: &State, command: &Value, id: i32) -> Vec<u8> {
+fn on_nav_mesh(state: &BuildState, command: &Value, id: i32) -> Vec<u8> {
     let asked = vector(&command["position"]);
     let found = state.world.on_nav_mesh(asked, command["max_distance"].as_f64().unwrap_or(1.0));
     let position = found.map_or([0.0; 3], unity_f32);
     buffer(b"isnm", vec![Field::F32s(position.to_vec()), Field::U8(u8::from(found.is_some())), Field::I32(id)])
 }
 
-fn path(state: &State, command: &Value, id: i32) -> Vec<u8> {
+fn path(state: &BuildState, command: &Value, id: i32) -> Vec<u8> {
     let way = state.world.way(vector(&command["origin"]), vector(&command["destination"]));
     let complete = way.is_some();
     let raw = way.into_iter().flatten().flat_map(unity_f32).flat_map(f32::to_le_bytes);

@@ -11,7 +11,8 @@ mod world;
 
 use super::zmtp::{Peer, Role, WireError};
 pub(crate) use pictures::{id_colour, png_file as png};
-use state::State;
+use serde_json::Value;
+use state::BuildState;
 use std::{
     net::{SocketAddr, TcpStream},
     sync::{
@@ -111,7 +112,7 @@ impl Build {
         let mut peer = Peer::greet(stream, Role::Req, Instant::now() + PATIENCE)?;
         peer.send(&[b"hello"])?;
         let world = world.get_or_insert_with(|| Arc::new(World::with_one_storey(self.options.house))).clone();
-        let mut state = State::new(world, self.options.version);
+        let mut state = BuildState::new(world, self.options.version);
         loop {
             while !peer.has_news(PAUSE) {
                 if self.is_stopped() {
@@ -137,18 +138,31 @@ impl Build {
         }
     }
 
-    fn frames(&mut self, state: &mut State, commands: &[Vec<u8>]) -> Vec<Vec<u8>> {
+    fn frames(&mut self, state: &mut BuildState, commands: &[Vec<u8>]) -> Vec<Vec<u8>> {
         if self.options.deaf > 0 {
             self.options.deaf -= 1;
             return vec![b"\0\0\0\0ftre".to_vec(), vec![0; 4]];
         }
         let mut frames = match &self.options.canned {
             Some(frames) if state.is_known() => frames.clone(),
-            _ => state.obey(commands),
+            _ => obey(state, commands),
         };
         frames.push(self.answered.to_be_bytes().to_vec());
         frames
     }
+}
+
+/// Does what it is told and gives back what it was asked for, one frame each.
+fn obey(state: &mut BuildState, message: &[Vec<u8>]) -> Vec<Vec<u8>> {
+    let commands: Vec<Value> = message.first().and_then(|text| serde_json::from_slice(text).ok()).unwrap_or_default();
+    let mut frames = Vec::new();
+    for command in &commands {
+        let kind = command["$type"].as_str().unwrap_or_default();
+        state.obey(kind, command);
+        frames.extend(answers::to(state, kind, command));
+    }
+    frames.extend(answers::pictures(state));
+    frames
 }
 
 /// An `imag` frame with one raw pass of a size, for [`StandInOptions::canned`]: the largest picture that the build sends.
@@ -182,10 +196,10 @@ pub(super) fn frames_of_every_kind() -> &'static [(String, Vec<u8>)] {
         {"$type":"send_nav_mesh_path","origin":{"x":1,"y":0,"z":1},"destination":{"x":3,"y":0,"z":3},"id":4},
         {"$type":"terminate"}]"#;
     FRAMES.get_or_init(|| {
-        let mut old = State::new(Arc::new(World::with_one_storey(1)), "1.12.27");
-        let mut frames = old.obey(&[br#"[{"$type":"send_version"}]"#.to_vec()]);
-        let mut new = State::new(old.world, "1.13.0.0");
-        frames.extend(new.obey(&[COMMANDS.as_bytes().to_vec()]));
+        let mut old = BuildState::new(Arc::new(World::with_one_storey(1)), "1.12.27");
+        let mut frames = obey(&mut old, &[br#"[{"$type":"send_version"}]"#.to_vec()]);
+        let mut new = BuildState::new(old.world, "1.13.0.0");
+        frames.extend(obey(&mut new, &[COMMANDS.as_bytes().to_vec()]));
         frames.into_iter().map(|frame| (String::from_utf8_lossy(&frame[4..8]).into_owned(), frame)).collect()
     })
 }

@@ -1,6 +1,6 @@
 //! What the stand-in has been told so far.
 
-use super::{answers, world::World};
+use super::world::World;
 use crate::unity::{wayword_forward_from_unity_rotation, wayword_from_unity};
 use serde_json::Value;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub(super) enum Pictures {
 }
 
 #[derive(Debug)]
-pub(super) struct State {
+pub(super) struct BuildState {
     pub(super) world: Arc<World>,
     pub(super) version: &'static str,
     pub(super) avatars: Vec<Avatar>,
@@ -37,7 +37,7 @@ pub(super) struct State {
     asked_version: bool,
 }
 
-impl State {
+impl BuildState {
     pub(super) fn new(world: Arc<World>, version: &'static str) -> Self {
         Self {
             world,
@@ -56,22 +56,8 @@ impl State {
         self.asked_version
     }
 
-    /// Does what it is told and gives back what it was asked for, one frame each.
-    pub(super) fn obey(&mut self, message: &[Vec<u8>]) -> Vec<Vec<u8>> {
-        let commands: Vec<Value> =
-            message.first().and_then(|text| serde_json::from_slice(text).ok()).unwrap_or_default();
-        let mut frames = Vec::new();
-        for command in &commands {
-            let kind = command["$type"].as_str().unwrap_or_default();
-            self.asked_version |= kind == "send_version";
-            self.change(kind, command);
-            frames.extend(answers::to(self, kind, command));
-        }
-        frames.extend(answers::pictures(self));
-        frames
-    }
-
-    fn change(&mut self, kind: &str, command: &Value) {
+    /// Does what a command says.
+    pub(super) fn obey(&mut self, kind: &str, command: &Value) {
         match kind {
             "load_scene" | "add_scene" => self.avatars.clear(),
             "create_avatar" => self.avatars.push(Avatar {
@@ -91,6 +77,7 @@ impl State {
                     _ => Pictures::Once(ids),
                 };
             }
+            "send_version" => self.asked_version = true,
             "terminate" => self.has_quit = true,
             _ => self.move_avatar(kind, command),
         }

@@ -40,11 +40,11 @@ impl StandIn {
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = stop.clone();
         let thread = spawn(move || {
-            let mut state = State::default();
+            let mut filmed = Filmed::default();
             while !stopped.load(Ordering::Relaxed) {
                 match listener.accept() {
                     // Whoever breaks off a request gets no answer.
-                    Ok((stream, _)) => drop(http::serve(stream, |request| state.answer(request))),
+                    Ok((stream, _)) => drop(http::serve(stream, |request| filmed.answer(request))),
                     Err(_) => sleep(PAUSE),
                 }
             }
@@ -72,13 +72,14 @@ impl Drop for StandIn {
     }
 }
 
+/// The home that is shown, and the cameras in it.
 #[derive(Debug, Default)]
-struct State {
+struct Filmed {
     home: Option<Home>,
     cameras: Vec<Value>,
 }
 
-impl State {
+impl Filmed {
     fn answer(&mut self, request: &Value) -> Value {
         let done = self.act(request);
         let (success, fields) =
