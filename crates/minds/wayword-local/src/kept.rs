@@ -1,6 +1,6 @@
 //! Calls of a model in process, each made once and kept in the ledger: they cost no money, but minutes.
 
-use crate::{EyeKind, LocalError, eyes::Eye, picture_cache::digest};
+use crate::{EyeKind, LocalError, eyes::Eye, picture::digest};
 use serde_json::{Value, json};
 use std::{
     sync::{Arc, Mutex, PoisonError},

@@ -22,7 +22,6 @@ mod memory;
 mod minds;
 mod ops;
 mod picture;
-mod picture_cache;
 mod text;
 mod weights;
 

@@ -10,6 +10,7 @@ use candle_core::Tensor;
 use config::Config;
 use rayon::prelude::*;
 use resample::{Axis, Filter, resample};
+use sha2::{Digest, Sha256};
 use std::path::Path;
 use wayword_core::Image;
 
@@ -90,6 +91,15 @@ impl Processor {
 /// The longer edge when the shorter one becomes `edge`; Python's arithmetic.
 fn longer(edge: usize, long: usize, short: usize) -> usize {
     ((edge * long) as f64 / short as f64) as usize
+}
+
+/// Tells pictures apart by their size and pixels.
+pub(crate) fn digest(picture: &Image) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    hash.update(picture.width_px().to_le_bytes());
+    hash.update(picture.height_px().to_le_bytes());
+    hash.update(picture.rgb());
+    hash.finalize().into()
 }
 
 #[cfg(test)]

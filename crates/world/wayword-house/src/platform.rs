@@ -4,12 +4,9 @@ use super::{
     home::{Home, unknown},
     sample,
 };
-use std::{
-    collections::{BTreeSet, VecDeque},
-    sync::{Arc, Mutex, PoisonError},
-};
+use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph,
+    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View, ViewpointGraph,
     ViewpointId,
 };
 
@@ -22,7 +19,7 @@ const WIDEST_RAD: f64 = 2.6;
 #[derive(Debug)]
 pub struct HousePlatform {
     options: HouseOptions,
-    ready: Mutex<VecDeque<Arc<Home>>>,
+    ready: Recent<SceneId, Home>,
 }
 
 /// What can be chosen about the platform.
@@ -48,7 +45,7 @@ impl HousePlatform {
     /// The platform with its default options.
     #[must_use]
     pub fn new(options: HouseOptions) -> Self {
-        Self { options, ready: Mutex::new(VecDeque::new()) }
+        Self { options, ready: Recent::new(READY) }
     }
 
     /// The scene of a seed.
@@ -61,16 +58,7 @@ impl HousePlatform {
     }
 
     fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
-        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(at) = ready.iter().position(|home| home.id == *scene) {
-            let home = ready.remove(at).ok_or_else(|| unknown(scene.as_str()))?;
-            ready.push_front(home.clone());
-            return Ok(home);
-        }
-        let home = Arc::new(Home::build(scene)?);
-        ready.push_front(home.clone());
-        ready.truncate(READY);
-        Ok(home)
+        self.ready.get_or_make(scene.clone(), || Home::build(scene))
     }
 }
 

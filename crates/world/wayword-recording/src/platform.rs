@@ -11,13 +11,13 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     ops::RangeInclusive,
     path::Path as FilePath,
-    sync::{Arc, Mutex, PoisonError},
+    sync::Arc,
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, Heading, Image, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
-    View, ViewpointGraph, ViewpointId, path::Stop, rng,
+    DVec3, Frame, Gaze, Heading, Image, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, Recent,
+    SceneId, View, ViewpointGraph, ViewpointId, path::Stop, rng,
 };
-use wayword_world::{files, recent::Recent, said::Hear};
+use wayword_world::{files, said::Hear};
 
 /// Recordings that are kept open.
 const OPEN: usize = 8;
@@ -38,9 +38,8 @@ const HINT: &str = "record more, or set interval_m or interval_s in a recording.
 pub struct RecordingPlatform {
     source: Box<dyn Source>,
     hear: Hear,
+    /// One is opened at a time: all its pictures are looked at then, which two need not do at once.
     opened: Recent<SceneId, Opened>,
-    /// Held while one is opened: all its pictures are looked at then, which two need not do at once.
-    opening: Mutex<()>,
     pictures: Recent<(SceneId, usize), Image>,
 }
 
@@ -64,15 +63,10 @@ impl RecordingPlatform {
     /// When there is none, or this build cannot read its kind.
     pub fn open(path: &FilePath, hear: Hear) -> Result<Self, PlatformError> {
         let source = open::open(path)?;
-        Ok(Self { source, hear, opened: Recent::new(OPEN), opening: Mutex::new(()), pictures: Recent::new(KEPT) })
+        Ok(Self { source, hear, opened: Recent::one_at_a_time(OPEN), pictures: Recent::new(KEPT) })
     }
 
     fn opened(&self, scene: &SceneId) -> Result<Arc<Opened>, PlatformError> {
-        // Who asks for another one that is open need not wait.
-        if let Ok(opened) = self.opened.get_or_make(scene.clone(), || Err(())) {
-            return Ok(opened);
-        }
-        let _alone = self.opening.lock().unwrap_or_else(PoisonError::into_inner);
         self.opened.get_or_make(scene.clone(), || {
             let recording = self.source.open(scene)?;
             let mut seen: BTreeMap<usize, Image> = BTreeMap::new();
@@ -84,7 +78,7 @@ impl RecordingPlatform {
             (self.hear)(&told(scene, &recording, &choice));
             for number in &choice.stops {
                 if let Some(image) = seen.remove(number) {
-                    self.pictures.get_or_make((scene.clone(), *number), || Ok::<_, PlatformError>(image))?;
+                    self.pictures.put((scene.clone(), *number), image);
                 }
             }
             Opened::new(scene, recording, choice)
@@ -101,7 +95,7 @@ impl RecordingPlatform {
                 if number == wanted[0] {
                     first = Some(image);
                 } else {
-                    self.pictures.get_or_make((scene.clone(), number), || Ok::<_, PlatformError>(image))?;
+                    self.pictures.put((scene.clone(), number), image);
                 }
                 Ok(())
             })?;

@@ -10,7 +10,6 @@ pub mod episode_path;
 pub mod files;
 pub mod graph_walk;
 pub mod object_names;
-pub mod recent;
 pub mod region;
 pub mod said;
 pub mod wander;

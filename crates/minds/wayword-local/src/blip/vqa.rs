@@ -7,11 +7,17 @@ use super::{
     vision::Vision,
 };
 use crate::{
-    Device, LocalError, Precision, picture::Processor, picture_cache::PictureCache, text::Tokenizer, weights::Weights,
+    Device, LocalError, Precision,
+    picture::{Processor, digest},
+    text::Tokenizer,
+    weights::Weights,
 };
 use candle_core::{DType, Tensor};
 use std::path::Path;
-use wayword_core::Image;
+use wayword_core::{Image, Recent};
+
+/// So many pictures' states and keys are kept, about 45 MB each: a frame is asked about ten times.
+const KEPT: usize = 4;
 
 /// A BLIP that answers questions about pictures: an encoder reads the question while it looks at the picture, and a decoder
 /// answers from what the encoder made of both.
@@ -23,7 +29,7 @@ pub struct BlipVqa {
     encoder: TextModel,
     pub(super) decoder: Decoder,
     longest: usize,
-    seen: PictureCache<Attended>,
+    seen: Recent<[u8; 32], Attended>,
     device: Device,
 }
 
@@ -44,7 +50,7 @@ impl BlipVqa {
             encoder: TextModel::load(&weights.scope("text_encoder"), &config.text_config)?,
             decoder: Decoder::load(&weights.scope("text_decoder"), &config.text_config)?,
             longest: config.text_config.max_position_embeddings,
-            seen: PictureCache::default(),
+            seen: Recent::one_at_a_time(KEPT),
             device: device.clone(),
         })
     }
@@ -75,7 +81,7 @@ impl BlipVqa {
 
     pub(super) fn read(&self, picture: &Image, question: &str) -> Result<Tensor, LocalError> {
         let compute = |error: candle_core::Error| LocalError::compute(&self.name, &error);
-        let seen = self.seen.get(picture, || {
+        let seen = self.seen.get_or_make(digest(picture), || {
             let pixels = self.processor.tensor(&[picture], &self.device)?;
             self.vision.of(&pixels).and_then(|states| self.encoder.attended(&states)).map_err(compute)
         })?;

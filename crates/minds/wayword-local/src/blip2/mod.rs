@@ -7,8 +7,12 @@ mod qformer;
 mod t5;
 
 use crate::{
-    Device, LocalError, Precision, blip::Vision, ops::Linear, picture::Processor, picture_cache::PictureCache,
-    text::Tokenizer, weights::Weights,
+    Device, LocalError, Precision,
+    blip::Vision,
+    ops::Linear,
+    picture::{Processor, digest},
+    text::Tokenizer,
+    weights::Weights,
 };
 use candle_core::{DType, Tensor};
 use config::{Config, TextConfig};
@@ -16,7 +20,10 @@ use opt::Opt;
 use qformer::QFormer;
 use std::path::Path;
 use t5::T5;
-use wayword_core::Image;
+use wayword_core::{Image, Recent};
+
+/// So many pictures are kept as they stand before the words: a frame is asked about ten times.
+const KEPT: usize = 4;
 
 /// A BLIP-2.
 pub struct Blip2 {
@@ -27,7 +34,7 @@ pub struct Blip2 {
     queries: QFormer,
     projection: Linear,
     speaker: Speaker,
-    seen: PictureCache<Tensor>,
+    seen: Recent<[u8; 32], Tensor>,
     device: Device,
 }
 
@@ -63,7 +70,7 @@ impl Blip2 {
             queries: QFormer::load(&all, &config.qformer_config, config.num_query_tokens)?,
             projection: all.linear("language_projection", config.qformer_config.hidden_size, width)?,
             speaker,
-            seen: PictureCache::default(),
+            seen: Recent::one_at_a_time(KEPT),
             device: device.clone(),
         })
     }
@@ -81,7 +88,7 @@ impl Blip2 {
     /// # Errors
     /// When the computation fails.
     pub fn tokens(&self, picture: &Image, prompt: &str, most_tokens: usize) -> Result<Vec<u32>, LocalError> {
-        let seen = self.seen.get(picture, || self.see(picture))?;
+        let seen = self.seen.get_or_make(digest(picture), || self.see(picture))?;
         let ids = self.tokenizer.ids(prompt, LONGEST_PROMPT)?;
         let said = Tensor::new(&ids[..], &self.device.0).and_then(|ids| match &self.speaker {
             Speaker::T5(t5) => t5.speak(&seen, &ids.unsqueeze(0)?, most_tokens),

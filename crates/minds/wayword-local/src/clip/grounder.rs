@@ -1,15 +1,13 @@
 //! CLIP as a mind that says how well phrases fit views.
 
-use super::{
-    Clip,
-    cache::{Cache, Key, Vector, key_of_text},
-};
-use crate::{LocalError, picture_cache::digest};
-use std::{
-    collections::BTreeMap,
-    sync::{Arc, Mutex, PoisonError},
-};
-use wayword_core::{Grounder, Image, ModelError, View};
+use super::Clip;
+use crate::{LocalError, picture::digest};
+use sha2::{Digest, Sha256};
+use std::{collections::BTreeMap, sync::Arc};
+use wayword_core::{Grounder, Image, ModelError, Recent, View};
+
+/// What a vector is of: a hash of its content.
+type Key = [u8; 32];
 
 /// So many vectors of pictures are kept, and as many of texts: some 50 MB each at most.
 const KEPT: usize = 16 << 10;
@@ -19,15 +17,15 @@ const KEPT: usize = 16 << 10;
 /// picture or a phrase came to is kept, by its content.
 pub struct ClipGrounder {
     clip: Clip,
-    images: Mutex<Cache>,
-    texts: Mutex<Cache>,
+    images: Recent<Key, Vec<f32>>,
+    texts: Recent<Key, Vec<f32>>,
 }
 
 impl ClipGrounder {
     /// A grounder that asks a CLIP.
     #[must_use]
     pub fn new(clip: Clip) -> Self {
-        Self { clip, images: Mutex::new(Cache::new(KEPT)), texts: Mutex::new(Cache::new(KEPT)) }
+        Self { clip, images: Recent::new(KEPT), texts: Recent::new(KEPT) }
     }
 
     fn failed(&self, error: &LocalError) -> ModelError {
@@ -56,7 +54,7 @@ impl Grounder for ClipGrounder {
         let vectors = vectors(&self.images, &seen, digest, |images| self.clip.image_features(images))
             .and_then(|seen| {
                 let texts = |texts: &[&str]| self.clip.text_features(texts);
-                Ok((seen, vectors(&self.texts, phrases, key_of_text, texts)?))
+                Ok((seen, vectors(&self.texts, phrases, |text| Sha256::digest(text).into(), texts)?))
             })
             .map_err(|error| self.failed(&error));
         let mut at = 0;
@@ -70,34 +68,24 @@ impl Grounder for ClipGrounder {
     }
 }
 
-/// Vectors of things, in their order: those of the cache, and the others computed, each once.
+/// Vectors of things, in their order: those that are remembered, and the others computed, each once.
 fn vectors<T: Copy>(
-    cache: &Mutex<Cache>,
+    recent: &Recent<Key, Vec<f32>>,
     things: &[T],
     key: impl Fn(T) -> Key,
     compute: impl Fn(&[T]) -> Result<Vec<Vec<f32>>, LocalError>,
-) -> Result<Vec<Vector>, LocalError> {
+) -> Result<Vec<Arc<Vec<f32>>>, LocalError> {
     let keys: Vec<Key> = things.iter().map(|&thing| key(thing)).collect();
-    let mut known: BTreeMap<Key, Vector> = BTreeMap::new();
+    let mut known: BTreeMap<Key, Arc<Vec<f32>>> = BTreeMap::new();
     let mut missing: BTreeMap<Key, T> = BTreeMap::new();
-    {
-        let mut cache = cache.lock().unwrap_or_else(PoisonError::into_inner);
-        for (key, &thing) in keys.iter().zip(things) {
-            match cache.get(key) {
-                Some(vector) => drop(known.insert(*key, vector)),
-                None => drop(missing.insert(*key, thing)),
-            }
+    for (key, &thing) in keys.iter().zip(things) {
+        match recent.get(key) {
+            Some(vector) => drop(known.insert(*key, vector)),
+            None => drop(missing.insert(*key, thing)),
         }
     }
-    // Nobody waits for the cache while this is computed.
-    let of_missing: Vec<T> = missing.values().copied().collect();
-    let computed = compute(&of_missing)?.into_iter().map(Arc::from);
-    let computed: Vec<(Key, Vector)> = missing.into_keys().zip(computed).collect();
-    let mut cache = cache.lock().unwrap_or_else(PoisonError::into_inner);
-    for (key, vector) in computed {
-        cache.put(key, Arc::clone(&vector));
-        known.insert(key, vector);
-    }
+    let computed = compute(&missing.values().copied().collect::<Vec<T>>())?;
+    known.extend(missing.into_keys().zip(computed).map(|(key, vector)| (key, recent.put(key, vector))));
     Ok(keys.iter().filter_map(|key| known.get(key).cloned()).collect())
 }
 

@@ -1,6 +1,5 @@
 //! CLIP: pictures and texts as vectors that can be compared (ViT-B/32, B/16, L/14 and their like).
 
-mod cache;
 mod config;
 mod grounder;
 mod layers;

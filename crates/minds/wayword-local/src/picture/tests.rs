@@ -1,6 +1,5 @@
 use super::*;
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 
 /// What transformers makes of a picture: `fixtures/make_picture.py`.
 #[derive(Deserialize)]
@@ -99,4 +98,11 @@ fn what_is_not_understood_is_told() {
         let error = processor(&config).err().expect("it is refused").to_string();
         assert!(error.contains(told) && error.contains("preprocessor_config.json"), "{error}");
     }
+}
+
+#[test]
+fn the_same_pixels_in_another_shape_are_another_picture() {
+    let shaped = |width, height| digest(&Image::new(width, height, vec![7; 36]).unwrap());
+    assert_ne!(shaped(3, 4), shaped(4, 3));
+    assert_eq!(shaped(3, 4), shaped(3, 4));
 }

@@ -10,13 +10,13 @@ use crate::navmesh::NavMesh;
 use files::SceneFiles;
 use home::Home;
 use std::{
-    collections::{BTreeMap, BTreeSet, VecDeque},
+    collections::{BTreeMap, BTreeSet},
     path::{Path as FilePath, PathBuf},
-    sync::{Arc, Mutex, PoisonError},
+    sync::Arc,
 };
 use wayword_core::{
-    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph,
-    ViewpointId,
+    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
+    ViewpointGraph, ViewpointId,
 };
 
 /// Scenes that are kept ready at a time: one of HM3D takes some hundred MB.
@@ -29,7 +29,7 @@ const WIDEST_RAD: f64 = 2.6;
 pub struct HabitatPlatform {
     options: HabitatOptions,
     scenes: BTreeMap<SceneId, SceneFiles>,
-    ready: Mutex<VecDeque<Arc<Home>>>,
+    ready: Recent<SceneId, Home>,
 }
 
 /// What can be chosen about the platform.
@@ -58,7 +58,7 @@ impl HabitatPlatform {
     /// # Errors
     /// When there is no scene, or the folder cannot be read.
     pub fn open(place: &FilePath, options: HabitatOptions) -> Result<Self, PlatformError> {
-        Ok(Self { options, scenes: files::scenes(place)?, ready: Mutex::new(VecDeque::new()) })
+        Ok(Self { options, scenes: files::scenes(place)?, ready: Recent::one_at_a_time(READY) })
     }
 
     /// The navmesh of a scene, as its file has it or as it was baked: [`NavMesh::to_bytes`] gives a file that Habitat reads.
@@ -71,14 +71,7 @@ impl HabitatPlatform {
 
     fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
         let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
-        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
-        let home = match ready.iter().position(|home| home.id == *scene).and_then(|at| ready.remove(at)) {
-            Some(home) => home,
-            None => Arc::new(Home::build(scene, files, &self.options)?),
-        };
-        ready.push_front(home.clone());
-        ready.truncate(READY);
-        Ok(home)
+        self.ready.get_or_make(scene.clone(), || Home::build(scene, files, &self.options))
     }
 
     fn unknown(&self, scene: &SceneId) -> PlatformError {

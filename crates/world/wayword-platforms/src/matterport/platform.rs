@@ -15,10 +15,10 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId, View,
-    ViewpointGraph, ViewpointId,
+    Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, Recent,
+    SceneId, View, ViewpointGraph, ViewpointId,
 };
-use wayword_world::{graph_walk, recent::Recent};
+use wayword_world::graph_walk;
 
 /// How many viewpoints' boxes are kept in memory.
 const BOXES_KEPT: usize = 256;

@@ -1,0 +1,202 @@
+//! A small memory of what was made last.
+
+use hashlink::LruCache;
+use std::{
+    collections::HashMap,
+    fmt,
+    hash::Hash,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+/// The last few values that were made, by key; the one that was not asked for longest is forgotten first.
+pub struct Recent<K, V> {
+    shelf: Mutex<Shelf<K, V>>,
+    /// Held by whoever makes a value, where one is made at a time.
+    alone: Option<Arc<Mutex<()>>>,
+}
+
+struct Shelf<K, V> {
+    kept: LruCache<K, Arc<V>>,
+    /// For each value that is being made, what its maker holds.
+    making: HashMap<K, Arc<Mutex<()>>>,
+}
+
+impl<K: Clone + Eq + Hash, V> Recent<K, V> {
+    /// Nothing remembered yet. Values of different keys are made side by side.
+    #[must_use]
+    pub fn new(capacity: usize) -> Self {
+        let shelf = Shelf { kept: LruCache::new(capacity), making: HashMap::new() };
+        Self { shelf: Mutex::new(shelf), alone: None }
+    }
+
+    /// The same for values that take much memory to make: one is made at a time.
+    #[must_use]
+    pub fn one_at_a_time(capacity: usize) -> Self {
+        Self { alone: Some(Arc::default()), ..Self::new(capacity) }
+    }
+
+    /// The value of a key, if it is remembered.
+    pub fn get(&self, key: &K) -> Option<Arc<V>> {
+        self.shelf().kept.get(key).map(Arc::clone)
+    }
+
+    /// Remembers a value; returns the one that is remembered from now on. Where there is one already, that is it.
+    pub fn put(&self, key: K, value: V) -> Arc<V> {
+        self.shelf().put(key, value)
+    }
+
+    /// The value of a key, made if it is not remembered. Whoever asks for it while it is made waits and gets the same.
+    /// `make` must not ask for a value of this memory that has to be made; it may [`put`](Self::put) others.
+    ///
+    /// # Errors
+    /// When it cannot be made. Nothing is remembered then, and the next one who asks tries again.
+    pub fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
+        let turn = {
+            let mut shelf = self.shelf();
+            if let Some(value) = shelf.kept.get(&key) {
+                return Ok(Arc::clone(value));
+            }
+            match &self.alone {
+                Some(alone) => Arc::clone(alone),
+                None => Arc::clone(shelf.making.entry(key.clone()).or_default()),
+            }
+        };
+        let _turn = turn.lock().unwrap_or_else(PoisonError::into_inner);
+        // Somebody else may have made it in the meantime.
+        if let Some(value) = self.get(&key) {
+            return Ok(value);
+        }
+        let made = make();
+        let mut shelf = self.shelf();
+        shelf.making.remove(&key);
+        Ok(shelf.put(key, made?))
+    }
+
+    fn shelf(&self) -> MutexGuard<'_, Shelf<K, V>> {
+        self.shelf.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<K: Eq + Hash, V> Shelf<K, V> {
+    fn put(&mut self, key: K, value: V) -> Arc<V> {
+        if let Some(first) = self.kept.get(&key) {
+            return Arc::clone(first);
+        }
+        let value = Arc::new(value);
+        self.kept.insert(key, Arc::clone(&value));
+        value
+    }
+}
+
+impl<K, V> fmt::Debug for Recent<K, V> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Recent").finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{
+        cell::Cell,
+        sync::{
+            Barrier,
+            atomic::{AtomicUsize, Ordering},
+        },
+        thread,
+        time::Duration,
+    };
+
+    #[test]
+    fn what_was_asked_for_lately_is_not_made_again() {
+        let recent = Recent::new(2);
+        let made = Cell::new(0);
+        let get = |key: u32| {
+            let value = recent.get_or_make(key, || {
+                made.set(made.get() + 1);
+                Ok::<_, ()>(key * 10)
+            });
+            *value.unwrap()
+        };
+        assert_eq!([get(1), get(2), get(1), get(3), get(1)], [10, 20, 10, 30, 10]);
+        assert_eq!(made.get(), 3);
+        get(2);
+        assert_eq!(made.get(), 4, "2 was the longest unasked for when 3 came");
+    }
+
+    #[test]
+    fn what_was_not_used_longest_goes_first() {
+        let recent = Recent::new(2);
+        recent.put("a", 1);
+        recent.put("b", 2);
+        assert_eq!(recent.get(&"a").as_deref(), Some(&1));
+        recent.put("c", 3);
+        assert_eq!(["a", "b", "c"].map(|key| recent.get(&key).as_deref().copied()), [Some(1), None, Some(3)]);
+    }
+
+    #[test]
+    fn what_is_put_twice_counts_once_and_the_first_one_stays() {
+        let recent = Recent::new(2);
+        assert_eq!([1, 2, 3].map(|number| *recent.put("a", number)), [1, 1, 1]);
+        recent.put("b", 4);
+        assert_eq!(["a", "b"].map(|key| recent.get(&key).as_deref().copied()), [Some(1), Some(4)]);
+    }
+
+    #[test]
+    fn what_failed_is_not_kept() {
+        let recent = Recent::new(2);
+        assert!(recent.get_or_make(1, || Err(())).is_err());
+        assert_eq!(recent.get(&1), None);
+        assert_eq!(*recent.get_or_make(1, || Ok::<_, ()>(5)).unwrap(), 5);
+        assert!(recent.shelf().making.is_empty());
+    }
+
+    #[test]
+    fn a_value_is_made_once_while_others_wait_for_it() {
+        for recent in [Recent::new(4), Recent::one_at_a_time(4)] {
+            let (made, together) = (AtomicUsize::new(0), Barrier::new(8));
+            let get = || {
+                together.wait();
+                let make = || {
+                    thread::sleep(Duration::from_millis(20));
+                    Ok::<_, ()>(made.fetch_add(1, Ordering::SeqCst))
+                };
+                *recent.get_or_make("key", make).unwrap()
+            };
+            let values = thread::scope(|scope| {
+                let threads: Vec<_> = (0..8).map(|_| scope.spawn(get)).collect();
+                threads.into_iter().map(|thread| thread.join().unwrap()).collect::<Vec<_>>()
+            });
+            assert_eq!((values, made.into_inner()), (vec![0; 8], 1));
+        }
+    }
+
+    #[test]
+    fn values_of_other_keys_are_made_side_by_side_or_one_at_a_time() {
+        let most_at_once = |recent: &Recent<usize, ()>| {
+            let (now, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            let make = || {
+                most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+                thread::sleep(Duration::from_millis(50));
+                now.fetch_sub(1, Ordering::SeqCst);
+                Ok::<_, ()>(())
+            };
+            thread::scope(|scope| {
+                (0..4).for_each(|key| drop(scope.spawn(move || drop(recent.get_or_make(key, make)))));
+            });
+            most.into_inner()
+        };
+        assert_eq!(most_at_once(&Recent::one_at_a_time(4)), 1);
+        assert!(most_at_once(&Recent::new(4)) > 1);
+    }
+
+    #[test]
+    fn who_makes_a_value_may_put_others() {
+        let recent = Recent::new(4);
+        let made = recent.get_or_make(1, || {
+            recent.put(2, "read along");
+            Ok::<_, ()>("asked for")
+        });
+        assert_eq!((*made.unwrap(), recent.get(&2).as_deref()), ("asked for", Some(&"read along")));
+    }
+}
