@@ -2,19 +2,10 @@
 
 use std::{collections::BTreeSet, ops::Range};
 use wayword_language::{
+    directions::{AFTER_VERB, JOINING, TELLING},
     reading::{clauses, read},
     text::{Token, tokens},
 };
-
-/// Words that join a clause to the one before.
-const JOINING: [&str; 8] = ["and", "then", "please", "also", "now", "finally", "afterwards", "but"];
-/// Words that go on telling of the place before: "the lamp by the window and is on the shelf".
-const TELLING: [&str; 9] = ["is", "are", "has", "have", "that", "which", "closest", "nearest", "with"];
-/// Words that follow a verb and no adjective: "clean the lamp", "turn on", but not "stripey chairs".
-const AFTER_VERB: [&str; 22] = [
-    "the", "a", "an", "this", "that", "these", "those", "my", "your", "its", "me", "it", "on", "off", "up", "down",
-    "out", "in", "to", "all", "any", "if",
-];
 
 /// A clause, as ranges of tokens without the words and marks that join it to others.
 #[derive(Debug, Clone)]

@@ -3,6 +3,7 @@
 use super::clauses::{Clause, ends_in_task, has_object, mended, without_joints};
 use std::{collections::BTreeSet, ops::Range};
 use wayword_language::{
+    directions::{AFTER_ROOM, GOING_ON},
     reading::{Event, Link, Place, Reading, What, read},
     text::{Token, tokens},
 };
@@ -13,14 +14,6 @@ const MOST_TASKS: usize = 3;
 const MOST_WORDS_OF_CLIMB: usize = 16;
 /// How far before a place its preposition may stand, words.
 const REACH: usize = 7;
-
-/// Words that end what is said about a room.
-const AFTER_ROOM: [&str; 9] = ["and", "if", "when", "while", "whether", "so", "until", "for", "to"];
-/// Words behind an "and" that go on with the walk: "past the sofa and into the hall".
-const GOING_ON: [&str; 17] = [
-    "into", "onto", "to", "out", "past", "passed", "through", "down", "up", "across", "toward", "towards", "along",
-    "around", "when", "once", "after",
-];
 
 /// A text in pieces.
 pub(super) struct Pieces<'a> {

@@ -7,6 +7,7 @@ use super::casing::{Case, replaced};
 use std::collections::BTreeSet;
 use wayword_core::Side;
 use wayword_language::{
+    directions::{AFTER_SIDE, BEFORE_SIDE, BEFORE_STAIRS, GOING},
     reading::{What, read},
     text::{Token, tokens},
 };
@@ -15,35 +16,6 @@ use wayword_language::{
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["leftward", "rightward"], ["leftwards", "rightwards"]];
 const LEVELS: [[&str; 2]; 5] =
     [["up", "down"], ["upstairs", "downstairs"], ["ascend", "descend"], ["ascending", "descending"], ["top", "bottom"]];
-
-/// Words before a side that is one for sure: "on the left", "the far right", "slight right".
-const BEFORE_SIDE: [&str; 14] = [
-    "slight",
-    "slightly",
-    "hard",
-    "sharp",
-    "the",
-    "your",
-    "my",
-    "its",
-    "far",
-    "on",
-    "upper",
-    "lower",
-    "immediate",
-    "hand",
-];
-/// Words behind one: "left of the sofa", "the left side".
-const AFTER_SIDE: [&str; 8] = ["of", "side", "sided", "hand", "most", "wall", "corner", "end"];
-/// Words between "up" and the stairs.
-const BEFORE_STAIRS: [&str; 34] = [
-    "the", "a", "an", "this", "that", "these", "those", "first", "second", "third", "next", "other", "few", "small",
-    "short", "long", "old", "set", "flight", "half", "of", "one", "two", "three", "four", "five", "six", "wooden",
-    "spiral", "carpeted", "curved", "main", "left", "right",
-];
-/// Verbs of going: "up" behind one needs no stairs where its clause ends.
-const GOING: [&str; 12] =
-    ["go", "going", "head", "heading", "walk", "walking", "climb", "climbing", "move", "proceed", "come", "leading"];
 
 /// The text with its directions swapped; `None` where it tells none.
 pub(super) fn swapped(text: &str) -> Option<String> {

@@ -1,0 +1,7 @@
+//! The vocabulary by which an instruction is taken apart and its directions are swapped.
+
+crate::data::lists! {
+    "words/directions.txt";
+    words: JOINING, TELLING, AFTER_VERB, AFTER_ROOM, GOING_ON, BEFORE_SIDE, AFTER_SIDE, BEFORE_STAIRS, GOING;
+    phrases:;
+}
