@@ -55,6 +55,13 @@ pub fn words(text: &str) -> Vec<String> {
     tokens(text).into_iter().filter(Token::is_word).map(|token| token.word).collect()
 }
 
+/// A text with its first letter as a capital.
+#[must_use]
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Number of words in a text, as people count them: what stands between spaces and is not a mark alone.
 #[must_use]
 pub fn word_count(text: &str) -> usize {

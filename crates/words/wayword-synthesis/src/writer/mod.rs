@@ -2,7 +2,6 @@
 
 mod landmarks;
 mod phrases;
-mod realise;
 mod route;
 mod rules;
 mod task;

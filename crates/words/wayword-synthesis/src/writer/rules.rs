@@ -4,14 +4,16 @@ use super::{
     Brief, WriteError, Writer,
     landmarks::Landmarks,
     phrases::{self, fill, level_phrase, ordinal, pick, the, unbent},
-    realise::{capital, join, sentences},
     route::{Step, Weighed, last_climb, stands_still, steps, usable_room},
     task,
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Climb, Motion, rng};
-use wayword_language::{lexicon::room_name, text::word_count};
+use wayword_language::{
+    lexicon::room_name,
+    text::{capital, word_count},
+};
 
 /// Writes from captions and moves. Where the references tell turns it tells the way step by step; where they don't, it
 /// names the place at the end. Length, sentences, floors, task and full stop are drawn from the references too.
@@ -257,4 +259,31 @@ fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaC
             pick(rng, &unbent(&["go straight ahead", "walk on to the end", "keep going"], walk.path.motion)).to_owned()
         }
     }
+}
+
+/// Phrases as sentences, shared out evenly, in their order.
+fn sentences(phrases: &[String], count: usize, full_stop: bool, rng: &mut ChaCha8Rng) -> String {
+    let count = count.clamp(1, phrases.len().max(1));
+    let bounds: Vec<usize> = (0..=count).map(|at| at * phrases.len() / count).collect();
+    let parts: Vec<String> = bounds.windows(2).map(|pair| capital(&join(&phrases[pair[0]..pair[1]], rng))).collect();
+    let mut text = parts.join(". ");
+    if full_stop || count > 1 {
+        text.push('.');
+    }
+    text
+}
+
+/// Phrases as one sentence without its full stop. A phrase that holds an "and" of its own is set off by "then".
+fn join(phrases: &[String], rng: &mut ChaCha8Rng) -> String {
+    let Some((last, before)) = phrases.split_last() else { return String::new() };
+    if before.is_empty() {
+        return last.clone();
+    }
+    let has_and = phrases.iter().any(|phrase| phrase.contains(" and "));
+    let link = if has_and {
+        pick(rng, &[", then ", ", and then "])
+    } else {
+        pick(rng, &[" and ", ", then ", " and then ", " and "])
+    };
+    format!("{}{link}{last}", before.join(", "))
 }
