@@ -1,9 +1,11 @@
 //! What things and rooms are called, and which names mean the same.
 
+mod forms;
 mod normal;
 mod rooms;
 mod things;
 
+pub use forms::{COUNTS, counted, is_plural, plural, says_several, singular, with_article, without_article};
 pub use normal::{normal, normal_word};
 pub use rooms::{is_room, room_name, same_room};
 pub use things::{Class, Thing, agree, is_thing, kinds, longest_name, thing};

@@ -5,7 +5,7 @@ use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::rng;
 use wayword_language::{
-    lexicon::{Class, agree, normal_word, room_name, same_room, thing},
+    lexicon::{Class, agree, normal_word, plural, room_name, same_room, thing},
     reading::{Place, What, read},
 };
 
@@ -215,17 +215,6 @@ fn is_plural(before: &str, written: &str, name: &str) -> bool {
     let is_counted = matches!(before.to_lowercase().as_str(), "two" | "three" | "four" | "five" | "few" | "several")
         || before.bytes().all(|byte| byte.is_ascii_digit()) && !before.is_empty();
     normal_word(&last) != last && last.ends_with('s') && !last.ends_with("'s") && (!is_flight || is_counted)
-}
-
-/// The plural of a name that stands in for others.
-fn plural(name: &str) -> String {
-    let end = name.chars().next_back();
-    match name.strip_suffix('y') {
-        Some(stem) if !stem.ends_with(['a', 'e', 'o', 'u']) => format!("{stem}ies"),
-        _ if name.ends_with("shelf") => format!("{}ves", &name[..name.len() - 1]),
-        _ if matches!(end, Some('s' | 'x')) || name.ends_with("ch") || name.ends_with("sh") => format!("{name}es"),
-        _ => format!("{name}s"),
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Takes from what models say what was asked of them: one question, or one answer.
 
-use wayword_language::text::words;
+use wayword_language::{answers::ASKING, text::words};
 
 /// Longest question, characters. A longer one is no question.
 const QUESTION_CHARS: usize = 300;
@@ -14,11 +14,6 @@ const QUESTION_LABELS: [&str; 4] = ["question:", "q:", "next question:", "new qu
 const TURNS: [&str; 5] = ["question:", "user:", "### ", "<|", "</s>"];
 /// What does so behind a whole sentence only: "the short answer: no" goes on.
 const TURNS_BEHIND_SENTENCES: [&str; 5] = ["q:", "a:", "answer:", "human:", "assistant:"];
-/// Words that a question begins with that lacks its mark.
-const ASKING: [&str; 20] = [
-    "what", "which", "where", "how", "who", "is", "are", "do", "does", "can", "could", "describe", "why", "when",
-    "has", "have", "was", "did", "tell", "list",
-];
 
 /// The one question in a reply, without labels, quotes, chatter, further questions and an answer invented to it. `None` where
 /// there is none, or one of more than 300 characters.
@@ -54,11 +49,7 @@ pub(super) fn answer(reply: &str, question: &str) -> String {
 }
 
 fn head(text: &str, bytes: usize) -> &str {
-    let mut end = text.len().min(bytes);
-    while !text.is_char_boundary(end) {
-        end -= 1;
-    }
-    &text[..end]
+    &text[..text.floor_char_boundary(bytes)]
 }
 
 /// Where a label stands, in any case, at the start of a line or behind a space.

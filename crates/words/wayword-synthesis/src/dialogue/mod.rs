@@ -14,7 +14,7 @@ mod trouble;
 use wayword_core::{Caption, Exchange, ModelError, Trouble};
 use wayword_language::text::words;
 
-pub(crate) use answers::{Asked, Wanted, asked, counted, plural, sightings, with_article};
+pub(crate) use answers::{Asked, Wanted, asked, sightings};
 pub use faults::{CaptionFault, caption_faults};
 pub use questions::RulesAsker;
 pub use summary::RulesSummariser;

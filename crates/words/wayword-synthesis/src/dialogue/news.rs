@@ -4,17 +4,10 @@ use super::answers::{Asked, asked, room, sightings};
 use std::collections::BTreeSet;
 use wayword_core::{Exchange, Witness};
 use wayword_language::{
+    answers::EMPTY,
     lexicon::{agree, normal_word},
     text::words,
 };
-
-/// Words that tell nothing of a picture.
-const EMPTY_WORDS: &str = "a an the this that these those it its am is are was were be been being there here i you we they he she him \
-    her them and or but not no yes of in on at to for from by with without as if so do does did can could may might will would \
-    should have has had what which where who how any some all both each other another one also very more most just only such \
-    than then too into about up out image picture photo photograph scene view see seen sure visible shown show shows appear \
-    appears seem seems look looks like clear clearly unclear tell say know possible possibly maybe think believe answer question \
-    sorry however provided based cannot can't don't doesn't isn't aren't it's i'm there's";
 
 /// Whether the last exchange of a transcript changes what the whole says of things or the room, or has a word that neither its
 /// question nor anything before it had.
@@ -23,11 +16,11 @@ pub(super) fn is_new(transcript: &[Exchange]) -> bool {
     if last.answer.is_empty() {
         return false;
     }
-    let empty: BTreeSet<&str> = EMPTY_WORDS.split_whitespace().collect();
     let texts = before.iter().flat_map(|exchange| [&exchange.question, &exchange.answer]).chain([&last.question]);
     let known: BTreeSet<String> = texts.flat_map(|text| words(text)).map(|word| normal_word(&word)).collect();
-    let says_more =
-        || words(&last.answer).iter().any(|word| !empty.contains(word.as_str()) && !known.contains(&normal_word(word)));
+    let says_more = || {
+        words(&last.answer).iter().any(|word| !EMPTY.contains(&word.as_str()) && !known.contains(&normal_word(word)))
+    };
     says_more()
         || sightings(transcript, "") != sightings(before, "")
         || room(transcript) != room(before)

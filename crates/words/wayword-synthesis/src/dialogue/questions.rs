@@ -2,10 +2,10 @@
 
 use super::{
     Asker,
-    answers::{is_plural, plural, room, sightings, with_article},
+    answers::{room, sightings},
 };
 use wayword_core::{Exchange, ModelError, Sighting, Witness};
-use wayword_language::lexicon::{Class, agree, room_name, thing};
+use wayword_language::lexicon::{Class, agree, is_plural, plural, room_name, thing, with_article};
 
 /// Asks which room it is, whether what the opening named is really there, where that may be doubted, looks for what such a room
 /// usually has and nobody named, and asks for colours of landmarks.

@@ -2,11 +2,14 @@
 
 use super::{
     Condensed, Summariser,
-    answers::{counted, denies, room, sightings, with_article},
+    answers::{denies, room, sightings},
     faults::caption_faults,
 };
 use wayword_core::{Caption, Exchange, ModelError, Sighting, Where, Witness};
-use wayword_language::lexicon::thing;
+use wayword_language::{
+    lexicon::{counted, thing, with_article},
+    text::{capital, word_count},
+};
 
 /// Writes a caption from what was said to be there, and leaves out what was denied or not known: [`caption_faults`] finds nothing
 /// in it.
@@ -61,9 +64,7 @@ fn caption(room: Option<&str>, seen: &[&Sighting]) -> String {
     };
     let items: Vec<String> = seen.iter().map(item).collect();
     let room = room.map_or("a place".to_owned(), with_article);
-    let text = if items.is_empty() { format!("{room}.") } else { format!("{room} with {}.", enumerate(&items)) };
-    let mut letters = text.chars();
-    letters.next().map_or(text.clone(), |first| first.to_uppercase().chain(letters).collect())
+    capital(&if items.is_empty() { format!("{room}.") } else { format!("{room} with {}.", enumerate(&items)) })
 }
 
 fn enumerate(items: &[String]) -> String {
@@ -92,7 +93,7 @@ fn condense(captions: &[&Caption], fewer_words_than: usize) -> String {
         let room = room.map_or("a place".to_owned(), with_article);
         if items.is_empty() { room } else { format!("{room} with {}", enumerate(&items)) }
     };
-    let fits = |count: &usize| wayword_language::text::word_count(&text(*count)) < fewer_words_than;
+    let fits = |count: &usize| word_count(&text(*count)) < fewer_words_than;
     (0..=names.len()).rev().find(fits).map_or_else(String::new, text)
 }
 
@@ -124,7 +125,7 @@ mod tests {
         let transcript = [exchange(super::super::OPENING, list), exchange("Which room is this?", "It is a bedroom.")];
         let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
         let short = condense(&[&caption, &caption], 20);
-        assert!(wayword_language::text::word_count(&short) < 20, "{short}");
+        assert!(word_count(&short) < 20, "{short}");
         assert!(short.starts_with("a bedroom with a bed"), "{short}");
     }
 

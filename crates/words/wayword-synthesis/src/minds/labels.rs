@@ -1,8 +1,8 @@
 //! Answers from ground truth. Named `labels` wherever it takes part: it perceives nothing.
 
-use crate::dialogue::{Asked, Wanted, asked, counted, plural, with_article};
+use crate::dialogue::{Asked, Wanted, asked};
 use wayword_core::{Answer, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
-use wayword_language::lexicon::{agree, normal, same_room};
+use wayword_language::lexicon::{agree, counted, normal, plural, same_room, with_article};
 
 /// The answerer that reads a view's labels.
 #[derive(Debug, Clone, Copy, Default)]

@@ -5,7 +5,7 @@ use crate::walk::Seen;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Side, Verdict};
-use wayword_language::lexicon::{agree, is_room, normal, thing};
+use wayword_language::lexicon::{agree, is_room, normal, plural, thing};
 
 /// Chooses landmarks, each kind of thing once in a text.
 pub(super) struct Landmarks<'a> {
@@ -74,7 +74,7 @@ fn is_tellable(name: &str, salience: u8) -> bool {
 
 fn landmark(seen: &Seen<'_>) -> Landmark {
     let sighting = seen.sighting;
-    let name = if sighting.several { crate::dialogue::plural(&sighting.name) } else { sighting.name.clone() };
+    let name = if sighting.several { plural(&sighting.name) } else { sighting.name.clone() };
     let phrase = match sighting.colour.as_ref().filter(|_| !sighting.several) {
         Some(colour) => format!("the {colour} {name}"),
         None => format!("the {name}"),

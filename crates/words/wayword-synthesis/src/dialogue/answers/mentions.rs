@@ -1,18 +1,18 @@
 //! Free words: whatever they name, and what they say of it.
 
 use super::{
-    colour::said_of,
-    names::{says_several, singular},
-    nouns::{Noun, nouns},
-    place::{Phrase, phrases},
-    scope::Sentence,
+    phrases::{PlacePhrase, colour_said_of, place_phrases},
+    polarity::Sentence,
 };
 use std::{collections::BTreeSet, ops::Range};
 use wayword_core::{Where, Witness};
 use wayword_language::{
-    answers::{NUMBERS, OTHERS, PERCEIVING, TELLS_NOTHING},
-    lexicon::agree,
-    reading::vocabulary::BREAKERS,
+    answers::{BRINGS_IN, NO_OBJECTS, NUMBERS, OTHERS, PERCEIVING, TELLS_NOTHING},
+    lexicon::{agree, normal, says_several, singular, thing},
+    reading::{
+        What, read,
+        vocabulary::{ABSTRACT, BREAKERS},
+    },
     text::{Token, tokens},
 };
 
@@ -31,12 +31,14 @@ pub(in crate::dialogue) struct Mention {
     pub(in crate::dialogue) before: String,
 }
 
+/// Longest name that counts as one, bytes.
+const MOST_NAME_BYTES: usize = 60;
 /// Longest text that is read, bytes; answers are shorter, and what is behind it is left out.
 const MOST_BYTES: usize = 16_384;
 
 /// Reads a text. `known` holds names, in normal spelling, that the lexicon may lack.
 pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec<Mention> {
-    let text = &bounded(text).replace('’', "'");
+    let text = &text[..text.floor_char_boundary(MOST_BYTES)].replace('’', "'");
     let tokens = tokens(text);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
     let nouns = nouns(text, &tokens, &words, known);
@@ -51,16 +53,8 @@ pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec
     found
 }
 
-fn bounded(text: &str) -> &str {
-    let mut end = text.len().min(MOST_BYTES);
-    while !text.is_char_boundary(end) {
-        end -= 1;
-    }
-    &text[..end]
-}
-
 /// The sentences of a text as ranges of its tokens. A new line begins a new one.
-pub(super) fn sentences(text: &str, tokens: &[Token]) -> Vec<Range<usize>> {
+fn sentences(text: &str, tokens: &[Token]) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = 0;
     for at in 0..tokens.len() {
@@ -88,7 +82,7 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Me
         let plural = says_several(&said);
         let name = if plural { singular(&said) } else { said };
         let denied = witness == Witness::Denied;
-        let colour = noun.colour.clone().or_else(|| said_of(&words[range.end..])).filter(|_| !denied);
+        let colour = noun.colour.clone().or_else(|| colour_said_of(&words[range.end..])).filter(|_| !denied);
         found.push(Mention {
             name: if denied && !which.is_empty() { format!("{} {name}", which.join(" ")) } else { name },
             is_thing: noun.is_thing,
@@ -164,7 +158,7 @@ fn is_counted(words: &[&str], noun: usize) -> bool {
 /// The place of each noun of a sentence: told behind it, or at the head of the part of the sentence that it stands in.
 fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
     let mut places = vec![None; nouns.len()];
-    let told = phrases(words);
+    let told = place_phrases(words);
     for (at, phrase) in told.iter().enumerate() {
         let end = told[at + 1..].iter().find(|next| is_head(words, next, nouns)).map_or(words.len(), |next| next.from);
         if is_head(words, phrase, nouns) {
@@ -187,10 +181,100 @@ fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
 }
 
 /// Whether a phrase of place stands before what it places: at the start, or behind a comma or an "and", with a noun to come.
-fn is_head(words: &[&str], phrase: &Phrase, nouns: &[Range<usize>]) -> bool {
+fn is_head(words: &[&str], phrase: &PlacePhrase, nouns: &[Range<usize>]) -> bool {
     let before = phrase.from.checked_sub(1).map_or("", |at| words[at]);
     let begins = !nouns.iter().any(|noun| noun.end <= phrase.from) && !matches!(before, "it" | "one" | "them" | "they");
     let joined = matches!(before, "," | "and" | ";" | "while" | "-");
     let more = nouns.iter().any(|noun| noun.start >= phrase.to);
     more && (joined || (begins && phrase.from <= 4))
+}
+
+/// A thing or a room among the words of a text.
+struct Noun {
+    at: Range<usize>,
+    is_thing: bool,
+    is_room: bool,
+    colour: Option<String>,
+}
+
+/// The things and rooms that a text names, in order. `known` holds names, in normal spelling, that the lexicon may lack.
+fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>) -> Vec<Noun> {
+    let places = read(text, known).events.into_iter().filter_map(|event| match event.what {
+        What::Place(place) => Some((event.span, place)),
+        _ => None,
+    });
+    places
+        .filter_map(|(span, place)| {
+            let from = tokens.partition_point(|token| token.span[0] < span[0]);
+            let to = tokens.partition_point(|token| token.span[0] < span[1]);
+            let name = words[from..to].join(" ");
+            let in_lexicon = thing(&name).is_some() || place.is_room || known.contains(&normal(&name));
+            let is_object = if in_lexicon {
+                !is_the_picture(words, from, to) && !is_manner_of_speaking(words, from, to)
+            } else {
+                is_brought_in(words, from, to)
+            };
+            (is_object && !is_depicted(words, from) && name.len() <= MOST_NAME_BYTES).then_some(Noun {
+                at: from..to,
+                is_thing: place.is_thing,
+                is_room: place.is_room,
+                colour: place.colour,
+            })
+        })
+        .collect()
+}
+
+/// "The picture shows", "in this photo", "a picture of a kitchen": the view itself and nothing on a wall of it.
+fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
+    let single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph");
+    let word = |at: usize| words.get(at).copied().unwrap_or("");
+    let before = if from > 0 { word(from - 1) } else { "" };
+    let hangs = matches!(word(to), "on" | "above" | "over" | "hanging" | "hangs" | "frame" | "frames");
+    let brought_in = words[..from].iter().any(|word| matches!(*word, "there" | "see" | "has" | "with"));
+    let of_all = word(to) == "of" && from <= 4 && !brought_in;
+    let shows = matches!(word(to), "shows" | "depicts" | "features" | "contains" | "captures" | "showing" | "itself");
+    single && !hangs && (matches!(before, "the" | "this") || of_all || shows)
+}
+
+/// "A painting of a horse": the horse is on it and not there.
+fn is_depicted(words: &[&str], from: usize) -> bool {
+    let picture = |word: &str| {
+        matches!(
+            word,
+            "picture" | "pictures" | "painting" | "paintings" | "photo" | "photos" | "portrait" | "poster" | "print"
+        )
+    };
+    let near = (from.saturating_sub(4)..from).rev().find(|at| words[*at] == "of").filter(|of| *of > 0);
+    near.is_some_and(|of| picture(words[of - 1]) && !is_the_picture(words, of - 1, of))
+}
+
+/// "A range of colours", "in shades of blue", "the light from the window", "tasteful decor".
+fn is_manner_of_speaking(words: &[&str], from: usize, to: usize) -> bool {
+    if to != from + 1 {
+        return false;
+    }
+    match (words[from], words.get(to).copied().unwrap_or("")) {
+        ("decor", _) => true,
+        ("range" | "shade" | "shades" | "case" | "cover" | "scale" | "stage", "of") => true,
+        ("light", next) => {
+            matches!(
+                next,
+                "from" | "streaming" | "coming" | "comes" | "enters" | "shining" | "shines" | "pouring" | "that"
+            )
+        }
+        _ => false,
+    }
+}
+
+/// A noun that the lexicon lacks counts where it is said to be there or not, and is no word of describing.
+fn is_brought_in(words: &[&str], from: usize, to: usize) -> bool {
+    let head = normal(words[to - 1]);
+    let start = (0..from).rev().find(|at| matches!(words[*at], "." | "!" | "?" | ";")).map_or(0, |at| at + 1);
+    let indefinite = from > 0 && matches!(words[from - 1], "a" | "an");
+    let stays = |word: &str| !NO_OBJECTS.contains(&normal(word).as_str()) && !word.ends_with("ing") && word != "shows";
+    indefinite
+        && to - from <= 3
+        && words[from..to].iter().all(|word| stays(word))
+        && !ABSTRACT.contains(&head.as_str())
+        && words[start..from].iter().any(|word| BRINGS_IN.contains(word))
 }

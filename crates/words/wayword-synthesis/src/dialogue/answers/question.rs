@@ -1,10 +1,6 @@
 //! What a question asks for.
 
-use super::{
-    colour::{colour_at, first_colour},
-    place::phrases,
-    wanted::{Wanted, list, noun, phrase, wanted},
-};
+use super::phrases::{Wanted, all_wanted, colour_at, first_colour, first_wanted, noun_phrase, place_phrases, wanted};
 use wayword_core::Where;
 use wayword_language::{
     answers::LEADS,
@@ -55,7 +51,7 @@ pub(crate) fn asked(question: &str) -> Asked {
         .or_else(|| place(words))
         .or_else(|| identity(words))
         .or_else(|| presence(words))
-        .unwrap_or_else(|| Asked::Other(phrases(words).first().map(|phrase| phrase.place)))
+        .unwrap_or_else(|| Asked::Other(place_phrases(words).first().map(|phrase| phrase.place)))
 }
 
 fn has(words: &[&str], run: &[&str]) -> bool {
@@ -97,7 +93,7 @@ fn colour(question: &str, words: &[&str]) -> Option<Asked> {
     let guesses =
         if at.is_some() { Vec::new() } else { (0..rest.len()).filter_map(|at| first_colour(&rest[at..=at])).collect() };
     let end = (0..rest.len()).find(|at| !guesses.is_empty() && colour_at(&rest[*at..]).is_some()).unwrap_or(rest.len());
-    let wanted = phrase(&rest[..end])?;
+    let wanted = first_wanted(&rest[..end])?;
     Some(Asked::Colour { name: wanted.name, guesses })
 }
 
@@ -108,7 +104,7 @@ fn ends_phrase(words: &[&str], at: usize) -> bool {
 
 fn number(words: &[&str]) -> Option<Asked> {
     let rest = words.strip_prefix(&["how", "many"])?;
-    phrase(rest).map(Asked::Number)
+    first_wanted(rest).map(Asked::Number)
 }
 
 fn place(words: &[&str]) -> Option<Asked> {
@@ -118,7 +114,7 @@ fn place(words: &[&str]) -> Option<Asked> {
         ["on", "which" | "what", "side", "is" | "are", rest @ ..] => rest,
         _ => return None,
     };
-    phrase(rest).map(Asked::Place)
+    first_wanted(rest).map(Asked::Place)
 }
 
 /// "Is this a kitchen?", "Is that a mirror on the wall?".
@@ -129,12 +125,12 @@ fn identity(words: &[&str]) -> Option<Asked> {
         _ => return None,
     };
     let rest = rest.strip_prefix(&["room"]).unwrap_or(rest);
-    let name = noun(rest, &mut 0)?;
+    let name = noun_phrase(rest, &mut 0)?;
     let or = rest.contains(&"or");
     match wanted(&name, None) {
         _ if is_room(&normal(&name.join(" "))) && !or => Some(Asked::IsRoom(name.join(" "))),
         _ if is_room(&normal(&name.join(" "))) => Some(Asked::Room),
-        _ => list(rest).filter(|_| !matches!(words[1], "it" | "the")).map(presence_of),
+        _ => all_wanted(rest).filter(|_| !matches!(words[1], "it" | "the")).map(presence_of),
     }
 }
 
@@ -155,7 +151,7 @@ fn presence(words: &[&str]) -> Option<Asked> {
         .iter()
         .take_while(|word| matches!(**word, "that" | "if" | "whether" | "there" | "is" | "are" | "you" | "see"))
         .count();
-    list(&rest[skipped..]).map(presence_of)
+    all_wanted(&rest[skipped..]).map(presence_of)
 }
 
 fn presence_of((wanted, or): (Vec<Wanted>, bool)) -> Asked {
@@ -174,7 +170,7 @@ fn really_there(words: &[&str]) -> Option<Asked> {
     let visible = ["there", "present", "visible", "real"].iter().any(|end| tail(&[end]));
     let whole = ["picture", "image", "room", "photo", "scene", "view"];
     let shown = whole.iter().any(|whole| tail(&["in", "the", whole]) || tail(&["in", "this", whole]));
-    (visible || shown).then(|| list(words)).flatten().map(presence_of)
+    (visible || shown).then(|| all_wanted(words)).flatten().map(presence_of)
 }
 
 #[cfg(test)]

@@ -342,6 +342,50 @@ fn endless_text_is_read_in_reasonable_time() {
     assert!(read_all(&[(OPENING, &long)]).len() < 20);
 }
 
+#[test]
+fn rooms_are_found_in_answers_to_the_question_for_them() {
+    for (answer, wanted) in [
+        ("It is an office.", Some("office")),
+        ("It is an unheard chamber.", Some("unheard chamber")),
+        ("kitchen", Some("kitchen")),
+        ("A bathroom.", Some("bathroom")),
+        ("This is a living room with a sofa and a table.", Some("living room")),
+        ("The room appears to be a cozy bedroom.", Some("bedroom")),
+        ("It's a hallway leading to a kitchen.", Some("hallway")),
+        ("It is not a kitchen but a dining room.", Some("dining room")),
+        ("Living Room", Some("living room")),
+        ("Observatory.", Some("observatory")),
+        ("I am not sure.", None),
+        ("It is hard to say, it may be an office.", None),
+        ("Yes, there is a lamp on the table and it is lit.", None),
+        ("", None),
+    ] {
+        let told = room(&[Exchange::new("What kind of room is this?", answer)]);
+        assert_eq!(told.as_deref(), wanted, "{answer}");
+    }
+}
+
+#[test]
+fn without_a_question_the_first_description_tells_the_room() {
+    for (answer, wanted) in [
+        ("The picture shows a bedroom with a bed.", Some("bedroom")),
+        ("The image depicts a spacious living room. A doorway leads to a kitchen.", Some("living room")),
+        ("A door leads to a bathroom.", None),
+        ("There is a closet on the left.", None),
+        ("There are stairs and a bar.", None),
+    ] {
+        assert_eq!(room(&[Exchange::new(OPENING, answer)]).as_deref(), wanted, "{answer}");
+    }
+}
+
+#[test]
+fn a_room_that_is_asked_about_is_confirmed_or_corrected() {
+    let told = |answer: &str| room(&[Exchange::new("Is this a kitchen?", answer)]);
+    assert_eq!(told("Yes.").as_deref(), Some("kitchen"));
+    assert_eq!(told("No, it is a laundry room.").as_deref(), Some("laundry room"));
+    assert_eq!(told("No."), None);
+}
+
 proptest! {
     #[test]
     fn any_words_can_be_read(question in "(\\PC|[\n?.,]){0,60}", answer in "(\\PC|[\n?.,]){0,200}") {

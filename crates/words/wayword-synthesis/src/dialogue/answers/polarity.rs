@@ -1,14 +1,73 @@
-//! How far a "no" or a "maybe" reaches in a sentence.
+//! Yes, no and not sure: what an answer says as a whole, and how far a "no" or a "maybe" reaches in a sentence.
 //!
 //! Triggers and the words that end their reach, after NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029), for the ways in
 //! which people and models speak of pictures.
 
 use std::ops::Range;
 use wayword_core::Witness;
-use wayword_language::answers::{
-    AFTER_NOUN, AUXILIARIES, DOUBTS, ENDS, IS_NOT, MEANWHILE, NEW_NOUN, NO_DENIAL, NO_OBJECT, PERCEIVING, SHORT, SIGNS,
-    STOPPERS,
+use wayword_language::{
+    answers::{
+        AFTER_NOUN, AUXILIARIES, DOUBTS, ENDS, IS_NOT, MAYBE, MEANWHILE, NEW_NOUN, NO, NO_DENIAL, NO_OBJECT,
+        PERCEIVING, SHORT, SIGNS, STOPPERS, YES, YES_ALONE,
+    },
+    text::words,
 };
+
+/// What an answer says to a question that wants a yes or a no.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Polarity {
+    Yes,
+    No,
+    Unsure,
+    /// It says neither; what it names decides.
+    Open,
+}
+
+/// What an answer says, by how it begins, or by the yes or no behind its first comma ("Looking again, no."). Not to be sure, in its
+/// first sentence, outweighs that.
+pub(super) fn polarity_of(answer: &str) -> Polarity {
+    let answer = answer.replace('’', "'");
+    let first = answer.split_inclusive(['.', '!', '?', '\n']).find(|part| part.contains(char::is_alphanumeric));
+    let first = first.unwrap_or_default();
+    match of_words(&words(first)) {
+        Polarity::Open => {}
+        polarity => return polarity,
+    }
+    if let Some((_, rest)) = first.split_once(',').filter(|(before, _)| words(before).len() <= 8) {
+        let rest = words(rest);
+        if rest.first().is_some_and(|first| matches!(first.as_str(), "yes" | "no")) {
+            return of_words(&rest);
+        }
+    }
+    let all = words(&answer);
+    if is_unsure(&all.iter().map(String::as_str).collect::<Vec<_>>()) { Polarity::Unsure } else { Polarity::Open }
+}
+
+fn of_words(words: &[String]) -> Polarity {
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let words = words.strip_prefix(&["well"]).unwrap_or(&words);
+    let longest = |phrases: &[Vec<&'static str>]| {
+        phrases.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
+    };
+    if is_unsure(words) || longest(&MAYBE).is_some() {
+        return Polarity::Unsure;
+    }
+    let alone = |words: &&Vec<&str>, said: &[&str]| {
+        said.strip_prefix(words.as_slice())
+            .is_some_and(|rest| rest.first().is_none_or(|next| AFTER_NOUN.contains(next)))
+    };
+    let alone = YES_ALONE.iter().filter(|phrase| alone(phrase, words)).map(Vec::len).max();
+    match (longest(&YES).or(alone).unwrap_or(0), longest(&NO).unwrap_or(0)) {
+        (0, 0) => Polarity::Open,
+        (yes, no) if yes >= no => Polarity::Yes,
+        _ => Polarity::No,
+    }
+}
+
+/// Whether words hold a phrase of not knowing.
+pub(super) fn is_unsure(words: &[&str]) -> bool {
+    (0..words.len()).any(|at| doubt_at(&words[at..]).is_some())
+}
 
 /// A sentence: its words and marks in lower case, and where in it things and rooms are named, in order.
 pub(super) struct Sentence<'a> {
@@ -224,5 +283,37 @@ fn says_present(words: &[&str]) -> bool {
             matches!(*whole, "picture" | "image" | "photo" | "room" | "view" | "scene")
         }
         _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_say_yes_no_or_neither() {
+        for (wanted, answers) in [
+            (Polarity::Yes, "Yes | yes. | Yes, there are two. | There is one. | No doubt. | I think so. | Of course"),
+            (
+                Polarity::No,
+                "No | no. | NO! | No, there isn't. | None | Not that I can see. | There is no TV. | \
+                 I don't think so. | There are none. | No, I don't see one. | I cannot see a lamp. | \
+                 There isn’t one. | Neither. | It does not appear so.",
+            ),
+            (
+                Polarity::Unsure,
+                "I am not sure. | Unclear | I can't tell | It is hard to say. | Unknown. | Maybe | \
+                 There might be. | No, I'm not sure | It is not clear from the picture. | I don't know",
+            ),
+            (
+                Polarity::Open,
+                "There is a lamp. | I can see a lamp. | There are two lamps. |  | A bed. | A bed is. | \
+                 On the left | 🤖",
+            ),
+        ] {
+            for answer in answers.split(" | ") {
+                assert_eq!(polarity_of(answer), wanted, "{answer}");
+            }
+        }
     }
 }

@@ -1,20 +1,23 @@
-//! Names with their articles and numbers.
+//! Forms of a name: with its article, in the singular and the plural, with a number.
 
-use wayword_language::{lexicon::normal_word, text::words};
+use super::normal_word;
+use crate::text::words;
 
 /// Numbers in words, from two on; the last stand for any greater one.
-pub(super) const COUNTS: [&str; 7] = ["two", "three", "four", "five", "six", "several", "many"];
+pub const COUNTS: [&str; 7] = ["two", "three", "four", "five", "six", "several", "many"];
 
 /// Names that are plurals and still one thing.
 const ONE_THING: [&str; 8] = ["stairs", "steps", "drawers", "clothes", "blinds", "drums", "weights", "toiletries"];
 
 /// A name without the article before it.
-pub(super) fn without_article(name: &str) -> &str {
+#[must_use]
+pub fn without_article(name: &str) -> &str {
     ["a ", "an ", "the ", "some "].iter().find_map(|article| name.strip_prefix(article)).unwrap_or(name)
 }
 
 /// A name with the last word in the singular.
-pub(super) fn singular(name: &str) -> String {
+#[must_use]
+pub fn singular(name: &str) -> String {
     match name.rsplit_once(' ') {
         Some((before, last)) => format!("{before} {}", normal_word(last)),
         None => normal_word(name),
@@ -22,12 +25,14 @@ pub(super) fn singular(name: &str) -> String {
 }
 
 /// Whether a name is said of several things: "chairs", but not "stairs".
-pub(super) fn says_several(name: &str) -> bool {
+#[must_use]
+pub fn says_several(name: &str) -> bool {
     words(name).last().is_some_and(|last| normal_word(last) != *last && !ONE_THING.contains(&last.as_str()))
 }
 
 /// A name with its article: "a lamp", "an oven", "some shelves".
-pub(crate) fn with_article(name: &str) -> String {
+#[must_use]
+pub fn with_article(name: &str) -> String {
     let vowel = name.starts_with(['a', 'e', 'i', 'o', 'u']);
     let article = if is_plural(name) {
         "some"
@@ -40,13 +45,15 @@ pub(crate) fn with_article(name: &str) -> String {
 }
 
 /// Whether a name is a plural already.
-pub(crate) fn is_plural(name: &str) -> bool {
+#[must_use]
+pub fn is_plural(name: &str) -> bool {
     let last = name.rsplit(' ').next().unwrap_or(name);
     last.len() > 3 && last.ends_with('s') && !["ss", "us", "is"].iter().any(|end| last.ends_with(end))
 }
 
 /// The plural of a name.
-pub(crate) fn plural(name: &str) -> String {
+#[must_use]
+pub fn plural(name: &str) -> String {
     if is_plural(name) {
         return name.to_owned();
     }
@@ -63,7 +70,8 @@ pub(crate) fn plural(name: &str) -> String {
 }
 
 /// A count of things in words: "a lamp", "two lamps", "several lamps".
-pub(crate) fn counted(count: usize, name: &str) -> String {
+#[must_use]
+pub fn counted(count: usize, name: &str) -> String {
     match count {
         0 | 1 => with_article(name),
         2..=6 => format!("{} {}", COUNTS[count - 2], plural(name)),

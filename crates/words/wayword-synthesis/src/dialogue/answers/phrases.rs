@@ -1,0 +1,279 @@
+//! Phrases within a question or an answer: where in the view, of which colour, and which thing is asked for.
+
+use wayword_core::Where;
+use wayword_language::{
+    answers::{ANYTHING, BEFORE_SIDE, FILLERS, MORE_COLOURS, PREPOSITIONS, SIDE_PARTS, WHOLES},
+    lexicon::{is_room, is_thing, normal, says_several, singular},
+    reading::vocabulary::{ABSTRACT, BREAKERS, COLOURS},
+};
+
+/// A phrase that says where in the view something is: its words, from and to, and the third.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct PlacePhrase {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    pub(super) place: Where,
+}
+
+/// The place that a phrase beginning at a word tells, and where it ends. `Some((None, _))` for a place in relation to
+/// something else.
+fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
+    let word = |at: usize| words.get(at).copied().unwrap_or("");
+    match (word(from), word(from + 1), word(from + 2)) {
+        ("straight" | "directly" | "right", "ahead", _) => return Some((Some(Where::Middle), from + 2)),
+        ("ahead", ..) => return Some((Some(Where::Middle), from + 1)),
+        ("in", "front", "of") if matches!(word(from + 3), "you" | "us" | "me") => {
+            return Some((Some(Where::Middle), from + 4));
+        }
+        _ => {}
+    }
+    if !PREPOSITIONS.contains(&word(from)) {
+        return None;
+    }
+    let mut at = from + 1;
+    while at < from + 4 && BEFORE_SIDE.contains(&word(at)) {
+        at += 1;
+    }
+    let place = match word(at) {
+        "left" | "lefthand" => Where::Left,
+        "right" | "righthand" => Where::Right,
+        "middle" | "centre" | "center" | "background" | "distance" => Where::Middle,
+        _ => return None,
+    };
+    if at == from + 1 {
+        return None;
+    }
+    at += 1;
+    while SIDE_PARTS.contains(&word(at)) {
+        at += 1;
+    }
+    if word(at) != "of" {
+        return Some((Some(place), at));
+    }
+    let whole = if matches!(word(at + 1), "the" | "this" | "your" | "my") { at + 2 } else { at + 1 };
+    let room = is_room(word(whole)) || word(whole + 1) == "room";
+    let of_view = WHOLES.contains(&word(whole)) || room;
+    Some(if of_view { (Some(place), whole + 1) } else { (None, at + 1) })
+}
+
+/// The phrases of a run of words that place something in the view.
+pub(super) fn place_phrases(words: &[&str]) -> Vec<PlacePhrase> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        let next = phrase_at(words, at);
+        if let Some((Some(place), to)) = next {
+            found.push(PlacePhrase { from: at, to, place });
+        }
+        at = next.map_or(at + 1, |(_, to)| to);
+    }
+    found
+}
+
+/// The colour that begins at a word, with its shade, and the number of its words.
+pub(super) fn colour_at(words: &[&str]) -> Option<(String, usize)> {
+    let is_colour = |word: &&&str| COLOURS.contains(word) || MORE_COLOURS.contains(word);
+    let plain = |word: &str| match word {
+        "gray" => "grey".to_owned(),
+        "golden" => "gold".to_owned(),
+        word => word.to_owned(),
+    };
+    match words {
+        [shade @ ("dark" | "light"), rest @ ..] => {
+            rest.first().filter(is_colour).map(|colour| (format!("{shade} {}", plain(colour)), 2))
+        }
+        [..] => words.first().filter(is_colour).map(|colour| (plain(colour), 1)),
+    }
+}
+
+/// The colour that a phrase is, without its shade, where it is nothing else.
+pub(super) fn bare_colour(phrase: &str) -> Option<&str> {
+    let words: Vec<&str> = phrase.split(' ').collect();
+    colour_at(&words).filter(|(_, length)| *length == words.len()).and_then(|_| words.last().copied())
+}
+
+/// The first colour of a run of words.
+pub(super) fn first_colour(words: &[&str]) -> Option<String> {
+    (0..words.len()).find_map(|at| colour_at(&words[at..])).map(|(colour, _)| colour)
+}
+
+/// The colour that a sentence gives to what it has just named: "is dark green", "appears to be mostly white".
+pub(super) fn colour_said_of(after: &[&str]) -> Option<String> {
+    const LINKS: [&str; 9] = ["is", "are", "was", "were", "looks", "look", "appears", "appear", "painted"];
+    const BETWEEN: [&str; 14] =
+        ["to", "be", "a", "an", "very", "mostly", "mainly", "also", "painted", "of", "in", "all", "large", "colour"];
+    let (first, rest) = after.split_first()?;
+    if !LINKS.contains(first) {
+        return None;
+    }
+    let skipped = rest.iter().take(4).take_while(|word| BETWEEN.contains(word)).count();
+    colour_at(&rest[skipped..]).map(|(colour, _)| colour)
+}
+
+/// Longest name that is asked for, bytes.
+const MOST_NAME_BYTES: usize = 60;
+/// Most things that one question asks for.
+const MOST_THINGS: usize = 8;
+
+/// A thing that a question asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Wanted {
+    /// Its name as it is asked for, without article and adjectives of size.
+    pub(crate) said: String,
+    /// The name without its colour, in the singular where it is no plural by nature.
+    pub(crate) name: String,
+    /// The colour that is asked for.
+    pub(crate) colour: Option<String>,
+    /// Whether the question speaks of several.
+    pub(crate) several: bool,
+    /// The part of the view that is asked about.
+    pub(crate) place: Option<Where>,
+}
+
+/// The things that words ask for, with "or", "and" or commas between them, and whether it is an "or".
+pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<Wanted>, bool)> {
+    let place = place_phrases(words).first().map(|phrase| phrase.place);
+    let mut found: Vec<Wanted> = Vec::new();
+    let mut at = 0;
+    let mut or = false;
+    loop {
+        let name = noun_phrase(words, &mut at)?;
+        found.push(wanted(&name, place)?);
+        match words.get(at) {
+            Some(&"or") => or = true,
+            Some(&"and") => {}
+            Some(&",") if words[at..].iter().any(|word| matches!(*word, "or" | "and")) => {
+                at += usize::from(matches!(words.get(at + 1), Some(&"or" | &"and")));
+                or |= words[at] == "or";
+            }
+            _ => return Some((found, or)),
+        }
+        at += 1;
+        if found.len() == MOST_THINGS
+            || noun_phrase(words, &mut at.clone()).and_then(|name| wanted(&name, None)).is_none()
+        {
+            return Some((found, or));
+        }
+    }
+}
+
+/// The words of a noun phrase from `at` on, and `at` moved behind it.
+pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&'a str>> {
+    while words.get(*at).is_some_and(|word| FILLERS.contains(word)) {
+        *at += 1;
+    }
+    let start = *at;
+    let in_name = |at: usize| {
+        let word = words[at];
+        let of = word == "of"
+            && at > start
+            && (1..=3)
+                .any(|more| words.get(start..at + 1 + more).is_some_and(|name| is_thing(&normal(&name.join(" ")))));
+        let is_word = word.starts_with(char::is_alphanumeric);
+        is_word
+            && at < start + 6
+            && (of || !BREAKERS.contains(&word) || (at == start && matches!(word, "hanging" | "standing")))
+            && !matches!(word, "visible" | "present" | "mentioned" | "really" | "actually" | "here" | "anywhere")
+    };
+    while *at < words.len() && in_name(*at) {
+        *at += 1;
+    }
+    let found = words[start..*at].to_vec();
+    // "The lamp you mentioned": behind the name, up to the next joint.
+    while words.get(*at).is_some_and(|word| !matches!(*word, "or" | "and" | ",")) {
+        *at += 1;
+    }
+    (!found.is_empty()).then_some(found)
+}
+
+/// The thing that words begin with.
+pub(super) fn first_wanted(words: &[&str]) -> Option<Wanted> {
+    wanted(&noun_phrase(words, &mut 0)?, None)
+}
+
+/// A name as a wanted thing; `None` where it names nothing in particular.
+pub(super) fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
+    let head = normal(name.last()?);
+    let nothing = |word: &str| ANYTHING.contains(&word);
+    let vague = ABSTRACT.contains(&head.as_str()) && !is_thing(&normal(&name.join(" ")));
+    if vague || nothing(&head) || name.iter().any(|word| nothing(word)) {
+        return None;
+    }
+    let said = name.join(" ");
+    if said.len() > MOST_NAME_BYTES {
+        return None;
+    }
+    let in_lexicon = is_thing(&normal(&said));
+    let (colour, length) =
+        colour_at(name).filter(|_| !in_lexicon).map_or((None, 0), |(colour, length)| (Some(colour), length));
+    let bare = name[length..].join(" ");
+    if bare.is_empty() {
+        return None;
+    }
+    let several = says_several(&bare);
+    Some(Wanted { said, name: if several { singular(&bare) } else { bare }, colour, several, place })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Where::{Left, Middle, Right};
+
+    fn places(text: &str) -> Vec<Where> {
+        place_phrases(&text.split(' ').collect::<Vec<_>>()).into_iter().map(|phrase| phrase.place).collect()
+    }
+
+    #[test]
+    fn places_in_the_view_are_found() {
+        for (text, wanted) in [
+            ("a bed on the left", vec![Left]),
+            ("on the left side of the room there is a bed", vec![Left]),
+            ("a bed to the right and a lamp in the centre", vec![Right, Middle]),
+            ("in the center of the image", vec![Middle]),
+            ("a door straight ahead", vec![Middle]),
+            ("a kitchen in the background", vec![Middle]),
+            ("in the far left corner", vec![Left]),
+            ("on your right", vec![Right]),
+            ("against the right wall", vec![Right]),
+            ("on the left side of the kitchen", vec![Left]),
+            ("a chair in front of you", vec![Middle]),
+        ] {
+            assert_eq!(places(text), wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn places_in_relation_to_things_are_not_places_in_the_view() {
+        for text in [
+            "to the left of the sofa",
+            "on the right side of the bed",
+            "in the middle of the table",
+            "to its left",
+            "in front of the sofa",
+            "right next to the bed",
+            "what is left",
+            "",
+        ] {
+            assert_eq!(places(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn colours_are_found_with_their_shades() {
+        let first = |text: &str| first_colour(&text.split(' ').collect::<Vec<_>>());
+        assert_eq!(first("it is dark gray"), Some("dark grey".into()));
+        assert_eq!(first("a light wooden table and a red one"), Some("red".into()));
+        assert_eq!(first("burgundy"), Some("burgundy".into()));
+        assert_eq!(first("light"), None);
+        assert_eq!(first(""), None);
+    }
+
+    #[test]
+    fn only_a_link_gives_a_colour_to_what_was_named() {
+        let said = |text: &str| colour_said_of(&text.split(' ').collect::<Vec<_>>());
+        assert_eq!(said("is red"), Some("red".into()));
+        assert_eq!(said("appears to be mostly light blue"), Some("light blue".into()));
+        assert_eq!(said("and a red chair"), None);
+        assert_eq!(said("is on a red rug"), None);
+    }
+}
