@@ -22,16 +22,16 @@ pub(super) enum Step {
 
 /// How far a text has got: the frame of its last place, the frame of its last turn, and the first move that is left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct State {
+struct Progress {
     place: usize,
     turn: usize,
     next_move: usize,
 }
 
-/// A state with the one before it, counted in the layer before, and the frame of the step between them.
+/// How far it has got, from which of the layer before, and the frame of the step between them.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
-    state: State,
+    state: Progress,
     before: usize,
     frame: Option<usize>,
 }
@@ -40,7 +40,7 @@ struct Reached {
 /// lay those before it can go on.
 pub(super) fn align(steps: &[Step], evidence: &Evidence) -> Result<Vec<Option<usize>>, usize> {
     let bends = Bends::of(evidence);
-    let start = Reached { state: State { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
+    let start = Reached { state: Progress { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
     let mut layers: Vec<Vec<Reached>> = vec![vec![start]];
     for (at, step) in steps.iter().enumerate() {
         let now = layers.last().map_or(&[][..], Vec::as_slice);
@@ -87,7 +87,7 @@ fn undominated(mut reached: Vec<Reached>) -> Vec<Reached> {
 }
 
 /// The states after a step, without most of those that another of them dominates.
-fn after(state: State, step: &Step, bends: &Bends) -> Vec<(State, Option<usize>)> {
+fn after(state: Progress, step: &Step, bends: &Bends) -> Vec<(Progress, Option<usize>)> {
     match step {
         Step::Free => vec![(state, None)],
         Step::Onward => {
@@ -99,12 +99,12 @@ fn after(state: State, step: &Step, bends: &Bends) -> Vec<(State, Option<usize>)
         }
         Step::Place(frames) => {
             let first = frames.partition_point(|frame| *frame < state.place.max(state.turn));
-            frames.get(first).map(|frame| (State { place: *frame, ..state }, Some(*frame))).into_iter().collect()
+            frames.get(first).map(|frame| (Progress { place: *frame, ..state }, Some(*frame))).into_iter().collect()
         }
         Step::Turn(side) => {
             // A place that is told before a turn may already be seen from the frame of the turn, a hop ahead of itself.
             let from = state.next_move.max(state.place.saturating_sub(1));
-            let turned = |(first, last): (usize, usize)| State { turn: first, next_move: last + 1, ..state };
+            let turned = |(first, last): (usize, usize)| Progress { turn: first, next_move: last + 1, ..state };
             bends.soonest(*side, from).into_iter().map(|bend| (turned(bend), Some(bend.0))).collect()
         }
     }
@@ -174,7 +174,7 @@ mod tests {
     }
 
     /// Every way to lay the steps, without any bound.
-    fn fits(steps: &[Step], state: State, turns_deg: &[f64]) -> bool {
+    fn fits(steps: &[Step], state: Progress, turns_deg: &[f64]) -> bool {
         let Some((step, rest)) = steps.split_first() else { return true };
         let moves = turns_deg.len();
         match step {
@@ -183,11 +183,11 @@ mod tests {
             Step::Place(frames) => frames
                 .iter()
                 .filter(|frame| **frame >= state.place && **frame >= state.turn)
-                .any(|frame| fits(rest, State { place: *frame, ..state }, turns_deg)),
+                .any(|frame| fits(rest, Progress { place: *frame, ..state }, turns_deg)),
             Step::Turn(side) => (state.next_move..moves)
                 .flat_map(|first| (first..moves.min(first + motion::BEND_MOVES)).map(move |last| (first, last)))
                 .filter(|(first, last)| first + 1 >= state.place && is_turn(*side, &turns_deg[*first..=*last]))
-                .any(|(first, last)| fits(rest, State { turn: first, next_move: last + 1, ..state }, turns_deg)),
+                .any(|(first, last)| fits(rest, Progress { turn: first, next_move: last + 1, ..state }, turns_deg)),
         }
     }
 
@@ -206,7 +206,7 @@ mod tests {
             steps in prop::collection::vec(step(), 0..6),
             turns in prop::collection::vec(prop_oneof![Just(0.0), Just(20.0), Just(-40.0), Just(70.0), Just(170.0)], 0..6),
         ) {
-            let start = State { place: 0, turn: 0, next_move: 0 };
+            let start = Progress { place: 0, turn: 0, next_move: 0 };
             let laid = align(&steps, &walk(&turns));
             prop_assert_eq!(laid.is_ok(), fits(&steps, start, &turns));
             let upto = laid.err().unwrap_or(steps.len());
