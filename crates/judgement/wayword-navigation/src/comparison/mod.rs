@@ -81,7 +81,7 @@ pub struct Set {
 /// What kind of agent a row is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum AgentKind {
     /// It knows nothing and reads nothing.
     Floor,
     /// It reads.
@@ -99,7 +99,7 @@ pub struct Row {
     /// The agent.
     pub agent: String,
     /// What kind it is.
-    pub kind: Kind,
+    pub kind: AgentKind,
     /// The set that it walked by; `None` where it does not read.
     pub set: Option<String>,
     /// Each figure with its interval, clustered by path.

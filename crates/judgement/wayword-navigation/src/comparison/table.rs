@@ -1,6 +1,8 @@
 //! From scores to the table: means over items, intervals clustered by path, differences item by item.
 
-use super::{About, Comparison, Difference, FEWEST_PATHS, Kind, Listening, Results, Row, Set, Swapped, results::Texts};
+use super::{
+    About, AgentKind, Comparison, Difference, FEWEST_PATHS, Listening, Results, Row, Set, Swapped, results::Texts,
+};
 use crate::swap::Swap;
 use std::collections::BTreeMap;
 use wayword_metrics::{Estimate, McNemar, Metric, clustered_interval};
@@ -20,7 +22,7 @@ pub struct Walker {
     /// Its name.
     pub name: String,
     /// What kind it is.
-    pub kind: Kind,
+    pub kind: AgentKind,
     /// Whether it reads instructions.
     pub reads: bool,
 }
@@ -42,7 +44,7 @@ pub fn compare(about: About, sets: Vec<Set>, walkers: &[Walker], swaps: &[Swap],
     }
     let mut swapped = Vec::new();
     if let Some(first) = sets.first() {
-        for walker in walkers.iter().filter(|walker| walker.kind == Kind::Agent) {
+        for walker in walkers.iter().filter(|walker| walker.kind == AgentKind::Agent) {
             swapped.extend(swaps.iter().map(|swap| table.swapped(walker, &first.name, *swap)));
         }
     }

@@ -60,7 +60,7 @@ fn set(name: &str) -> Set {
 
 fn compared(results: &Results, swaps: &[Swap]) -> Comparison {
     let walker = |name: &str, kind, reads| Walker { name: name.into(), kind, reads };
-    let walkers = [walker("reader", Kind::Agent, true), walker("blind", Kind::Floor, false)];
+    let walkers = [walker("reader", AgentKind::Agent, true), walker("blind", AgentKind::Floor, false)];
     compare(about(), vec![set("original"), set("ours")], &walkers, swaps, results)
 }
 

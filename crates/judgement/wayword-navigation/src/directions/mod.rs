@@ -12,7 +12,7 @@ use wayword_core::ModelError;
 
 pub(crate) use clauses::clause_texts;
 pub use model::ByModel;
-pub use places::{Place, places};
+pub use places::{NamedPlace, places};
 pub use rules::ByRules;
 
 /// An instruction taken apart (arXiv 2211.16649, section 3: navigation component and activity component).

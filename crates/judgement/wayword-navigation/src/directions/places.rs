@@ -7,7 +7,7 @@ use wayword_language::reading::{What, read};
 
 /// A thing or a room that a phrase names.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Place {
+pub struct NamedPlace {
     /// Its name: lower case, singular.
     pub name: String,
     /// It names a room and can be no thing: "kitchen", but not "stairs".
@@ -16,11 +16,11 @@ pub struct Place {
 
 /// The things and rooms of a phrase, each once, in the order of the text. What the phrase says not to be there is left out.
 #[must_use]
-pub fn places(phrase: &str) -> Vec<Place> {
+pub fn places(phrase: &str) -> Vec<NamedPlace> {
     let reading = read(beginning(phrase, MOST_BYTES_READ), &BTreeSet::new()).claims();
     let mut named = BTreeSet::new();
     let place = |what: What| match what {
-        What::Place(place) => Some(Place { name: place.name, is_room: place.is_room && !place.is_thing }),
+        What::Place(place) => Some(NamedPlace { name: place.name, is_room: place.is_room && !place.is_thing }),
         _ => None,
     };
     let all = reading.events.into_iter().filter_map(|event| place(event.what));
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn a_room_before_a_thing_is_no_room_to_look_for() {
-        let table = Place { name: "kitchen table".to_owned(), is_room: false };
+        let table = NamedPlace { name: "kitchen table".to_owned(), is_room: false };
         assert_eq!(places("wipe the kitchen table"), [table]);
         assert_eq!(places("turn left"), []);
     }

@@ -1,7 +1,7 @@
 //! Phrases against labels by their words: no model, no weights.
 
 use super::{Sees, labels_of::labels_of};
-use crate::directions::{Place, places};
+use crate::directions::{NamedPlace, places};
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
@@ -16,7 +16,7 @@ const AKIN: f32 = 0.8;
 /// none scores 0 everywhere.
 pub struct Lexical {
     sees: Sees,
-    read: Mutex<BTreeMap<String, Arc<[Place]>>>,
+    read: Mutex<BTreeMap<String, Arc<[NamedPlace]>>>,
 }
 
 impl Lexical {
@@ -26,18 +26,18 @@ impl Lexical {
         Self { sees, read: Mutex::default() }
     }
 
-    fn places(&self, phrase: &str) -> Arc<[Place]> {
+    fn places(&self, phrase: &str) -> Arc<[NamedPlace]> {
         if let Some(places) = self.read.lock().unwrap_or_else(PoisonError::into_inner).get(phrase) {
             return Arc::clone(places);
         }
-        let read: Arc<[Place]> = places(phrase).into();
+        let read: Arc<[NamedPlace]> = places(phrase).into();
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(phrase.to_owned(), Arc::clone(&read));
         read
     }
 
-    fn score(&self, view: &View, places: &[Place]) -> Result<f32, ModelError> {
+    fn score(&self, view: &View, places: &[NamedPlace]) -> Result<f32, ModelError> {
         let (labels, room) = labels_of(view, self.name())?;
-        let named = |place: &Place| {
+        let named = |place: &NamedPlace| {
             let by_room = room.filter(|_| self.sees == Sees::Views).map_or(0.0, |room| room_fits(room, place));
             labels.iter().map(|label| fits(&label.name, place)).fold(by_room, f32::max)
         };
@@ -46,12 +46,12 @@ impl Lexical {
     }
 
     /// Whether a place is of a kind that this grounder can see.
-    fn holds(&self, place: &Place) -> bool {
+    fn holds(&self, place: &NamedPlace) -> bool {
         self.sees == Sees::Views || !place.is_room
     }
 }
 
-fn fits(name: &str, place: &Place) -> f32 {
+fn fits(name: &str, place: &NamedPlace) -> f32 {
     if normal(name) == normal(&place.name) {
         1.0
     } else if agree(name, &place.name) {
@@ -61,7 +61,7 @@ fn fits(name: &str, place: &Place) -> f32 {
     }
 }
 
-fn room_fits(room: &str, place: &Place) -> f32 {
+fn room_fits(room: &str, place: &NamedPlace) -> f32 {
     if place.is_room && same_room(room, &place.name) { 1.0 } else { 0.0 }
 }
 
@@ -74,7 +74,7 @@ impl Grounder for Lexical {
     }
 
     fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
-        let places: Vec<Arc<[Place]>> = phrases.iter().map(|phrase| self.places(phrase)).collect();
+        let places: Vec<Arc<[NamedPlace]>> = phrases.iter().map(|phrase| self.places(phrase)).collect();
         views.iter().map(|view| places.iter().map(|places| self.score(view, places)).collect()).collect()
     }
 

@@ -4,7 +4,7 @@ use crate::{error::Error, text_file};
 use std::{collections::BTreeMap, path::Path};
 use wayword_navigation::{
     agents::{Back, Parameters},
-    comparison::{Kind, Walker},
+    comparison::{AgentKind, Walker},
 };
 
 /// Who can walk by an instruction.
@@ -62,10 +62,10 @@ impl Agent {
     /// What the comparison has to know of it.
     pub(super) fn walker(&self) -> Walker {
         let (kind, reads) = match self {
-            Self::Phrases { .. } => (Kind::Agent, true),
-            Self::Random(_) | Self::Straight(_) => (Kind::Floor, false),
-            Self::NearestRoom => (Kind::Informed, true),
-            Self::Oracle => (Kind::Ceiling, false),
+            Self::Phrases { .. } => (AgentKind::Agent, true),
+            Self::Random(_) | Self::Straight(_) => (AgentKind::Floor, false),
+            Self::NearestRoom => (AgentKind::Informed, true),
+            Self::Oracle => (AgentKind::Ceiling, false),
         };
         Walker { name: self.name(), kind, reads }
     }

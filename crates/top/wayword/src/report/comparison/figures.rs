@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fmt};
 use wayword_metrics::{Estimate, McNemar, Metric};
 use wayword_navigation::{
-    comparison::{Comparison, Kind, Listening, Row, Swapped},
+    comparison::{AgentKind, Comparison, Listening, Row, Swapped},
     swap::Swap,
 };
 
@@ -70,7 +70,7 @@ fn p(test: &McNemar) -> String {
 #[derive(Debug, Clone)]
 pub(super) struct Line<'a> {
     pub(super) agent: String,
-    pub(super) kind: Kind,
+    pub(super) kind: AgentKind,
     /// Whether it is the agent's first line.
     pub(super) opens: bool,
     /// Whether the agent is not shown to do worse with another path's instruction.
@@ -94,10 +94,10 @@ impl Line<'_> {
     /// The agent, with what has to be known of it wherever it is named.
     pub(super) fn who(&self) -> String {
         let kind = match self.kind {
-            Kind::Floor => ", floor",
-            Kind::Agent => "",
-            Kind::Informed => ", knows the map",
-            Kind::Ceiling => ", ceiling",
+            AgentKind::Floor => ", floor",
+            AgentKind::Agent => "",
+            AgentKind::Informed => ", knows the map",
+            AgentKind::Ceiling => ", ceiling",
         };
         format!("{}{}{kind}", self.agent, if self.is_deaf { DEAF } else { "" })
     }
@@ -131,7 +131,7 @@ pub(super) fn differences(comparison: &Comparison) -> Vec<Line<'_>> {
 pub(super) fn swaps(comparison: &Comparison) -> Vec<Line<'_>> {
     opened(comparison.swaps.iter().map(|swapped| Line {
         agent: name(&swapped.agent),
-        kind: Kind::Agent,
+        kind: AgentKind::Agent,
         opens: false,
         is_deaf: is_deaf(comparison, &swapped.agent),
         label: swap_words(swapped.swap).to_owned(),

@@ -9,7 +9,7 @@ use super::{
 };
 use serde::Serialize;
 use wayword_metrics::Metric;
-use wayword_navigation::comparison::{Comparison, Kind};
+use wayword_navigation::comparison::{AgentKind, Comparison};
 
 /// The comparison, ready for its template.
 #[derive(Debug, Serialize)]
@@ -39,7 +39,7 @@ struct TableView {
 struct LineView {
     agent: String,
     opens: bool,
-    kind: Kind,
+    kind: AgentKind,
     is_deaf: bool,
     label: String,
     cells: Vec<Option<(String, String)>>,
@@ -110,12 +110,12 @@ fn number(text: &str) -> String {
 }
 
 fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]) -> Vec<Forest> {
-    let read: Vec<Line<'_>> = table.iter().filter(|line| line.kind == Kind::Agent).cloned().collect();
+    let read: Vec<Line<'_>> = table.iter().filter(|line| line.kind == AgentKind::Agent).cloned().collect();
     let mark = |line: &Line<'_>| {
         let class = match line.kind {
-            Kind::Floor => "floor",
-            Kind::Agent => return None,
-            Kind::Informed | Kind::Ceiling => "ceiling",
+            AgentKind::Floor => "floor",
+            AgentKind::Agent => return None,
+            AgentKind::Informed | AgentKind::Ceiling => "ceiling",
         };
         let figure = line.figure(Metric::SuccessRate)?;
         let by = if line.label == READS_NOTHING { String::new() } else { format!(" by {}", line.label) };

@@ -5,7 +5,7 @@ use crate::report::replay::tests::{Town, replay};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{Estimate, McNemar, Metric, Rule};
 use wayword_navigation::{
-    comparison::{About, Difference, Kind, Listening, Row, Set, Swapped},
+    comparison::{About, AgentKind, Difference, Listening, Row, Set, Swapped},
     swap::Swap,
 };
 
@@ -32,7 +32,7 @@ fn difference(sr: f64, half: f64) -> Difference {
     Difference { figures: figures(sr, half), mcnemar: McNemar { only_first: 12, only_second: 30, p: 0.0079 } }
 }
 
-fn row(agent: &str, kind: Kind, set: Option<&str>, sr: f64, less: Option<f64>) -> Row {
+fn row(agent: &str, kind: AgentKind, set: Option<&str>, sr: f64, less: Option<f64>) -> Row {
     let against_first = less.map(|less| difference(less, 0.02));
     Row { agent: agent.into(), kind, set: set.map(str::to_owned), figures: figures(sr, 0.021), against_first }
 }
@@ -54,7 +54,7 @@ fn set(name: &str, source: &str, left_out: usize) -> Set {
 }
 
 fn comparison() -> Comparison {
-    let agent = Kind::Agent;
+    let agent = AgentKind::Agent;
     let parameters = BTreeMap::from([("stop_threshold".to_owned(), "0.7".to_owned())]);
     Comparison {
         about: About {
@@ -81,9 +81,9 @@ fn comparison() -> Comparison {
             row("clip-nav", agent, Some("central"), 0.062, Some(-0.008)),
             row("glip-nav", agent, Some("original"), 0.17, None),
             row("glip-nav", agent, Some("central"), 0.12, Some(-0.05)),
-            row("random/5", Kind::Floor, None, 0.012, None),
-            row("nearest-room", Kind::Informed, None, 0.25, None),
-            row("oracle", Kind::Ceiling, None, 0.97, None),
+            row("random/5", AgentKind::Floor, None, 0.012, None),
+            row("nearest-room", AgentKind::Informed, None, 0.25, None),
+            row("oracle", AgentKind::Ceiling, None, 0.97, None),
         ],
         swaps: vec![
             swapped("clip-nav", Swap::Directions, 0.0, Listening::NotShown),

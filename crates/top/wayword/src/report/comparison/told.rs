@@ -2,7 +2,7 @@
 
 use super::figures::{DEAF, Figure, deaf, name, other_path};
 use wayword_metrics::{Metric, Rule};
-use wayword_navigation::comparison::{About, Comparison, FEWEST_PATHS, Kind, Listening, Set, Swapped};
+use wayword_navigation::comparison::{About, AgentKind, Comparison, FEWEST_PATHS, Listening, Set, Swapped};
 
 /// What was compared, and on how much.
 pub(super) fn subject(about: &About) -> String {
@@ -59,7 +59,7 @@ pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
         other_path(comparison).any(|swapped| swapped.agent == agent && swapped.listening != Listening::TooFew)
     };
     let mut untested: Vec<String> = Vec::new();
-    for row in comparison.rows.iter().filter(|row| row.kind == Kind::Agent && !is_tested(&row.agent)) {
+    for row in comparison.rows.iter().filter(|row| row.kind == AgentKind::Agent && !is_tested(&row.agent)) {
         let agent = name(&row.agent);
         if !untested.contains(&agent) {
             untested.push(agent);
@@ -123,7 +123,7 @@ fn of_table(comparison: &Comparison) -> Vec<String> {
     ];
     notes.extend(grounding(comparison));
     notes.push(format!("Instructions are taken apart by {}.", name(&about.splitter)));
-    if comparison.rows.iter().any(|row| row.kind != Kind::Agent) {
+    if comparison.rows.iter().any(|row| row.kind != AgentKind::Agent) {
         notes.push(
             "Floors know nothing and read nothing; who knows the map knows every room's label too, and reads the room; the ceiling knows the goal."
                 .to_owned(),
