@@ -21,7 +21,7 @@ const BATCH: usize = 128;
 
 /// A place where one can stand.
 #[derive(Debug, Clone, Deserialize)]
-struct Place {
+struct Waypoint {
     #[serde(default)]
     id: Option<ViewpointId>,
     position: [f64; 3],
@@ -31,13 +31,13 @@ struct Place {
 
 #[derive(Deserialize)]
 struct Whole {
-    viewpoints: Vec<Place>,
+    viewpoints: Vec<Waypoint>,
     edges: Vec<(ViewpointId, ViewpointId)>,
 }
 
 #[derive(Deserialize)]
 struct Points {
-    points: Vec<Place>,
+    points: Vec<Waypoint>,
 }
 
 #[derive(Deserialize)]
@@ -88,7 +88,7 @@ fn whole(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformErr
     Ok(graph)
 }
 
-fn by_neighbours(keeper: &Keeper, scene: &SceneId, points: &[Place]) -> Result<ViewpointGraph, PlatformError> {
+fn by_neighbours(keeper: &Keeper, scene: &SceneId, points: &[Waypoint]) -> Result<ViewpointGraph, PlatformError> {
     let mut graph = nodes(points).map_err(|reason| keeper.misfit("points", reason))?;
     let names: Vec<ViewpointId> = graph.viewpoints().cloned().collect();
     let mut edges = 0;
@@ -107,7 +107,7 @@ fn by_neighbours(keeper: &Keeper, scene: &SceneId, points: &[Place]) -> Result<V
 }
 
 /// Nodes with the names that the child gave them.
-fn nodes(places: &[Place]) -> Result<ViewpointGraph, String> {
+fn nodes(places: &[Waypoint]) -> Result<ViewpointGraph, String> {
     let mut graph = ViewpointGraph::default();
     for (index, here) in places.iter().enumerate() {
         let id = here.id.clone().ok_or_else(|| format!("viewpoint {index} has no `id`"))?;
@@ -118,7 +118,7 @@ fn nodes(places: &[Place]) -> Result<ViewpointGraph, String> {
 }
 
 /// Thins the places out, asks which ways between near ones can be walked straight, and keeps the largest connected part.
-fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Place>) -> Result<ViewpointGraph, PlatformError> {
+fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Waypoint>) -> Result<ViewpointGraph, PlatformError> {
     let spacing_m = keeper.options().spacing_m;
     let points = thinned(points, spacing_m).map_err(|reason| keeper.misfit("points", reason))?;
     let tried = near_pairs(&points, REACH * spacing_m);
@@ -136,21 +136,21 @@ fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Place>) -> Result<Vi
 }
 
 /// Places at least `spacing_m` apart, the first of each crowd, each with a name.
-fn thinned(points: Vec<Place>, spacing_m: f64) -> Result<Vec<Place>, String> {
-    let mut kept: Vec<Place> = Vec::new();
+fn thinned(points: Vec<Waypoint>, spacing_m: f64) -> Result<Vec<Waypoint>, String> {
+    let mut kept: Vec<Waypoint> = Vec::new();
     for point in points {
         let here = place(point.position)?;
         if kept.iter().all(|other| DVec3::from_array(other.position).distance(here) >= spacing_m) {
             let name = || ViewpointId::new(format!("p{}", kept.len())).map_err(|error| error.to_string());
             let id = point.id.clone().map_or_else(name, Ok)?;
-            kept.push(Place { id: Some(id), ..point });
+            kept.push(Waypoint { id: Some(id), ..point });
         }
     }
     Ok(kept)
 }
 
 /// Each place with its nearest ones, every pair once, in order.
-fn near_pairs(points: &[Place], reach_m: f64) -> Vec<(usize, usize)> {
+fn near_pairs(points: &[Waypoint], reach_m: f64) -> Vec<(usize, usize)> {
     let positions: Vec<DVec3> = points.iter().map(|point| DVec3::from_array(point.position)).collect();
     let mut pairs = BTreeSet::new();
     for (here, from) in positions.iter().enumerate() {
@@ -167,7 +167,7 @@ fn near_pairs(points: &[Place], reach_m: f64) -> Vec<(usize, usize)> {
 }
 
 /// The largest connected part of the graph; of two alike, the one with the first place.
-fn joined(points: &[Place], open: &[(usize, usize)]) -> Result<ViewpointGraph, GraphError> {
+fn joined(points: &[Waypoint], open: &[(usize, usize)]) -> Result<ViewpointGraph, GraphError> {
     let part = parts(points.len(), open);
     let size = |number: usize| part.iter().filter(|other| **other == number).count();
     let numbers: BTreeSet<usize> = part.iter().copied().collect();
@@ -211,13 +211,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn at(x: f64, y: f64) -> Place {
-        Place { id: None, position: [x, y, 1.5], level: None }
+    fn at(x: f64, y: f64) -> Waypoint {
+        Waypoint { id: None, position: [x, y, 1.5], level: None }
     }
 
     #[test]
     fn the_largest_part_is_kept_and_walls_are_not_walked_through() {
-        let points: Vec<Place> = (0..8).map(|n| at(f64::from(n), 0.0)).collect();
+        let points: Vec<Waypoint> = (0..8).map(|n| at(f64::from(n), 0.0)).collect();
         let points = thinned(points, 1.0).unwrap();
         // A wall between 4 and 5.
         let open: Vec<_> = near_pairs(&points, 2.0).into_iter().filter(|(a, b)| (*a < 5) == (*b < 5)).collect();
@@ -231,9 +231,9 @@ mod tests {
         fn thinned_places_lie_apart_and_every_place_has_one_near(
             xs in prop::collection::vec((0.0..8.0f64, 0.0..8.0f64), 1..80),
         ) {
-            let points: Vec<Place> = xs.iter().map(|(x, y)| at(*x, *y)).collect();
+            let points: Vec<Waypoint> = xs.iter().map(|(x, y)| at(*x, *y)).collect();
             let kept = thinned(points.clone(), 1.0).unwrap();
-            let far = |a: &Place, b: &Place| DVec3::from_array(a.position).distance(DVec3::from_array(b.position));
+            let far = |a: &Waypoint, b: &Waypoint| DVec3::from_array(a.position).distance(DVec3::from_array(b.position));
             for (n, a) in kept.iter().enumerate() {
                 prop_assert!(kept[..n].iter().all(|b| far(a, b) >= 1.0));
             }

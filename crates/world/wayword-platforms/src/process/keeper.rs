@@ -27,10 +27,11 @@ pub(crate) struct Keeper {
     options: ProcessOptions,
     hear: Hear,
     world: World,
-    state: Mutex<State>,
+    state: Mutex<ChildState>,
 }
 
-struct State {
+/// The child that runs, and what is known of those before it.
+struct ChildState {
     running: Option<Running>,
     /// The folder of its pictures, without links.
     images: Option<PathBuf>,
@@ -44,7 +45,7 @@ struct State {
 impl Keeper {
     /// Starts the child and hears its greeting.
     pub(crate) fn start(options: ProcessOptions, hear: Hear) -> Result<Self, PlatformError> {
-        let mut state = State {
+        let mut state = ChildState {
             running: None,
             images: None,
             asked: 0,
@@ -96,7 +97,7 @@ impl Keeper {
     }
 
     /// Starts the child again if it is gone.
-    fn revive(&self, state: &mut State) -> Result<(), PlatformError> {
+    fn revive(&self, state: &mut ChildState) -> Result<(), PlatformError> {
         if let Some(running) = state.running.as_mut()
             && running.has_ended()
         {
@@ -121,7 +122,7 @@ impl Keeper {
     }
 }
 
-impl State {
+impl ChildState {
     fn launch(&mut self, options: &ProcessOptions, hear: &Hear) -> Result<World, PlatformError> {
         let started = Running::start(options, hear).map_err(|fault| {
             self.last_fault = fault.to_string();

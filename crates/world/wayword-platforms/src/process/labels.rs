@@ -13,7 +13,7 @@ const BOX_SLACK_PX: f64 = 1.0;
 
 /// The answer to `observe`.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Observation {
+pub(crate) struct Observed {
     #[serde(default)]
     pub(crate) image: Option<Sent>,
     #[serde(default)]

@@ -3,7 +3,7 @@
 use super::{
     graph,
     keeper::Keeper,
-    labels::{self, MAX_COORDINATE_M, Observation},
+    labels::{self, MAX_COORDINATE_M, Observed},
     options::ProcessOptions,
     path, picture,
     protocol::{self, Offer, World},
@@ -116,7 +116,7 @@ impl ProcessPlatform {
         }
         let (seen, file) =
             self.keeper.ask_and_take("observe", &self.look_request(scene, from, gaze, picture), |result, folder| {
-                let mut seen: Observation = serde_json::from_value(result).map_err(|error| error.to_string())?;
+                let mut seen: Observed = serde_json::from_value(result).map_err(|error| error.to_string())?;
                 let file = seen.image.take().filter(|_| picture).map(|sent| sent.bytes(folder)).transpose()?;
                 Ok((seen, file))
             })?;
@@ -152,7 +152,7 @@ impl ProcessPlatform {
         })
     }
 
-    fn truth(&self, seen: Observation, pose: &Pose, gaze: Gaze) -> Result<Option<GroundTruth>, String> {
+    fn truth(&self, seen: Observed, pose: &Pose, gaze: Gaze) -> Result<Option<GroundTruth>, String> {
         let lists_objects = self.has(Offer::Labels);
         if !lists_objects && !self.has(Offer::Rooms) {
             return Ok(None);
