@@ -23,11 +23,11 @@ macro_rules! catalogue {
         /// A kind of thing.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
-        pub enum Kind {
+        pub enum FurnitureKind {
             $(#[doc = $name] $kind,)*
         }
 
-        impl Kind {
+        impl FurnitureKind {
             /// All of them.
             #[cfg(test)]
             pub(crate) const ALL: &'static [Self] = &[$(Self::$kind,)*];
@@ -117,7 +117,7 @@ catalogue! {
     Bicycle "bicycle" [168 50 104] +- 0 "metal" [Red Blue Green Black];
 }
 
-impl Kind {
+impl FurnitureKind {
     /// A size for one piece, centimetres.
     pub(crate) fn size_cm(self, dice: &mut Dice) -> [i32; 3] {
         let Entry { size_cm: [width, depth, height], give_cm, .. } = self.entry();

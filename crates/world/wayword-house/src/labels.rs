@@ -39,7 +39,7 @@ fn label(camera: &Camera, seen: &Visible, object: &Object) -> Option<Label> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{catalogue::Kind, generate, model::House};
+    use super::super::{catalogue::FurnitureKind, generate, model::House};
     use super::*;
     use wayword_core::DVec3;
 
@@ -56,8 +56,8 @@ mod tests {
     /// A house whose only piece is a refrigerator in the middle of its living room, seen from the south.
     fn refrigerator_alone() -> (House, DVec3) {
         let mut house = generate(1);
-        let room = house.furniture.iter().find(|piece| piece.kind == Kind::Sofa).unwrap().room;
-        let mut piece = house.furniture.iter().find(|piece| piece.kind == Kind::Refrigerator).unwrap().clone();
+        let room = house.furniture.iter().find(|piece| piece.kind == FurnitureKind::Sofa).unwrap().room;
+        let mut piece = house.furniture.iter().find(|piece| piece.kind == FurnitureKind::Refrigerator).unwrap().clone();
         let (x, y) = house.rooms[room].outline.centre();
         piece.room = room;
         piece.quarter_turns = 0;
@@ -77,7 +77,7 @@ mod tests {
     fn what_is_hidden_has_no_label() {
         let (mut house, eye) = refrigerator_alone();
         let mut vase = house.furniture[0].clone();
-        (vase.kind, vase.name, vase.id) = (Kind::Vase, "vase".into(), vase.id + 1);
+        (vase.kind, vase.name, vase.id) = (FurnitureKind::Vase, "vase".into(), vase.id + 1);
         let (x, y) = vase.footprint.centre();
         vase.footprint = super::super::rect::RectCm::new(x - 11, y + 60, x + 11, y + 82);
         (vase.base_cm, vase.height_cm) = (60, 44);

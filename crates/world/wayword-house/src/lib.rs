@@ -24,7 +24,7 @@ mod structure;
 mod surface;
 mod textures;
 
-pub use catalogue::Kind;
+pub use catalogue::FurnitureKind;
 pub use colour::Colour;
 pub use graph::{EYE_M, viewpoint_graph};
 pub use ground::{Ground, NoWay, RADIUS_CM, Way};

@@ -137,7 +137,7 @@ fn lamps(room: &Room, low: Vec3, high: Vec3) -> Vec<Vec3> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{catalogue::Kind, generate};
+    use super::super::{catalogue::FurnitureKind, generate};
     use super::*;
 
     #[test]
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn things_shade_the_floor_under_them() {
         let house = generate(3);
-        let table = house.furniture.iter().find(|piece| piece.kind == Kind::DiningTable).unwrap();
+        let table = house.furniture.iter().find(|piece| piece.kind == FurnitureKind::DiningTable).unwrap();
         let light = RoomLight::of(&house, table.room);
         let (low, high) = bounds(table);
         let under = (low + high) / 2.0 * Vec3::new(1.0, 1.0, 0.0);

@@ -1,7 +1,7 @@
 //! What a house is made of.
 
 use super::{
-    catalogue::Kind,
+    catalogue::FurnitureKind,
     colour::Colour,
     rect::{RectCm, SpanCm, Wall},
 };
@@ -168,7 +168,7 @@ pub struct Furniture {
     /// Its number among all objects of the house.
     pub id: u32,
     /// What it is.
-    pub kind: Kind,
+    pub kind: FurnitureKind,
     /// Its name in plain words.
     pub name: String,
     /// Its main colour.

@@ -1,6 +1,6 @@
 //! The bathroom: toilet, basin under a mirror, and bathtub or shower.
 
-use super::super::catalogue::Kind as K;
+use super::super::catalogue::FurnitureKind as K;
 use super::placing::{Along, Furnisher};
 
 pub(super) fn furnish(room: &mut Furnisher<'_>) {

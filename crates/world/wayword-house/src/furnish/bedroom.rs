@@ -1,6 +1,6 @@
 //! The bedroom: a bed between nightstands, and somewhere to keep clothes.
 
-use super::super::{catalogue::Kind as K, rect::RectCm};
+use super::super::{catalogue::FurnitureKind as K, rect::RectCm};
 use super::placing::{Along, Furnisher};
 
 pub(super) fn furnish(room: &mut Furnisher<'_>) {

@@ -1,7 +1,7 @@
 //! The dining room: a table with chairs under a chandelier.
 
 use super::super::{
-    catalogue::Kind as K,
+    catalogue::FurnitureKind as K,
     rect::{RectCm, Wall},
 };
 use super::placing::{Along, Furnisher};

@@ -1,7 +1,7 @@
 //! The kitchen: a row of counters with sink and stove, a refrigerator at its end, and an island or a table.
 
 use super::super::{
-    catalogue::Kind as K,
+    catalogue::FurnitureKind as K,
     rect::{RectCm, Wall},
 };
 use super::placing::{Along, Furnisher, Piece};

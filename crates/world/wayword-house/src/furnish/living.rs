@@ -1,6 +1,6 @@
 //! The living room: a sofa that faces a television, with a table between them.
 
-use super::super::{catalogue::Kind as K, rect::RectCm};
+use super::super::{catalogue::FurnitureKind as K, rect::RectCm};
 use super::placing::{Along, Furnisher, Piece};
 
 pub(super) fn furnish(room: &mut Furnisher<'_>) {

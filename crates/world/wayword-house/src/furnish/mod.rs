@@ -12,7 +12,7 @@ mod service;
 mod walls;
 
 use super::{
-    catalogue::Kind,
+    catalogue::FurnitureKind,
     colour::Colour,
     dice::Dice,
     layout::Layout,
@@ -64,7 +64,7 @@ fn furnish_room(room: &mut Furnisher<'_>, kind: RoomKind) {
         RoomKind::Staircase => {}
     }
     if !matches!(kind, RoomKind::DiningRoom | RoomKind::Staircase) {
-        room.on_ceiling(Kind::CeilingLight);
+        room.on_ceiling(FurnitureKind::CeilingLight);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The office: a desk with a computer, books and files.
 
-use super::super::{catalogue::Kind as K, rect::Wall};
+use super::super::{catalogue::FurnitureKind as K, rect::Wall};
 use super::{
     bedroom,
     placing::{Along, Furnisher},

@@ -1,7 +1,7 @@
 //! Puts one thing after the other into a room where it fits and nobody is shut in.
 
 use super::super::{
-    catalogue::Kind,
+    catalogue::FurnitureKind,
     colour::Colour,
     dice::Dice,
     layout::{Layout, swing},
@@ -98,7 +98,14 @@ impl<'a> Furnisher<'a> {
     }
 
     /// Adds a piece without asking whether it fits.
-    pub(super) fn put(&mut self, kind: Kind, footprint: RectCm, base_cm: i32, height_cm: i32, wall: Wall) -> Piece {
+    pub(super) fn put(
+        &mut self,
+        kind: FurnitureKind,
+        footprint: RectCm,
+        base_cm: i32,
+        height_cm: i32,
+        wall: Wall,
+    ) -> Piece {
         let entry = kind.entry();
         let colour = kind.colour(&mut self.dice);
         self.pieces.push(Furniture {
@@ -118,20 +125,20 @@ impl<'a> Furnisher<'a> {
     }
 
     /// Stands something with its back to one of `walls`, with `clearance` centimetres of free floor before it.
-    pub(super) fn stand(&mut self, kind: Kind, walls: &[Wall], along: Along, clearance: i32) -> Option<Piece> {
+    pub(super) fn stand(&mut self, kind: FurnitureKind, walls: &[Wall], along: Along, clearance: i32) -> Option<Piece> {
         let size = kind.size_cm(&mut self.dice);
         self.stand_sized(kind, size, walls, along, clearance)
     }
 
     /// As [`Self::stand`], on any wall, in random order.
-    pub(super) fn stand_anywhere(&mut self, kind: Kind, along: Along, clearance: i32) -> Option<Piece> {
+    pub(super) fn stand_anywhere(&mut self, kind: FurnitureKind, along: Along, clearance: i32) -> Option<Piece> {
         let walls = self.shuffled_walls();
         self.stand(kind, &walls, along, clearance)
     }
 
     pub(super) fn stand_sized(
         &mut self,
-        kind: Kind,
+        kind: FurnitureKind,
         size: [i32; 3],
         walls: &[Wall],
         along: Along,
@@ -151,7 +158,7 @@ impl<'a> Furnisher<'a> {
     }
 
     /// Places a piece at exactly this footprint if it fits there; reserved floor does not count where `close` is set.
-    pub(super) fn try_at(&mut self, kind: Kind, footprint: RectCm, wall: Wall, close: bool) -> Option<Piece> {
+    pub(super) fn try_at(&mut self, kind: FurnitureKind, footprint: RectCm, wall: Wall, close: bool) -> Option<Piece> {
         let fits = self.inner.contains(&footprint)
             && !self.touches_fixed(&footprint)
             && (close || !self.reserved.iter().any(|area| area.overlaps(&footprint)))
@@ -161,7 +168,13 @@ impl<'a> Furnisher<'a> {
     }
 
     /// As [`Self::try_at`], pushed in under `table`.
-    pub(super) fn try_under(&mut self, kind: Kind, footprint: RectCm, wall: Wall, table: &RectCm) -> Option<Piece> {
+    pub(super) fn try_under(
+        &mut self,
+        kind: FurnitureKind,
+        footprint: RectCm,
+        wall: Wall,
+        table: &RectCm,
+    ) -> Option<Piece> {
         let others = |area: &RectCm| area != table && area.overlaps(&footprint);
         let fits = self.inner.contains(&footprint)
             && !self.doorsteps.iter().any(|area| area.overlaps(&footprint))
@@ -172,7 +185,7 @@ impl<'a> Furnisher<'a> {
     }
 
     /// Stands something beside a piece, at the same wall: `gap` centimetres further along it, or back where negative.
-    pub(super) fn beside(&mut self, anchor: Piece, kind: Kind, gap: i32) -> Option<Piece> {
+    pub(super) fn beside(&mut self, anchor: Piece, kind: FurnitureKind, gap: i32) -> Option<Piece> {
         let wall = self.wall_behind(anchor);
         let size = kind.size_cm(&mut self.dice);
         let anchor = self.pieces[anchor].footprint;
@@ -294,7 +307,7 @@ impl<'a> Furnisher<'a> {
 
     /// Puts a small thing on top of a piece, `shift` centimetres along it from its middle and `forward` from its middle
     /// towards its front.
-    pub(super) fn on_top(&mut self, below: Piece, kind: Kind, shift: i32, forward: i32) -> Piece {
+    pub(super) fn on_top(&mut self, below: Piece, kind: FurnitureKind, shift: i32, forward: i32) -> Piece {
         let [width, depth, height] = kind.size_cm(&mut self.dice);
         let (wall, base) = (self.wall_behind(below), self.pieces[below].base_cm + self.pieces[below].height_cm);
         let (cx, cy) = self.pieces[below].footprint.centre();
@@ -310,7 +323,7 @@ impl<'a> Furnisher<'a> {
     /// Lays something flat, centred on a point.
     pub(super) fn lay(
         &mut self,
-        kind: Kind,
+        kind: FurnitureKind,
         (x, y): (i32, i32),
         [width, depth, height]: [i32; 3],
         wall: Wall,
@@ -328,7 +341,7 @@ impl<'a> Furnisher<'a> {
     }
 
     /// Hangs a lamp from the middle of the ceiling.
-    pub(super) fn on_ceiling(&mut self, kind: Kind) -> Piece {
+    pub(super) fn on_ceiling(&mut self, kind: FurnitureKind) -> Piece {
         let [width, depth, height] = kind.size_cm(&mut self.dice);
         let (x, y) = self.inner.centre();
         let footprint = RectCm::new(x - width / 2, y - depth / 2, x - width / 2 + width, y - depth / 2 + depth);

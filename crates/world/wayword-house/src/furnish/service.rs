@@ -1,7 +1,7 @@
 //! The small rooms: hallway, laundry, entryway, closet, garage.
 
 use super::super::{
-    catalogue::Kind as K,
+    catalogue::FurnitureKind as K,
     rect::{RectCm, Wall},
 };
 use super::placing::{Along, Furnisher};

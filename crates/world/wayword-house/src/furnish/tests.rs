@@ -15,7 +15,7 @@ fn standing(house: &House) -> Vec<&Furniture> {
     house.furniture.iter().filter(low).collect()
 }
 
-fn count(house: &House, room: RoomKind, kind: Kind) -> usize {
+fn count(house: &House, room: RoomKind, kind: FurnitureKind) -> usize {
     house.furniture.iter().filter(|piece| house.rooms[piece.room].kind == room && piece.kind == kind).count()
 }
 
@@ -44,7 +44,7 @@ proptest! {
         let pieces = standing(&house);
         for (index, a) in pieces.iter().enumerate() {
             for b in &pieces[index + 1..] {
-                let is_seated = matches!((a.kind, b.kind), (Kind::DiningTable, Kind::Chair));
+                let is_seated = matches!((a.kind, b.kind), (FurnitureKind::DiningTable, FurnitureKind::Chair));
                 let clash = a.room == b.room && a.footprint.overlaps(&b.footprint);
                 prop_assert!(is_seated || !clash, "{a:?} {b:?}");
             }
@@ -74,16 +74,16 @@ fn rooms_are_furnished_as_such_rooms_are() {
         with as f64 / having.max(1) as f64
     };
     let wanted = [
-        (RoomKind::LivingRoom, Kind::Sofa),
-        (RoomKind::LivingRoom, Kind::Television),
-        (RoomKind::Kitchen, Kind::Stove),
-        (RoomKind::Kitchen, Kind::KitchenSink),
-        (RoomKind::Bedroom, Kind::Bed),
-        (RoomKind::Bathroom, Kind::Toilet),
-        (RoomKind::DiningRoom, Kind::DiningTable),
-        (RoomKind::Office, Kind::Desk),
-        (RoomKind::LaundryRoom, Kind::Washer),
-        (RoomKind::Garage, Kind::Car),
+        (RoomKind::LivingRoom, FurnitureKind::Sofa),
+        (RoomKind::LivingRoom, FurnitureKind::Television),
+        (RoomKind::Kitchen, FurnitureKind::Stove),
+        (RoomKind::Kitchen, FurnitureKind::KitchenSink),
+        (RoomKind::Bedroom, FurnitureKind::Bed),
+        (RoomKind::Bathroom, FurnitureKind::Toilet),
+        (RoomKind::DiningRoom, FurnitureKind::DiningTable),
+        (RoomKind::Office, FurnitureKind::Desk),
+        (RoomKind::LaundryRoom, FurnitureKind::Washer),
+        (RoomKind::Garage, FurnitureKind::Car),
     ];
     let rare: Vec<_> =
         wanted.into_iter().map(|(room, kind)| (kind, share(room, kind))).filter(|(_, share)| *share < 0.9).collect();
@@ -93,7 +93,7 @@ fn rooms_are_furnished_as_such_rooms_are() {
 #[test]
 fn sofas_look_at_open_floor() {
     for house in (0..20).map(generate) {
-        for sofa in house.furniture.iter().filter(|piece| piece.kind == Kind::Sofa) {
+        for sofa in house.furniture.iter().filter(|piece| piece.kind == FurnitureKind::Sofa) {
             let (dx, dy) = super::super::rect::Wall::ALL[usize::from(sofa.quarter_turns)].inward();
             let (x, y) = sofa.footprint.centre();
             let ahead = RectCm::new(x + dx * 120 - 5, y + dy * 120 - 5, x + dx * 120 + 5, y + dy * 120 + 5);

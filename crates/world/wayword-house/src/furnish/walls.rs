@@ -1,11 +1,11 @@
 //! What hangs on walls and before windows.
 
-use super::super::{catalogue::Kind, rect::Wall};
+use super::super::{catalogue::FurnitureKind, rect::Wall};
 use super::placing::{Furnisher, Piece};
 
 impl Furnisher<'_> {
     /// Hangs something above a piece, centred on it, its lower edge `gap` centimetres over the piece's top.
-    pub(super) fn hang_over(&mut self, below: Piece, kind: Kind, gap: i32) -> Option<Piece> {
+    pub(super) fn hang_over(&mut self, below: Piece, kind: FurnitureKind, gap: i32) -> Option<Piece> {
         let size = kind.size_cm(&mut self.dice);
         let wall = self.wall_behind(below);
         let piece = self.piece(below);
@@ -16,7 +16,7 @@ impl Furnisher<'_> {
     }
 
     /// Hangs something at `base` centimetres, on the first wall where there is room.
-    pub(super) fn hang(&mut self, kind: Kind, base: i32) -> Option<Piece> {
+    pub(super) fn hang(&mut self, kind: FurnitureKind, base: i32) -> Option<Piece> {
         let walls = self.shuffled_walls();
         let size = kind.size_cm(&mut self.dice);
         for wall in walls {
@@ -34,7 +34,14 @@ impl Furnisher<'_> {
     }
 
     /// Hangs something at a place, if the wall is bare there.
-    pub(super) fn hang_at(&mut self, kind: Kind, wall: Wall, from: i32, base: i32, size: [i32; 3]) -> Option<Piece> {
+    pub(super) fn hang_at(
+        &mut self,
+        kind: FurnitureKind,
+        wall: Wall,
+        from: i32,
+        base: i32,
+        size: [i32; 3],
+    ) -> Option<Piece> {
         let area = self.at_wall(wall, from, size);
         let fits = self.inner.contains(&area) && self.wall_is_bare(wall, &area, base, base + size[2]);
         fits.then(|| self.put(kind, area, base, size[2], wall))
@@ -50,7 +57,7 @@ impl Furnisher<'_> {
                 let size = [50, 8, 240];
                 let area = self.at_wall(wall, from, size);
                 if self.inner.contains(&area) && !self.overlaps_any(&area) {
-                    let curtain = self.put(Kind::Curtain, area, 2, size[2], wall);
+                    let curtain = self.put(FurnitureKind::Curtain, area, 2, size[2], wall);
                     self.paint(curtain, self.taste.curtain);
                 }
             }

@@ -15,7 +15,7 @@ mod storage;
 mod tables;
 mod vehicles;
 
-use super::{catalogue::Kind, colour::Colour, model::Furniture, rect::Wall};
+use super::{catalogue::FurnitureKind, colour::Colour, model::Furniture, rect::Wall};
 pub(crate) use builder::{Part, Shape};
 
 /// What a shape is made for.
@@ -46,8 +46,8 @@ impl Look {
 }
 
 /// The shape of a piece, in its own frame.
-pub(crate) fn shape(kind: Kind, look: &Look) -> Shape {
-    use Kind as K;
+pub(crate) fn shape(kind: FurnitureKind, look: &Look) -> Shape {
+    use FurnitureKind as K;
     match kind {
         K::Sofa | K::Armchair => seating::sofa(look),
         K::Chair => seating::chair(look),

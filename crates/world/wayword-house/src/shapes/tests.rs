@@ -1,7 +1,7 @@
 use super::{super::dice::Dice, *};
 use glam::Vec3;
 
-fn look(kind: Kind) -> Look {
+fn look(kind: FurnitureKind) -> Look {
     let mut dice = Dice::new(3, &["shapes"]);
     let [w, d, h] = kind.size_cm(&mut dice).map(|side| side as f32 / 100.0);
     Look { w, d, h, colour: kind.colour(&mut dice), variant: 5 }
@@ -9,7 +9,7 @@ fn look(kind: Kind) -> Look {
 
 #[test]
 fn shapes_fill_their_size_and_do_not_leave_it() {
-    for kind in Kind::ALL {
+    for kind in FurnitureKind::ALL {
         let look = look(*kind);
         let points: Vec<Vec3> = shape(*kind, &look).parts.iter().flat_map(|part| part.positions.clone()).collect();
         let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
@@ -28,7 +28,7 @@ fn shapes_fill_their_size_and_do_not_leave_it() {
 
 #[test]
 fn shapes_are_whole_and_modest() {
-    for kind in Kind::ALL {
+    for kind in FurnitureKind::ALL {
         let shape = shape(*kind, &look(*kind));
         let triangles: usize = shape.parts.iter().map(|part| part.triangles.len()).sum();
         assert!((2..4000).contains(&triangles), "{kind:?} has {triangles} triangles");
