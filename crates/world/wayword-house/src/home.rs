@@ -1,11 +1,12 @@
-//! A house, drawn up and surveyed.
+//! A house of a seed, drawn up and surveyed.
 
 use super::{
-    generate,
+    furnish::furnish,
     graph::{EYE_M, viewpoint_graph},
     ground::Ground,
     labels::labels,
-    model::Opening,
+    layout::{Layout, lay_out},
+    model::{House, Opening},
     scene::HouseScene,
 };
 use std::{
@@ -20,6 +21,15 @@ use wayword_render::Camera;
 
 /// Who stands no farther from the middle of a wall stands in its opening, centimetres.
 const THRESHOLD_CM: i32 = 25;
+
+/// The home of a seed: the same on every machine.
+#[must_use]
+pub fn generate(seed: u64) -> House {
+    let layout = lay_out(seed);
+    let furniture = furnish(seed, &layout);
+    let Layout { storeys, rooms, openings, windows, stairs, .. } = layout;
+    House { seed, storeys, rooms, openings, windows, stairs, furniture }
+}
 
 /// A house, drawn up and surveyed.
 #[derive(Debug)]

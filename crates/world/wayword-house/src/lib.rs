@@ -28,18 +28,10 @@ pub use catalogue::FurnitureKind;
 pub use colour::Colour;
 pub use graph::{EYE_M, viewpoint_graph};
 pub use ground::{Ground, NoWay, RADIUS_CM, Way};
+pub use home::generate;
 pub use model::House;
 pub use objects::{Object, Role};
 pub use platform::{HouseOptions, HousePlatform};
 pub use rect::{RectCm, SpanCm, Wall};
 pub use save::{SaveError, Saved, glb, gltf_from_wayword, navigation, save, semantic_glb, semantic_txt};
 pub use scene::HouseScene;
-
-/// The home of a seed: the same on every machine.
-#[must_use]
-pub fn generate(seed: u64) -> House {
-    let layout = layout::lay_out(seed);
-    let furniture = furnish::furnish(seed, &layout);
-    let layout::Layout { storeys, rooms, openings, windows, stairs, .. } = layout;
-    House { seed, storeys, rooms, openings, windows, stairs, furniture }
-}

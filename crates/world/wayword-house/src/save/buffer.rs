@@ -1,6 +1,5 @@
 //! The binary part of a GLB, and the accessors into it.
 
-use super::gltf::gltf_from_wayword;
 use glam::Vec3;
 use serde_json::{Value, json};
 
@@ -12,6 +11,12 @@ const UNSIGNED_INT: u32 = 5125;
 const ARRAY: u32 = 34962;
 /// Buffer target for indices.
 const ELEMENTS: u32 = 34963;
+
+/// From the world frame (z up, y north) to glTF's (y up, -z north).
+#[must_use]
+pub fn gltf_from_wayword(position: Vec3) -> Vec3 {
+    Vec3::new(position.x, position.z, -position.y)
+}
 
 /// Bytes with their views and accessors.
 #[derive(Default)]

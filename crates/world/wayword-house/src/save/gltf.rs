@@ -5,16 +5,9 @@ use super::{
     SaveError,
     buffer::Buffer,
 };
-use glam::Vec3;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use wayword_render::{Material, Mesh, Texture};
-
-/// From the world frame (z up, y north) to glTF's (y up, -z north).
-#[must_use]
-pub fn gltf_from_wayword(position: Vec3) -> Vec3 {
-    Vec3::new(position.x, position.z, -position.y)
-}
 
 /// Colours are multiplied as they are stored here, but in linear light in glTF.
 fn linear(stored: f32) -> f32 {

@@ -6,7 +6,8 @@ mod navigation;
 mod semantic;
 
 use super::{graph::viewpoint_graph, ground::Ground, model::House};
-pub use gltf::{glb, gltf_from_wayword};
+pub use buffer::gltf_from_wayword;
+pub use gltf::glb;
 pub use navigation::navigation;
 pub use semantic::{semantic_glb, semantic_txt};
 use serde::Serialize;
