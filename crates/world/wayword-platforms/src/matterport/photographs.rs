@@ -3,22 +3,17 @@
 use super::{
     connectivity::Viewpoint,
     layout::{Layout, SkyboxFiles},
-    read,
+    read::{self, PICTURE_HINT},
     thirty_six::ThirtySix,
 };
 use glam::DMat3;
-use std::path::Path;
 use wayword_core::{Gaze, Image, PlatformError, SceneId};
 use wayword_render::{CubeMap, Face, sample_view};
-use wayword_world::files;
 
 const WIDTH_PX: u32 = 640;
 const HEIGHT_PX: u32 = 480;
 /// Wider gazes than this are not flat pictures any more, radians.
 const MAX_FOV_RAD: f64 = 2.8;
-
-const MAX_FILE_BYTES: u64 = 32 << 20;
-const HINT: &str = "take the picture again from Matterport3D, or move it away to work from labels alone";
 
 /// What a viewpoint was photographed as.
 pub(crate) enum Photographs {
@@ -60,29 +55,19 @@ impl Photographs {
 fn cube(files: &SkyboxFiles) -> Result<CubeMap, PlatformError> {
     match files {
         SkyboxFiles::Strip(file) => {
-            let strip = decode(file)?;
+            let strip = read::picture(file)?;
             CubeMap::from_strip(strip.width_px(), strip.height_px(), strip.rgb())
-                .map_err(|error| read::wrong(file, error.to_string(), HINT))
+                .map_err(|error| read::wrong(file, error.to_string(), PICTURE_HINT))
         }
         SkyboxFiles::Faces(files) => {
             let mut faces = Vec::with_capacity(6);
             for file in files {
-                let picture = decode(file)?;
+                let picture = read::picture(file)?;
                 faces.push(Face { side_px: picture.height_px(), rgb: picture.rgb().to_vec() });
             }
-            let faces = <[Face; 6]>::try_from(faces).map_err(|_| read::wrong(&files[0], "has not six faces", HINT))?;
-            CubeMap::new(faces).map_err(|error| read::wrong(&files[0], error.to_string(), HINT))
+            let faces =
+                <[Face; 6]>::try_from(faces).map_err(|_| read::wrong(&files[0], "has not six faces", PICTURE_HINT))?;
+            CubeMap::new(faces).map_err(|error| read::wrong(&files[0], error.to_string(), PICTURE_HINT))
         }
     }
-}
-
-/// Decodes a JPEG or PNG file, within bounds.
-///
-/// # Errors
-/// When it is missing, too large, or no picture.
-pub(crate) fn decode(file: &Path) -> Result<Image, PlatformError> {
-    let wrong = |reason: String| read::wrong(file, reason, HINT);
-    let bytes =
-        read::bytes_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("is missing from its set".into()))?;
-    files::picture(&bytes).map_err(wrong)
 }

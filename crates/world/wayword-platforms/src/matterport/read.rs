@@ -1,11 +1,31 @@
-//! Values of JSON files from outside, and the words for what is wrong with them.
+//! Pictures, and values of JSON files, from outside; and the words for what is wrong with them.
 
 use serde_json::Value;
+use std::path::Path;
+use wayword_core::{Image, PlatformError};
+use wayword_world::files;
 
 pub(crate) use wayword_world::files::{bytes_if_there, text_if_there, wrong};
 
+/// Largest file of a picture.
+const MAX_PICTURE_BYTES: u64 = 32 << 20;
+/// What to do about a broken picture.
+pub(crate) const PICTURE_HINT: &str =
+    "take the picture again from Matterport3D, or move it away to work from labels alone";
+
 /// Numbers beyond this are no place in a building, metres.
 const MAX_COORDINATE_M: f64 = 1e6;
+
+/// Decodes a JPEG or PNG file, within bounds.
+///
+/// # Errors
+/// When it is missing, too large, or no picture.
+pub(crate) fn picture(file: &Path) -> Result<Image, PlatformError> {
+    let wrong = |reason: String| wrong(file, reason, PICTURE_HINT);
+    let bytes = bytes_if_there(file, MAX_PICTURE_BYTES, PICTURE_HINT)?
+        .ok_or_else(|| wrong("is missing from its set".into()))?;
+    files::picture(&bytes).map_err(wrong)
+}
 
 /// A finite coordinate of plausible size, or the words for what is wrong with it.
 pub(crate) fn coordinate(number: f64) -> Result<f64, String> {

@@ -1,6 +1,6 @@
 //! A panorama as the simulator's 36 views: `VIEWPOINT/0.jpg` to `35.jpg`.
 
-use super::{boxes::VIEWS, photographs, read};
+use super::{boxes::VIEWS, read};
 use rayon::prelude::*;
 use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Gaze, Image, PlatformError};
@@ -34,7 +34,7 @@ impl ThirtySix {
         let mut views: Vec<Image> = Vec::with_capacity(VIEWS);
         for index in 0..VIEWS {
             let file = folder.join(format!("{index}.jpg"));
-            let view = photographs::decode(&file)?;
+            let view = read::picture(&file)?;
             let size = (view.width_px(), view.height_px());
             if u64::from(size.0) * u64::from(size.1) > MAX_PIXELS {
                 return Err(read::wrong(
