@@ -1,6 +1,6 @@
 //! What an agent is told at a node: how well its phrases fit four views, and which neighbours lie in each.
 
-use crate::WalkError;
+use crate::error::WalkError;
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},

@@ -2,7 +2,7 @@
 
 use super::{Start, Walked};
 use crate::{
-    WalkError,
+    error::WalkError,
     eyes::{frame_at, heading_to},
     walk::{Choice, End, Step},
 };

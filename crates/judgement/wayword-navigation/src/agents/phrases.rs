@@ -5,8 +5,8 @@ use super::{
     mind::{Decision, Mind},
 };
 use crate::{
-    WalkError,
     directions::Directions,
+    error::WalkError,
     eyes::{Eyes, Sight},
     walk::{Choice, End, Scored, Step},
 };
