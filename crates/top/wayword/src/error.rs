@@ -47,11 +47,9 @@ pub enum Error {
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The ledger's.
-    #[cfg(feature = "remote")]
     #[error(transparent)]
     Ledger(#[from] wayword_ledger::LedgerError),
     /// A model cannot be reached by its name.
-    #[cfg(feature = "remote")]
     #[error(transparent)]
     Service(#[from] wayword_remote::ConfigError),
     /// A model cannot be had on this machine.
@@ -94,6 +92,11 @@ impl Error {
     /// A mistake of the user's, with the way out.
     pub fn usage(problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Usage { problem: problem.into(), hint: hint.into() }
+    }
+
+    /// What this build leaves out.
+    pub fn not_built(problem: impl Into<String>) -> Self {
+        Self::usage(problem, "build it with `cargo build --release --features full`")
     }
 
     /// A model's error, where it is one: what a model did not do now it may do later, or when more money is there.

@@ -3,7 +3,7 @@
 //!
 //! `WAYWORD_KILLS` sets how often it is killed (default 3).
 
-#![cfg(all(unix, feature = "remote"))]
+#![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking, and tells what it counted")]
 
 mod common;

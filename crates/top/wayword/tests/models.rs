@@ -1,6 +1,5 @@
 //! Whole runs with models, against a provider that plays them.
 
-#![cfg(feature = "remote")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod common;

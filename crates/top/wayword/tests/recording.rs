@@ -1,7 +1,7 @@
 //! Recordings from end to end: pictures with poses, without any, and files that other programs made. A model of the test sees; nobody
 //! else can.
 
-#![cfg(all(feature = "mcap", feature = "video", feature = "remote"))]
+#![cfg(all(feature = "mcap", feature = "video"))]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod common;

@@ -1,26 +1,200 @@
-//! The calls of a command to models: reached over HTTP, kept in the ledger, bounded by a budget.
-//!
-//! A build without the feature `remote` has the same functions, and says how to get one that can call.
+//! The calls of a command to models: reached over HTTP or made in process, kept in the ledger, bounded by a budget.
 
-#[cfg(not(feature = "remote"))]
-mod absent;
-#[cfg(all(feature = "remote", feature = "local"))]
+mod configured;
+#[cfg(feature = "local")]
 mod local;
-#[cfg(all(feature = "remote", not(feature = "local")))]
+#[cfg(not(feature = "local"))]
 #[path = "no_local.rs"]
 mod local;
-#[cfg(feature = "remote")]
-mod place;
-#[cfg(feature = "remote")]
-mod present;
-mod price;
 mod spent;
 
-#[cfg(not(feature = "remote"))]
-pub use absent::Calls;
-#[cfg(feature = "remote")]
-pub use place::ledger_path;
-#[cfg(feature = "remote")]
-pub use present::Calls;
-pub use price::Price;
+use crate::{
+    error::Error,
+    output::Output,
+    settings::{Providers, Service, Settings, is_in_process},
+    team::cores,
+};
+use configured::{concurrency, config};
+use local::Local;
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+use wayword_core::{LanguageModel, ModelError};
+use wayword_ledger::{Ledger, Limits, Run};
+use wayword_remote::{Finding, Price, Services};
+use wayword_synthesis::prompts::Manner;
+
+pub use configured::ledger_path;
 pub use spent::Spent;
+
+/// The way to models for one command.
+pub struct Calls {
+    services: Services,
+    /// Where a model in process is named.
+    local: Option<Local>,
+    run: Run,
+    record: Option<PathBuf>,
+    workers: usize,
+}
+
+/// Exit code of a process that a second interrupt ended.
+const INTERRUPTED: i32 = 130;
+
+impl Calls {
+    /// Refuses what [`Calls::open`] would refuse of names, prices, providers and files, before anything is written. Gives each
+    /// model's price, where it is known.
+    ///
+    /// # Errors
+    /// When a provider is not known, a price is needed and not known, there is no recording to replay, or no folder for one
+    /// to be written.
+    pub fn rehearse(
+        settings: &Settings,
+        service: &Service,
+        providers: &Providers,
+    ) -> Result<BTreeMap<String, Option<Price>>, Error> {
+        let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
+        let services = Services::new(config(settings, service, providers)?, nowhere)?;
+        let price = |name: &str| -> Result<Option<Price>, Error> {
+            if is_in_process(name) {
+                Local::rehearse(settings, service, name)?;
+                return Ok(Some(Price::nothing()));
+            }
+            Ok(services.model(name)?.price().cloned())
+        };
+        let priced = |name: &str| Ok((name.to_owned(), price(name)?));
+        let prices = settings.roles.models().into_iter().map(priced).collect::<Result<_, Error>>()?;
+        if let Some(recording) = &service.replay {
+            File::open(recording).map_err(Error::io(recording, "read the recording"))?;
+        }
+        let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {
+            return Err(Error::usage(
+                format!("{}: there is no such folder for --record", missing.display()),
+                "make it, or name another file",
+            ));
+        }
+        Ok(prices)
+    }
+
+    /// Opens ledger and services for the models that the settings name; `None` where they name none. `run` names what the
+    /// calls are made for: its spending, earlier commands' included, is what the limits bound. Shows what is fetched on `output`.
+    ///
+    /// # Errors
+    /// When the ledger cannot be opened, a provider is not known, or a price is needed and not known.
+    pub fn open(
+        settings: &Settings,
+        service: &Service,
+        providers: &Providers,
+        run: &str,
+        output: &Output,
+    ) -> Result<Option<Self>, Error> {
+        if settings.roles.models().is_empty() {
+            return Ok(None);
+        }
+        let ledger = match &service.replay {
+            Some(recording) => Ledger::replay(recording)?,
+            None => Ledger::open(&ledger_path(service)?)?,
+        };
+        let run = ledger.run(run, Limits { max_usd: service.max_usd, max_calls: service.max_calls })?;
+        let services = Services::new(config(settings, service, providers)?, run.clone())?;
+        let models = settings.roles.models();
+        let in_process = models.iter().any(|name| is_in_process(name));
+        let local = if in_process { Some(Local::open(settings, service, run.clone(), output)?) } else { None };
+        // Who waits for nobody over a network has no use for more items than cores.
+        let waits = models.iter().any(|name| !is_in_process(name));
+        let workers = if waits { concurrency(service).threads() } else { cores() };
+        Ok(Some(Self { services, local, run, record: service.record.clone(), workers }))
+    }
+
+    /// A model by its name.
+    ///
+    /// # Errors
+    /// When its provider is not known, or it has no price and one is needed.
+    pub fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+        match self.local.as_ref().filter(|_| is_in_process(name)) {
+            Some(local) => local.model(name),
+            None => Ok(self.services.model(name)?),
+        }
+    }
+
+    /// In which manner a model that sees is spoken to.
+    ///
+    /// # Errors
+    /// As for [`Calls::model`].
+    pub fn manner(&self, name: &str) -> Result<Manner, Error> {
+        match self.local.as_ref().filter(|_| is_in_process(name)) {
+            Some(local) => local.manner(name),
+            None => Ok(Manner::Chat),
+        }
+    }
+
+    /// What `doctor` finds out about a model; one that is to see is shown a picture.
+    #[must_use]
+    pub fn check(&self, name: &str, sees: bool) -> Vec<Finding> {
+        match self.local.as_ref().filter(|_| is_in_process(name)) {
+            Some(local) => local.check(name, sees),
+            None => self.services.check(name, sees),
+        }
+    }
+
+    /// What was spent so far.
+    #[must_use]
+    pub fn spent(&self) -> Spent {
+        let totals = self.run.totals();
+        Spent {
+            requests: totals.calls,
+            answered: totals.answered,
+            from_ledger: totals.hits,
+            failed: totals.failed,
+            lost: totals.lost,
+            tokens_in: totals.tokens_in,
+            tokens_out: totals.tokens_out,
+            usd: totals.usd,
+            maybe_usd: totals.maybe_usd,
+        }
+    }
+
+    /// Items that are worth making at a time.
+    #[must_use]
+    pub fn workers(&self) -> usize {
+        self.workers
+    }
+
+    /// From now on an interrupt ends the sending, not the process: what is in flight is finished and kept. `told` says so to
+    /// the user. A second interrupt ends the process.
+    pub fn stop_on_interrupt(&self, told: impl Fn() + Send + 'static) {
+        let run = self.run.clone();
+        // It can be set once in a process, and a command is one.
+        let _ = ctrlc::set_handler(move || {
+            if run.is_stopped() {
+                std::process::exit(INTERRUPTED);
+            }
+            run.stop();
+            told();
+        });
+    }
+
+    /// The reason to begin nothing more, where the user has interrupted. Calls are refused anyway; this is for work that
+    /// makes none, because the ledger has all its answers.
+    #[must_use]
+    pub fn interrupted(&self) -> Option<ModelError> {
+        self.run.is_stopped().then(|| ModelError::Stopped {
+            reason: "interrupted".to_owned(),
+            hint: "what was answered is kept: go on with the same command".to_owned(),
+        })
+    }
+
+    /// Writes the recording, where one was asked for.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn record(&self) -> Result<(), Error> {
+        if let Some(file) = &self.record {
+            self.run.record(file)?;
+        }
+        Ok(())
+    }
+}

@@ -37,8 +37,5 @@ impl Local {
 }
 
 fn refused(name: &str) -> Error {
-    Error::usage(
-        format!("{name} cannot be asked: this build runs no models in process"),
-        "build it with `cargo build --release --features full`",
-    )
+    Error::not_built(format!("{name} cannot be asked: this build runs no models in process"))
 }

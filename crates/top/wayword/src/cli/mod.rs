@@ -1,10 +1,8 @@
 //! The command line as it is typed.
 
 mod compare;
-#[cfg(feature = "remote")]
 mod doctor;
 mod evaluate;
-#[cfg(feature = "remote")]
 mod ledger;
 mod models;
 mod perceive;
@@ -17,10 +15,8 @@ use std::path::PathBuf;
 use wayword_synthesis::walk::FrameSelection;
 
 pub use compare::{Compare, SuccessRule, SwapName};
-#[cfg(feature = "remote")]
 pub use doctor::Doctor;
 pub use evaluate::Evaluate;
-#[cfg(feature = "remote")]
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
@@ -89,10 +85,8 @@ pub enum Command {
     /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with intervals.
     Evaluate(Evaluate),
     /// Check keys, endpoints, models and data, and say what to do.
-    #[cfg(feature = "remote")]
     Doctor(Box<Doctor>),
     /// What was asked of models, what it cost, and what is kept.
-    #[cfg(feature = "remote")]
     Ledger(Ledger),
     /// Models that run in this program: what is on this machine, and how to get more.
     Models(Models),
@@ -158,7 +152,7 @@ Examples:
   wayword generate --platform matterport --data DATA --paths 200 --hops 4..7 --metres 5..20 --seed 1 --out runs/random
   wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --style r2r --out runs/val_seen
   wayword generate --style mine.toml --style r2r=R2R_train.json --out runs/styles
-  wayword generate --paths 20 --llm ollama/qwen3 --see ollama/llava --out runs/models      (needs the feature full)
+  wayword generate --paths 20 --llm ollama/qwen3 --see ollama/llava --out runs/models
   wayword generate --paths 20 --llm openai/gpt-4.1-mini --see openai/gpt-4.1-mini --max-usd 2 --dry-run
   wayword generate --config run.toml --seed 7 --out runs/seven      (flags win over the file)")]
 pub struct Generate {

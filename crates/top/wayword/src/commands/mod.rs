@@ -5,14 +5,13 @@ pub(crate) mod compare;
 mod completions;
 mod config;
 mod demo;
-#[cfg(feature = "remote")]
 mod doctor;
 mod evaluate;
 mod export;
 mod generate;
 mod house;
-#[cfg(feature = "remote")]
 mod ledger;
+#[cfg(feature = "local")]
 mod models;
 mod perceive;
 mod platforms;
@@ -45,11 +44,14 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Evaluate(args) => evaluate::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
         Command::Similarity(args) => similarity::run(&args, output),
-        #[cfg(feature = "remote")]
         Command::Doctor(args) => doctor::run(&args, output),
-        #[cfg(feature = "remote")]
         Command::Ledger(args) => ledger::run(&args, output),
+        #[cfg(feature = "local")]
         Command::Models(args) => models::run(&args, output),
+        #[cfg(not(feature = "local"))]
+        Command::Models(_) => {
+            Err(Error::not_built("models cannot be fetched or listed: this build runs none in process"))
+        }
         Command::Platforms => platforms::run(output),
         Command::View(args) => view::run(&args, output),
         Command::House(args) => house::run(&args, output),

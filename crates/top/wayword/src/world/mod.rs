@@ -1,13 +1,5 @@
 //! Opens platforms by their names.
 
-#[cfg(not(feature = "habitat"))]
-#[path = "no_habitat.rs"]
-mod habitat;
-#[cfg(feature = "habitat")]
-mod habitat;
-#[cfg(not(feature = "live"))]
-#[path = "no_live.rs"]
-mod live;
 #[cfg(feature = "live")]
 mod live;
 mod remembering;
@@ -15,6 +7,8 @@ mod remembering;
 use crate::{error::Error, output, settings::Settings};
 use std::{path::Path, sync::Arc};
 use wayword_core::Platform;
+#[cfg(feature = "habitat")]
+use wayword_habitat::{HabitatOptions, HabitatPlatform};
 use wayword_house::HousePlatform;
 use wayword_platforms::{matterport::Matterport, process::ProcessPlatform};
 use wayword_recording::RecordingPlatform;
@@ -83,10 +77,16 @@ pub const PLATFORMS: [Listed; 7] = [
     Listed {
         name: "recording",
         what: "what robots leave: folders of pictures, MP4, MCAP, LeRobot datasets",
-        needs: if cfg!(all(feature = "lerobot", feature = "mcap", feature = "video")) {
-            "--data FILE or DIR, with poses in it or beside it for turns and distances (docs/RECORDINGS.md)"
-        } else {
-            "--data DIR of pictures, with poses beside them for turns and distances (docs/RECORDINGS.md); other recordings need the feature full"
+        needs: match (cfg!(feature = "mcap"), cfg!(all(feature = "lerobot", feature = "video"))) {
+            (true, true) => {
+                "--data FILE or DIR, with poses in it or beside it for turns and distances (docs/RECORDINGS.md)"
+            }
+            (true, false) => {
+                "--data DIR of pictures or MCAP, with poses in it or beside it for turns and distances (docs/RECORDINGS.md); MP4 and LeRobot need the feature full"
+            }
+            _ => {
+                "--data DIR of pictures, with poses beside them for turns and distances (docs/RECORDINGS.md); other recordings need the feature full"
+            }
         },
         offers: "pictures along the way that was recorded, and nothing else: a model has to see",
         is_here: true,
@@ -115,10 +115,16 @@ pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<B
         "house" => Ok(Box::new(HousePlatform::default())),
         "matterport" => Ok(Box::new(Matterport::open(data()?)?)),
         "process" => Ok(Box::new(ProcessPlatform::open(data()?, Arc::new(output::pass_on))?)),
-        "habitat" => habitat::open(data()?),
+        #[cfg(feature = "habitat")]
+        "habitat" => Ok(Box::new(HabitatPlatform::open(data()?, HabitatOptions::default())?)),
+        #[cfg(feature = "live")]
         "tdw" => live::tdw(data().ok(), at),
+        #[cfg(feature = "live")]
         "virtualhome" => live::virtualhome(at),
         "recording" => Ok(Box::new(RecordingPlatform::open(data()?, Arc::new(output::pass_on))?)),
+        absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
+            Err(Error::not_built(format!("this build has no platform {absent}")))
+        }
         other => Err(Error::usage(
             format!("there is no platform {other:?}"),
             format!("name one of: {}", PLATFORMS.map(|platform| platform.name).join(", ")),

@@ -2,9 +2,6 @@
 
 mod folder;
 mod gif;
-#[cfg(not(feature = "video"))]
-#[path = "no_mp4.rs"]
-mod mp4;
 #[cfg(feature = "video")]
 mod mp4;
 
@@ -33,6 +30,7 @@ pub(super) trait Reel {
 pub(super) enum Place {
     Folder(PathBuf),
     Gif(PathBuf),
+    #[cfg(feature = "video")]
     Mp4(PathBuf),
 }
 
@@ -52,11 +50,16 @@ impl Place {
             Error::usage(problem, "end it in .gif or .mp4, or in / for a folder of numbered PNG files")
         })?;
         kind.check_free(out, data)?;
-        if kind == Kind::Gif {
-            return Ok(Self::Gif(out.to_owned()));
+        match kind {
+            Kind::Gif => Ok(Self::Gif(out.to_owned())),
+            #[cfg(feature = "video")]
+            _ => Ok(Self::Mp4(out.to_owned())),
+            #[cfg(not(feature = "video"))]
+            _ => Err(Error::usage(
+                "this build writes no video",
+                "build it with `cargo build --release --features full`, or end --out in .gif or /",
+            )),
         }
-        mp4::check()?;
-        Ok(Self::Mp4(out.to_owned()))
     }
 
     /// Begins to write: so many pictures for each second, and at most so many.
@@ -67,6 +70,7 @@ impl Place {
         Ok(match self {
             Self::Folder(folder) => Box::new(folder::Folder::new(folder, most)?),
             Self::Gif(file) => Box::new(gif::Gif::new(&file, fps)?),
+            #[cfg(feature = "video")]
             Self::Mp4(file) => mp4::open(&file, fps)?,
         })
     }

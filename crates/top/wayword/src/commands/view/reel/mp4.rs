@@ -18,12 +18,6 @@ const KEY_EVERY_S: f64 = 5.0;
 /// How coarse pictures are: the encoder's scale of 0 to 51.
 const COARSENESS: [u8; 2] = [18, 24];
 
-/// Every build with the feature can.
-#[expect(clippy::unnecessary_wraps, reason = "a build without the feature refuses")]
-pub(super) fn check() -> Result<(), Error> {
-    Ok(())
-}
-
 pub(super) fn open(out: &Path, fps: f64) -> Result<Box<dyn Reel>, Error> {
     let repeats = (LEAST_FPS / fps).ceil().max(1.0);
     let config = EncoderConfig::new()

@@ -1,4 +1,4 @@
-//! A build that runs models in process.
+//! `wayword models`: models in process, and where their files lie.
 
 use crate::{
     cli::{Models, ModelsCommand},
@@ -14,7 +14,7 @@ use wayword_local::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs};
 /// Digits of a commit that are shown.
 const SHOWN_DIGITS: usize = 12;
 
-pub(in crate::commands) fn run(args: &Models, output: &Output) -> Result<Exit, Error> {
+pub(super) fn run(args: &Models, output: &Output) -> Result<Exit, Error> {
     let mut config = HubConfig::from_env()?;
     match &args.command {
         ModelsCommand::List => {

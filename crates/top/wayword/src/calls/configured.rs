@@ -1,0 +1,68 @@
+//! What flags and settings file say of how models are reached: providers, prices, rates, and where the ledger lies.
+
+use crate::{
+    error::Error,
+    settings::{Providers, Service, Settings},
+    text_file,
+};
+use etcetera::BaseStrategy;
+use std::path::PathBuf;
+use wayword_remote::{Concurrency, Config, Prices, ProviderConfig};
+
+/// Requests at a time for each provider, unless told otherwise: where the search for the right number ends.
+const MOST_AT_A_TIME: usize = 64;
+
+/// The ledger that flags or file name, else the one in the user's data folder: one for all runs, so that what one run has
+/// asked the next does not pay for.
+///
+/// # Errors
+/// When the user has no home folder.
+pub fn ledger_path(service: &Service) -> Result<PathBuf, Error> {
+    if let Some(path) = &service.ledger {
+        return Ok(path.clone());
+    }
+    let strategy = etcetera::choose_base_strategy().map_err(|_| {
+        Error::usage("there is no home folder to keep the ledger in", "name a file, as in --ledger calls.db")
+    })?;
+    Ok(strategy.data_dir().join("wayword").join("ledger.db"))
+}
+
+/// How models over HTTP are reached.
+///
+/// # Errors
+/// When a provider's table or the list of prices cannot be read.
+pub(super) fn config(settings: &Settings, service: &Service, providers: &Providers) -> Result<Config, Error> {
+    let provider = |(name, table): (&String, &toml::Table)| -> Result<(String, ProviderConfig), Error> {
+        let config = table.clone().try_into().map_err(|error: toml::de::Error| {
+            Error::usage(format!("[providers.{name}]: {}", error.message()), "see docs/MODELS.md for the names")
+        })?;
+        Ok((name.clone(), config))
+    };
+    let default = Config::default();
+    Ok(Config {
+        providers: providers.iter().map(provider).collect::<Result<_, _>>()?,
+        base_url: settings.roles.base_url.clone(),
+        key_env: service.key_env.clone(),
+        picture_px: settings.roles.picture_px,
+        concurrency: concurrency(service),
+        timeout_s: service.timeout_s.unwrap_or(default.timeout_s),
+        requests_per_minute: service.requests_per_minute,
+        tokens_per_minute: service.tokens_per_minute,
+        prices: prices(service)?,
+        needs_prices: service.max_usd.is_some(),
+        ..default
+    })
+}
+
+/// Requests at a time for each provider.
+pub(super) fn concurrency(service: &Service) -> Concurrency {
+    service.concurrency.map_or(Concurrency::Adaptive { most: MOST_AT_A_TIME }, Concurrency::Fixed)
+}
+
+fn prices(service: &Service) -> Result<Prices, Error> {
+    match &service.prices {
+        None => Ok(Prices::built_in()),
+        Some(file) => Prices::read(&text_file::read(file, "read the prices")?)
+            .map_err(|error| Error::usage(format!("{}: {error}", file.display()), "see docs/MODELS.md")),
+    }
+}
