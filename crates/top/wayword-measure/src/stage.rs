@@ -9,7 +9,7 @@ use wayword::{
     output::Output,
     pipeline::{Made, make},
     run::fresh_id,
-    settings::{Against, Asked, AskedRoles, Job, Service},
+    settings::{self, Against, Asked, AskedRoles, Draw, Job, Service, Telling, Walks},
     styles::{self, Measured},
     team::Team,
     world,
@@ -79,9 +79,12 @@ impl Stage {
         Asked {
             roles,
             service,
-            evidence: Some(Against::Captions),
-            style: Some(vec!["r2r".into()]),
-            seed: Some(self.seed),
+            telling: Telling {
+                evidence: Some(Against::Captions),
+                style: Some(vec!["r2r".into()]),
+                ..Telling::default()
+            },
+            draw: Draw { seed: Some(self.seed), ..Draw::default() },
             ..asked_job(&self.asked, paths)
         }
         .job()
@@ -115,10 +118,12 @@ impl Stage {
 
 fn asked_job(world: &World, paths: usize) -> Asked {
     Asked {
-        platform: Some(world.platform.clone()),
-        data: world.data.clone(),
-        scan: world.scan.clone().map(|scan| vec![scan]),
-        paths: Some(paths),
+        world: settings::World {
+            platform: Some(world.platform.clone()),
+            data: world.data.clone(),
+            ..settings::World::default()
+        },
+        walks: Walks { scan: world.scan.clone().map(|scan| vec![scan]), paths: Some(paths), ..Walks::default() },
         ..Asked::default()
     }
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use wayword::{
     commands::{Summary, generate_into},
     output::Output,
-    settings::Asked,
+    settings::{Asked, Draw, Walks, World},
 };
 
 /// A run into a new folder; the default is both styles.
@@ -22,11 +22,13 @@ fn labels(criterion: &mut Criterion) {
     let data = tempfile::tempdir().expect("a folder for the building");
     wayword_testkit::write_building(data.path()).expect("the building is written");
     let asked = |episodes: Option<&str>, paths: Option<usize>| Asked {
-        platform: Some("matterport".into()),
-        data: Some(data.path().to_owned()),
-        episodes: episodes.map(|file| data.path().join(file)),
-        paths,
-        hops: Some("3..7".into()),
+        world: World { platform: Some("matterport".into()), data: Some(data.path().to_owned()), ..World::default() },
+        walks: Walks {
+            episodes: episodes.map(|file| data.path().join(file)),
+            paths,
+            hops: Some("3..7".into()),
+            ..Walks::default()
+        },
         ..Asked::default()
     };
     let mut group = criterion.benchmark_group("run on labels, both styles");
@@ -44,7 +46,11 @@ fn labels(criterion: &mut Criterion) {
 }
 
 fn house(criterion: &mut Criterion) {
-    let asked = || Asked { paths: Some(1), scan: Some(vec!["house-3".into()]), seed: Some(3), ..Asked::default() };
+    let asked = || Asked {
+        walks: Walks { paths: Some(1), scan: Some(vec!["house-3".into()]), ..Walks::default() },
+        draw: Draw { seed: Some(3), ..Draw::default() },
+        ..Asked::default()
+    };
     let mut group = criterion.benchmark_group("run in a house, both styles");
     group.sample_size(10).measurement_time(Duration::from_secs(30));
     group.throughput(Throughput::Elements(1));

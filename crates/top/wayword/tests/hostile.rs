@@ -18,7 +18,7 @@ use wayword::{
     error::Error,
     output::Output,
     run::{Journal, RunFolder, WalkRecord, read_lines, settings_of},
-    settings::{Asked, Job, Providers, Service, Settings},
+    settings::{Asked, Draw, Job, Providers, Service, Settings, Telling, Walks, World},
     styles,
 };
 use wayword_core::rng;
@@ -138,11 +138,10 @@ fn for_each_damaged(file: &Path, text: &str, mut used: impl FnMut(usize, &[u8]) 
 /// Settings of a run over one episode of the building.
 fn settings(building: &Building, style: &Path) -> Settings {
     let asked = Asked {
-        platform: Some("matterport".into()),
-        data: Some(building.data()),
-        episodes: Some(building.reverie()),
-        style: Some(vec![style.display().to_string()]),
-        limit: Some(1),
+        world: World { platform: Some("matterport".into()), data: Some(building.data()), ..World::default() },
+        walks: Walks { episodes: Some(building.reverie()), ..Walks::default() },
+        telling: Telling { style: Some(vec![style.display().to_string()]), ..Telling::default() },
+        draw: Draw { limit: Some(1), ..Draw::default() },
         ..Asked::default()
     };
     asked.resolve().unwrap()

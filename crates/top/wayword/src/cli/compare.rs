@@ -1,7 +1,6 @@
 //! `wayword compare` as it is typed.
 
-use super::World;
-use crate::settings::Service;
+use crate::settings::{Service, World};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use wayword_metrics::Rule;

@@ -1,7 +1,6 @@
 //! `wayword doctor` as it is typed.
 
-use super::World;
-use crate::settings::{Asked, AskedRoles, Service};
+use crate::settings::{Asked, AskedRoles, Service, World};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -31,6 +30,11 @@ impl Doctor {
     /// What the flags ask for.
     #[must_use]
     pub fn asked(&self) -> Asked {
-        Asked { roles: self.roles.clone(), service: self.service.clone(), ..self.world.asked() }
+        Asked {
+            world: self.world.clone(),
+            roles: self.roles.clone(),
+            service: self.service.clone(),
+            ..Asked::default()
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! `wayword evaluate` as it is typed.
 
-use super::{SuccessRule, World};
+use super::SuccessRule;
+use crate::settings::World;
 use clap::Args;
 use std::path::PathBuf;
 

@@ -9,10 +9,9 @@ mod perceive;
 mod similarity;
 mod view;
 
-use crate::settings::{Against, Asked, AskedRoles, Perception, Service, TargetMode};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use crate::settings::{Asked, World};
+use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use wayword_synthesis::walk::FrameSelection;
 
 pub use compare::{Compare, SuccessRule, SwapName};
 pub use doctor::Doctor;
@@ -115,35 +114,6 @@ pub struct Demo {
     pub out: PathBuf,
 }
 
-/// Which world, and where its data lies.
-#[derive(Debug, Clone, Default, Args)]
-pub struct World {
-    /// The world: house (generated, built in), matterport, habitat, tdw, virtualhome, process or recording; `wayword platforms`
-    /// lists what each needs. [default: house]
-    #[arg(long)]
-    pub platform: Option<String>,
-    /// Folder or file of the world's data.
-    #[arg(long, value_name = "PATH")]
-    pub data: Option<PathBuf>,
-    /// Address of a world that runs: HOST:PORT for tdw, a URL for virtualhome.
-    #[arg(long, value_name = "ADDRESS")]
-    pub at: Option<String>,
-}
-
-impl World {
-    /// What the flags ask for, and nothing else.
-    #[must_use]
-    pub fn asked(&self) -> Asked {
-        Asked { platform: self.platform.clone(), data: self.data.clone(), at: self.at.clone(), ..Asked::default() }
-    }
-
-    /// Its name, where no settings but these flags give it.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        self.platform.as_deref().unwrap_or("house")
-    }
-}
-
 /// `wayword generate`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
@@ -165,96 +135,9 @@ pub struct Generate {
     /// Only say what the run would ask of models, but for what is asked or written again: calls, tokens and money.
     #[arg(long)]
     pub dry_run: bool,
-    /// The world.
+    /// The run.
     #[command(flatten)]
-    pub world: World,
-    /// Walk the paths of a dataset: R2R, REVERIE, RxR or Wayword.
-    #[arg(long, value_name = "FILE")]
-    pub episodes: Option<PathBuf>,
-    /// Walk so many random paths. [default: 10, where no episodes are given]
-    #[arg(long, value_name = "N")]
-    pub paths: Option<usize>,
-    /// Keep to this scene; may be given several times.
-    #[arg(long, value_name = "SCENE")]
-    pub scan: Option<Vec<String>>,
-    /// Hops of random paths. [default: 4..7]
-    #[arg(long, value_name = "FROM..TO")]
-    pub hops: Option<String>,
-    /// Lengths of random paths in metres. [default: 5..20]
-    #[arg(long, value_name = "FROM..TO")]
-    pub metres: Option<String>,
-    /// Style: r2r, reverie, a TOML file, or NAME=DATASET for a dataset's own texts; may be given several times.
-    #[arg(long, value_name = "STYLE")]
-    pub style: Option<Vec<String>>,
-    /// Caption the view along the heading, or four views around. [default: central]
-    #[arg(long)]
-    pub frames: Option<Frames>,
-    /// Question by question, fixed queries without a dialogue, or a single request for a description. [default: dialogue]
-    #[arg(long)]
-    pub perception: Option<Perception>,
-    /// Most questions per view. [default: 9]
-    #[arg(long, value_name = "N")]
-    pub questions: Option<usize>,
-    /// Name the episode's object to the writer, or leave the choice to it. [default: given]
-    #[arg(long)]
-    pub target: Option<TargetMode>,
-    /// How often a text that failed a check is written again. [default: 8, where a model writes 3]
-    #[arg(long, value_name = "N")]
-    pub repairs: Option<u32>,
-    /// Hold texts against the platform's labels where it has them, or against the captions alone. [default: labels]
-    #[arg(long)]
-    pub evidence: Option<Against>,
-    /// Seed of everything random; random paths are named by it, so runs that are to be merged need different ones. [default: 0]
-    #[arg(long)]
-    pub seed: Option<u64>,
-    /// Only the first so many items.
-    #[arg(long, value_name = "N")]
-    pub limit: Option<usize>,
-    /// Who asks, sees, sums up and writes.
-    #[command(flatten)]
-    pub roles: AskedRoles,
-    /// How models are reached.
-    #[command(flatten)]
-    pub service: Service,
-}
-
-/// Which views are captioned, as typed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Frames {
-    /// The view along the heading.
-    Central,
-    /// North, east, south and west, condensed.
-    Panoramic,
-}
-
-impl Generate {
-    /// What the flags ask for.
-    #[must_use]
-    pub fn asked(&self) -> Asked {
-        let frames = self.frames.map(|frames| match frames {
-            Frames::Central => FrameSelection::Central,
-            Frames::Panoramic => FrameSelection::Panoramic,
-        });
-        Asked {
-            episodes: self.episodes.clone(),
-            paths: self.paths,
-            scan: self.scan.clone(),
-            hops: self.hops.clone(),
-            metres: self.metres.clone(),
-            style: self.style.clone(),
-            frames,
-            perception: self.perception,
-            questions: self.questions,
-            target: self.target,
-            repairs: self.repairs,
-            seed: self.seed,
-            limit: self.limit,
-            evidence: self.evidence,
-            roles: self.roles.clone(),
-            service: self.service.clone(),
-            ..self.world.asked()
-        }
-    }
+    pub asked: Asked,
 }
 
 /// `wayword check`.
@@ -332,4 +215,33 @@ pub struct House {
     /// Folder for house-SEED.glb, its navigation data, and what Habitat reads beside it.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Flags of `generate` that no settings file has.
+    const FLAGS_ALONE: [&str; 3] = ["config", "dry_run", "out"];
+    /// Tables of a settings file that no flag names.
+    const TABLES: [&str; 3] = ["providers", "roles", "service"];
+
+    /// The keys that a table of a settings file may have, as the error about another one lists them.
+    fn keys(table: &str) -> Vec<String> {
+        let error = toml::from_str::<Asked>(&format!("{table}\nno-such-key = 1")).unwrap_err().to_string();
+        let (_, known) = error.split_once("expected one of ").unwrap();
+        known.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn every_key_of_a_settings_file_has_its_flag_and_every_flag_its_key() {
+        let generate = Generate::augment_args(clap::Command::new("generate"));
+        let flags = generate.get_arguments().map(|flag| flag.get_long().unwrap().replace('-', "_"));
+        let flags: BTreeSet<String> = flags.chain(TABLES.map(str::to_owned)).collect();
+        let keys = ["", "[roles]", "[service]"].into_iter().flat_map(keys);
+        let keys: BTreeSet<String> = keys.chain(FLAGS_ALONE.map(str::to_owned)).collect();
+        assert_eq!(flags, keys);
+        assert!(flags.len() > 40, "{flags:?}");
+    }
 }

@@ -1,7 +1,6 @@
 //! `wayword perceive` as it is typed.
 
-use super::World;
-use crate::settings::{Asked, AskedRoles, Perception, Service};
+use crate::settings::{Asked, AskedRoles, Draw, Perception, Service, Telling, Walks, World};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -55,13 +54,13 @@ impl Perceive {
     #[must_use]
     pub fn asked(&self) -> Asked {
         Asked {
-            episodes: self.episodes.clone(),
-            scan: self.scan.clone(),
-            questions: self.questions,
-            seed: self.seed,
+            world: self.world.clone(),
+            walks: Walks { episodes: self.episodes.clone(), scan: self.scan.clone(), ..Walks::default() },
+            telling: Telling { questions: self.questions, ..Telling::default() },
+            draw: Draw { seed: self.seed, ..Draw::default() },
             roles: self.roles.clone(),
             service: self.service.clone(),
-            ..self.world.asked()
+            ..Asked::default()
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `wayword view` as it is typed.
 
-use super::World;
+use crate::settings::World;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 

@@ -5,7 +5,7 @@ use crate::{
     error::{Error, Exit},
     output::Output,
     pipeline::panoramas,
-    settings::Settings,
+    settings::{Asked, Settings},
     styles,
     world::{self, Remembering},
 };
@@ -21,7 +21,7 @@ use wayword_formats::{
 use wayword_world::path_of;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
-    let report = check_file(&args.file, &args.world.asked().resolve()?, args.style.as_deref(), output)?;
+    let report = check_file(&args.file, &Asked::from(args.world.clone()).resolve()?, args.style.as_deref(), output)?;
     output.data(&report, Shown { report: &report, most: args.show });
     Ok(if report.failed == 0 { Exit::Done } else { Exit::WithLoss })
 }

@@ -7,7 +7,7 @@ use crate::{
     output::Output,
     report,
     run::{WalkRecord, file, read_lines},
-    settings::Asked,
+    settings::{Asked, Draw, Walks},
 };
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
@@ -19,9 +19,8 @@ const ITEMS: usize = 1;
 
 pub(super) fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
     let asked = Asked {
-        scan: Some(vec![format!("house-{}", args.seed)]),
-        paths: Some(1),
-        seed: Some(args.seed),
+        walks: Walks { scan: Some(vec![format!("house-{}", args.seed)]), paths: Some(1), ..Walks::default() },
+        draw: Draw { seed: Some(args.seed), ..Draw::default() },
         ..Asked::default()
     };
     output.say(format_args!("drawing house-{} and walking through it ...", args.seed));

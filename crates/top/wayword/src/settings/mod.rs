@@ -1,5 +1,6 @@
 //! Settings of a run: flags and a TOML file, resolved once into what the run folder keeps.
 
+mod asked;
 mod roles;
 mod service;
 
@@ -12,54 +13,9 @@ use wayword_synthesis::{
     walk::FrameSelection,
 };
 
+pub use asked::{Asked, Draw, Frames, Telling, Walks, World};
 pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, is_in_process, is_model};
 pub use service::{Providers, Service};
-
-/// What a run is asked to do. Everything is optional here: what a flag leaves out comes from the file, then from a default.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Asked {
-    /// Its name: see `wayword platforms`.
-    pub platform: Option<String>,
-    /// Folder or file of the platform's data.
-    pub data: Option<PathBuf>,
-    /// Address of a platform that runs.
-    pub at: Option<String>,
-    /// Dataset file whose paths are walked.
-    pub episodes: Option<PathBuf>,
-    /// Number of random paths.
-    pub paths: Option<usize>,
-    /// Scenes to keep to.
-    pub scan: Option<Vec<String>>,
-    /// Hops of random paths, "4..7".
-    pub hops: Option<String>,
-    /// Lengths of random paths, "5..20".
-    pub metres: Option<String>,
-    /// Style names, files, or NAME=DATASET.
-    pub style: Option<Vec<String>>,
-    /// Which views are captioned.
-    pub frames: Option<FrameSelection>,
-    /// Dialogue or fixed queries.
-    pub perception: Option<Perception>,
-    /// Most questions of a dialogue.
-    pub questions: Option<usize>,
-    /// Whether the object of the closing task is given.
-    pub target: Option<TargetMode>,
-    /// How often a text that failed is written again.
-    pub repairs: Option<u32>,
-    /// Seed of everything random.
-    pub seed: Option<u64>,
-    /// Only so many items.
-    pub limit: Option<usize>,
-    /// What texts are held against.
-    pub evidence: Option<Against>,
-    /// Who asks, sees, sums up and writes.
-    pub roles: AskedRoles,
-    /// How models are reached, and what may be spent.
-    pub service: Service,
-    /// Providers of the user's own.
-    pub providers: Providers,
-}
 
 /// What a run does.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -170,35 +126,6 @@ pub struct Job {
 }
 
 impl Asked {
-    /// What flags ask for, with the rest from a file.
-    #[must_use]
-    pub fn or(self, file: Self) -> Self {
-        // Episodes and random paths exclude each other, so a flag for one wins over a file's other.
-        let (has_episodes, has_paths) = (self.episodes.is_some(), self.paths.is_some());
-        Self {
-            platform: self.platform.or(file.platform),
-            data: self.data.or(file.data),
-            at: self.at.or(file.at),
-            episodes: self.episodes.or(file.episodes.filter(|_| !has_paths)),
-            paths: self.paths.or(file.paths.filter(|_| !has_episodes)),
-            scan: self.scan.or(file.scan),
-            hops: self.hops.or(file.hops),
-            metres: self.metres.or(file.metres),
-            style: self.style.or(file.style),
-            frames: self.frames.or(file.frames),
-            perception: self.perception.or(file.perception),
-            questions: self.questions.or(file.questions),
-            target: self.target.or(file.target),
-            repairs: self.repairs.or(file.repairs),
-            seed: self.seed.or(file.seed),
-            limit: self.limit.or(file.limit),
-            evidence: self.evidence.or(file.evidence),
-            roles: self.roles.or(file.roles),
-            service: self.service.or(file.service),
-            providers: file.providers,
-        }
-    }
-
     /// Resolves it, together with how models are reached.
     ///
     /// # Errors
@@ -214,9 +141,9 @@ impl Asked {
     /// # Errors
     /// When a range cannot be read or things exclude each other.
     pub fn resolve(self) -> Result<Settings, Error> {
-        let default = PathRequest::default();
-        let paths = self.paths.unwrap_or(if self.episodes.is_some() { 0 } else { PATHS });
-        if self.episodes.is_some() && paths > 0 {
+        let Self { world, walks, telling, draw, roles, .. } = self;
+        let paths = walks.paths.unwrap_or(if walks.episodes.is_some() { 0 } else { PATHS });
+        if walks.episodes.is_some() && paths > 0 {
             return Err(Error::usage("--episodes and --paths exclude each other", "give one of them"));
         }
         if paths > MOST_PATHS {
@@ -225,49 +152,53 @@ impl Asked {
                 "make several runs with different seeds",
             ));
         }
-        if self.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
+        if telling.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
             return Err(Error::usage(
                 format!("--repairs is more than {MOST_REPAIRS}"),
                 "a text that fails so often will not come right",
             ));
         }
-        if self.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
+        if telling.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
             return Err(Error::usage(
                 format!("--questions is more than {MOST_QUESTIONS}"),
                 "a dialogue brings little new after the ninth",
             ));
         }
-        let length_m: RangeInclusive<f64> =
-            self.metres.map_or(Ok(default.length_m), |text| range("--metres", &text))?;
-        if !length_m.end().is_finite() {
-            return Err(Error::usage("--metres must be finite", "write it as in --metres 5..20"));
-        }
-        let roles = self.roles.resolve()?;
+        let request = request(walks.hops.as_deref(), walks.metres.as_deref())?;
+        let roles = roles.resolve()?;
         let repairs = if is_model(&roles.write) { REPAIRS_OF_MODELS } else { REPAIRS };
+        let styles = telling.style.filter(|styles| !styles.is_empty());
         Ok(Settings {
-            platform: self.platform.unwrap_or_else(|| "house".into()),
-            data: self.data,
-            at: self.at,
-            episodes: self.episodes,
+            platform: world.name().to_owned(),
+            data: world.data,
+            at: world.at,
+            episodes: walks.episodes,
             paths,
-            scan: self.scan.unwrap_or_default(),
-            request: PathRequest { hops: self.hops.map_or(Ok(default.hops), |text| range("--hops", &text))?, length_m },
-            style: self
-                .style
-                .filter(|styles| !styles.is_empty())
-                .unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
-            frames: self.frames.unwrap_or_default(),
-            perception: self.perception.unwrap_or_default(),
-            questions: self.questions.unwrap_or(QUESTIONS),
-            target: self.target.unwrap_or_default(),
-            repairs: self.repairs.unwrap_or(repairs),
-            seed: self.seed.unwrap_or(0),
-            limit: self.limit,
-            evidence: self.evidence.unwrap_or_default(),
+            scan: walks.scan.unwrap_or_default(),
+            request,
+            style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
+            frames: telling.frames.map(FrameSelection::from).unwrap_or_default(),
+            perception: telling.perception.unwrap_or_default(),
+            questions: telling.questions.unwrap_or(QUESTIONS),
+            target: telling.target.unwrap_or_default(),
+            repairs: telling.repairs.unwrap_or(repairs),
+            seed: draw.seed.unwrap_or(0),
+            limit: draw.limit,
+            evidence: telling.evidence.unwrap_or_default(),
             roles,
             inputs: BTreeMap::new(),
         })
     }
+}
+
+/// What random paths have to be like.
+fn request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, Error> {
+    let default = PathRequest::default();
+    let length_m: RangeInclusive<f64> = metres.map_or(Ok(default.length_m), |text| range("--metres", text))?;
+    if !length_m.end().is_finite() {
+        return Err(Error::usage("--metres must be finite", "write it as in --metres 5..20"));
+    }
+    Ok(PathRequest { hops: hops.map_or(Ok(default.hops), |text| range("--hops", text))?, length_m })
 }
 
 impl Settings {
@@ -307,7 +238,7 @@ mod tests {
 
     #[test]
     fn flags_win_over_the_file_and_the_file_over_defaults() {
-        let flags = Asked { seed: Some(7), ..Asked::default() };
+        let flags = Asked { draw: Draw { seed: Some(7), ..Draw::default() }, ..Asked::default() };
         let file: Asked = toml::from_str("seed = 1\nrepairs = 2\nhops = \"2..3\"").unwrap();
         let settings = flags.or(file).resolve().unwrap();
         assert_eq!(
@@ -327,13 +258,16 @@ mod tests {
 
     #[test]
     fn lengths_are_finite() {
-        let asked = |text: &str| Asked { metres: Some(text.into()), ..Asked::default() }.resolve();
+        let asked = |text: &str| request(None, Some(text));
         assert!(asked("5..1e400").is_err() && asked("5..20").is_ok());
     }
 
     #[test]
     fn dialogues_are_bounded() {
-        let asked = |questions| Asked { questions: Some(questions), ..Asked::default() }.resolve();
+        let asked = |questions| {
+            Asked { telling: Telling { questions: Some(questions), ..Telling::default() }, ..Asked::default() }
+                .resolve()
+        };
         assert!(asked(MOST_QUESTIONS).is_ok() && asked(MOST_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());
     }
 

@@ -1,5 +1,6 @@
 //! Who asks, sees, sums up and writes in a run, by name.
 
+use super::asked::group;
 use crate::error::Error;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -15,42 +16,44 @@ const PICTURE_PX: u32 = 512;
 /// Largest that can be asked for.
 const MOST_PICTURE_PX: u32 = 4096;
 
-/// Which minds a run is asked to use: flags, and the table `[roles]` of a settings file.
-#[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-#[command(next_help_heading = "Minds")]
-pub struct AskedRoles {
-    /// The language model that asks, sums up and writes, as provider/model.
-    #[arg(long, value_name = "MODEL")]
-    pub llm: Option<String>,
-    /// Who asks about the views: rules, or a model. [default: rules]
-    #[arg(long, value_name = "MODEL")]
-    pub ask: Option<String>,
-    /// Who sees: labels (ground truth), or a model that sees pictures. [default: labels]
-    #[arg(long, value_name = "MODEL")]
-    pub see: Option<String>,
-    /// Who sums the answers up: rules, or a model. [default: rules]
-    #[arg(long, value_name = "MODEL")]
-    pub summarise: Option<String>,
-    /// Who writes: rules, or a model. [default: rules]
-    #[arg(long, value_name = "MODEL")]
-    pub write: Option<String>,
-    /// Who writes where all texts of the model failed their checks; the provenance says so. [default: rules]
-    #[arg(long)]
-    pub finish: Option<Finish>,
-    /// Base URL of the provider, where exactly one is named (several: [providers.NAME] in the settings file).
-    #[arg(long, value_name = "URL")]
-    pub base_url: Option<String>,
-    /// Longer side of the pictures that models are sent; smaller ones stay as they are. [default: 512]
-    #[arg(long, value_name = "PX")]
-    pub picture_px: Option<u32>,
-    /// The numbers that hold the weights of a model in process: f32, bf16 or f16. [default: f32, and bf16 for BLIP-2]
-    #[arg(long, value_name = "NUMBERS")]
-    pub precision: Option<Precision>,
-    /// Folder of prompt templates of your own: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
-    /// summary.j2, condense.j2, write.j2.
-    #[arg(long, value_name = "DIR")]
-    pub prompts: Option<PathBuf>,
+group! {
+    /// Which minds a run is asked to use: flags, and the table `[roles]` of a settings file.
+    #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    #[command(next_help_heading = "Minds")]
+    pub struct AskedRoles {
+        /// The language model that asks, sums up and writes, as provider/model.
+        #[arg(long, value_name = "MODEL")]
+        pub llm: Option<String>,
+        /// Who asks about the views: rules, or a model. [default: rules]
+        #[arg(long, value_name = "MODEL")]
+        pub ask: Option<String>,
+        /// Who sees: labels (ground truth), or a model that sees pictures. [default: labels]
+        #[arg(long, value_name = "MODEL")]
+        pub see: Option<String>,
+        /// Who sums the answers up: rules, or a model. [default: rules]
+        #[arg(long, value_name = "MODEL")]
+        pub summarise: Option<String>,
+        /// Who writes: rules, or a model. [default: rules]
+        #[arg(long, value_name = "MODEL")]
+        pub write: Option<String>,
+        /// Who writes where all texts of the model failed their checks; the provenance says so. [default: rules]
+        #[arg(long)]
+        pub finish: Option<Finish>,
+        /// Base URL of the provider, where exactly one is named (several: [providers.NAME] in the settings file).
+        #[arg(long, value_name = "URL")]
+        pub base_url: Option<String>,
+        /// Longer side of the pictures that models are sent; smaller ones stay as they are. [default: 512]
+        #[arg(long, value_name = "PX")]
+        pub picture_px: Option<u32>,
+        /// The numbers that hold the weights of a model in process: f32, bf16 or f16. [default: f32, and bf16 for BLIP-2]
+        #[arg(long, value_name = "NUMBERS")]
+        pub precision: Option<Precision>,
+        /// Folder of prompt templates of your own: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
+        /// summary.j2, condense.j2, write.j2.
+        #[arg(long, value_name = "DIR")]
+        pub prompts: Option<PathBuf>,
+    }
 }
 
 /// The numbers that hold a model's weights.
@@ -122,20 +125,11 @@ impl Default for Roles {
 impl AskedRoles {
     /// What flags ask for, with the rest from a file. A flag `--llm` wins over the file's text roles.
     #[must_use]
-    pub fn or(self, file: Self) -> Self {
-        let unless_llm = |role: Option<String>| role.filter(|_| self.llm.is_none());
-        Self {
-            ask: self.ask.clone().or(unless_llm(file.ask)),
-            see: self.see.clone().or(file.see),
-            summarise: self.summarise.clone().or(unless_llm(file.summarise)),
-            write: self.write.clone().or(unless_llm(file.write)),
-            llm: self.llm.or(file.llm),
-            finish: self.finish.or(file.finish),
-            base_url: self.base_url.or(file.base_url),
-            picture_px: self.picture_px.or(file.picture_px),
-            precision: self.precision.or(file.precision),
-            prompts: self.prompts.or(file.prompts),
+    pub fn or(self, mut file: Self) -> Self {
+        if self.llm.is_some() {
+            file = Self { ask: None, summarise: None, write: None, ..file };
         }
+        self.over(file)
     }
 
     /// Resolves it, with defaults for what nobody asked for.

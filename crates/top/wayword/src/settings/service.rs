@@ -1,54 +1,57 @@
 //! How models are reached and what may be spent. Nothing here changes an answer, so a run may be continued with other values.
 
+use super::asked::group;
 use crate::error::Error;
 use clap::Args;
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// Limits and files of the calls to models: flags, and the table `[service]` of a settings file.
-#[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-#[command(next_help_heading = "Calls to models")]
-pub struct Service {
-    /// Stop before the run as a whole has cost more, in US dollars; refuses models without a known price.
-    #[arg(long, value_name = "USD")]
-    pub max_usd: Option<f64>,
-    /// Stop before the run as a whole has sent more requests.
-    #[arg(long, value_name = "N")]
-    pub max_calls: Option<u64>,
-    /// Requests at a time for each provider. [default: found out, at most 64]
-    #[arg(long, value_name = "N")]
-    pub concurrency: Option<usize>,
-    /// Most requests per minute for each provider.
-    #[arg(long, value_name = "N")]
-    pub requests_per_minute: Option<f64>,
-    /// Most tokens per minute for each provider.
-    #[arg(long, value_name = "N")]
-    pub tokens_per_minute: Option<f64>,
-    /// How long a request may take, seconds. [default: 120]
-    #[arg(long, value_name = "S")]
-    pub timeout_s: Option<f64>,
-    /// Environment variable that holds the key, where exactly one provider is named.
-    #[arg(long, value_name = "NAME")]
-    pub key_env: Option<String>,
-    /// Where models in process compute: cpu, cuda, cuda:1 or metal (builds with those features). [default: cpu]
-    #[arg(long, value_name = "DEVICE")]
-    pub device: Option<String>,
-    /// Most memory that models in process may take together, GiB. [default: what the machine has free]
-    #[arg(long, value_name = "GIB")]
-    pub memory_gib: Option<f64>,
-    /// Prices of your own, TOML (see docs/MODELS.md).
-    #[arg(long, value_name = "FILE")]
-    pub prices: Option<PathBuf>,
-    /// The ledger that keeps every answer. [default: wayword/ledger.db in your data folder]
-    #[arg(long, value_name = "FILE")]
-    pub ledger: Option<PathBuf>,
-    /// Write every answer that the run used to this file, for --replay.
-    #[arg(long, value_name = "FILE")]
-    pub record: Option<PathBuf>,
-    /// Take every answer from such a file: no service is asked.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "ledger"])]
-    pub replay: Option<PathBuf>,
+group! {
+    /// Limits and files of the calls to models: flags, and the table `[service]` of a settings file.
+    #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    #[command(next_help_heading = "Calls to models")]
+    pub struct Service {
+        /// Stop before the run as a whole has cost more, in US dollars; refuses models without a known price.
+        #[arg(long, value_name = "USD")]
+        pub max_usd: Option<f64>,
+        /// Stop before the run as a whole has sent more requests.
+        #[arg(long, value_name = "N")]
+        pub max_calls: Option<u64>,
+        /// Requests at a time for each provider. [default: found out, at most 64]
+        #[arg(long, value_name = "N")]
+        pub concurrency: Option<usize>,
+        /// Most requests per minute for each provider.
+        #[arg(long, value_name = "N")]
+        pub requests_per_minute: Option<f64>,
+        /// Most tokens per minute for each provider.
+        #[arg(long, value_name = "N")]
+        pub tokens_per_minute: Option<f64>,
+        /// How long a request may take, seconds. [default: 120]
+        #[arg(long, value_name = "S")]
+        pub timeout_s: Option<f64>,
+        /// Environment variable that holds the key, where exactly one provider is named.
+        #[arg(long, value_name = "NAME")]
+        pub key_env: Option<String>,
+        /// Where models in process compute: cpu, cuda, cuda:1 or metal (builds with those features). [default: cpu]
+        #[arg(long, value_name = "DEVICE")]
+        pub device: Option<String>,
+        /// Most memory that models in process may take together, GiB. [default: what the machine has free]
+        #[arg(long, value_name = "GIB")]
+        pub memory_gib: Option<f64>,
+        /// Prices of your own, TOML (see docs/MODELS.md).
+        #[arg(long, value_name = "FILE")]
+        pub prices: Option<PathBuf>,
+        /// The ledger that keeps every answer. [default: wayword/ledger.db in your data folder]
+        #[arg(long, value_name = "FILE")]
+        pub ledger: Option<PathBuf>,
+        /// Write every answer that the run used to this file, for --replay.
+        #[arg(long, value_name = "FILE")]
+        pub record: Option<PathBuf>,
+        /// Take every answer from such a file: no service is asked.
+        #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "ledger"])]
+        pub replay: Option<PathBuf>,
+    }
 }
 
 /// Providers of the user's own, and changes to those that are known: tables `[providers.NAME]` of a settings file.
@@ -57,25 +60,15 @@ pub type Providers = BTreeMap<String, toml::Table>;
 impl Service {
     /// What flags ask for, with the rest from a file.
     #[must_use]
-    pub fn or(self, file: Self) -> Self {
+    pub fn or(self, mut file: Self) -> Self {
         // A replay and what it excludes: a flag for one wins over a file's other, which could be the very recording.
-        let replays = self.replay.is_some();
-        let keeps = self.record.is_some() || self.ledger.is_some();
-        Self {
-            max_usd: self.max_usd.or(file.max_usd),
-            max_calls: self.max_calls.or(file.max_calls),
-            concurrency: self.concurrency.or(file.concurrency),
-            requests_per_minute: self.requests_per_minute.or(file.requests_per_minute),
-            tokens_per_minute: self.tokens_per_minute.or(file.tokens_per_minute),
-            timeout_s: self.timeout_s.or(file.timeout_s),
-            key_env: self.key_env.or(file.key_env),
-            device: self.device.or(file.device),
-            memory_gib: self.memory_gib.or(file.memory_gib),
-            prices: self.prices.or(file.prices),
-            ledger: self.ledger.or(file.ledger.filter(|_| !replays)),
-            record: self.record.or(file.record.filter(|_| !replays)),
-            replay: self.replay.or(file.replay.filter(|_| !keeps)),
+        if self.replay.is_some() {
+            file = Self { record: None, ledger: None, ..file };
         }
+        if self.record.is_some() || self.ledger.is_some() {
+            file.replay = None;
+        }
+        self.over(file)
     }
 
     /// Refuses values that make no sense.

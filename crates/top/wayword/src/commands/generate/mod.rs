@@ -29,7 +29,7 @@ pub use summary::Summary;
 const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
-    let job = args.asked().or(config::read(args.config.as_deref())?).job()?;
+    let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
     if args.dry_run {
         let plan = plan::plan(&job)?;
         output.data(&plan, &plan);

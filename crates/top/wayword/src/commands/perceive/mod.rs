@@ -64,7 +64,7 @@ struct Captioned {
 pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
     let mut asked = args.asked().or(config::read(args.config.as_deref())?);
     // As many random paths as views are enough: each new one gives at least a view.
-    asked.paths = asked.episodes.is_none().then_some(args.views);
+    asked.walks.paths = asked.walks.episodes.is_none().then_some(args.views);
     let job = asked.job()?;
     let platform = world::open(&job.settings)?;
     let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or(WAYS.to_vec());

@@ -10,9 +10,10 @@ mod unfinished;
 mod walk;
 
 use crate::{
-    cli::{View, ViewCommand, World},
+    cli::{View, ViewCommand},
     error::{Error, Exit},
     output::Output,
+    settings::World,
     world,
 };
 use serde::Serialize;

@@ -1,10 +1,10 @@
 //! Which path is shown.
 
 use crate::{
-    cli::{Walk, World},
+    cli::Walk,
     error::Error,
     item::{self, Item},
-    settings::Asked,
+    settings::{Asked, Draw, Walks, World},
 };
 use std::path::Path as FilePath;
 use wayword_core::{Path, Platform};
@@ -25,13 +25,15 @@ pub(super) fn path(walk: &Walk, world: &World, platform: &dyn Platform) -> Resul
         return recorded(file, walk);
     }
     let asked = Asked {
-        episodes: walk.episodes.clone(),
-        paths: walk.episodes.is_none().then_some(1),
-        scan: walk.scan.clone().map(|scan| vec![scan]),
-        hops: walk.hops.clone(),
-        metres: walk.metres.clone(),
-        seed: walk.seed,
-        ..world.asked()
+        walks: Walks {
+            episodes: walk.episodes.clone(),
+            paths: walk.episodes.is_none().then_some(1),
+            scan: walk.scan.clone().map(|scan| vec![scan]),
+            hops: walk.hops.clone(),
+            metres: walk.metres.clone(),
+        },
+        draw: Draw { seed: walk.seed, ..Draw::default() },
+        ..Asked::from(world.clone())
     };
     let settings = asked.resolve()?;
     let items = item::items(&settings, platform)?;
