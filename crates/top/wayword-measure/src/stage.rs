@@ -4,13 +4,13 @@ use rayon::{ThreadPoolBuilder, prelude::*};
 use std::path::PathBuf;
 use tempfile::TempDir;
 use wayword::{
-    calls::{Calls, Spent},
+    calls::Spent,
     error::Error,
     output::Output,
     pipeline::{Made, make},
+    plan::Plan,
     run::fresh_id,
     settings::{self, Against, Asked, AskedRoles, Draw, Job, Service, Telling, Walks},
-    styles::{self, Measured},
     team::Team,
     world,
 };
@@ -101,13 +101,12 @@ impl Stage {
 
     /// Makes every item of a job; tells what was spent.
     pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
-        let styles: Vec<Measured> = styles::find(&job.settings.style, job.settings.seed)?;
-        let items = wayword::item::items(&job.settings, &self.world)?;
-        let calls =
-            Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("measure"), &Output::new(false, true))?;
+        let plan = Plan::writing(job, &self.world)?;
+        let calls = plan.models.open(|| Ok(fresh_id("measure")), &Output::new(false, true))?;
         let team = Team::new(&job.settings, calls.as_ref())?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
-        let work = || items.par_iter().map(|item| make(item, &job.settings, &self.world, &team, &styles)).collect();
+        let one = |item| make(item, &job.settings, &self.world, &team, &plan.styles);
+        let work = || plan.items.par_iter().map(one).collect();
         let made = match threads {
             Ok(threads) => threads.install(work),
             Err(_) => work(),

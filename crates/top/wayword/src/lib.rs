@@ -16,6 +16,7 @@ pub mod item;
 pub mod output;
 pub mod pictures;
 pub mod pipeline;
+pub mod plan;
 pub mod report;
 pub mod run;
 pub mod settings;

@@ -4,7 +4,7 @@ use crate::{
     download_bar::DownloadBar,
     error::Error,
     output::Output,
-    settings::{self, Service, Settings},
+    settings::{self, Job},
 };
 use std::sync::Arc;
 use wayword_core::LanguageModel;
@@ -20,15 +20,15 @@ pub(super) struct Local {
 
 impl Local {
     /// Refuses a name that no model in process can have, and numbers that there are not.
-    pub(super) fn rehearse(settings: &Settings, service: &Service, name: &str) -> Result<(), Error> {
-        loading(settings, service)?;
+    pub(super) fn rehearse(job: &Job, name: &str) -> Result<(), Error> {
+        loading(job)?;
         Ok(Minds::check_name(name)?)
     }
 
     /// The hub, its cache and the device by the environment and the settings.
-    pub(super) fn open(settings: &Settings, service: &Service, run: Run, output: &Output) -> Result<Self, Error> {
+    pub(super) fn open(job: &Job, run: Run, output: &Output) -> Result<Self, Error> {
         let hub = Hub::new(HubConfig::from_env()?)?;
-        Ok(Self { minds: Minds::new(hub, loading(settings, service)?, Box::new(DownloadBar::new(output)), run) })
+        Ok(Self { minds: Minds::new(hub, loading(job)?, Box::new(DownloadBar::new(output)), run) })
     }
 
     /// Loads a model, once.
@@ -61,7 +61,7 @@ impl Local {
     }
 }
 
-fn loading(settings: &Settings, service: &Service) -> Result<Loading, Error> {
+fn loading(Job { settings, service, .. }: &Job) -> Result<Loading, Error> {
     let precision = settings.roles.precision.map(|precision| match precision {
         settings::Precision::F32 => Precision::F32,
         settings::Precision::Bf16 => Precision::Bf16,

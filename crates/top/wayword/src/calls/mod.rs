@@ -11,7 +11,7 @@ mod spent;
 use crate::{
     error::Error,
     output::Output,
-    settings::{Providers, Service, Settings, is_in_process},
+    settings::{Job, is_in_process},
     team::cores,
 };
 use configured::{concurrency, config};
@@ -50,16 +50,13 @@ impl Calls {
     /// # Errors
     /// When a provider is not known, a price is needed and not known, there is no recording to replay, or no folder for one
     /// to be written.
-    pub fn rehearse(
-        settings: &Settings,
-        service: &Service,
-        providers: &Providers,
-    ) -> Result<BTreeMap<String, Option<Price>>, Error> {
+    pub fn rehearse(job: &Job) -> Result<BTreeMap<String, Option<Price>>, Error> {
+        let Job { settings, service, .. } = job;
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
-        let services = Services::new(config(settings, service, providers)?, nowhere)?;
+        let services = Services::new(config(job)?, nowhere)?;
         let price = |name: &str| -> Result<Option<Price>, Error> {
             if is_in_process(name) {
-                Local::rehearse(settings, service, name)?;
+                Local::rehearse(job, name)?;
                 return Ok(Some(Price::nothing()));
             }
             Ok(services.model(name)?.price().cloned())
@@ -84,13 +81,8 @@ impl Calls {
     ///
     /// # Errors
     /// When the ledger cannot be opened, a provider is not known, or a price is needed and not known.
-    pub fn open(
-        settings: &Settings,
-        service: &Service,
-        providers: &Providers,
-        run: &str,
-        output: &Output,
-    ) -> Result<Option<Self>, Error> {
+    pub fn open(job: &Job, run: &str, output: &Output) -> Result<Option<Self>, Error> {
+        let Job { settings, service, .. } = job;
         if settings.roles.models().is_empty() {
             return Ok(None);
         }
@@ -99,10 +91,10 @@ impl Calls {
             None => Ledger::open(&ledger_path(service)?)?,
         };
         let run = ledger.run(run, Limits { max_usd: service.max_usd, max_calls: service.max_calls })?;
-        let services = Services::new(config(settings, service, providers)?, run.clone())?;
+        let services = Services::new(config(job)?, run.clone())?;
         let models = settings.roles.models();
         let in_process = models.iter().any(|name| is_in_process(name));
-        let local = if in_process { Some(Local::open(settings, service, run.clone(), output)?) } else { None };
+        let local = if in_process { Some(Local::open(job, run.clone(), output)?) } else { None };
         // Who waits for nobody over a network has no use for more items than cores.
         let waits = models.iter().any(|name| !is_in_process(name));
         let workers = if waits { concurrency(service).threads() } else { cores() };
@@ -163,17 +155,17 @@ impl Calls {
         self.workers
     }
 
-    /// From now on an interrupt ends the sending, not the process: what is in flight is finished and kept. `told` says so to
-    /// the user. A second interrupt ends the process.
-    pub fn stop_on_interrupt(&self, told: impl Fn() + Send + 'static) {
-        let run = self.run.clone();
+    /// From now on an interrupt ends the sending, not the process: what is in flight is finished and kept, and the user is told
+    /// so. A second interrupt ends the process.
+    pub fn stop_on_interrupt(&self, output: &Output) {
+        let (run, output) = (self.run.clone(), *output);
         // It can be set once in a process, and a command is one.
         let _ = ctrlc::set_handler(move || {
             if run.is_stopped() {
                 std::process::exit(INTERRUPTED);
             }
             run.stop();
-            told();
+            output.say("finishing what is in flight; interrupt again to end at once");
         });
     }
 

@@ -1,10 +1,6 @@
 //! A build that runs no model in process.
 
-use crate::{
-    error::Error,
-    output::Output,
-    settings::{Service, Settings},
-};
+use crate::{error::Error, output::Output, settings::Job};
 use std::sync::Arc;
 use wayword_core::LanguageModel;
 use wayword_ledger::Run;
@@ -15,11 +11,11 @@ use wayword_synthesis::prompts::Manner;
 pub(super) enum Local {}
 
 impl Local {
-    pub(super) fn rehearse(_: &Settings, _: &Service, name: &str) -> Result<(), Error> {
+    pub(super) fn rehearse(_: &Job, name: &str) -> Result<(), Error> {
         Err(refused(name))
     }
 
-    pub(super) fn open(_: &Settings, _: &Service, _: Run, _: &Output) -> Result<Self, Error> {
+    pub(super) fn open(_: &Job, _: Run, _: &Output) -> Result<Self, Error> {
         Err(refused("a model in process"))
     }
 

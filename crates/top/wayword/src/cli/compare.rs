@@ -1,6 +1,6 @@
 //! `wayword compare` as it is typed.
 
-use crate::settings::{Service, World};
+use crate::settings::{Asked, AskedRoles, Draw, Service, Walks, World};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use wayword_metrics::Rule;
@@ -84,6 +84,25 @@ pub struct Compare {
     /// How models are reached.
     #[command(flatten)]
     pub service: Service,
+}
+
+impl Compare {
+    /// What the flags ask for, as other commands have it. The splitter's model is the only one, in the place of the one who asks.
+    #[must_use]
+    pub fn asked(&self) -> Asked {
+        Asked {
+            world: self.world.clone(),
+            walks: Walks { episodes: Some(self.episodes.clone()), ..Walks::default() },
+            draw: Draw { seed: Some(self.seed), limit: self.limit.map(|limit| limit as usize) },
+            roles: AskedRoles {
+                ask: Some(self.split.clone()),
+                base_url: self.base_url.clone(),
+                ..AskedRoles::default()
+            },
+            service: self.service.clone(),
+            ..Asked::default()
+        }
+    }
 }
 
 /// What counts as success, as typed.

@@ -14,3 +14,9 @@ pub(super) fn read(path: Option<&Path>) -> Result<Asked, Error> {
         )
     })
 }
+
+/// What a settings file says of how models are reached, for a command that has nothing else of it.
+pub(super) fn calls(path: Option<&Path>) -> Result<Asked, Error> {
+    let Asked { service, providers, .. } = read(path)?;
+    Ok(Asked { service, providers, ..Asked::default() })
+}

@@ -21,7 +21,7 @@ use wayword_remote::Level;
 /// How good or bad a finding is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum State {
+enum Grade {
     Ok,
     Warning,
     Problem,
@@ -30,7 +30,7 @@ enum State {
 /// One thing that was looked at.
 #[derive(Debug, Serialize)]
 struct Finding {
-    state: State,
+    state: Grade,
     about: String,
     told: String,
     /// What to do about it.
@@ -54,7 +54,7 @@ pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
             Err(error) => problem("prompts", &error),
         });
     }
-    match Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("doctor"), output) {
+    match Calls::open(&job, &fresh_id("doctor"), output) {
         Err(error) => findings.push(problem("models", &error)),
         Ok(None) => {
             let none = "no model is named: labels answer, rules ask and write. Name some with --llm and --see";
@@ -66,9 +66,9 @@ pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
                 let sees = job.settings.roles.see == model;
                 findings.extend(calls.check(model, sees).into_iter().map(|found| Finding {
                     state: match found.level {
-                        Level::Ok => State::Ok,
-                        Level::Warning => State::Warning,
-                        Level::Problem => State::Problem,
+                        Level::Ok => Grade::Ok,
+                        Level::Warning => Grade::Warning,
+                        Level::Problem => Grade::Problem,
                     },
                     about: model.to_owned(),
                     told: found.what,
@@ -79,19 +79,19 @@ pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
     }
     let report = Report { findings };
     output.data(&report, &report);
-    let problems = report.findings.iter().any(|finding| finding.state == State::Problem);
+    let problems = report.findings.iter().any(|finding| finding.state == Grade::Problem);
     Ok(if problems { Exit::BadInput } else { Exit::Done })
 }
 
 fn ok(about: &str, told: String) -> Finding {
-    Finding { state: State::Ok, about: about.to_owned(), told, hint: None }
+    Finding { state: Grade::Ok, about: about.to_owned(), told, hint: None }
 }
 
 fn problem(about: &str, error: &Error) -> Finding {
     let text = error.to_string();
     let (told, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
     let hint = (!hint.is_empty()).then(|| hint.to_owned());
-    Finding { state: State::Problem, about: about.to_owned(), told: told.to_owned(), hint }
+    Finding { state: Grade::Problem, about: about.to_owned(), told: told.to_owned(), hint }
 }
 
 /// Opens the world and looks once.
@@ -135,7 +135,7 @@ impl Seen {
         } else {
             None
         };
-        let state = if hint.is_some() { State::Problem } else { State::Ok };
+        let state = if hint.is_some() { Grade::Problem } else { Grade::Ok };
         Finding { state, about, told, hint }
     }
 }
@@ -144,9 +144,9 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (at, finding) in self.findings.iter().enumerate() {
             let mark = match finding.state {
-                State::Ok => "ok      ",
-                State::Warning => "warning ",
-                State::Problem => "PROBLEM ",
+                Grade::Ok => "ok      ",
+                Grade::Warning => "warning ",
+                Grade::Problem => "PROBLEM ",
             };
             let end = if at > 0 { "\n" } else { "" };
             write!(f, "{end}{mark} {}: {}", finding.about, finding.told)?;

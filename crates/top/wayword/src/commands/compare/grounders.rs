@@ -1,6 +1,6 @@
 //! Grounders by their names.
 
-use super::plan::Plan;
+use super::kept::Kept;
 use crate::{encoder, error::Error, output::Output};
 use std::sync::Arc;
 use wayword_core::Grounder;
@@ -17,12 +17,12 @@ pub(super) struct Grounders {
 }
 
 impl Grounders {
-    /// The grounders that a plan names.
+    /// The grounders that a comparison names.
     ///
     /// # Errors
     /// When there is none of that name, or its model cannot be had.
-    pub(super) fn open(plan: &Plan, output: &Output) -> Result<Self, Error> {
-        match (plan.grounder.as_str(), &plan.encoder) {
+    pub(super) fn open(kept: &Kept, output: &Output) -> Result<Self, Error> {
+        match (kept.grounder.as_str(), &kept.encoder) {
             ("labels", Some(encoder)) => {
                 let encoder = Arc::from(encoder::encoder(encoder)?);
                 let grounder = |sees| Box::new(Similar::new(sees, Arc::clone(&encoder)));
@@ -33,7 +33,7 @@ impl Grounders {
                 Ok(Self { views: grounder(Sees::Views), boxes: grounder(Sees::Boxes), need_pictures: false })
             }
             (name, _) if name.starts_with("hf/") => {
-                let by_detector = plan.agents.iter().any(|agent| agent == super::agents::BY_DETECTOR);
+                let by_detector = kept.agents.iter().any(|agent| agent == super::agents::BY_DETECTOR);
                 if by_detector {
                     return Err(Error::usage(
                         format!("--grounder {name}: glip-nav needs a detector, and this program has no GLIP network"),

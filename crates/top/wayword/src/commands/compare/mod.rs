@@ -2,24 +2,25 @@
 
 mod agents;
 mod grounders;
+mod kept;
 mod make;
 mod outputs;
 mod page;
-mod plan;
 mod score;
 mod sets;
-mod splitter;
 
 use crate::{
     calls::Calls,
     cli::Compare,
+    commands::config,
     demands::Demands,
     error::{Error, Exit},
     in_order::in_order,
     output::Output,
+    plan::Models,
     run::{self, Journal},
+    settings::RULES,
     team::cores,
-    world,
 };
 use agents::Agent;
 use grounders::Grounders;
@@ -29,10 +30,13 @@ use score::Judge;
 use sets::Item;
 use std::{fs, path::Path};
 use wayword_core::ModelError;
-use wayword_navigation::WalkError;
+use wayword_navigation::{
+    WalkError,
+    directions::{ByModel, ByRules, Splitter},
+};
 
+pub(crate) use kept::Kept;
 pub(super) use page::{is_comparison, write_of_folder};
-pub(crate) use plan::Plan;
 
 /// Names of the files in a comparison's folder, beside `config.toml`.
 pub(crate) mod file {
@@ -54,31 +58,29 @@ const FRUITLESS: usize = 20;
 const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
-    let plan = Plan::of(args)?;
-    let platform = world::open_named(&plan.platform, plan.data.as_deref(), plan.at.as_deref())?;
+    let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
+    let kept = Kept::of(args, &job.settings)?;
+    let platform = kept.world()?;
     let demands = Demands::new(platform.as_ref());
-    let (items, sizes) = sets::load(&plan, platform.as_ref(), &demands)?;
-    let judge = Judge::new(&plan, &items, &demands, args.rule.map(Into::into))?;
+    let (items, sizes) = sets::load(&kept, platform.as_ref(), &demands)?;
+    let judge = Judge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!("success is judged by distance: item {item} names no object whose place is known"));
     }
-    let job = splitter::job(args, &plan)?;
-    Calls::rehearse(&job.settings, &job.service, &job.providers)?;
-    let grounders = Grounders::open(&plan, output)?;
+    let models = Models::of(&job)?;
+    let grounders = Grounders::open(&kept, output)?;
     fs::create_dir_all(&args.out).map_err(Error::io(&args.out, "make the folder"))?;
     let _lock = run::lock(&args.out)?;
-    run::keep_config(&args.out, &plan)?;
-    // Without a model nothing is spent, and the same comparison gives the same folder byte for byte.
-    let id = if job.settings.roles.models().is_empty() { String::new() } else { run::id_of(&args.out, "compare")? };
-    let calls = Calls::open(&job.settings, &job.service, &job.providers, &id, output)?;
-    let splitter = splitter::splitter(&plan.split, calls.as_ref())?;
-    let agents = Agent::all(&plan.parameters, &plan.agents);
+    run::keep_config(&args.out, &kept)?;
+    let calls = models.open(|| run::id_of(&args.out, "compare"), output)?;
+    let splitter = splitter(&kept.split, calls.as_ref())?;
+    let agents = Agent::all(&kept.parameters, &kept.agents);
     let crew = Crew {
         platform: platform.as_ref(),
         grounders: &grounders,
         splitter: splitter.as_ref(),
         agents: &agents,
-        seed: plan.seed,
+        seed: kept.seed,
     };
     let failed = walk_all(&args.out, &items, &crew, calls.as_ref(), output)?;
     if let Some(calls) = &calls {
@@ -90,15 +92,23 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
         let problem = "no item could be walked: a model failed on every one of them";
         return Err(Error::usage(problem, "see what it said above; the same command tries again"));
     }
-    let sets = sets::described(&plan, &items, &sizes, |item| gathered.results.has(item));
+    let sets = sets::described(&kept, &items, &sizes, |item| gathered.results.has(item));
     let (resamples, results) = (args.resamples as usize, &gathered.results);
-    let comparison = score::comparison(&plan, &crew, sets, &judge, results, (resamples, failed));
+    let comparison = score::comparison(&kept, &crew, sets, &judge, results, (resamples, failed));
     outputs::write(&args.out, &comparison, &gathered)?;
     let page = args.out.join(run::file::REPORT);
     page::write(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
     output.data(&comparison, crate::report::comparison::screen(&comparison));
     output.say(format_args!("walks, tables and page: {}", args.out.display()));
     Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
+}
+
+/// Who takes instructions apart.
+fn splitter(name: &str, calls: Option<&Calls>) -> Result<Box<dyn Splitter>, Error> {
+    match calls.filter(|_| name != RULES) {
+        Some(calls) => Ok(Box::new(ByModel::new(calls.model(name)?))),
+        None => Ok(Box::new(ByRules)),
+    }
 }
 
 /// Makes the walks that are not in the folder yet. Returns how many items failed.
@@ -119,8 +129,7 @@ fn walk_all(
         output.say(format_args!("continuing: {} of {} items are done", items.len() - left.len(), items.len()));
     }
     if let Some(calls) = calls {
-        let talk = *output;
-        calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));
+        calls.stop_on_interrupt(output);
     }
     let bar = output.progress(items.len(), "items");
     bar.set_position((items.len() - left.len()) as u64);

@@ -1,6 +1,6 @@
 //! The page of a comparison: its tables and plots, and some of its walks step by step.
 
-use super::{file, plan::Plan, score::Judge, sets};
+use super::{file, kept::Kept, score::Judge, sets};
 use crate::{
     demands::Demands,
     episodes,
@@ -9,7 +9,7 @@ use crate::{
         comparison::{self, Written},
         replay::{Replay, Sample},
     },
-    run, text_file, world,
+    run, text_file,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -31,25 +31,25 @@ pub(in crate::commands) fn is_comparison(folder: &Path) -> bool {
 /// # Errors
 /// When the folder, the world or the episodes cannot be read, or the page not written.
 pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<Written, Error> {
-    let plan: Plan = run::config_of(folder)?;
+    let kept: Kept = run::config_of(folder)?;
     let path = folder.join(file::COMPARISON);
     if !path.is_file() {
         let problem = format!("{} holds a comparison that was not finished", folder.display());
         return Err(Error::usage(problem, "give the command that began it again"));
     }
-    if plan.inputs.get("episodes") != Some(&run::hash_of_file(&plan.episodes)?) {
-        let problem = format!("{} is not the file that was compared on: it has changed", plan.episodes.display());
+    if kept.inputs.get("episodes") != Some(&run::hash_of_file(&kept.episodes)?) {
+        let problem = format!("{} is not the file that was compared on: it has changed", kept.episodes.display());
         return Err(Error::usage(problem, "bring it back as it was, or compare anew in another folder"));
     }
     let found: Comparison = serde_json::from_str(&text_file::read(&path, "read the comparison")?).map_err(|error| {
         Error::usage(format!("{}: {error}", path.display()), "run `wayword compare` with the same --out again")
     })?;
-    let platform = world::open_named(&plan.platform, plan.data.as_deref(), plan.at.as_deref())?;
-    let mut episodes = episodes::read(&plan.episodes, platform.as_ref())?;
-    episodes.truncate(plan.limit.unwrap_or(usize::MAX));
+    let platform = kept.world()?;
+    let mut episodes = episodes::read(&kept.episodes, platform.as_ref())?;
+    episodes.truncate(kept.limit.unwrap_or(usize::MAX));
     let items: Vec<_> = episodes.into_iter().map(|episode| sets::item(episode, &[])).collect();
     // Not asked for by the rule: items that no set has may not be fit for it, and nobody walks them.
-    let mut judge = Judge::new(&plan, &items, &Demands::new(platform.as_ref()), None)?;
+    let mut judge = Judge::new(&kept, &items, &Demands::new(platform.as_ref()), None)?;
     judge.rule = found.about.rule;
     write(folder, out, &found, &judge, platform.as_ref(), most)
 }

@@ -3,8 +3,8 @@
 use super::{
     agents::Agent,
     file,
+    kept::{Kept, last_part},
     make::Crew,
-    plan::{Plan, last_part},
     sets::Item,
 };
 use crate::{demands::Demands, episodes, error::Error, run::lines};
@@ -37,12 +37,12 @@ impl<'a> Judge<'a> {
     ///
     /// # Errors
     /// When a scene cannot be read, or the rule cannot be applied.
-    pub(super) fn new(plan: &Plan, items: &'a [Item], all: &Demands<'_>, rule: Option<Rule>) -> Result<Self, Error> {
+    pub(super) fn new(kept: &Kept, items: &'a [Item], all: &Demands<'_>, rule: Option<Rule>) -> Result<Self, Error> {
         let mut demands = BTreeMap::new();
         for item in items {
             let (distances, demand) = all.of(&item.episode)?;
             if let Some(unknown) = demand.reference.iter().find(|viewpoint| !distances.has(viewpoint)) {
-                let (file, id) = (plan.episodes.display(), &item.episode.id);
+                let (file, id) = (kept.episodes.display(), &item.episode.id);
                 let problem = format!("{file}: episode {id}: scene {} has no viewpoint {unknown}", item.episode.scene);
                 return Err(Error::usage(problem, "take episodes and graphs of one release"));
             }
@@ -60,7 +60,7 @@ impl<'a> Judge<'a> {
         };
         let clusters = items.iter().map(|item| (item.episode.id.as_str(), episodes::cluster(&item.episode))).collect();
         // What goes by labels can name an object; what looks at pictures cannot.
-        let names_objects = plan.grounder.starts_with("labels");
+        let names_objects = kept.grounder.starts_with("labels");
         let without_object = blind.map(|item| item.episode.id.as_str());
         Ok(Self { demands, clusters, rule, names_objects, without_object })
     }
@@ -99,7 +99,7 @@ impl<'a> Judge<'a> {
 
 /// The comparison of what was walked.
 pub(super) fn comparison(
-    plan: &Plan,
+    kept: &Kept,
     crew: &Crew<'_>,
     sets: Vec<Set>,
     judge: &Judge<'_>,
@@ -108,31 +108,31 @@ pub(super) fn comparison(
 ) -> Comparison {
     let (items, paths) = results.extent();
     let about = About {
-        platform: plan.platform.clone(),
-        episodes: last_part(&plan.episodes.to_string_lossy()),
+        platform: kept.platform.clone(),
+        episodes: last_part(&kept.episodes.to_string_lossy()),
         grounder: crew.grounders.views.name().to_owned(),
         detector: crew.grounders.boxes.name().to_owned(),
-        encoder: plan.encoder.clone(),
+        encoder: kept.encoder.clone(),
         splitter: crew.splitter.name().to_owned(),
         rule: judge.rule,
         level: LEVEL,
         resamples,
-        seed: plan.seed,
+        seed: kept.seed,
         items,
         paths,
         failed,
-        swept: is_swept(plan),
-        parameters: plan.parameters.iter().map(|(agent, of)| (agent.clone(), of.named())).collect(),
+        swept: is_swept(kept),
+        parameters: kept.parameters.iter().map(|(agent, of)| (agent.clone(), of.named())).collect(),
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
     };
     let walkers: Vec<Walker> = crew.agents.iter().map(Agent::walker).collect();
-    compare(about, sets, &walkers, &plan.swaps, results)
+    compare(about, sets, &walkers, &kept.swaps, results)
 }
 
 /// Whether the agents decide by defaults that were swept for their grounder.
-fn is_swept(plan: &Plan) -> bool {
+fn is_swept(kept: &Kept) -> bool {
     let has_sweep =
-        plan.grounder == "labels/lexical" || plan.encoder.as_deref().is_some_and(|encoder| encoder != "words");
-    let is_default = |(agent, of): (&String, &Parameters)| *of == Parameters::default_of(agent, &plan.grounder);
-    has_sweep && plan.parameters.iter().all(is_default)
+        kept.grounder == "labels/lexical" || kept.encoder.as_deref().is_some_and(|encoder| encoder != "words");
+    let is_default = |(agent, of): (&String, &Parameters)| *of == Parameters::default_of(agent, &kept.grounder);
+    has_sweep && kept.parameters.iter().all(is_default)
 }

@@ -1,6 +1,6 @@
 //! Sets of instructions, brought together item by item.
 
-use super::plan::{Plan, last_part};
+use super::kept::{Kept, last_part};
 use crate::{cli::By, demands::Demands, episodes, error::Error, texts};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::Platform;
@@ -41,17 +41,17 @@ pub(super) struct Told {
 /// # Errors
 /// When a set cannot be read, or the sets have no item in common.
 pub(super) fn load(
-    plan: &Plan,
+    kept: &Kept,
     platform: &dyn Platform,
     demands: &Demands<'_>,
 ) -> Result<(Vec<Item>, Vec<usize>), Error> {
-    let mut episodes = episodes::read(&plan.episodes, platform)?;
-    episodes.truncate(plan.limit.unwrap_or(usize::MAX));
+    let mut episodes = episodes::read(&kept.episodes, platform)?;
+    episodes.truncate(kept.limit.unwrap_or(usize::MAX));
     let ids: BTreeSet<String> = episodes.iter().map(|episode| episode.id.clone()).collect();
     let mut all: Vec<(&str, BTreeMap<String, Vec<String>>)> = Vec::new();
-    for (name, source) in &plan.instructions {
+    for (name, source) in &kept.instructions {
         // The episodes' own texts are read as any set is: those of several styles are not mixed.
-        let source = if source.is_empty() { plan.episodes.to_string_lossy().into_owned() } else { source.clone() };
+        let source = if source.is_empty() { kept.episodes.to_string_lossy().into_owned() } else { source.clone() };
         let mut texts = texts_of(&source)?;
         texts.retain(|item, texts| ids.contains(item) && !texts.is_empty());
         all.push((name, texts));
@@ -63,19 +63,19 @@ pub(super) fn load(
     }
     let sizes = all.iter().map(|(_, texts)| texts.len()).collect();
     let mut items: Vec<Item> = episodes.into_iter().map(|episode| item(episode, &all)).collect();
-    add_swaps(&mut items, plan, demands)?;
+    add_swaps(&mut items, kept, demands)?;
     Ok((items, sizes))
 }
 
 /// What there is to say of each set, over the items that were walked.
-pub(super) fn described(plan: &Plan, items: &[Item], sizes: &[usize], is_walked: impl Fn(&str) -> bool) -> Vec<Set> {
+pub(super) fn described(kept: &Kept, items: &[Item], sizes: &[usize], is_walked: impl Fn(&str) -> bool) -> Vec<Set> {
     let describe = |((name, source), size): (&(String, String), &usize)| {
         let told = || {
             let walked = items.iter().filter(|item| is_walked(&item.episode.id));
             walked.flat_map(|item| &item.told).filter(|told| told.set == *name)
         };
         let words: usize = told().map(|told| word_count(&told.text)).sum();
-        let source = if source.is_empty() { plan.episodes.to_string_lossy().into_owned() } else { source.clone() };
+        let source = if source.is_empty() { kept.episodes.to_string_lossy().into_owned() } else { source.clone() };
         Set {
             name: name.clone(),
             source: last_part(&source),
@@ -84,7 +84,7 @@ pub(super) fn described(plan: &Plan, items: &[Item], sizes: &[usize], is_walked:
             words: words as f64 / told().count().max(1) as f64,
         }
     };
-    plan.instructions.iter().zip(sizes).map(describe).collect()
+    kept.instructions.iter().zip(sizes).map(describe).collect()
 }
 
 fn texts_of(source: &str) -> Result<BTreeMap<String, Vec<String>>, Error> {
@@ -112,22 +112,22 @@ pub(super) fn item(episode: Episode, sets: &[(&str, BTreeMap<String, Vec<String>
 }
 
 /// Adds each text of the first set in every swap that changes it.
-fn add_swaps(items: &mut [Item], plan: &Plan, demands: &Demands<'_>) -> Result<(), Error> {
-    let Some((first, _)) = plan.instructions.first() else { return Ok(()) };
+fn add_swaps(items: &mut [Item], kept: &Kept, demands: &Demands<'_>) -> Result<(), Error> {
+    let Some((first, _)) = kept.instructions.first() else { return Ok(()) };
     let of_first: Vec<Vec<String>> = items
         .iter()
         .map(|item| item.told.iter().filter(|told| told.set == *first).map(|told| told.text.clone()).collect())
         .collect();
-    let elsewhere = if plan.swaps.contains(&Swap::OtherPath) { other_items(items, plan, demands)? } else { Vec::new() };
+    let elsewhere = if kept.swaps.contains(&Swap::OtherPath) { other_items(items, kept, demands)? } else { Vec::new() };
     for (at, item) in items.iter_mut().enumerate() {
-        for swap in &plan.swaps {
+        for swap in &kept.swaps {
             for (index, text) in of_first[at].iter().enumerate() {
                 let wrong = match swap {
                     Swap::OtherPath => elsewhere.get(at).copied().flatten().and_then(|other| {
                         let texts = &of_first[other];
                         texts.get(index % texts.len().max(1)).cloned()
                     }),
-                    swap => swapped(*swap, text, plan.seed, &format!("{}_{index}", item.episode.id)),
+                    swap => swapped(*swap, text, kept.seed, &format!("{}_{index}", item.episode.id)),
                 };
                 let told = |text| Told { set: swapped_set(first, *swap), index, text, is_swapped: true };
                 item.told.extend(wrong.map(told));
@@ -138,7 +138,7 @@ fn add_swaps(items: &mut [Item], plan: &Plan, demands: &Demands<'_>) -> Result<(
 }
 
 /// For each item, one of the same scene on another path whose goal is another; none where the scene has none.
-fn other_items(items: &[Item], plan: &Plan, demands: &Demands<'_>) -> Result<Vec<Option<usize>>, Error> {
+fn other_items(items: &[Item], kept: &Kept, demands: &Demands<'_>) -> Result<Vec<Option<usize>>, Error> {
     let mut distances: BTreeMap<&wayword_core::SceneId, std::sync::Arc<Distances>> = BTreeMap::new();
     for item in items {
         distances.insert(&item.episode.scene, demands.distances(&item.episode.scene)?);
@@ -155,5 +155,5 @@ fn other_items(items: &[Item], plan: &Plan, demands: &Demands<'_>) -> Result<Vec
     let is_far = |a: &Candidate, b: &Candidate| {
         distances[&a.scene].metres(&a.goal, &b.goal).is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
     };
-    Ok((0..items.len()).map(|at| other_path(&candidates, at, plan.seed, &is_far)).collect())
+    Ok((0..items.len()).map(|at| other_path(&candidates, at, kept.seed, &is_far)).collect())
 }

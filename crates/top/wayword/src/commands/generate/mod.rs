@@ -1,8 +1,6 @@
 //! `wayword generate`.
 
-mod inputs;
 mod keep;
-mod plan;
 mod summary;
 
 use crate::{
@@ -11,12 +9,12 @@ use crate::{
     commands::config,
     error::{Error, Exit},
     in_order::in_order,
-    item::{Item, check_names, items},
+    item::Item,
     output::Output,
     pipeline::make,
+    plan::Plan,
     run::RunFolder,
-    settings::{Job, Settings},
-    styles,
+    settings::Job,
     team::{Team, cores},
     world,
 };
@@ -31,8 +29,9 @@ const FLUSH: usize = 16;
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
     if args.dry_run {
-        let plan = plan::plan(&job)?;
-        output.data(&plan, &plan);
+        let platform = world::open(&job.settings)?;
+        let estimate = Plan::writing(&job, platform.as_ref())?.estimate()?;
+        output.data(&estimate, &estimate);
         return Ok(Exit::Done);
     }
     let out = args.out.as_deref().ok_or_else(|| {
@@ -50,17 +49,12 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
 /// `rejected.jsonl`, or of `errors.jsonl` where a later run may do better.
 pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summary, Error> {
     let platform = world::open(&job.settings)?;
-    let styles = styles::find(&job.settings.style, job.settings.seed)?;
-    let items = items(&job.settings, platform.as_ref())?;
-    check_names(&items)?;
-    Calls::rehearse(&job.settings, &job.service, &job.providers)?;
-    let inputs = inputs::inputs(job, &styles)?;
-    let settings = &Settings { inputs, ..job.settings.clone() };
+    let plan = Plan::writing(job, platform.as_ref())?;
+    let settings = &plan.settings()?;
     let mut run = RunFolder::open(folder, settings)?;
-    // Without models nothing is spent, and the same run gives the same folder byte for byte.
-    let id = if settings.roles.models().is_empty() { String::new() } else { run.id()? };
-    let calls = Calls::open(settings, &job.service, &job.providers, &id, output)?;
+    let calls = plan.models.open(|| run.id(), output)?;
     let team = Team::new(settings, calls.as_ref())?;
+    let Plan { items, styles, .. } = &plan;
 
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
     let left: Vec<&Item> = items.iter().filter(|item| !run.is_done(&item.id(), &names)).collect();
@@ -72,15 +66,14 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     // What earlier commands did tells nothing of the pace.
     bar.reset_eta();
     if let Some(calls) = &calls {
-        let talk = *output;
-        calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));
+        calls.stop_on_interrupt(output);
     }
     let mut stopped = None;
     let (mut unflushed, mut unmade) = (0, left.len());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
-    let making = |item: &&Item| make(item, settings, platform.as_ref(), &team, &styles);
+    let making = |item: &&Item| make(item, settings, platform.as_ref(), &team, styles);
     in_order(&left, workers, making, |item, made| {
-        match keep(&mut run, platform.as_ref(), item, made, &styles)? {
+        match keep(&mut run, platform.as_ref(), item, made, styles)? {
             Fate::Kept => bar.inc(1),
             Fate::Stopped(reason) => {
                 stopped = Some(reason);

@@ -10,6 +10,7 @@ use crate::{
     error::{Error, Exit},
     in_order::in_order,
     output::Output,
+    plan::Plan,
     run::fresh_id,
     settings::{Job, Perception, Settings},
     team::{Team, cores},
@@ -93,11 +94,11 @@ pub fn perceive(
     ways: &[Perception],
     output: &Output,
 ) -> Result<Measured, Error> {
-    let views = labelled_views(&job.settings, platform, extent.views)?;
-    let calls = Calls::open(&job.settings, &job.service, &job.providers, &fresh_id("perceive"), output)?;
+    let plan = Plan::looking(job, platform)?;
+    let views = labelled_views(&plan, extent.views)?;
+    let calls = plan.models.open(|| Ok(fresh_id("perceive")), output)?;
     if let Some(calls) = &calls {
-        let talk = *output;
-        calls.stop_on_interrupt(move || talk.say("finishing what is in flight; interrupt again to end at once"));
+        calls.stop_on_interrupt(output);
     }
     let mut measured = Measured {
         platform: job.settings.platform.clone(),

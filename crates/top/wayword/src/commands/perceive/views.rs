@@ -1,10 +1,6 @@
 //! The views that are captioned: those ahead along random paths or episodes, each once, where the platform has labels.
 
-use crate::{
-    error::Error,
-    item::{Item, items},
-    settings::Settings,
-};
+use crate::{error::Error, item::Item, plan::Plan, settings::Settings};
 use std::collections::BTreeSet;
 use wayword_checks::{Evidence, SeenThing};
 use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
@@ -17,15 +13,12 @@ pub(super) struct Labelled {
 }
 
 /// The first so many, in the order of the paths.
-pub(super) fn labelled_views(
-    settings: &Settings,
-    platform: &dyn Platform,
-    most: usize,
-) -> Result<Vec<Labelled>, Error> {
+pub(super) fn labelled_views(plan: &Plan<'_>, most: usize) -> Result<Vec<Labelled>, Error> {
+    let (settings, platform) = (&plan.job.settings, plan.platform);
     let mut views = Vec::new();
     let mut looked_at = BTreeSet::new();
     let mut blind = 0;
-    'paths: for item in &items(settings, platform)? {
+    'paths: for item in &plan.items {
         let Some(path) = path(item, settings, platform)? else { continue };
         for frame in &path.frames {
             if views.len() == most {

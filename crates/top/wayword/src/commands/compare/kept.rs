@@ -4,18 +4,21 @@ use crate::{
     cli::{Compare, SwapName},
     error::Error,
     run::hash_of_file,
+    settings::Settings,
+    world,
 };
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
+use wayword_core::Platform;
 use wayword_navigation::{agents::Parameters, comparison::UNREAD, swap::Swap};
 
 /// A comparison as it was asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Plan {
+pub(crate) struct Kept {
     /// Of the walks: those of another are not continued.
     pub(crate) format: u32,
     /// The platform's name.
@@ -61,12 +64,12 @@ const FORMAT: u32 = 1;
 /// The set of the episodes' own instructions.
 pub(super) const ORIGINAL: &str = "original";
 
-impl Plan {
-    /// What the flags ask for.
+impl Kept {
+    /// What the flags ask for, and what they resolve to where other commands have the same.
     ///
     /// # Errors
     /// When a set is named twice or not as it should be, an agent is not known, or a file cannot be read.
-    pub(super) fn of(args: &Compare) -> Result<Self, Error> {
+    pub(super) fn of(args: &Compare, settings: &Settings) -> Result<Self, Error> {
         let asked = if args.instructions.is_empty() { &vec![ORIGINAL.to_owned()] } else { &args.instructions };
         let mut instructions: Vec<(String, String)> = Vec::new();
         let mut inputs = BTreeMap::from([("episodes".to_owned(), hash_of_file(&args.episodes)?)]);
@@ -84,22 +87,30 @@ impl Plan {
         let parameters = super::agents::parameters(&args.agents, &args.grounder, args.parameters.as_deref())?;
         Ok(Self {
             format: FORMAT,
-            platform: args.world.name().to_owned(),
-            data: args.world.data.as_deref().map(absolute).transpose()?,
-            at: args.world.at.clone(),
+            platform: settings.platform.clone(),
+            data: settings.data.as_deref().map(absolute).transpose()?,
+            at: settings.at.clone(),
             episodes: absolute(&args.episodes)?,
             instructions,
             agents: args.agents.clone(),
             grounder: args.grounder.clone(),
             encoder: (args.grounder == "labels").then(|| args.encoder.clone()),
-            split: args.split.clone(),
-            base_url: args.base_url.clone(),
+            split: settings.roles.ask.clone(),
+            base_url: settings.roles.base_url.clone(),
             swaps: swaps(&args.swaps)?,
-            limit: args.limit.map(|limit| limit as usize),
-            seed: args.seed,
+            limit: settings.limit,
+            seed: settings.seed,
             parameters,
             inputs,
         })
+    }
+
+    /// The world that is walked.
+    ///
+    /// # Errors
+    /// When it cannot be opened.
+    pub(super) fn world(&self) -> Result<Box<dyn Platform>, Error> {
+        world::open_named(&self.platform, self.data.as_deref(), self.at.as_deref())
     }
 }
 

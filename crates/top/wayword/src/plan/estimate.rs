@@ -1,14 +1,13 @@
-//! What a run would ask of models, without asking: `generate --dry-run`.
+//! What a run would ask of models, and what that would cost.
 
+use super::Plan;
 use crate::{
-    calls::Calls,
     error::Error,
-    item::{check_names, items},
     pipeline,
-    settings::{Job, Perception, Settings, is_model},
-    styles::{self, Measured},
+    settings::{Perception, Settings, is_model},
+    styles::Measured,
     team::prompts,
-    world::{self, Remembering},
+    world::Remembering,
 };
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
@@ -23,7 +22,7 @@ use wayword_synthesis::{
 /// About what a run would ask of models: no dialogue ends early, nothing is asked again or written again, and the ledger holds
 /// nothing yet.
 #[derive(Debug, Default, Serialize)]
-pub(super) struct Plan {
+pub struct Estimate {
     /// Items of the run that have a path.
     items: usize,
     /// Frames of their paths.
@@ -73,51 +72,61 @@ const INSTRUCTION_TOKENS: u64 = 60;
 /// Pixels of a picture for each of its tokens, as two large providers count.
 const PIXELS_PER_TOKEN: u64 = 750;
 
-pub(super) fn plan(job: &Job) -> Result<Plan, Error> {
-    let settings = &job.settings;
-    let platform = world::open(settings)?;
-    let styles = styles::find(&settings.style, settings.seed)?;
-    let items = items(settings, platform.as_ref())?;
-    check_names(&items)?;
-    let prices = Calls::rehearse(settings, &job.service, &job.providers)?;
-    let prompts = prompts(settings)?;
-    let mut plan = Plan { questions: questions(settings), ..Plan::default() };
-    let (mut views, mut panoramas, mut writing) = (BTreeSet::new(), BTreeSet::new(), Load::default());
-    for item in &items {
-        let world = Remembering::new(platform.as_ref());
-        // What has no path is rejected by the run, and asks nothing of models.
-        let Ok(path) = pipeline::path(item, settings, &world) else { continue };
-        plan.items += 1;
-        plan.frames += path.frames.len();
-        for frame in &path.frames {
-            let place = (path.scene.clone(), frame.place());
-            views.extend(gazes(frame, settings.frames).iter().map(|gaze| (place.clone(), micro_rad(*gaze))));
-            panoramas.insert(place);
+impl Estimate {
+    pub(super) fn of(plan: &Plan<'_>) -> Result<Self, Error> {
+        let settings = &plan.job.settings;
+        let prompts = prompts(settings)?;
+        let mut estimate = Self { questions: questions(settings), ..Self::default() };
+        let (mut views, mut panoramas, mut writing) = (BTreeSet::new(), BTreeSet::new(), Load::default());
+        for item in &plan.items {
+            let world = Remembering::new(plan.platform);
+            // What has no path is rejected by the run, and asks nothing of models.
+            let Ok(path) = pipeline::path(item, settings, &world) else { continue };
+            estimate.items += 1;
+            estimate.frames += path.frames.len();
+            for frame in &path.frames {
+                let place = (path.scene.clone(), frame.place());
+                views.extend(gazes(frame, settings.frames).iter().map(|gaze| (place.clone(), micro_rad(*gaze))));
+                panoramas.insert(place);
+            }
+            writing.add(write_load(&prompts, settings, &plan.styles, &path)?);
         }
-        writing.add(write_load(&prompts, settings, &styles, &path)?);
+        estimate.views = views.len();
+        let panoramas = if settings.frames == FrameSelection::Panoramic { panoramas.len() as u64 } else { 0 };
+        let talk = Talk::of(&prompts, settings)?;
+        let roles = &settings.roles;
+        let dialogue = settings.has_dialogue();
+        let summing = talk.summing.times(estimate.views as u64).plus(talk.condensing.times(panoramas));
+        for (role, model, load, takes_part) in [
+            ("asks", &roles.ask, talk.asking.times(estimate.views as u64), dialogue),
+            ("sees", &roles.see, talk.seeing.times(estimate.views as u64), true),
+            ("sums up", &roles.summarise, summing, dialogue),
+            ("writes", &roles.write, writing, true),
+        ] {
+            if is_model(model) && takes_part {
+                estimate.add(model, role, load);
+            }
+        }
+        for asked in &mut estimate.models {
+            let price = plan.models.price(&asked.model);
+            asked.usd = price.map(|price| price.usd(asked.tokens_in, asked.tokens_out));
+            asked.price_as_of = price.map(|price| price.as_of.clone());
+        }
+        Ok(estimate)
     }
-    plan.views = views.len();
-    let panoramas = if settings.frames == FrameSelection::Panoramic { panoramas.len() as u64 } else { 0 };
-    let talk = Talk::of(&prompts, settings)?;
-    let roles = &settings.roles;
-    let dialogue = settings.has_dialogue();
-    let summing = talk.summing.times(plan.views as u64).plus(talk.condensing.times(panoramas));
-    for (role, model, load, takes_part) in [
-        ("asks", &roles.ask, talk.asking.times(plan.views as u64), dialogue),
-        ("sees", &roles.see, talk.seeing.times(plan.views as u64), true),
-        ("sums up", &roles.summarise, summing, dialogue),
-        ("writes", &roles.write, writing, true),
-    ] {
-        if is_model(model) && takes_part {
-            plan.add(model, role, load);
+
+    fn add(&mut self, model: &str, role: &'static str, load: Load) {
+        let at = self.models.iter().position(|asked| asked.model == model).unwrap_or_else(|| {
+            self.models.push(Asked { model: model.to_owned(), ..Asked::default() });
+            self.models.len() - 1
+        });
+        if let Some(asked) = self.models.get_mut(at) {
+            asked.roles.push(role);
+            asked.calls += load.calls;
+            asked.tokens_in += load.tokens_in;
+            asked.tokens_out += load.tokens_out;
         }
     }
-    for asked in &mut plan.models {
-        let price = prices.get(&asked.model).and_then(Option::as_ref);
-        asked.usd = price.map(|price| price.usd(asked.tokens_in, asked.tokens_out));
-        asked.price_as_of = price.map(|price| price.as_of.clone());
-    }
-    Ok(plan)
 }
 
 /// Headings that differ by rounding alone look at the same thing.
@@ -199,22 +208,7 @@ impl Load {
     }
 }
 
-impl Plan {
-    fn add(&mut self, model: &str, role: &'static str, load: Load) {
-        let at = self.models.iter().position(|asked| asked.model == model).unwrap_or_else(|| {
-            self.models.push(Asked { model: model.to_owned(), ..Asked::default() });
-            self.models.len() - 1
-        });
-        if let Some(asked) = self.models.get_mut(at) {
-            asked.roles.push(role);
-            asked.calls += load.calls;
-            asked.tokens_in += load.tokens_in;
-            asked.tokens_out += load.tokens_out;
-        }
-    }
-}
-
-impl fmt::Display for Plan {
+impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} items, {} frames, {} different views to caption", self.items, self.frames, self.views)?;
         if self.models.is_empty() {

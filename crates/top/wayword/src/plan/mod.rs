@@ -1,0 +1,103 @@
+//! A run before it begins: its settings, turned into a world with paths, styles and models that there are. Nothing is asked, paid
+//! or written yet.
+
+mod estimate;
+mod inputs;
+
+use crate::{
+    calls::Calls,
+    error::Error,
+    item::{Item, check_names, items},
+    output::Output,
+    settings::{Job, Settings},
+    styles::{self, Measured},
+};
+use std::collections::BTreeMap;
+use wayword_core::Platform;
+use wayword_remote::Price;
+
+pub use estimate::Estimate;
+
+/// What a run works through, and by whom.
+pub struct Plan<'a> {
+    /// What was asked for.
+    pub job: &'a Job,
+    /// The world.
+    pub platform: &'a dyn Platform,
+    /// The paths, in their order.
+    pub items: Vec<Item>,
+    /// The styles that are written in; none where nothing is written.
+    pub styles: Vec<Measured>,
+    /// Who is asked over a network or in process.
+    pub models: Models<'a>,
+}
+
+impl<'a> Plan<'a> {
+    /// A run that looks along paths and writes nothing.
+    ///
+    /// # Errors
+    /// When there are no such paths, or a model is not known.
+    pub fn looking(job: &'a Job, platform: &'a dyn Platform) -> Result<Self, Error> {
+        let items = items(&job.settings, platform)?;
+        Ok(Self { job, platform, items, styles: Vec::new(), models: Models::of(job)? })
+    }
+
+    /// A run that writes instructions for paths.
+    ///
+    /// # Errors
+    /// When a style cannot be read, there are no such paths, two share a name, or a model is not known.
+    pub fn writing(job: &'a Job, platform: &'a dyn Platform) -> Result<Self, Error> {
+        let styles = styles::find(&job.settings.style, job.settings.seed)?;
+        let items = items(&job.settings, platform)?;
+        check_names(&items)?;
+        Ok(Self { job, platform, items, styles, models: Models::of(job)? })
+    }
+
+    /// The settings as a run folder keeps them: with the hashes of what they only name.
+    ///
+    /// # Errors
+    /// When a file cannot be read.
+    pub fn settings(&self) -> Result<Settings, Error> {
+        Ok(Settings { inputs: inputs::inputs(self.job, &self.styles)?, ..self.job.settings.clone() })
+    }
+
+    /// What the run would ask of models, and what that would cost.
+    ///
+    /// # Errors
+    /// When a prompt cannot be used.
+    pub fn estimate(&self) -> Result<Estimate, Error> {
+        Estimate::of(self)
+    }
+}
+
+/// The models that a job names: known, priced, and not asked yet.
+pub struct Models<'a> {
+    job: &'a Job,
+    /// By model; none where the price is not known.
+    prices: BTreeMap<String, Option<Price>>,
+}
+
+impl<'a> Models<'a> {
+    /// The models of a job.
+    ///
+    /// # Errors
+    /// When one is not known, has no price and needs one, or a file for the calls is not there.
+    pub fn of(job: &'a Job) -> Result<Self, Error> {
+        Ok(Self { job, prices: Calls::rehearse(job)? })
+    }
+
+    /// The way to them; `None` where none is named. `run` names what the calls are made for. It is asked only where there are
+    /// any: without models nothing is spent, and the same run gives the same folder byte for byte.
+    ///
+    /// # Errors
+    /// When the run has no name, or the ledger cannot be opened.
+    pub fn open(&self, run: impl FnOnce() -> Result<String, Error>, output: &Output) -> Result<Option<Calls>, Error> {
+        if self.prices.is_empty() { Ok(None) } else { Calls::open(self.job, &run()?, output) }
+    }
+
+    /// What a model costs, where that is known.
+    #[must_use]
+    pub fn price(&self, model: &str) -> Option<&Price> {
+        self.prices.get(model)?.as_ref()
+    }
+}
