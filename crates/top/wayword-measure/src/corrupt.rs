@@ -14,7 +14,7 @@ use wayword_language::lexicon::agree;
 
 /// The ways to make an instruction wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
+pub(super) enum Corruption {
     /// A left turned into a right, or the other way round.
     TurnFlipped,
     /// A landmark replaced by one that no frame shows.
@@ -37,7 +37,7 @@ pub(super) enum Kind {
     TaskUnasked,
 }
 
-impl Kind {
+impl Corruption {
     pub(super) const ALL: [Self; 10] = [
         Self::TurnFlipped,
         Self::LandmarkAbsent,
@@ -97,7 +97,7 @@ const ABSENT: [&str; 24] = [
 
 /// A corrupted text, or `None` where this kind of corruption cannot be done to it.
 pub(super) fn corrupt(
-    kind: Kind,
+    kind: Corruption,
     record: &Record,
     evidence: &Evidence,
     others: &BTreeSet<String>,
@@ -116,7 +116,7 @@ pub(super) fn corrupt(
     };
     let replace = |span: [usize; 2], by: &str| format!("{}{by}{}", &text[..span[0]], &text[span[1]..]);
     match kind {
-        Kind::TurnFlipped => {
+        Corruption::TurnFlipped => {
             let turns: Vec<[usize; 2]> = spans(&[MentionKind::Turn])
                 .into_iter()
                 .filter(|span| matches!(&text[span[0]..span[1]], "left" | "right"))
@@ -124,14 +124,14 @@ pub(super) fn corrupt(
             let span = *turns.choose(rng)?;
             Some(replace(span, if &text[span[0]..span[1]] == "left" { "right" } else { "left" }))
         }
-        Kind::LandmarkAbsent => {
+        Corruption::LandmarkAbsent => {
             let span = *spans(&[MentionKind::Landmark, MentionKind::Target]).choose(rng)?;
             let absent: Vec<&str> =
                 ABSENT.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
             Some(replace(span, absent.choose(rng)?))
         }
-        Kind::OrderSwapped => swapped(record, evidence, rng),
-        Kind::ReferenceCopied => {
+        Corruption::OrderSwapped => swapped(record, evidence, rng),
+        Corruption::ReferenceCopied => {
             let reference = style.references.choose(rng)?.trim_end_matches('.');
             let words: Vec<&str> = reference.split(' ').collect();
             let length = rng.random_range(5..=7).min(words.len());
@@ -139,7 +139,7 @@ pub(super) fn corrupt(
             let run = words[start..start + length].join(" ").replace(". ", " ");
             Some(format!("{run}, {text}"))
         }
-        Kind::TaskElsewhere => {
+        Corruption::TaskElsewhere => {
             let span = *spans(&[MentionKind::Target]).first()?;
             let elsewhere: Vec<&String> = others
                 .iter()
@@ -147,11 +147,11 @@ pub(super) fn corrupt(
                 .collect();
             Some(replace(span, elsewhere.choose(rng)?))
         }
-        Kind::StairsAdded => by_path::stairs(text, &record.path, style, rng),
-        Kind::FloorWrong => by_path::floor(text, &record.path, style, rng),
-        Kind::RoomWrong => by_path::room(text, evidence, style, rng),
-        Kind::SideWrong => by_path::side(text, evidence, style, rng),
-        Kind::TaskUnasked => by_path::unasked_task(text, evidence, style, rng),
+        Corruption::StairsAdded => by_path::stairs(text, &record.path, style, rng),
+        Corruption::FloorWrong => by_path::floor(text, &record.path, style, rng),
+        Corruption::RoomWrong => by_path::room(text, evidence, style, rng),
+        Corruption::SideWrong => by_path::side(text, evidence, style, rng),
+        Corruption::TaskUnasked => by_path::unasked_task(text, evidence, style, rng),
     }
 }
 

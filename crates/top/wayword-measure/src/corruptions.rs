@@ -1,6 +1,6 @@
 //! How many corruptions the checks catch.
 
-use crate::corrupt::{Kind, corrupt};
+use crate::corrupt::{Corruption, corrupt};
 use rand::seq::IndexedRandom;
 use rayon::prelude::*;
 use std::{
@@ -35,11 +35,11 @@ pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize,
     let all: Vec<(&Run, &Record)> =
         runs.iter().flat_map(|run| run.records.iter().map(move |record| (run, record))).collect();
     let mut rng = rng(seed, &["corruptions"]);
-    let mut counts: BTreeMap<Kind, (usize, usize)> = BTreeMap::new();
+    let mut counts: BTreeMap<Corruption, (usize, usize)> = BTreeMap::new();
     let mut missed = Vec::new();
-    for kind in Kind::ALL {
+    for kind in Corruption::ALL {
         let mut tries = 0;
-        while counts.entry(kind).or_default().1 < count / Kind::ALL.len() && tries < 100 * count {
+        while counts.entry(kind).or_default().1 < count / Corruption::ALL.len() && tries < 100 * count {
             tries += 1;
             let Some((run, record)) = all.choose(&mut rng) else { break };
             let Some((evidence, style, others)) = run.needed_for(record) else { continue };
@@ -61,7 +61,7 @@ pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize,
     Ok(())
 }
 
-fn table(counts: &BTreeMap<Kind, (usize, usize)>) -> String {
+fn table(counts: &BTreeMap<Corruption, (usize, usize)>) -> String {
     let line = |name: &str, (caught, total): (usize, usize)| {
         format!("{name:<39} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
     };

@@ -1,9 +1,9 @@
 //! The frames of an item: picture, place, caption, dialogue, and the move to the next.
 
 use super::{
-    model::{frame_anchor, side_words},
     palette::{Colour, colour},
     pictures::{Picture, Pictures},
+    places::{frame_anchor, side_words},
 };
 use crate::run::WalkRecord;
 use serde::Serialize;

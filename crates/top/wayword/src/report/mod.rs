@@ -11,6 +11,7 @@ mod model;
 mod page;
 pub(crate) mod palette;
 mod pictures;
+mod places;
 mod records;
 pub mod replay;
 pub(crate) mod sheet;

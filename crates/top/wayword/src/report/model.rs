@@ -4,11 +4,12 @@ use super::{
     frames::{FrameView, frames},
     map::{MapView, RADIUS},
     pictures::Pictures,
+    places::{Places, anchor, side_words},
     records::ItemRecord,
-    texts::{Places, TextView, texts},
+    texts::{TextView, texts},
 };
 use serde::Serialize;
-use wayword_core::{Distinction, Side, Target};
+use wayword_core::{Distinction, Target};
 
 /// Most frames of an item that are shown.
 const MOST_FRAMES: usize = 200;
@@ -34,16 +35,6 @@ pub(super) struct ItemView {
     originals: Vec<String>,
     frames: Vec<FrameView>,
     frames_left_out: usize,
-}
-
-/// The anchor of an item's heading; numbered and not named, for names come from anywhere.
-pub(super) fn anchor(number: usize) -> String {
-    format!("w{number}")
-}
-
-/// The anchor of a frame (from 0) of an item.
-pub(super) fn frame_anchor(item: &str, frame: usize) -> String {
-    format!("{item}-f{}", frame + 1)
 }
 
 impl ItemView {
@@ -96,15 +87,5 @@ fn distinction(distinction: &Distinction) -> String {
         Distinction::OnSide { side } => format!("the one {}", side_words(*side)),
         Distinction::NextTo { neighbour } => format!("the one next to the {neighbour}"),
         Distinction::Range { nearest } => if *nearest { "the nearest" } else { "the farthest" }.to_owned(),
-    }
-}
-
-/// Where that is for the walker.
-pub(super) fn side_words(side: Side) -> &'static str {
-    match side {
-        Side::Ahead => "ahead",
-        Side::Right => "on the right",
-        Side::Behind => "behind",
-        Side::Left => "on the left",
     }
 }

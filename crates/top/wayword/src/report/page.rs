@@ -1,9 +1,9 @@
 //! What stands above the items: what the run was, who did it, what came of it, and where to find each item.
 
 use super::{
-    model::anchor,
+    places::anchor,
     records::{Counts, ItemRecord, Minds, Records},
-    texts::{State, state},
+    texts::{TextState, state},
 };
 use crate::settings::{Against, Perception, Settings, TargetMode};
 use serde::Serialize;
@@ -45,7 +45,7 @@ struct EntryView {
     anchor: String,
     id: String,
     /// Styles whose instruction is not all good, with what became of it.
-    lacks: Vec<(String, State)>,
+    lacks: Vec<(String, TextState)>,
 }
 
 #[derive(Debug, Serialize)]
@@ -82,12 +82,12 @@ impl PageView {
 
 fn entry(number: usize, item: &ItemRecord) -> EntryView {
     let accepted = item.accepted.iter().map(|instruction| (instruction.style.clone(), state(instruction.verdict)));
-    let rejected = item.rejected.iter().map(|rejected| (rejected.style.clone(), State::Rejected));
+    let rejected = item.rejected.iter().map(|rejected| (rejected.style.clone(), TextState::Rejected));
     EntryView {
         number,
         anchor: anchor(number),
         id: item.walk.path.id.clone(),
-        lacks: accepted.filter(|(_, state)| *state != State::Passed).chain(rejected).collect(),
+        lacks: accepted.filter(|(_, state)| *state != TextState::Passed).chain(rejected).collect(),
     }
 }
 

@@ -1,8 +1,8 @@
 //! The instructions of an item: text with its mentions, verdict, checks and provenance.
 
 use super::{
-    model::frame_anchor,
     palette::{Colour, colour},
+    places::{Places, frame_anchor},
     records::ItemRecord,
     spans::segments,
 };
@@ -16,7 +16,7 @@ const MOST_FINDINGS: usize = 100;
 #[derive(Debug, Serialize)]
 pub(super) struct TextView {
     style: String,
-    state: State,
+    state: TextState,
     /// Why it was rejected.
     reason: Option<String>,
     /// Empty where nothing could be written.
@@ -28,7 +28,7 @@ pub(super) struct TextView {
 /// What became of an instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum State {
+pub(super) enum TextState {
     /// It passed every check.
     Passed,
     /// Something could not be checked.
@@ -72,23 +72,12 @@ struct FindingView {
     words: Option<String>,
 }
 
-/// Where links of an item lead.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Places<'a> {
-    /// The item's anchor.
-    pub(super) item: &'a str,
-    /// How many frames its path has.
-    pub(super) frames: usize,
-    /// How many of them the page shows.
-    pub(super) shown: usize,
-}
-
 /// The state of an accepted instruction.
-pub(super) fn state(verdict: Verdict) -> State {
+pub(super) fn state(verdict: Verdict) -> TextState {
     match verdict {
-        Verdict::Pass => State::Passed,
-        Verdict::Unverified => State::Unverified,
-        Verdict::Fail => State::Rejected,
+        Verdict::Pass => TextState::Passed,
+        Verdict::Unverified => TextState::Unverified,
+        Verdict::Fail => TextState::Rejected,
     }
 }
 
@@ -104,7 +93,7 @@ pub(super) fn texts(record: &ItemRecord, places: Places<'_>) -> Vec<TextView> {
     });
     let rejected = record.rejected.iter().map(|rejected| TextView {
         style: rejected.style.clone(),
-        state: State::Rejected,
+        state: TextState::Rejected,
         reason: Some(rejected.reason.clone()),
         parts: rejected.last.as_ref().map(|last| parts(last, places)).unwrap_or_default(),
         findings: rejected.last.as_ref().map(findings).unwrap_or_default(),

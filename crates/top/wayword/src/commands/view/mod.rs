@@ -1,11 +1,11 @@
 //! `wayword view`.
 
-mod kind;
+mod file_kind;
+mod film;
 mod map;
 mod panorama;
 mod path;
 mod picture;
-mod reel;
 mod unfinished;
 mod walk;
 

@@ -1,6 +1,6 @@
 //! `wayword view panorama`.
 
-use super::{Written, kind::Kind, open, picture, scene, unfinished::Unfinished};
+use super::{Written, file_kind::FileKind, open, picture, scene, unfinished::Unfinished};
 use crate::{cli::ViewPanorama, error::Error, output::Output};
 use std::sync::Arc;
 use wayword_core::{Frame, Gaze, Heading, Image, PathRequest, Platform, Pose, SceneId, Side, View, ViewpointId};
@@ -14,7 +14,7 @@ const NEAR_RAD: f64 = 1e-4;
 const TOLD: usize = 5;
 
 pub(super) fn write(args: &ViewPanorama, output: &Output) -> Result<Written, Error> {
-    let kind = Kind::among(&[Kind::Png, Kind::Jpeg], &args.out)?;
+    let kind = FileKind::among(&[FileKind::Png, FileKind::Jpeg], &args.out)?;
     kind.check_free(&args.out, args.world.data.as_deref())?;
     let platform = open(&args.world)?;
     let scene = scene(&*platform, args.scan.as_deref())?;
@@ -25,7 +25,7 @@ pub(super) fn write(args: &ViewPanorama, output: &Output) -> Result<Written, Err
             .map_err(|error| Error::usage(format!("--heading-deg: {error}"), "give degrees, as in --heading-deg 90"))?;
     }
     let whole = around(args, &*platform, &scene, &frame, output)?;
-    let bytes = if kind == Kind::Png { picture::png(&whole)? } else { picture::jpeg(&whole)? };
+    let bytes = if kind == FileKind::Png { picture::png(&whole)? } else { picture::jpeg(&whole)? };
     Unfinished::whole(&args.out, &bytes)?;
     let (width, height) = (whole.width_px(), whole.height_px());
     Ok(Written { scene, files: vec![args.out.clone()], width, height, frames: 1 })

@@ -7,7 +7,7 @@ pub use choose::Sample;
 
 use super::{
     map::{MapView, RADIUS, Trail},
-    model::frame_anchor,
+    places::frame_anchor,
 };
 use crate::run::Map;
 use serde::Serialize;

@@ -6,7 +6,7 @@ mod paint;
 mod sketch;
 mod svg;
 
-use super::{Written, kind::Kind, open, picture, scene, unfinished::Unfinished, walk};
+use super::{Written, file_kind::FileKind, open, picture, scene, unfinished::Unfinished, walk};
 use crate::{
     cli::{ViewMap, Walk},
     error::Error,
@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use wayword_core::{Path, SceneId, ViewpointGraph};
 
 pub(super) fn write(args: &ViewMap, output: &Output) -> Result<Written, Error> {
-    let kind = Kind::among(&[Kind::Svg, Kind::Png], &args.out)?;
+    let kind = FileKind::among(&[FileKind::Svg, FileKind::Png], &args.out)?;
     kind.check_free(&args.out, args.world.data.as_deref())?;
     let platform = open(&args.world)?;
     let path = asks_for_path(&args.walk).then(|| walk::path(&args.walk, &args.world, &*platform)).transpose()?;
@@ -36,7 +36,7 @@ pub(super) fn write(args: &ViewMap, output: &Output) -> Result<Written, Error> {
     let sketch = layout::sketch(&plan).ok_or_else(|| {
         Error::usage(format!("scene {scene}: its places make no map"), "there are none, or they are too far apart")
     })?;
-    let (bytes, [width, height]) = if kind == Kind::Svg {
+    let (bytes, [width, height]) = if kind == FileKind::Svg {
         let size = sketch.size.map(|side| side.ceil() as u32);
         (svg::svg(&sketch, &title(&scene, level, path.as_ref()))?.into_bytes(), size)
     } else {

@@ -1,7 +1,7 @@
 //! A sketch as an SVG that needs nothing but itself.
 
 use super::{
-    super::{kind::SVG_START, picture},
+    super::{file_kind::SVG_START, picture},
     sketch::{Ink, Mark, Point, Sketch},
 };
 use crate::{error::Error, report::data_uri};

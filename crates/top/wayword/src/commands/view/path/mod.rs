@@ -2,7 +2,7 @@
 
 mod between;
 
-use super::{Written, open, reel, walk};
+use super::{Written, film, open, walk};
 use crate::{cli::ViewPath, error::Error, output::Output};
 use between::Step;
 use image::imageops::{self, FilterType};
@@ -26,7 +26,7 @@ pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> 
     if args.width.is_some_and(|width| !(1..=WIDEST_PX).contains(&width)) {
         return Err(Error::usage("--width cannot be that", format!("give a number from 1 to {WIDEST_PX}")));
     }
-    let place = reel::Place::of(&args.out, args.world.data.as_deref())?;
+    let place = film::FilmPlace::of(&args.out, args.world.data.as_deref())?;
     let platform = open(&args.world)?;
     let path = walk::path(&args.walk, &args.world, &*platform)?;
     let steps = between::steps(&path, args.smooth.unwrap_or(0))?;
@@ -34,14 +34,14 @@ pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> 
         let problem = format!("that is {} pictures, more than {MOST_STEPS}", steps.len());
         return Err(Error::usage(problem, "ask for a shorter path, or a smaller --smooth"));
     }
-    let mut reel = place.open(fps, steps.len())?;
+    let mut film = place.open(fps, steps.len())?;
     let bar = output.progress(steps.len(), "looking");
     let (mut size, mut frames) = (None, 0);
     for step in &steps {
         if let Some(image) = look(&*platform, &path.scene, step)? {
             let size = *size.get_or_insert_with(|| size_of(&image, args.width));
             let picture = fitted(image, size)?;
-            reel.add(&picture)?;
+            film.add(&picture)?;
             frames += 1;
         }
         bar.inc(1);
@@ -58,7 +58,7 @@ pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> 
             steps.len()
         ));
     }
-    Ok(Written { scene: path.scene, files: reel.finish()?, width, height, frames })
+    Ok(Written { scene: path.scene, files: film.finish()?, width, height, frames })
 }
 
 /// What is seen ahead; of a place between two frames there has to be a picture.

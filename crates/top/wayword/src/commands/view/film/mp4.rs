@@ -1,6 +1,6 @@
 //! H.264 in an MP4 file.
 
-use super::{super::unfinished::Unfinished, Reel};
+use super::{super::unfinished::Unfinished, FilmWriter};
 use crate::error::Error;
 use muxide::api::{Muxer, MuxerBuilder, MuxerError, VideoCodec};
 use openh264::{
@@ -18,7 +18,7 @@ const KEY_EVERY_S: f64 = 5.0;
 /// How coarse pictures are: the encoder's scale of 0 to 51.
 const COARSENESS: [u8; 2] = [18, 24];
 
-pub(super) fn open(out: &Path, fps: f64) -> Result<Box<dyn Reel>, Error> {
+pub(super) fn open(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Error> {
     let repeats = (LEAST_FPS / fps).ceil().max(1.0);
     let config = EncoderConfig::new()
         .max_frame_rate(FrameRate::from_hz((fps * repeats) as f32))
@@ -56,7 +56,7 @@ struct Mp4 {
     frames: usize,
 }
 
-impl Reel for Mp4 {
+impl FilmWriter for Mp4 {
     fn add(&mut self, picture: &Image) -> Result<(), Error> {
         let (rgb, [width, height]) = even(picture);
         if let Some(file) = self.file.take() {

@@ -1,6 +1,6 @@
 //! Numbered PNG files in a folder.
 
-use super::{super::picture, super::unfinished::Unfinished, Reel};
+use super::{super::picture, super::unfinished::Unfinished, FilmWriter};
 use crate::error::Error;
 use std::{fs, path::PathBuf};
 use wayword_core::Image;
@@ -43,7 +43,7 @@ fn number_of(name: &str) -> Option<usize> {
     (name_of(number) == name).then_some(number)
 }
 
-impl Reel for Folder {
+impl FilmWriter for Folder {
     fn add(&mut self, picture: &Image) -> Result<(), Error> {
         if self.files.is_empty() {
             fs::create_dir_all(&self.folder).map_err(Error::io(&self.folder, "make the folder"))?;

@@ -1,6 +1,6 @@
 //! An animated GIF that starts anew when it is over.
 
-use super::{super::picture::unfit, super::unfinished::Unfinished, Reel};
+use super::{super::picture::unfit, super::unfinished::Unfinished, FilmWriter};
 use crate::error::Error;
 use image::{
     Delay, DynamicImage, Frame, RgbImage,
@@ -50,7 +50,7 @@ impl Gif {
     }
 }
 
-impl Reel for Gif {
+impl FilmWriter for Gif {
     fn add(&mut self, picture: &Image) -> Result<(), Error> {
         let pixels = RgbImage::from_raw(picture.width_px(), picture.height_px(), picture.rgb().to_vec());
         let pixels = DynamicImage::from(pixels.unwrap_or_default()).into_rgba8();

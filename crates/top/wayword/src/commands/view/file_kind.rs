@@ -9,7 +9,7 @@ use std::{
 
 /// A kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FileKind {
     Png,
     Jpeg,
     Svg,
@@ -20,7 +20,7 @@ pub(super) enum Kind {
 /// How an SVG begins that was written here.
 pub(super) const SVG_START: &str = "<svg ";
 
-impl Kind {
+impl FileKind {
     const ALL: [Self; 5] = [Self::Png, Self::Jpeg, Self::Svg, Self::Gif, Self::Mp4];
 
     fn endings(self) -> &'static [&'static str] {

@@ -5,13 +5,13 @@ mod gif;
 #[cfg(feature = "video")]
 mod mp4;
 
-use super::kind::{Kind, check_foreign};
+use super::file_kind::{FileKind, check_foreign};
 use crate::error::Error;
 use std::path::{Path, PathBuf};
 use wayword_core::Image;
 
 /// Takes pictures of one size.
-pub(super) trait Reel {
+pub(super) trait FilmWriter {
     /// The next one.
     ///
     /// # Errors
@@ -27,14 +27,14 @@ pub(super) trait Reel {
 
 /// Where pictures go.
 #[derive(Debug)]
-pub(super) enum Place {
+pub(super) enum FilmPlace {
     Folder(PathBuf),
     Gif(PathBuf),
     #[cfg(feature = "video")]
     Mp4(PathBuf),
 }
 
-impl Place {
+impl FilmPlace {
     /// What `out` asks for: a folder where it has no ending or is one, else a file by its ending.
     ///
     /// # Errors
@@ -45,13 +45,13 @@ impl Place {
             check_foreign(out, data)?;
             return Ok(Self::Folder(out.to_owned()));
         }
-        let kind = Kind::of(out).filter(|kind| matches!(kind, Kind::Gif | Kind::Mp4)).ok_or_else(|| {
+        let kind = FileKind::of(out).filter(|kind| matches!(kind, FileKind::Gif | FileKind::Mp4)).ok_or_else(|| {
             let problem = format!("--out {}: its ending does not say what to write", out.display());
             Error::usage(problem, "end it in .gif or .mp4, or in / for a folder of numbered PNG files")
         })?;
         kind.check_free(out, data)?;
         match kind {
-            Kind::Gif => Ok(Self::Gif(out.to_owned())),
+            FileKind::Gif => Ok(Self::Gif(out.to_owned())),
             #[cfg(feature = "video")]
             _ => Ok(Self::Mp4(out.to_owned())),
             #[cfg(not(feature = "video"))]
@@ -66,7 +66,7 @@ impl Place {
     ///
     /// # Errors
     /// When the place cannot be written.
-    pub(super) fn open(self, fps: f64, most: usize) -> Result<Box<dyn Reel>, Error> {
+    pub(super) fn open(self, fps: f64, most: usize) -> Result<Box<dyn FilmWriter>, Error> {
         Ok(match self {
             Self::Folder(folder) => Box::new(folder::Folder::new(folder, most)?),
             Self::Gif(file) => Box::new(gif::Gif::new(&file, fps)?),

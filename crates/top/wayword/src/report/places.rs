@@ -1,0 +1,34 @@
+//! Places that several parts of an item's page name: anchors of items and frames, and sides of the walker in words.
+
+use wayword_core::Side;
+
+/// Where links of an item lead.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Places<'a> {
+    /// The item's anchor.
+    pub(super) item: &'a str,
+    /// How many frames its path has.
+    pub(super) frames: usize,
+    /// How many of them the page shows.
+    pub(super) shown: usize,
+}
+
+/// The anchor of an item's heading; numbered and not named, for names come from anywhere.
+pub(super) fn anchor(number: usize) -> String {
+    format!("w{number}")
+}
+
+/// The anchor of a frame (from 0) of an item.
+pub(super) fn frame_anchor(item: &str, frame: usize) -> String {
+    format!("{item}-f{}", frame + 1)
+}
+
+/// Where that is for the walker.
+pub(super) fn side_words(side: Side) -> &'static str {
+    match side {
+        Side::Ahead => "ahead",
+        Side::Right => "on the right",
+        Side::Behind => "behind",
+        Side::Left => "on the left",
+    }
+}
