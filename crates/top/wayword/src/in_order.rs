@@ -10,6 +10,11 @@ use std::{
 /// hold up the rest, few enough that finished ones do not pile up.
 const AHEAD: usize = 4;
 
+/// Items that are made at a time where no model is waited for.
+pub(crate) fn cores() -> usize {
+    thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
 /// Calls what it holds when it is dropped, in a panic too.
 struct AtTheEnd<'a>(&'a dyn Fn());
 

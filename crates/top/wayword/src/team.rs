@@ -6,7 +6,7 @@ use crate::{
     settings::{Finish, Settings, is_model},
     text_file,
 };
-use std::{fs, path::Path, sync::Arc, thread};
+use std::{fs, path::Path, sync::Arc};
 use wayword_core::{Answerer, LanguageModel};
 use wayword_synthesis::{
     dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
@@ -96,12 +96,6 @@ impl Team {
         let finisher = self.finisher.as_ref().map(|finisher| finisher as &dyn Writer);
         Writers { writer: self.writer.as_ref(), finisher }
     }
-}
-
-/// Items that are made at a time where no model is waited for.
-#[must_use]
-pub fn cores() -> usize {
-    thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
 /// The prompts, with those of the user's folder in their stead.

@@ -10,9 +10,9 @@ mod spent;
 
 use crate::{
     error::Error,
+    in_order::cores,
     output::Output,
     settings::{Job, is_in_process},
-    team::cores,
 };
 use configured::{concurrency, config};
 use local::Local;

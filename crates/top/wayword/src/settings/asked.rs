@@ -27,8 +27,8 @@ macro_rules! top_groups {
     ($($name:ident: $(#[$of:meta])* pub struct $Group:ident { $($(#[$how:meta])* pub $key:ident: Option<$Type:ty>,)* })*) => {
         $(group! { $(#[$of])* pub struct $Group { $($(#[$how])* pub $key: Option<$Type>,)* } })*
 
-        /// The settings file as it is written. `serde` can take several groups from one table itself, but then an error no
-        /// longer tells its line.
+        /// The settings file as it is written. `#[serde(flatten)]` in [`Asked`] would do the same, but errors would no longer
+        /// tell their line.
         #[derive(Default, Deserialize)]
         #[serde(deny_unknown_fields, default)]
         struct File {

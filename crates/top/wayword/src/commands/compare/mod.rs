@@ -15,12 +15,11 @@ use crate::{
     commands::config,
     demands::Demands,
     error::{Error, Exit},
-    in_order::in_order,
+    in_order::{cores, in_order},
     output::Output,
     plan::Models,
     run::{self, Journal},
     settings::RULES,
-    team::cores,
 };
 use agents::Agent;
 use grounders::Grounders;

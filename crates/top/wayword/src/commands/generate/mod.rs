@@ -8,14 +8,14 @@ use crate::{
     cli::Generate,
     commands::config,
     error::{Error, Exit},
-    in_order::in_order,
+    in_order::{cores, in_order},
     item::Item,
     output::Output,
     pipeline::make,
     plan::Plan,
     run::RunFolder,
     settings::Job,
-    team::{Team, cores},
+    team::Team,
     world,
 };
 use keep::{Fate, keep};

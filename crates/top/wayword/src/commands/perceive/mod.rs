@@ -8,12 +8,12 @@ use crate::{
     cli::Perceive,
     commands::config,
     error::{Error, Exit},
-    in_order::in_order,
+    in_order::{cores, in_order},
     output::Output,
     plan::Plan,
     run::fresh_id,
     settings::{Job, Perception, Settings},
-    team::{Team, cores},
+    team::Team,
     world,
 };
 use serde::Serialize;
