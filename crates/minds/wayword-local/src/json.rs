@@ -26,7 +26,10 @@ pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> R
         return Err(wrong(format!("{} bytes are too many for it", about.len())));
     }
     let text = std::fs::read_to_string(&file).map_err(|error| LocalError::io(&file, "read", error))?;
-    serde_json::from_str(&text).map(Some).map_err(|error| wrong(error.to_string()))
+    let mut parser = serde_json::Deserializer::from_str(&text);
+    let read = serde_path_to_error::deserialize(&mut parser).map_err(|error| wrong(error.to_string()))?;
+    parser.end().map_err(|error| wrong(error.to_string()))?;
+    Ok(Some(read))
 }
 
 /// Sizes that no model has would overflow what is reckoned with them.
@@ -36,4 +39,37 @@ const LARGEST_SIZE: usize = 1 << 20;
 pub(crate) fn size_problem(sizes: &[(&str, usize)]) -> Option<String> {
     let (name, size) = sizes.iter().find(|(_, size)| !(1..=LARGEST_SIZE).contains(size))?;
     Some(format!("{name}: {size} is not from 1 to {LARGEST_SIZE}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Debug, Deserialize)]
+    struct Outer {
+        #[allow(dead_code, reason = "only read")]
+        layers: Vec<Inner>,
+    }
+
+    #[derive(Debug, Deserialize)]
+    struct Inner {
+        #[allow(dead_code, reason = "only read")]
+        width: usize,
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_field_and_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |text: &str| {
+            std::fs::write(folder.path().join("config.json"), text).unwrap();
+            read::<Outer>(folder.path(), "config.json", "a model").unwrap_err().to_string()
+        };
+        let wrong = told("{\"layers\": [{\"width\": 1},\n{\"width\": \"two\"}]}");
+        assert!(
+            wrong.contains("config.json") && wrong.contains("layers[1].width") && wrong.contains("line 2"),
+            "{wrong}"
+        );
+        assert!(told("{\"layers\": []} and more").contains("trailing characters"));
+    }
 }

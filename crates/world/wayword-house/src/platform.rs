@@ -6,8 +6,8 @@ use super::{
 };
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View, ViewpointGraph,
-    ViewpointId,
+    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
+    ViewpointGraph, ViewpointId,
 };
 
 /// Houses that are kept ready at a time; each takes about 15 MB.

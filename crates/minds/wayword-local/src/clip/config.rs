@@ -120,5 +120,5 @@ impl LayersConfig {
 fn overlaid<T: DeserializeOwned>(part: &str, given: Option<Map<String, Value>>, defaults: Value) -> Result<T, String> {
     let Value::Object(mut all) = defaults else { return Err(format!("{part}: there are no defaults")) };
     all.extend(given.into_iter().flatten().filter(|(_, value)| !value.is_null()));
-    serde_json::from_value(Value::Object(all)).map_err(|error| format!("{part}: {error}"))
+    serde_path_to_error::deserialize(Value::Object(all)).map_err(|error| format!("{part}: {error}"))
 }

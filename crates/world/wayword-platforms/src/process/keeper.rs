@@ -67,7 +67,9 @@ impl Keeper {
 
     /// Asks for what can be read from the answer alone.
     pub(crate) fn ask<T: DeserializeOwned>(&self, method: &'static str, params: &Value) -> Result<T, PlatformError> {
-        self.ask_and_take(method, params, |result, _| serde_json::from_value(result).map_err(|error| error.to_string()))
+        self.ask_and_take(method, params, |result, _| {
+            serde_path_to_error::deserialize(result).map_err(|error| error.to_string())
+        })
     }
 
     /// Asks, and takes from the answer what is needed, before anybody else can ask: the child may put its next picture in
@@ -146,7 +148,7 @@ impl ChildState {
             return Err(Fault::Version(version));
         }
         let greeting: Greeting =
-            serde_json::from_value(greeting).map_err(|error| Fault::Greeting(error.to_string()))?;
+            serde_path_to_error::deserialize(greeting).map_err(|error| Fault::Greeting(error.to_string()))?;
         if greeting.protocol != PROTOCOL {
             return Err(Fault::Version(greeting.protocol));
         }

@@ -116,7 +116,7 @@ impl ProcessPlatform {
         }
         let (seen, file) =
             self.keeper.ask_and_take("observe", &self.look_request(scene, from, gaze, picture), |result, folder| {
-                let mut seen: Observed = serde_json::from_value(result).map_err(|error| error.to_string())?;
+                let mut seen: Observed = serde_path_to_error::deserialize(result).map_err(|error| error.to_string())?;
                 let file = seen.image.take().filter(|_| picture).map(|sent| sent.bytes(folder)).transpose()?;
                 Ok((seen, file))
             })?;
