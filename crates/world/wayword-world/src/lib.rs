@@ -1,7 +1,8 @@
 //! What all platforms share.
 //!
 //! [`files`] reads other people's files with a bound. [`said`] reads what a child or a socket says, likewise. [`wander`] walks at
-//! random over open ground, [`graph_walk`] along a viewpoint graph, and [`episode_path`] turns an episode of a dataset into a path.
+//! random over open ground, [`graph_walk`] along a viewpoint graph; [`grid_search`] finds shortest ways over a grid, and
+//! [`episode_path`] turns an episode of a dataset into a path.
 //! [`object_names`] and [`region`] put into plain words what Matterport3D's annotators wrote, which other scenes carry too.
 //!
 //! Architecture invariant: nothing here knows one platform.
@@ -9,6 +10,7 @@
 pub mod episode_path;
 pub mod files;
 pub mod graph_walk;
+pub mod grid_search;
 pub mod object_names;
 pub mod region;
 pub mod said;

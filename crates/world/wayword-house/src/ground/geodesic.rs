@@ -1,8 +1,8 @@
 //! Shortest ways: A* over the cells, then pulled taut.
 
 use super::{CELL_CM, Cell, Ground, NoWay};
-use std::{cmp::Reverse, collections::BinaryHeap};
 use wayword_core::DVec3;
+use wayword_world::grid_search::{STEPS, around, at_least, shortest, taut};
 
 /// A shortest way over the ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,12 +15,6 @@ pub struct Way {
     pub length_m: f64,
 }
 
-const STEPS: [(i32, i32); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
-
-/// Lengths in thousandths of a cell, so that sums are exact and the same everywhere.
-const STRAIGHT: u32 = 1000;
-const DIAGONAL: u32 = 1414;
-
 impl Ground {
     /// The shortest way between two places of the floor (metres, each within a cell of walkable ground).
     ///
@@ -32,7 +26,7 @@ impl Ground {
         let start = self.cell_at(from).ok_or(NoWay::NotWalkable(from))?;
         let goal = self.cell_at(to).ok_or(NoWay::NotWalkable(to))?;
         let cells = self.over_cells(start, goal).ok_or(NoWay::NotJoined(from, to))?;
-        let mut corners = self.shortened(&cells);
+        let mut corners = taut(&cells, |a, b| self.is_straight(a, b));
         self.pull(&mut corners);
         Ok(self.way(&corners))
     }
@@ -40,55 +34,22 @@ impl Ground {
     fn over_cells(&self, start: Cell, goal: Cell) -> Option<Vec<Cell>> {
         let size = self.grid.len();
         let number = |cell: Cell| cell.layer * size + cell.index;
-        let mut best = vec![u32::MAX; size * self.grid.layers()];
-        let mut before = vec![u32::MAX; best.len()];
+        let cell = |number: usize| Cell { layer: number / size, index: number % size };
         let (gx, gy) = self.grid.centre_m(goal.index);
-        let left = |index: usize| {
-            let (x, y) = self.grid.centre_m(index);
-            let cells = |d: f64| (d.abs() * 100.0 / f64::from(CELL_CM)) as u32;
-            let (dx, dy) = (cells(x - gx), cells(y - gy));
-            STRAIGHT * dx.max(dy) + (DIAGONAL - STRAIGHT) * dx.min(dy)
+        let left = |at: usize| {
+            let (x, y) = self.grid.centre_m(cell(at).index);
+            let cells = |d: f64| (d.abs() * 100.0 / f64::from(CELL_CM)) as u64;
+            at_least(cells(x - gx), cells(y - gy))
         };
-        let mut open = BinaryHeap::from([Reverse((left(start.index), number(start) as u32))]);
-        best[number(start)] = 0;
-        while let Some(Reverse((estimate, at))) = open.pop() {
-            let cell = Cell { layer: at as usize / size, index: at as usize % size };
-            let cost = best[at as usize];
-            if cell == goal {
-                return Some(self.traced(&before, at, size));
-            }
-            if estimate > cost + left(cell.index) {
-                continue;
-            }
-            for (next, step) in self.neighbours(cell) {
-                let to = number(next);
-                if cost + step < best[to] {
-                    best[to] = cost + step;
-                    before[to] = at;
-                    open.push(Reverse((cost + step + left(next.index), to as u32)));
-                }
-            }
-        }
-        None
+        let steps = |at: usize| self.neighbours(cell(at)).map(|(next, step)| (number(next), step));
+        let way = shortest(size * self.grid.layers(), number(start), number(goal), left, steps)?;
+        Some(way.into_iter().map(cell).collect())
     }
 
-    fn traced(&self, before: &[u32], goal: u32, size: usize) -> Vec<Cell> {
-        let chain = std::iter::successors(Some(goal), |at| Some(before[*at as usize]).filter(|next| *next != u32::MAX));
-        let mut cells: Vec<_> = chain.map(|at| Cell { layer: at as usize / size, index: at as usize % size }).collect();
-        cells.reverse();
-        cells
-    }
-
-    pub(super) fn neighbours(&self, cell: Cell) -> impl Iterator<Item = (Cell, u32)> + '_ {
-        let free = move |step: (i32, i32)| {
+    pub(super) fn neighbours(&self, cell: Cell) -> impl Iterator<Item = (Cell, u64)> + '_ {
+        let walks = around(move |step| {
             let next = Cell { index: self.grid.offset(cell.index, step)?, ..cell };
             self.grid.is_free(next).then_some(next)
-        };
-        let walks = STEPS.into_iter().filter_map(move |step| {
-            let is_diagonal = step.0 != 0 && step.1 != 0;
-            // A corner is not cut: both cells beside a diagonal step must be free.
-            let clear = !is_diagonal || (free((step.0, 0)).is_some() && free((0, step.1)).is_some());
-            free(step).filter(|_| clear).map(|next| (next, if is_diagonal { DIAGONAL } else { STRAIGHT }))
         });
         let stairs = self.storeys as usize;
         let linked = self.grid.linked_floors(cell.index);
@@ -98,18 +59,6 @@ impl Ground {
                 || (*layer == stairs && cell.layer < stairs && joins(cell.layer))
         });
         walks.chain(layers.map(move |layer| (Cell { layer, ..cell }, 0)))
-    }
-
-    /// Leaves out every cell that a straight walk can skip.
-    fn shortened(&self, cells: &[Cell]) -> Vec<Cell> {
-        let mut kept = vec![cells[0]];
-        let mut at = 0;
-        while at + 1 < cells.len() {
-            let far = (at + 1..cells.len()).rev().find(|next| self.is_straight(cells[at], cells[*next]));
-            at = far.unwrap_or(at + 1);
-            kept.push(cells[at]);
-        }
-        kept
     }
 
     /// Moves corners, as far as the walk stays open, to where the way is shorter, until none helps.
@@ -134,7 +83,7 @@ impl Ground {
                     changed = true;
                 }
             }
-            *corners = self.shortened(corners);
+            *corners = taut(corners, |a, b| self.is_straight(a, b));
             if !changed {
                 return;
             }

@@ -1,0 +1,131 @@
+//! Shortest ways over the cells of a grid: A* over whole numbers, then every place left out that a straight walk can skip.
+//!
+//! What the cells are, how they are numbered and where one can stand is the caller's; so floors in layers are searched like flat
+//! ones, and the same grid gives the same way on every machine.
+
+use std::{cmp::Reverse, collections::BinaryHeap};
+
+/// From a cell to those around it, as columns and rows: straight steps, then diagonal ones.
+pub const STEPS: [(i32, i32); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+
+/// Lengths in thousandths of a cell, so that sums are exact.
+const STRAIGHT: u64 = 1000;
+const DIAGONAL: u64 = 1414;
+
+/// The cells around one, with the length of the step to each. `free` gives the cell so many columns and rows away, if one can
+/// stand there. No corner is cut: a diagonal step needs both cells beside it.
+pub fn around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item = (C, u64)> {
+    STEPS.into_iter().filter_map(move |(dx, dy)| {
+        if dx == 0 || dy == 0 {
+            return Some((free((dx, dy))?, STRAIGHT));
+        }
+        free((dx, 0)).and(free((0, dy)))?;
+        Some((free((dx, dy))?, DIAGONAL))
+    })
+}
+
+/// The length of a way over free ground between cells so many columns and rows apart: no way is shorter.
+#[must_use]
+pub fn at_least(columns: u64, rows: u64) -> u64 {
+    STRAIGHT * columns.max(rows) + (DIAGONAL - STRAIGHT) * columns.min(rows)
+}
+
+/// A shortest way between two of `count` cells, both among it; `None` where there is none. `left` says how far it is to the goal
+/// from a cell at least, and `steps` which cells can be reached from one. Of ways of one length always the same is found.
+pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
+    count: usize,
+    start: usize,
+    goal: usize,
+    left: impl Fn(usize) -> u64,
+    steps: impl Fn(usize) -> S,
+) -> Option<Vec<usize>> {
+    let mut best = vec![u64::MAX; count];
+    let mut before = vec![usize::MAX; count];
+    let mut open = BinaryHeap::from([Reverse((left(start), start))]);
+    best[start] = 0;
+    while let Some(Reverse((estimate, cell))) = open.pop() {
+        if cell == goal {
+            let back = |cell: &usize| Some(before[*cell]).filter(|before| *before != usize::MAX);
+            let mut way: Vec<usize> = std::iter::successors(Some(goal), back).collect();
+            way.reverse();
+            return Some(way);
+        }
+        let length = best[cell];
+        // A shorter way to it was found meanwhile.
+        if estimate > length + left(cell) {
+            continue;
+        }
+        for (next, step) in steps(cell) {
+            if length + step < best[next] {
+                (best[next], before[next]) = (length + step, cell);
+                open.push(Reverse((length + step + left(next), next)));
+            }
+        }
+    }
+    None
+}
+
+/// The places of a way without those that a straight walk can skip.
+pub fn taut<P: Copy>(places: &[P], is_straight: impl Fn(P, P) -> bool) -> Vec<P> {
+    let mut kept = Vec::from_iter(places.first().copied());
+    let mut at = 0;
+    while at + 1 < places.len() {
+        let far = (at + 1..places.len()).rev().find(|next| is_straight(places[at], places[*next]));
+        at = far.unwrap_or(at + 1);
+        kept.push(places[at]);
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A way over a drawing from `a` to `b`, and its length.
+    fn way(drawing: &[&str]) -> Option<(Vec<usize>, u64)> {
+        let columns = drawing[0].len();
+        let cells = drawing.concat().into_bytes();
+        let find = |name: u8| cells.iter().position(|cell| *cell == name).unwrap();
+        let (start, goal) = (find(b'a'), find(b'b'));
+        let place = |cell: usize| (cell % columns, cell / columns);
+        let steps = |cell: usize| {
+            let (column, row) = place(cell);
+            let free = |(dx, dy): (i32, i32)| {
+                let (column, row) = (column.checked_add_signed(dx as isize)?, row.checked_add_signed(dy as isize)?);
+                let next = row * columns + column;
+                (column < columns && *cells.get(next)? != b'#').then_some(next)
+            };
+            around(free).collect::<Vec<_>>()
+        };
+        let left = |cell: usize| {
+            let ((x, y), (gx, gy)) = (place(cell), place(goal));
+            at_least(x.abs_diff(gx) as u64, y.abs_diff(gy) as u64)
+        };
+        let found = shortest(cells.len(), start, goal, left, steps)?;
+        let length =
+            found.windows(2).map(|pair| steps(pair[0]).iter().find(|(next, _)| *next == pair[1]).unwrap().1).sum();
+        Some((found, length))
+    }
+
+    #[test]
+    fn the_shorter_way_round_is_taken_and_no_corner_cut() {
+        assert_eq!(way(&["a..b"]).unwrap(), (vec![0, 1, 2, 3], 3000));
+        assert_eq!(way(&["a..", "...", "..b"]).unwrap(), (vec![0, 4, 8], 2828));
+        assert_eq!(way(&["a#b", "...", "###"]).unwrap(), (vec![0, 3, 4, 5, 2], 4000));
+        assert_eq!(way(&["a#.", "#.b"]), None);
+        assert_eq!(way(&["a.#.b", "..#..", "..#..", "....."]).unwrap().1, 2 * 2414 + 2 * 2000);
+    }
+
+    #[test]
+    fn a_way_from_a_place_to_itself_is_that_place() {
+        assert_eq!(shortest(3, 1, 1, |_| 0, |_| []), Some(vec![1]));
+    }
+
+    #[test]
+    fn what_a_straight_walk_can_skip_is_left_out() {
+        let straight = |a: i32, b: i32| a / 10 == b / 10;
+        assert_eq!(taut(&[1, 3, 5, 11, 14, 21], straight), [1, 5, 11, 14, 21]);
+        assert_eq!(taut(&[7], straight), [7]);
+        assert!(taut(&[], straight).is_empty());
+    }
+}
