@@ -1,29 +1,29 @@
 //! Parquet files, as far as datasets of LeRobot need them: whole numbers, fractions and bytes, and lists of fractions.
 //!
-//! The crate `parquet` reads them, by its readers of columns. Its panics are contained. Files come from outside, and it believes some of
-//! what they announce. Version 60.1 was weighed, place by place:
+//! The crate `parquet` decodes them: levels, dictionaries, values, and what the footer says about columns. Its panics are contained.
+//! Files come from outside, and the crate believes some of what they announce. Version 60.1 was weighed, place by place:
 //!
 //! | announced | the crate | here |
 //! |---|---|---|
 //! | the footer's length | holds it against the file's | and at most 64 MiB (`footer`) |
 //! | a column's number of children in the schema | reserves memory for up to 2^31, and recurses as deep as they nest | the schema is built from the footer here, 16 deep, and handed to the crate, which then passes over the footer's (`footer`) |
-//! | lists in the footer | holds their lengths against the bytes that are left | |
+//! | lists in the footer | holds their lengths against the bytes that are left, but for those that it passes over | all are held against the bytes that are left (`thrift`) |
 //! | rows, and where columns lie | believes it | held against the file's length (`footer`) |
-//! | the length of a page | holds it against the column's, so the file's | |
+//! | lists in a page's header | passes over up to 2^31 elements behind the end of the file | the headers are read here (`pages`) |
 //! | the length of a page once it is unfolded | reserves up to 2 GiB; unfolds gzip without a bound | pages are unfolded here, to 8 MiB or 256 times their length (`pages`) |
 //! | entries of a dictionary | reserves memory for up to 2^31 | held against the dictionary's length (`pages`) |
 //! | values of a page | takes memory for those of the rows that are asked for; a row's list may go on over all pages | rows are asked for in steps, and their pages may not announce more than a file of this length holds (`pages`) |
 //! | lengths of texts that are encoded as differences | reserves memory for any number | such encodings are refused (`pages`) |
-//! | statistics of a page | passes over them by default | |
 //!
-//! So memory keeps to a multiple of the file's length. Time does not in one place: a list of truths in a field that the crate does
-//! not know costs it two seconds for nine bytes of a file that was made for this.
+//! So memory keeps to a multiple of the file's length. Time does not in one place: in a footer that was made for this, whose fields
+//! are of other kinds than the crate takes them for, a list of truths costs it two seconds for nine bytes.
 
 mod column;
 mod footer;
 mod pages;
+mod thrift;
 
-use column::Column;
+use column::{Cells, Column};
 use parquet::{
     basic::Type,
     file::metadata::ParquetMetaData,
@@ -31,6 +31,7 @@ use parquet::{
 };
 use std::{
     fs::File,
+    iter::Peekable,
     ops::Range,
     path::{Path, PathBuf},
 };
@@ -93,12 +94,13 @@ impl Table {
             let mut row = rows.start;
             while row < rows.end {
                 let cells = column.numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near(row, &reason))?;
-                if cells.is_empty() {
-                    return Err(format!("ends before row {row}"));
-                }
+                let before = row;
                 for (_, number) in cells {
                     take(row, number.ok_or_else(|| format!("row {row} holds no number"))?)?;
                     row += 1;
+                }
+                if row == before {
+                    return Err(format!("ends before row {row}"));
                 }
             }
             Ok(())
@@ -122,16 +124,12 @@ impl Table {
             let mut row = group.start;
             while row < rows.end {
                 let cells = column.numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near(row, &reason))?;
-                if cells.is_empty() {
+                let mut cells = cells.peekable();
+                if cells.peek().is_none() {
                     return Err(format!("ends before row {row}"));
                 }
-                // Whole rows are handed out, so each begins within the same cells.
-                for list in cells.chunk_by(|_, (begins_row, _)| !begins_row) {
-                    let list: Option<Vec<f64>> = list.iter().map(|(_, number)| *number).collect();
-                    let list = list.ok_or_else(|| format!("row {row} holds no number"))?;
-                    if list.len() != width {
-                        return Err(format!("row {row} is no list of {width} numbers"));
-                    }
+                while cells.peek().is_some() {
+                    let list = next_list(&mut cells, width).map_err(|reason| format!("row {row} {reason}"))?;
                     if rows.contains(&row) {
                         numbers.extend(kept.iter().filter_map(|at| list.get(*at)));
                     }
@@ -217,6 +215,17 @@ fn is_named(leaf: &ColumnDescriptor, name: &str) -> bool {
 
 fn is_number(leaf: &ColumnDescriptor) -> bool {
     matches!(leaf.physical_type(), Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE)
+}
+
+/// The list of the next row. Whole rows are handed out, so it ends within the same cells.
+fn next_list(cells: &mut Peekable<Cells<f64>>, width: usize) -> Result<Vec<f64>, String> {
+    let mut list = Vec::with_capacity(width);
+    let mut next = cells.next();
+    while let Some((_, number)) = next {
+        list.push(number.ok_or("holds no number")?);
+        next = cells.next_if(|(begins_row, _)| !begins_row && list.len() <= width);
+    }
+    if list.len() == width { Ok(list) } else { Err(format!("is no list of {width} numbers")) }
 }
 
 fn near(row: u64, reason: &str) -> String {

@@ -24,20 +24,18 @@ pub(super) struct Column {
 }
 
 /// Some rows of a column: whether each value begins a row, and the value, if there is one.
-pub(super) type Cells<T> = Vec<(bool, Option<T>)>;
+pub(super) type Cells<T> = Box<dyn Iterator<Item = (bool, Option<T>)>>;
 
 impl Column {
     /// Begins to read a column.
     ///
     /// # Errors
-    /// When the file cannot be read, or the column is stored in a way that is not read here.
+    /// When the file cannot be read.
     pub(super) fn new(file: File, group: &RowGroupMetaData, leaf: usize) -> Result<Self, String> {
         let chunk = group.column(leaf);
         let announced = Arc::<AtomicU64>::default();
-        let reader = decoded(|| {
-            let pages = Pages::new(file, chunk, announced.clone()).map_err(|error| error.to_string())?;
-            Ok(get_column_reader(chunk.column_descr_ptr(), Box::new(pages)))
-        })?;
+        let pages = Pages::new(file, chunk, announced.clone())?;
+        let reader = decoded(|| Ok(get_column_reader(chunk.column_descr_ptr(), Box::new(pages))))?;
         Ok(Self { reader, announced, max_definition: chunk.column_descr().max_def_level() })
     }
 
@@ -66,8 +64,8 @@ impl Column {
         let ColumnReader::ByteArrayColumnReader(reader) = &mut self.reader else {
             return Err("holds no bytes".to_owned());
         };
-        let cells = cells(reader, 1, self.max_definition, |value| value)?;
-        Ok(cells.into_iter().next().map(|(_, value)| value))
+        let mut cells = cells(reader, 1, self.max_definition, |value| value)?;
+        Ok(cells.next().map(|(_, value)| value))
     }
 
     /// Passes over some rows, of a column that does not repeat; pages of which nothing is wanted are not unfolded.
@@ -92,11 +90,11 @@ impl Column {
     }
 }
 
-fn cells<T: DataType, V>(
+fn cells<T: DataType, V: 'static>(
     reader: &mut ColumnReaderImpl<T>,
     rows: u64,
     max_definition: i16,
-    value: impl Fn(T::T) -> V,
+    value: impl Fn(T::T) -> V + 'static,
 ) -> Result<Cells<V>, String> {
     let rows = usize::try_from(rows).map_err(|error| error.to_string())?;
     let (mut definitions, mut repetitions, mut values) = (Vec::new(), Vec::new(), Vec::new());
@@ -106,9 +104,8 @@ fn cells<T: DataType, V>(
     })?;
     let count = if max_definition > 0 { definitions.len() } else { values.len() };
     let mut values = values.into_iter().map(value);
-    let cell = |at: usize| {
+    Ok(Box::new((0..count).map(move |at| {
         let there = definitions.get(at).is_none_or(|definition| *definition == max_definition);
         (repetitions.get(at).is_none_or(|repetition| *repetition == 0), if there { values.next() } else { None })
-    };
-    Ok((0..count).map(cell).collect())
+    })))
 }

@@ -4,7 +4,10 @@
 //! `parquet.thrift`). The crate reserves memory for as many children as are announced, and recurses as deeply as they are nested.
 //! So the tree is built here, and the crate is handed it.
 
-use super::pages;
+use super::{
+    pages,
+    thrift::{self, Thrift},
+};
 use parquet::{
     basic::{Repetition, Type as Physical},
     file::metadata::{ParquetMetaData, ParquetMetaDataOptions, ParquetMetaDataReader, ParquetStatisticsPolicy},
@@ -19,7 +22,8 @@ use wayword_core::contain::decoded;
 
 const MAGIC: &[u8; 4] = b"PAR1";
 const MAX_FOOTER_BYTES: u64 = 64 << 20;
-/// Deepest nesting of a column.
+/// Most columns of a file with the groups that they are in, and deepest nesting of one.
+const MAX_COLUMNS: u64 = 100_000;
 const MAX_NESTING: usize = 16;
 /// Most rows for each byte of a file. A dataset counts its rows in at least one column, which takes more than a bit for each; a
 /// file with more announces what it does not hold.
@@ -90,34 +94,38 @@ fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The root of a footer's schema.
+/// The root of a footer's schema. What comes after it is passed over, so that it is known to end.
 fn schema(footer: &[u8]) -> Result<Type, String> {
-    let mut thrift = Thrift { rest: footer };
-    let mut number = 0;
+    let mut thrift = Thrift::new(footer);
+    let (mut number, mut root) = (0, None);
     while let Some(kind) = thrift.field(&mut number)? {
-        if (number, kind) != (2, Thrift::LIST) {
-            thrift.pass(kind, 0)?;
+        if (number, kind) != (2, thrift::LIST) {
+            thrift.pass(kind)?;
             continue;
         }
-        let header = thrift.byte()?;
-        let elements = if header >> 4 == 15 { thrift.varint()? } else { u64::from(header >> 4) };
-        let mut tree = Tree { thrift, elements, names_bytes: 0 };
-        let root = tree.node(0, 0)?;
-        return if tree.elements == 0 { Ok(root) } else { Err("the schema has more columns than it says".to_owned()) };
+        let (elements, _) = thrift.list()?;
+        if elements > MAX_COLUMNS {
+            return Err(format!("has more than {MAX_COLUMNS} columns"));
+        }
+        let mut tree = Tree { thrift: &mut thrift, elements, names_bytes: 0 };
+        root = Some(tree.node(0, 0)?);
+        if tree.elements > 0 {
+            return Err("the schema has more columns than it says".to_owned());
+        }
     }
-    Err("has no schema".to_owned())
+    root.ok_or_else(|| "has no schema".to_owned())
 }
 
 /// A schema that is being read.
-struct Tree<'a> {
-    thrift: Thrift<'a>,
+struct Tree<'t, 'a> {
+    thrift: &'t mut Thrift<'a>,
     /// That are still to be read.
     elements: u64,
     /// Of all names from the root on, for every column: a descriptor keeps its own copy of them.
     names_bytes: u64,
 }
 
-impl Tree<'_> {
+impl Tree<'_, '_> {
     /// The next node with all that is below it. `depth` nodes are above it, whose names have `above_bytes`.
     fn node(&mut self, depth: usize, above_bytes: u64) -> Result<Type, String> {
         if depth > MAX_NESTING {
@@ -128,13 +136,13 @@ impl Tree<'_> {
         let mut number = 0;
         while let Some(kind) = self.thrift.field(&mut number)? {
             match (number, kind) {
-                (1, Thrift::I32) => physical = Some(physical_of(self.thrift.number()?)?),
-                (3, Thrift::I32) => repetition = repetition_of(self.thrift.number()?)?,
-                (4, Thrift::BYTES) => {
+                (1, thrift::I32) => physical = Some(physical_of(self.thrift.number()?)?),
+                (3, thrift::I32) => repetition = repetition_of(self.thrift.number()?)?,
+                (4, thrift::BYTES) => {
                     name = std::str::from_utf8(self.thrift.bytes()?).map_err(|_| "a column's name is no text")?;
                 }
-                (5, Thrift::I32) => children = self.thrift.number()?,
-                _ => self.thrift.pass(kind, 0)?,
+                (5, thrift::I32) => children = self.thrift.number()?,
+                _ => self.thrift.pass(kind)?,
             }
         }
         let names_bytes = above_bytes + name.len() as u64;
@@ -169,82 +177,4 @@ fn physical_of(number: i64) -> Result<Physical, String> {
     let kinds = [BOOLEAN, INT32, INT64, INT96, FLOAT, DOUBLE, BYTE_ARRAY, FIXED_LEN_BYTE_ARRAY];
     let kind = kinds.into_iter().find(|kind| *kind as i64 == number);
     kind.ok_or_else(|| format!("a column holds values of kind {number}"))
-}
-
-/// Thrift's compact protocol, as far as schemas use it. Nothing is kept of what is passed over.
-struct Thrift<'a> {
-    rest: &'a [u8],
-}
-
-impl<'a> Thrift<'a> {
-    const I32: u8 = 5;
-    const BYTES: u8 = 8;
-    const LIST: u8 = 9;
-
-    fn take(&mut self, count: u64) -> Result<&'a [u8], String> {
-        let taken = usize::try_from(count).ok().and_then(|count| self.rest.split_at_checked(count));
-        let (taken, rest) = taken.ok_or_else(|| format!("{count} bytes are to follow where {} do", self.rest.len()))?;
-        self.rest = rest;
-        Ok(taken)
-    }
-
-    fn byte(&mut self) -> Result<u8, String> {
-        Ok(self.take(1)?[0])
-    }
-
-    fn varint(&mut self) -> Result<u64, String> {
-        let mut value = 0_u64;
-        for shift in (0..64).step_by(7) {
-            let byte = self.byte()?;
-            value |= u64::from(byte & 0x7f) << shift;
-            if byte & 0x80 == 0 {
-                return Ok(value);
-            }
-        }
-        Err("a number has more than 64 bits".to_owned())
-    }
-
-    /// Zigzag: the sign is the lowest bit.
-    fn number(&mut self) -> Result<i64, String> {
-        let value = self.varint()?;
-        Ok((value >> 1) as i64 ^ -((value & 1) as i64))
-    }
-
-    fn bytes(&mut self) -> Result<&'a [u8], String> {
-        let length = self.varint()?;
-        self.take(length)
-    }
-
-    /// The kind of the next field of a struct, whose number follows on that of the last; `None` after the last.
-    fn field(&mut self, number: &mut i16) -> Result<Option<u8>, String> {
-        let header = self.byte()?;
-        if header & 0x0f == 0 {
-            return Ok(None);
-        }
-        *number = match header >> 4 {
-            0 => i16::try_from(self.number()?).map_err(|_| "a field has no number")?,
-            step => number.saturating_add(i16::from(step)),
-        };
-        Ok(Some(header & 0x0f))
-    }
-
-    /// Passes over a field's value.
-    fn pass(&mut self, kind: u8, depth: usize) -> Result<(), String> {
-        match kind {
-            // A truth is in the kind itself.
-            1 | 2 => Ok(()),
-            3 => self.byte().map(drop),
-            4..=6 => self.varint().map(drop),
-            7 => self.take(8).map(drop),
-            Self::BYTES => self.bytes().map(drop),
-            12 if depth < MAX_NESTING => {
-                let mut number = 0;
-                while let Some(kind) = self.field(&mut number)? {
-                    self.pass(kind, depth + 1)?;
-                }
-                Ok(())
-            }
-            other => Err(format!("values of kind {other} are not known before a schema or in one")),
-        }
-    }
 }

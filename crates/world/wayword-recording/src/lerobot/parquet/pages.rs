@@ -1,18 +1,20 @@
 //! The pages of a column, unfolded within a bound.
 //!
-//! The crate takes as much memory for a page as its header announces, up to 2 GiB, and unfolds gzip to any length. So it is told
-//! that pages are not compressed, and they are unfolded here before it decodes them. That also needs no Zstandard in C.
+//! The crate has a reader of pages as well. It takes as much memory as a page's header announces, up to 2 GiB, and unfolds gzip to any
+//! length; and five bytes of a broken header can keep it busy for minutes, where they announce a long list in a field that it passes
+//! over. So headers are read here, and pages are unfolded before the crate decodes them. That also needs no Zstandard in C.
 
+use super::thrift::{self, Thrift};
 use parquet::{
     basic::{CompressionCodec, Encoding},
     column::page::{Page, PageMetadata, PageReader},
     errors::ParquetError,
-    file::{metadata::ColumnChunkMetaData, serialized_reader::SerializedPageReader},
+    file::metadata::ColumnChunkMetaData,
 };
 use ruzstd::StreamingDecoder;
 use std::{
     fs::File,
-    io::Read,
+    io::{Read, Seek, SeekFrom},
     ops::Range,
     sync::{
         Arc,
@@ -20,6 +22,8 @@ use std::{
     },
 };
 
+/// How much is read for a page's header: first what is enough for nearly all, then what is enough for one with long statistics.
+const HEADER_BYTES: [u64; 2] = [1 << 9, 1 << 20];
 /// Pages may unfold to this much, bytes: writers close them at 1 MiB.
 const USUAL_BYTES: usize = 8 << 20;
 /// And larger ones to this many times of what they are compressed.
@@ -31,18 +35,82 @@ const MAX_VALUES_PER_BYTE: u64 = 64;
 
 /// Where a column lies in its file; `None` where that cannot be.
 pub(super) fn place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
-    let start = u64::try_from(dictionary_at(chunk).unwrap_or(chunk.data_page_offset())).ok()?;
+    let data = chunk.data_page_offset();
+    // Some writers say 0 where there is no dictionary.
+    let start = chunk.dictionary_page_offset().filter(|at| (1..data).contains(at)).unwrap_or(data);
+    let start = u64::try_from(start).ok()?;
     Some(start..start.checked_add(u64::try_from(chunk.compressed_size()).ok()?)?)
 }
 
-/// Some writers say 0 where there is no dictionary.
-fn dictionary_at(chunk: &ColumnChunkMetaData) -> Option<i64> {
-    chunk.dictionary_page_offset().filter(|at| (1..chunk.data_page_offset()).contains(at))
+/// What stands before a page.
+struct Header {
+    /// 0 and 3 are values, in the first and second version's layout; 2 is a dictionary.
+    kind: i64,
+    /// Of the page in the file, bytes.
+    stored: u64,
+    /// Fields of `parquet.thrift` from 1 on, for this kind.
+    numbers: [i64; 6],
+    folded: bool,
+}
+
+impl Header {
+    /// Reads a header; also returns its length.
+    fn read(bytes: &[u8]) -> Result<(Self, u64), String> {
+        let mut thrift = Thrift::new(bytes);
+        let mut header = Self { kind: -1, stored: 0, numbers: [-1; 6], folded: true };
+        let mut number = 0;
+        while let Some(kind) = thrift.field(&mut number)? {
+            match (number, kind) {
+                (1, thrift::I32) => header.kind = thrift.number()?,
+                (3, thrift::I32) => {
+                    header.stored = u64::try_from(thrift.number()?).map_err(|_| "a page has no length")?;
+                }
+                (5 | 7 | 8, thrift::STRUCT) => header.read_numbers(&mut thrift)?,
+                _ => thrift.pass(kind)?,
+            }
+        }
+        Ok((header, (bytes.len() - thrift.rest().len()) as u64))
+    }
+
+    fn read_numbers(&mut self, thrift: &mut Thrift<'_>) -> Result<(), String> {
+        let mut number = 0;
+        while let Some(kind) = thrift.field(&mut number)? {
+            match (number, kind) {
+                (1..=6, thrift::I32) => self.numbers[number as usize - 1] = thrift.number()?,
+                (7, thrift::TRUE | thrift::FALSE) => self.folded = kind == thrift::TRUE,
+                _ => thrift.pass(kind)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// A field of this kind's, a count or a length.
+    fn count(&self, field: usize) -> Result<u32, String> {
+        let number = self.numbers[field - 1];
+        u32::try_from(number).map_err(|_| format!("{number} is no number of anything in a page"))
+    }
+
+    /// How values are encoded. Texts may also be encoded as differences from the last, but the crate takes memory for any number of
+    /// these that a page announces.
+    fn encoding(&self, field: usize) -> Result<Encoding, String> {
+        match self.numbers[field - 1] {
+            0 => Ok(Encoding::PLAIN),
+            2 => Ok(Encoding::PLAIN_DICTIONARY),
+            5 => Ok(Encoding::DELTA_BINARY_PACKED),
+            8 => Ok(Encoding::RLE_DICTIONARY),
+            9 => Ok(Encoding::BYTE_STREAM_SPLIT),
+            other => Err(format!("values are encoded in way {other} of parquet.thrift, which is not read here")),
+        }
+    }
 }
 
 /// The pages of a column, in a group of rows.
 pub(super) struct Pages {
-    stored: SerializedPageReader<File>,
+    file: File,
+    /// What was not read of the column.
+    place: Range<u64>,
+    /// Of the page at which this begins, if it has been read.
+    header: Option<Header>,
     codec: CompressionCodec,
     /// Values of the pages that were read since this was last 0.
     announced: Arc<AtomicU64>,
@@ -50,58 +118,98 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// The pages of a column whose place lies within the file. What they announce is added to `announced`.
-    pub(super) fn new(
-        file: File,
-        chunk: &ColumnChunkMetaData,
-        announced: Arc<AtomicU64>,
-    ) -> Result<Self, ParquetError> {
-        let codec = chunk.compression_codec();
-        let max_announced = file.metadata()?.len().saturating_mul(MAX_VALUES_PER_BYTE).max(USUAL_VALUES);
-        let as_stored = chunk.clone().into_builder().set_compression_codec(CompressionCodec::UNCOMPRESSED);
-        let as_stored = as_stored.set_dictionary_page_offset(dictionary_at(chunk)).build()?;
-        let stored = SerializedPageReader::new(Arc::new(file), &as_stored, 0, None)?;
-        Ok(Self { stored, codec, announced, max_announced })
+    /// The pages of a column. What they announce is added to `announced`.
+    ///
+    /// # Errors
+    /// When the column has no place, or the file cannot be read.
+    pub(super) fn new(file: File, chunk: &ColumnChunkMetaData, announced: Arc<AtomicU64>) -> Result<Self, String> {
+        let place = place(chunk).ok_or("has no place")?;
+        let length = file.metadata().map_err(|error| error.to_string())?.len();
+        let max_announced = length.saturating_mul(MAX_VALUES_PER_BYTE).max(USUAL_VALUES);
+        Ok(Self { file, place, header: None, codec: chunk.compression_codec(), announced, max_announced })
     }
 
-    /// A page that was read, unfolded; what it announces is held against its length and the file's.
-    fn whole(&self, mut page: Page) -> Result<Page, String> {
-        let (buf, front) = match &mut page {
-            Page::DictionaryPage { buf, .. } | Page::DataPage { buf, .. } => (buf, Some(0)),
-            // Levels of the second version are not compressed.
-            Page::DataPageV2 { buf, rep_levels_byte_len, def_levels_byte_len, is_compressed, .. } => {
-                let levels = u64::from(*rep_levels_byte_len) + u64::from(*def_levels_byte_len);
-                let levels = usize::try_from(levels).ok().filter(|levels| *levels <= buf.len());
-                let levels = levels.ok_or("levels are longer than their page")?;
-                (buf, is_compressed.then_some(levels))
+    /// The next page's header, and past it; `None` after the last page.
+    fn next_header(&mut self) -> Result<Option<Header>, String> {
+        if let Some(header) = self.header.take() {
+            return Ok(Some(header));
+        }
+        while !self.place.is_empty() {
+            let wrong = |reason: String| format!("byte {}: no header of a page: {reason}", self.place.start);
+            let left = self.place.end - self.place.start;
+            let short = Header::read(&self.bytes(left.min(HEADER_BYTES[0]))?);
+            let read = short.or_else(|_| Header::read(&self.bytes(left.min(HEADER_BYTES[1]))?));
+            let (header, length) = read.map_err(wrong)?;
+            if header.stored > left - length {
+                return Err(wrong(format!("a page of {} bytes where {} are left", header.stored, left - length)));
             }
-        };
-        if let Some(front) = front.filter(|_| self.codec != CompressionCodec::UNCOMPRESSED) {
-            let (front, folded) = buf.split_at(front);
-            *buf = unfolded(self.codec, front, folded)?.into();
+            self.place.start += length;
+            // To the crate a page without values is the end. Pages of other kinds hold none.
+            if header.kind == 2 || (matches!(header.kind, 0 | 3) && header.numbers[0] != 0) {
+                return Ok(Some(header));
+            }
+            self.place.start += header.stored;
         }
-        self.check(&page)?;
-        Ok(page)
+        Ok(None)
     }
 
-    fn check(&self, page: &Page) -> Result<(), String> {
-        let (values, bytes) = (u64::from(page.num_values()), page.buffer().len());
-        if page.is_dictionary_page() {
+    /// Some bytes from where the column has been read to.
+    fn bytes(&self, count: u64) -> Result<Vec<u8>, String> {
+        let wrong = |error: std::io::Error| format!("byte {}: {error}", self.place.start);
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(self.place.start)).map_err(wrong)?;
+        let mut bytes = Vec::new();
+        file.take(count).read_to_end(&mut bytes).map_err(wrong)?;
+        if bytes.len() as u64 != count {
+            return Err(format!("byte {}: the file ends early", self.place.start));
+        }
+        Ok(bytes)
+    }
+
+    /// The page whose header has been read.
+    fn page(&mut self, header: &Header) -> Result<Page, String> {
+        let stored = self.bytes(header.stored)?;
+        self.place.start += header.stored;
+        let num_values = header.count(1)?;
+        if header.kind == 2 {
+            let buf = unfolded(self.codec, stored, 0)?;
             // An entry takes at least four bytes in all kinds of columns that are read here.
-            let fits = values <= bytes as u64 / 4;
-            return if fits { Ok(()) } else { Err(format!("a dictionary of {values} entries in {bytes} bytes")) };
+            if num_values as usize > buf.len() / 4 {
+                return Err(format!("a dictionary of {num_values} entries in {} bytes", buf.len()));
+            }
+            let encoding = header.encoding(2)?;
+            return Ok(Page::DictionaryPage { buf: buf.into(), num_values, encoding, is_sorted: false });
         }
-        // Those of texts that tell how a text differs from the last are not among them: they take memory for any number of texts.
-        match page.encoding() {
-            Encoding::PLAIN | Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY => {}
-            Encoding::DELTA_BINARY_PACKED | Encoding::BYTE_STREAM_SPLIT => {}
-            other => return Err(format!("values are encoded as {other}, which is not read here")),
-        }
+        let values = u64::from(num_values);
         let announced = self.announced.fetch_add(values, Relaxed).saturating_add(values);
         if announced > self.max_announced {
-            return Err(format!("its pages announce {announced} values for a few rows"));
+            return Err(format!("pages announce {announced} values for a few rows"));
         }
-        Ok(())
+        if header.kind == 0 {
+            return Ok(Page::DataPage {
+                buf: unfolded(self.codec, stored, 0)?.into(),
+                num_values,
+                encoding: header.encoding(2)?,
+                def_level_encoding: Encoding::RLE,
+                rep_level_encoding: Encoding::RLE,
+                statistics: None,
+            });
+        }
+        let (def_levels_byte_len, rep_levels_byte_len) = (header.count(5)?, header.count(6)?);
+        // Levels of the second version are not compressed.
+        let levels = usize::try_from(u64::from(def_levels_byte_len) + u64::from(rep_levels_byte_len));
+        let levels = levels.ok().filter(|levels| *levels <= stored.len()).ok_or("levels are longer than their page")?;
+        Ok(Page::DataPageV2 {
+            buf: if header.folded { unfolded(self.codec, stored, levels)? } else { stored }.into(),
+            num_values,
+            encoding: header.encoding(4)?,
+            num_nulls: header.count(2)?,
+            num_rows: header.count(3)?,
+            def_levels_byte_len,
+            rep_levels_byte_len,
+            is_compressed: false,
+            statistics: None,
+        })
     }
 }
 
@@ -115,30 +223,39 @@ impl Iterator for Pages {
 
 impl PageReader for Pages {
     fn get_next_page(&mut self) -> Result<Option<Page>, ParquetError> {
-        while let Some(page) = self.stored.get_next_page()? {
-            // To the crate a page without values is the end.
-            if page.is_dictionary_page() || page.num_values() > 0 {
-                return self.whole(page).map(Some).map_err(ParquetError::General);
-            }
-        }
-        Ok(None)
+        let header = self.next_header().map_err(ParquetError::General)?;
+        let start = self.place.start;
+        let page = header.map(|header| self.page(&header)).transpose();
+        page.map_err(|reason| ParquetError::General(format!("page at byte {start}: {reason}")))
     }
 
     fn peek_next_page(&mut self) -> Result<Option<PageMetadata>, ParquetError> {
-        let next = self.stored.peek_next_page()?;
-        // Rows are passed over in columns alone that do not repeat. There a page has as many rows as values, whatever it says.
-        Ok(next.map(|page| PageMetadata { num_rows: page.num_rows.and(page.num_levels), ..page }))
+        self.header = self.next_header().map_err(ParquetError::General)?;
+        let about = |header: &Header| {
+            let values = header.count(1)? as usize;
+            // Rows are passed over in columns alone that do not repeat. There a page has as many rows as values, whatever it says.
+            let num_rows = (header.kind == 3).then_some(values);
+            let num_levels = (header.kind != 2).then_some(values);
+            Ok(PageMetadata { num_rows, num_levels, is_dict: header.kind == 2 })
+        };
+        self.header.as_ref().map(about).transpose().map_err(ParquetError::General)
     }
 
     fn skip_next_page(&mut self) -> Result<(), ParquetError> {
-        self.stored.skip_next_page()
+        let header = self.next_header().map_err(ParquetError::General)?;
+        self.place.start += header.map_or(0, |header| header.stored);
+        Ok(())
     }
 }
 
-/// What was compressed, behind the bytes at the front of a page that were not.
-fn unfolded(codec: CompressionCodec, front: &[u8], folded: &[u8]) -> Result<Vec<u8>, String> {
+/// A page's bytes as they were before they were compressed; those at the front were not.
+fn unfolded(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Vec<u8>, String> {
+    if codec == CompressionCodec::UNCOMPRESSED {
+        return Ok(stored);
+    }
+    let (front, folded) = stored.split_at(front);
     let most = USUAL_BYTES.max(folded.len().saturating_mul(MAX_RATIO));
-    let too_long = || format!("a page of {} bytes unfolds to more than {most}", front.len() + folded.len());
+    let too_long = || format!("{} bytes unfold to more than {most}", folded.len());
     let filled = |from: &mut dyn Read| {
         let mut unfolded = front.to_vec();
         from.take(most as u64 + 1).read_to_end(&mut unfolded).map_err(|error| error.to_string())?;

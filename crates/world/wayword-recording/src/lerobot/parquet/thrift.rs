@@ -1,0 +1,116 @@
+//! Thrift's compact protocol, in which Parquet writes what it says about itself. Nothing is kept of what is passed over.
+
+/// Kinds of values.
+pub(super) const TRUE: u8 = 1;
+pub(super) const FALSE: u8 = 2;
+pub(super) const I32: u8 = 5;
+pub(super) const BYTES: u8 = 8;
+pub(super) const LIST: u8 = 9;
+pub(super) const STRUCT: u8 = 12;
+
+/// Deepest nesting: a footer's is 6 deep.
+const MAX_DEPTH: usize = 16;
+
+/// Bytes that are read one value after another.
+pub(super) struct Thrift<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Thrift<'a> {
+    pub(super) const fn new(bytes: &'a [u8]) -> Self {
+        Self { rest: bytes }
+    }
+
+    /// What has not been read.
+    pub(super) const fn rest(&self) -> &'a [u8] {
+        self.rest
+    }
+
+    fn take(&mut self, count: u64) -> Result<&'a [u8], String> {
+        let taken = usize::try_from(count).ok().and_then(|count| self.rest.split_at_checked(count));
+        let (taken, rest) = taken.ok_or_else(|| format!("{count} bytes are to follow where {} do", self.rest.len()))?;
+        self.rest = rest;
+        Ok(taken)
+    }
+
+    fn byte(&mut self) -> Result<u8, String> {
+        Ok(self.take(1)?[0])
+    }
+
+    fn varint(&mut self) -> Result<u64, String> {
+        let mut value = 0_u64;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                return Ok(value);
+            }
+        }
+        Err("a number has more than 64 bits".to_owned())
+    }
+
+    /// A whole number. Zigzag: the sign is the lowest bit.
+    pub(super) fn number(&mut self) -> Result<i64, String> {
+        let value = self.varint()?;
+        Ok((value >> 1) as i64 ^ -((value & 1) as i64))
+    }
+
+    /// Bytes or a text.
+    pub(super) fn bytes(&mut self) -> Result<&'a [u8], String> {
+        let length = self.varint()?;
+        self.take(length)
+    }
+
+    /// The beginning of a list: how many elements follow, and of which kind. Each takes at least a byte.
+    pub(super) fn list(&mut self) -> Result<(u64, u8), String> {
+        let header = self.byte()?;
+        let count = if header >> 4 == 15 { self.varint()? } else { u64::from(header >> 4) };
+        if count > self.rest.len() as u64 {
+            return Err(format!("{count} elements are to follow in {} bytes", self.rest.len()));
+        }
+        Ok((count, header & 0x0f))
+    }
+
+    /// The kind of the next field of a struct, whose number follows on that of the last; `None` after the last.
+    pub(super) fn field(&mut self, number: &mut i16) -> Result<Option<u8>, String> {
+        let header = self.byte()?;
+        if header & 0x0f == 0 {
+            return Ok(None);
+        }
+        *number = match header >> 4 {
+            0 => i16::try_from(self.number()?).map_err(|_| "a field has no number")?,
+            step => number.saturating_add(i16::from(step)),
+        };
+        Ok(Some(header & 0x0f))
+    }
+
+    /// Passes over a field's value.
+    pub(super) fn pass(&mut self, kind: u8) -> Result<(), String> {
+        self.pass_within(kind, 0)
+    }
+
+    fn pass_within(&mut self, kind: u8, depth: usize) -> Result<(), String> {
+        match kind {
+            // A truth is in the kind itself.
+            TRUE | FALSE => Ok(()),
+            3 => self.byte().map(drop),
+            4..=6 => self.varint().map(drop),
+            7 => self.take(8).map(drop),
+            BYTES => self.bytes().map(drop),
+            LIST | 10 if depth < MAX_DEPTH => {
+                let (count, kind) = self.list()?;
+                // In a list a truth is a byte.
+                let kind = if matches!(kind, TRUE | FALSE) { 3 } else { kind };
+                (0..count).try_for_each(|_| self.pass_within(kind, depth + 1))
+            }
+            STRUCT if depth < MAX_DEPTH => {
+                let mut number = 0;
+                while let Some(kind) = self.field(&mut number)? {
+                    self.pass_within(kind, depth + 1)?;
+                }
+                Ok(())
+            }
+            other => Err(format!("a value of kind {other}, which is not known there")),
+        }
+    }
+}
