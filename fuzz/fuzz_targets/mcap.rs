@@ -1,7 +1,7 @@
 //! MCAP files of ROS 2: records, chunks, messages, poses, pictures.
 //!
-//! The readers (`mcap`, `lz4_flex`, `ruzstd`, `image`) are others' code; panics are contained. Memory: a message with a picture may have
-//! 257 MiB where the file, or a chunk unpacked, holds as much; a picture may take 256 MiB while it is decoded.
+//! The readers (`mcap`, with LZ4 and Zstandard in C, and `image`) are others' code; panics are contained. Memory: a record of a chunk may
+//! have 256 MiB, and 1000 times what the chunk has, while it is unpacked; a picture may take 256 MiB while it is decoded.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -98,7 +98,7 @@ fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
 
 #[cfg(feature = "mcap")]
 fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Ok(Box::new(crate::mcap::File::open(path, description_beside(path)?)?))
+    Ok(Box::new(crate::mcap::McapFile::open(path, description_beside(path)?)?))
 }
 
 #[cfg(not(feature = "mcap"))]

@@ -4,26 +4,22 @@
 //! through once, up to where it breaks.
 
 use super::{
-    messages::Kind,
-    records::{CHANNEL, CHUNK, DATA_END, Found, MESSAGE, Records, SCHEMA},
-    shape::{fits, summary_fits},
+    found::{Found, RecordPlace},
+    messages::MessageKind,
+    records::Records,
 };
 use mcap::{
-    Summary,
-    records::Record,
-    sans_io::summary_reader::{SummaryReadEvent, SummaryReader, SummaryReaderOptions},
+    MAGIC,
+    records::{Channel, ChunkIndex, Record, Statistics, op},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::File,
-    io::{Read, Seek},
+    ops::ControlFlow,
 };
-use wayword_core::contained;
 
-/// Every MCAP file begins with it.
-pub(crate) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
-/// No schema and no list of a chunk's messages is longer.
-const MAX_RECORD_BYTES: usize = 64 << 20;
+/// Bytes of a footer, of what stands before it, and of the file's last bytes.
+const FOOTER_BYTES: u64 = 20 + 9 + MAGIC.len() as u64;
 
 /// What a file holds.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -31,8 +27,8 @@ pub(crate) struct Contents {
     /// By name.
     pub(crate) topics: BTreeMap<String, Topic>,
     /// Where messages are, in the order of the file.
-    pub(crate) stretches: Vec<Stretch>,
-    /// Where and how the file ends before its end; then the last stretch may.
+    stretches: Vec<Stretch>,
+    /// Where and how the file ends before its end; then its stretch may.
     pub(crate) broken: Option<String>,
 }
 
@@ -40,221 +36,208 @@ pub(crate) struct Contents {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Topic {
     /// `None` where it is not read here.
-    pub(crate) kind: Option<Kind>,
+    pub(crate) kind: Option<MessageKind>,
     /// The name of its messages' type.
     pub(crate) schema: String,
     /// How its messages are written: `cdr`, `ros1`, `protobuf`, `json`.
     pub(crate) encoding: String,
-    pub(crate) channels: BTreeSet<u16>,
+    channels: BTreeSet<u16>,
 }
 
 /// A part of a file in which messages follow each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Stretch {
-    /// Outside of chunks.
-    Bare { from: u64, to: u64 },
-    /// In a chunk.
-    Chunk {
-        at: u64,
-        /// Whose messages are in it, where that is known.
-        channels: Option<BTreeSet<u16>>,
-    },
+struct Stretch {
+    from: u64,
+    to: u64,
+    /// Whether a chunk has to be here, and whose messages are in it, where that is known.
+    chunk: Option<BTreeSet<u16>>,
 }
 
-impl Stretch {
-    pub(crate) fn open<'a>(&self, file: &'a File) -> Result<Records<'a>, String> {
-        match self {
-            Self::Bare { from, to } => Records::in_file(file, *from, *to),
-            Self::Chunk { at, .. } => Records::in_chunk(file, *at),
-        }
-    }
+/// Channels, with their topics.
+pub(crate) type Channels<'a> = BTreeMap<u16, (&'a str, MessageKind)>;
 
-    pub(crate) fn may_hold(&self, channel: u16) -> bool {
-        !matches!(self, Self::Chunk { channels: Some(channels), .. } if !channels.contains(&channel))
-    }
+/// A message that was found.
+pub(crate) struct Message<'a> {
+    pub(crate) topic: &'a str,
+    pub(crate) kind: MessageKind,
+    pub(crate) logged_ns: i64,
+    pub(crate) place: RecordPlace,
+    /// Its bytes, or the first of them.
+    pub(crate) bytes: &'a [u8],
 }
 
 impl Contents {
     /// Finds out what a file holds.
     ///
     /// # Errors
-    /// When it is no MCAP file.
+    /// When it cannot be read at all.
     pub(crate) fn of(file: &File) -> Result<Self, String> {
         let length = file.metadata().map_err(|error| error.to_string())?.len();
         // A summary that is broken, or does not tell all, is no reason to give up.
-        let summary = contained(|| summary(file, length)).flatten();
-        Ok(summary.and_then(|summary| Self::told(&summary, length)).unwrap_or_else(|| Survey::of(file, length)))
+        Self::told(file, length).map_or_else(|| Self::walked(file, length), Ok)
     }
 
-    /// What a summary tells; `None` where it is not all.
-    fn told(summary: &Summary, length: u64) -> Option<Self> {
-        let counts = summary.stats.as_ref()?;
+    /// What a file's summary tells; `None` where that is not all.
+    fn told(file: &File, length: u64) -> Option<Self> {
+        let footer_at = length.checked_sub(FOOTER_BYTES)?;
+        let mut start = None;
+        let _ = Records::new(file, footer_at, length).ok()?.each(&|_| 0, &mut |found| {
+            if let Record::Footer(footer) = found.record()? {
+                start = Some(footer.summary_start).filter(|start| *start > 0);
+            }
+            Ok(ControlFlow::Break(()))
+        });
+        let mut listing = Listing::default();
+        listing.hear(&mut Records::new(file, start?, footer_at).ok()?).ok()?;
+        let Listing { schemas, channels, chunks, counts: Some(counts), .. } = &listing else { return None };
         let complete = counts.chunk_count > 0
-            && counts.chunk_count as usize == summary.chunk_indexes.len()
-            && counts.channel_count as usize == summary.channels.len();
-        let within = summary
-            .chunk_indexes
-            .iter()
-            .all(|chunk| chunk.chunk_start_offset.checked_add(chunk.chunk_length).is_some_and(|end| end <= length));
-        if !(complete && within) {
+            && counts.chunk_count as usize == chunks.len()
+            && counts.channel_count as usize == channels.len()
+            && channels.values().all(|channel| channel.schema_id == 0 || schemas.contains_key(&channel.schema_id));
+        let end = |chunk: &ChunkIndex| chunk.chunk_start_offset.checked_add(chunk.chunk_length);
+        if !complete || !chunks.iter().all(|chunk| end(chunk).is_some_and(|end| end <= length)) {
             return None;
         }
-        let mut contents = Self::default();
-        let channels: BTreeMap<_, _> = summary.channels.iter().collect();
-        for (id, channel) in channels {
-            let counts = &counts.channel_message_counts;
-            if counts.is_empty() || counts.get(id).is_some_and(|messages| *messages > 0) {
-                let schema = channel.schema.as_ref().map_or("", |schema| schema.name.as_str());
-                contents.add(*id, &channel.topic, schema, &channel.message_encoding);
-            }
-        }
-        contents.stretches = summary
-            .chunk_indexes
-            .iter()
-            .map(|chunk| {
-                let channels = chunk.message_index_offsets.keys().copied().collect();
-                // A recorder may leave out which messages are in a chunk.
-                let channels = (!chunk.message_index_offsets.is_empty()).then_some(channels);
-                Stretch::Chunk { at: chunk.chunk_start_offset, channels }
-            })
-            .collect();
-        contents.stretches.sort_by_key(|stretch| match stretch {
-            Stretch::Bare { from: at, .. } | Stretch::Chunk { at, .. } => *at,
-        });
-        Some(contents)
+        let counts = &counts.channel_message_counts;
+        let topics = listing.topics(|id| counts.is_empty() || counts.get(id).is_some_and(|messages| *messages > 0));
+        let stretch = |chunk: &ChunkIndex| {
+            let channels = chunk.message_index_offsets.keys().copied().collect();
+            Some(Stretch { from: chunk.chunk_start_offset, to: end(chunk)?, chunk: Some(channels) })
+        };
+        let mut stretches: Vec<Stretch> = chunks.iter().filter_map(stretch).collect();
+        stretches.sort_by_key(|stretch| stretch.from);
+        Some(Self { topics, stretches, broken: None })
     }
 
-    fn add(&mut self, id: u16, name: &str, schema: &str, encoding: &str) {
-        let kind = Kind::of(schema).filter(|_| encoding == "cdr");
-        let topic =
-            || Topic { kind, schema: schema.to_owned(), encoding: encoding.to_owned(), channels: BTreeSet::new() };
-        let topic = self.topics.entry(name.to_owned()).or_insert_with(topic);
-        // Several nodes may write to a topic, but not in several languages.
-        if topic.schema == schema && topic.encoding == encoding {
-            topic.channels.insert(id);
+    /// What going through a file tells.
+    fn walked(file: &File, length: u64) -> Result<Self, String> {
+        let from = MAGIC.len() as u64;
+        let mut listing = Listing::default();
+        let mut records = Records::new(file, from, length)?;
+        let broken = match listing.hear(&mut records) {
+            Ok(()) if records.reached() < length => None,
+            Ok(()) => Some(format!("byte {length}: the file has no end, as if its recorder had crashed")),
+            Err(why) => Some(why),
+        };
+        let stretches = vec![Stretch { from, to: records.reached(), chunk: None }];
+        Ok(Self { topics: listing.topics(|id| listing.spoken.contains(id)), stretches, broken })
+    }
+
+    /// The channels of some topics.
+    pub(crate) fn channels(&self, wanted: impl Fn(&str, MessageKind) -> bool) -> Channels<'_> {
+        let topics = self.topics.iter().filter_map(|(name, topic)| Some((name.as_str(), topic.kind?, &topic.channels)));
+        let wanted = topics.filter(|(name, kind, _)| wanted(name, *kind));
+        wanted.flat_map(|(name, kind, channels)| channels.iter().map(move |id| (*id, (name, kind)))).collect()
+    }
+
+    /// Hands out the messages of some channels in the order of the file, until somebody has enough. What is found wrong with one is
+    /// told with its place.
+    ///
+    /// # Errors
+    /// When the file is broken, and nobody knew, or `hear` fails.
+    pub(crate) fn messages(
+        &self,
+        file: &File,
+        wanted: &Channels<'_>,
+        hear: &mut dyn FnMut(Message<'_>) -> Result<ControlFlow<()>, String>,
+    ) -> Result<(), String> {
+        let most = |id| wanted.get(&id).map_or(0, |(_, kind)| kind.most_bytes());
+        let mut hear = |found: Found<'_>| {
+            if found.opcode == op::MESSAGE
+                && let Record::Message { header, data } = found.record()?
+                && let Some((topic, kind)) = wanted.get(&header.channel_id).copied()
+            {
+                let logged_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
+                let message = Message { topic, kind, logged_ns, place: found.place, bytes: &data };
+                return hear(message).map_err(|why| format!("message at {}: {why}", found.place));
+            }
+            Ok(ControlFlow::Continue(()))
+        };
+        // A recorder may leave out which messages are in a chunk.
+        let may_hold = |channels: &BTreeSet<u16>| channels.is_empty() || wanted.keys().any(|id| channels.contains(id));
+        for Stretch { from, to, chunk } in &self.stretches {
+            if !chunk.as_ref().is_none_or(may_hold) {
+                continue;
+            }
+            let mut records = Records::new(file, *from, *to)?;
+            if chunk.is_some() {
+                records.enter()?;
+            }
+            match records.each(&most, &mut hear) {
+                Ok(ControlFlow::Break(())) => break,
+                Ok(ControlFlow::Continue(())) => {}
+                Err(why) if self.broken.as_ref() == Some(&why) => {}
+                Err(why) => return Err(why),
+            }
         }
+        Ok(())
     }
 }
 
-/// The summary at the end of a file, if there is one that can be read.
-fn summary(mut file: &File, length: u64) -> Option<Summary> {
-    if !summary_fits(file, length, MAX_RECORD_BYTES as u64) {
-        return None;
-    }
-    let options = SummaryReaderOptions::default().with_file_size(length).with_record_length_limit(MAX_RECORD_BYTES);
-    let mut reader = SummaryReader::new_with_options(options);
-    while let Some(event) = reader.next_event() {
-        match event.ok()? {
-            SummaryReadEvent::ReadRequest(count) => {
-                let read = file.read(reader.insert(count)).ok()?;
-                reader.notify_read(read);
-            }
-            SummaryReadEvent::SeekRequest(to) => reader.notify_seeked(file.seek(to).ok()?),
-        }
-    }
-    reader.finish()
-}
-
-/// A file that is gone through.
+/// What records say about the messages of a file.
 #[derive(Default)]
-struct Survey {
+struct Listing {
+    /// Names, by id.
     schemas: BTreeMap<u16, String>,
-    /// Topic, schema, and how messages are written.
-    channels: BTreeMap<u16, (String, u16, String)>,
-    /// Those that have messages.
+    channels: BTreeMap<u16, Channel>,
+    /// Channels of which there are messages.
     spoken: BTreeSet<u16>,
-    stretches: Vec<Stretch>,
-    /// Whether there were any since the last chunk.
-    heard: bool,
+    chunks: Vec<ChunkIndex>,
+    counts: Option<Statistics>,
 }
 
-impl Survey {
-    fn of(file: &File, length: u64) -> Contents {
-        let mut survey = Self::default();
-        let broken = survey.walk(file, length).err();
-        let mut contents = Contents { stretches: survey.stretches, broken, ..Contents::default() };
-        for (id, (topic, schema, encoding)) in &survey.channels {
-            if survey.spoken.contains(id) {
-                let schema = survey.schemas.get(schema).map_or("", String::as_str);
-                contents.add(*id, topic, schema, encoding);
+impl Listing {
+    /// Takes in what records say.
+    fn hear(&mut self, records: &mut Records<'_>) -> Result<(), String> {
+        let mut take = |found: Found<'_>| {
+            match found.record()? {
+                Record::Schema { header, .. } => drop(self.schemas.insert(header.id, header.name)),
+                Record::Channel(channel) => {
+                    let channel = Channel { metadata: BTreeMap::new(), ..channel };
+                    self.channels.insert(channel.id, channel);
+                }
+                Record::Message { header, .. } => drop(self.spoken.insert(header.channel_id)),
+                Record::ChunkIndex(chunk) => self.chunks.push(chunk),
+                Record::Statistics(counts) => self.counts = Some(counts),
+                _ => {}
+            }
+            Ok(ControlFlow::Continue(()))
+        };
+        records.each(&|_| 0, &mut take).map(drop)
+    }
+
+    fn topics(&self, has_messages: impl Fn(&u16) -> bool) -> BTreeMap<String, Topic> {
+        let mut topics = BTreeMap::new();
+        for (id, channel) in self.channels.iter().filter(|(id, _)| has_messages(id)) {
+            let schema = self.schemas.get(&channel.schema_id).map_or("", String::as_str);
+            let encoding = channel.message_encoding.as_str();
+            let topic: &mut Topic = topics.entry(channel.topic.clone()).or_insert_with(|| Topic {
+                kind: MessageKind::of(schema).filter(|_| encoding == "cdr"),
+                schema: schema.to_owned(),
+                encoding: encoding.to_owned(),
+                channels: BTreeSet::new(),
+            });
+            // Several nodes may write to a topic, but not in several languages.
+            if topic.schema == schema && topic.encoding == encoding {
+                topic.channels.insert(*id);
             }
         }
-        contents
+        topics
     }
+}
 
-    fn walk(&mut self, file: &File, length: u64) -> Result<(), String> {
-        let begin = MAGIC.len() as u64;
-        let mut at = begin;
-        // Again behind each chunk: who reads in it has moved the file's cursor.
-        loop {
-            let mut records = Records::in_file(file, at, length)?;
-            let from = at;
-            let chunk = loop {
-                let Some(found) = records.next().inspect_err(|_| self.bare(from, at))? else {
-                    self.bare(from, length);
-                    return Err(format!("byte {length}: the file has no end, as if its recorder had crashed"));
-                };
-                at = from + found.at;
-                match found.opcode {
-                    DATA_END => {
-                        self.bare(from, at);
-                        return Ok(());
-                    }
-                    CHUNK => break at,
-                    _ => self.take(found, &mut records).inspect_err(|_| self.bare(from, at))?,
-                }
-                at = from + records.behind();
-            };
-            self.bare(from, chunk);
-            at = from + records.behind();
-            self.chunk(file, chunk)?;
-        }
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-    fn bare(&mut self, from: u64, to: u64) {
-        // Behind chunks there are lists of what is in them.
-        if std::mem::take(&mut self.heard) {
-            self.stretches.push(Stretch::Bare { from, to });
+    #[test]
+    fn the_summaries_of_other_programs_are_believed() {
+        for name in ["messages_zstd", "odometry_lz4", "odometry_zstd", "poses_zstd", "tree_chunks"] {
+            let path = format!("{}/fixtures/mcap/{name}.mcap", env!("CARGO_MANIFEST_DIR"));
+            let file = File::open(path).unwrap();
+            let length = file.metadata().unwrap().len();
+            assert!(Contents::told(&file, length).is_some(), "{name}");
+            assert!(Contents::told(&file, length - 1).is_none(), "{name} without its last byte");
         }
-    }
-
-    fn chunk(&mut self, file: &File, at: u64) -> Result<(), String> {
-        self.stretches.push(Stretch::Chunk { at, channels: None });
-        let mut records = Records::in_chunk(file, at)?;
-        while let Some(found) = records.next()? {
-            self.take(found, &mut records)?;
-        }
-        self.heard = false;
-        Ok(())
-    }
-
-    fn take(&mut self, found: Found, records: &mut Records<'_>) -> Result<(), String> {
-        match found.opcode {
-            MESSAGE => {
-                self.spoken.insert(records.message()?.channel);
-                self.heard = true;
-            }
-            SCHEMA | CHANNEL => {
-                let mut body = Vec::new();
-                records.body(MAX_RECORD_BYTES as u64, &mut body)?;
-                if !fits(found.opcode, &body) {
-                    return Err(format!("{}: a length in the record leads out of it", records.place(found.at)));
-                }
-                let parsed = contained(|| {
-                    mcap::parse_record(found.opcode, &body).map(Record::into_owned).map_err(|error| error.to_string())
-                });
-                let parsed = parsed.unwrap_or_else(|| Err("is broken".to_owned()));
-                match parsed.map_err(|why| format!("{}: {why}", records.place(found.at)))? {
-                    Record::Schema { header, .. } => drop(self.schemas.insert(header.id, header.name)),
-                    Record::Channel(channel) => {
-                        let told = (channel.topic, channel.schema_id, channel.message_encoding);
-                        self.channels.insert(channel.id, told);
-                    }
-                    _ => {}
-                }
-            }
-            _ => {}
-        }
-        Ok(())
     }
 }

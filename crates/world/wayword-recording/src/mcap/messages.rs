@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 
 /// What a topic's messages are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum MessageKind {
     /// `sensor_msgs/msg/Image`.
     Raw,
     /// `sensor_msgs/msg/CompressedImage`.
@@ -20,7 +20,7 @@ pub(crate) enum Kind {
     Transforms,
 }
 
-impl Kind {
+impl MessageKind {
     /// The kind of a schema's name; `None` where it is not read here.
     pub(crate) fn of(schema: &str) -> Option<Self> {
         // Some writers leave `msg` out, IDL has colons.
@@ -41,6 +41,12 @@ impl Kind {
 
     pub(crate) fn is_pose(self) -> bool {
         matches!(self, Self::Pose | Self::Odometry | Self::Transforms)
+    }
+
+    /// How much is read of a message while a file is gone through: all of a pose, and of a picture what tells its time, frame and
+    /// encoding.
+    pub(crate) fn most_bytes(self) -> u64 {
+        if self.is_pose() { 16 << 20 } else { 4 << 10 }
     }
 }
 
@@ -72,10 +78,10 @@ pub(crate) struct PictureHead {
 }
 
 impl PictureHead {
-    pub(crate) fn read(kind: Kind, message: &[u8]) -> Result<Self, String> {
+    pub(crate) fn read(kind: MessageKind, message: &[u8]) -> Result<Self, String> {
         let mut cdr = Cdr::new(message)?;
         let head = head(&mut cdr)?;
-        if kind == Kind::Raw {
+        if kind == MessageKind::Raw {
             let (_height_px, _width_px) = (cdr.u32()?, cdr.u32()?);
         }
         Ok(Self { head, encoding: cdr.text()? })
@@ -185,15 +191,15 @@ pub(crate) struct Placed {
 }
 
 /// What a message of poses holds; those that are no place are left out.
-pub(crate) fn placed(kind: Kind, message: &[u8]) -> Result<Vec<Placed>, String> {
+pub(crate) fn placed(kind: MessageKind, message: &[u8]) -> Result<Vec<Placed>, String> {
     /// A header of 12 bytes at least, a text of 4, and 7 numbers.
     const LEAST_BYTES: usize = 12 + 4 + 7 * 8;
     let mut cdr = Cdr::new(message)?;
-    let count = if kind == Kind::Transforms { cdr.count(LEAST_BYTES)? } else { 1 };
+    let count = if kind == MessageKind::Transforms { cdr.count(LEAST_BYTES)? } else { 1 };
     let mut all = Vec::with_capacity(count);
     for _ in 0..count {
         let head = head(&mut cdr)?;
-        let what = if kind == Kind::Pose { None } else { Some(frame(&mut cdr)?) };
+        let what = if kind == MessageKind::Pose { None } else { Some(frame(&mut cdr)?) };
         let (position, rotation) = (cdr.f64s()?, cdr.f64s()?);
         all.extend(Placing::new(position, rotation).map(|placing| Placed { head, what, placing }));
     }
@@ -206,10 +212,10 @@ mod tests {
 
     #[test]
     fn schemas_are_known_by_each_of_their_names() {
-        assert_eq!(Kind::of("sensor_msgs/msg/CompressedImage"), Some(Kind::Compressed));
-        assert_eq!(Kind::of("sensor_msgs/Image"), Some(Kind::Raw));
-        assert_eq!(Kind::of("nav_msgs::msg::Odometry"), Some(Kind::Odometry));
-        assert_eq!(Kind::of("foxglove.CompressedImage"), None);
+        assert_eq!(MessageKind::of("sensor_msgs/msg/CompressedImage"), Some(MessageKind::Compressed));
+        assert_eq!(MessageKind::of("sensor_msgs/Image"), Some(MessageKind::Raw));
+        assert_eq!(MessageKind::of("nav_msgs::msg::Odometry"), Some(MessageKind::Odometry));
+        assert_eq!(MessageKind::of("foxglove.CompressedImage"), None);
     }
 
     #[test]

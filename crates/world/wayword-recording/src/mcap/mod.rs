@@ -4,13 +4,12 @@
 
 mod cdr;
 mod contents;
-mod gather;
+mod found;
 mod messages;
 mod pixels;
 mod poses;
 mod records;
 mod reel;
-mod shape;
 #[cfg(test)]
 mod tests;
 mod topics;
@@ -23,14 +22,16 @@ use crate::{
     reel::{Recording, Source},
     track::{Fix, Track},
 };
-use contents::{Contents, MAGIC};
-use gather::{Message, Place};
+use ::mcap::MAGIC;
+use contents::{Contents, Message};
+use found::RecordPlace;
 use glam::DVec3 as Vector;
-use messages::{Kind, Lens, PictureHead, Placing};
+use messages::{Lens, MessageKind, PictureHead, Placing};
 use poses::{Poses, Way};
 use reel::Pictures;
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
+    fs::File,
     io::Read,
     ops::ControlFlow,
     path::{Path, PathBuf},
@@ -41,23 +42,19 @@ use wayword_core::{DVec3, PlatformError, SceneId};
 use wayword_world::files;
 
 const HINT: &str = "give a file that `ros2 bag record --storage mcap` has written";
-/// What is read of a picture to know its time, frame and encoding.
-const HEAD_BYTES: u64 = 4 << 10;
-/// No message of poses is longer.
-const MAX_POSES_BYTES: u64 = 16 << 20;
 
 /// An MCAP file.
-pub(crate) struct File {
+pub(crate) struct McapFile {
     path: PathBuf,
     scene: SceneId,
     described: Description,
 }
 
-impl File {
+impl McapFile {
     /// Opens a file, and looks whether it is one.
     pub(crate) fn open(path: &Path, described: Description) -> Result<Self, PlatformError> {
         let mut begin = [0; MAGIC.len()];
-        let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut begin));
+        let read = File::open(path).and_then(|mut file| file.read_exact(&mut begin));
         if read.is_err() || begin != *MAGIC {
             let reason = match read {
                 Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.to_string(),
@@ -76,7 +73,7 @@ impl File {
         let broken = |why: String| {
             self.wrong((why, "if it is damaged, `mcap recover IN.mcap -o OUT.mcap` saves what can be saved"))
         };
-        let file = std::fs::File::open(&self.path).map_err(|error| broken(error.to_string()))?;
+        let file = File::open(&self.path).map_err(|error| broken(error.to_string()))?;
         let contents = Contents::of(&file).map_err(broken)?;
         let unclear = |(why, hint): topics::Unclear| match &contents.broken {
             Some(end) => broken(format!("{why} (it can be read only up to {end})")),
@@ -97,20 +94,19 @@ impl File {
         let pictures = Pictures {
             file: self.path.clone(),
             topic: camera.to_owned(),
-            kind: contents.topics.get(camera).and_then(|topic| topic.kind).unwrap_or(Kind::Raw),
+            kind: contents.topics.get(camera).and_then(|topic| topic.kind).unwrap_or(MessageKind::Raw),
             times_s: shots.iter().map(|shot| seconds(time_ns(shot), first_ns)).collect(),
             places: shots.iter().map(|shot| shot.place).collect(),
-            stretches: contents.stretches,
         };
         Ok(Recording { reel: Box::new(pictures), track, horizontal_fov_rad, described: self.described.clone() })
     }
 
     /// The topic of poses that a user has named.
-    fn named_poses(&self, contents: &Contents) -> Result<Option<(&str, Kind)>, topics::Unclear> {
+    fn named_poses(&self, contents: &Contents) -> Result<Option<(&str, MessageKind)>, topics::Unclear> {
         let Some(named) = self.described.poses.as_deref() else { return Ok(None) };
         let kind = contents.topics.get(named).and_then(|topic| topic.kind).filter(|kind| kind.is_pose());
         kind.map(|kind| Some((named, kind))).ok_or_else(|| {
-            let poses = contents.topics.iter().filter(|(_, topic)| topic.kind.is_some_and(Kind::is_pose));
+            let poses = contents.topics.iter().filter(|(_, topic)| topic.kind.is_some_and(MessageKind::is_pose));
             let poses = topics::listed(poses.map(|(name, _)| name.as_str()));
             let reason = format!(
                 "has no poses {named}; its topics of poses: {}",
@@ -159,7 +155,7 @@ fn seconds(time_ns: i64, first_ns: i64) -> f64 {
     time_ns.saturating_sub(first_ns) as f64 * 1e-9
 }
 
-impl Source for File {
+impl Source for McapFile {
     fn scenes(&self) -> Vec<SceneId> {
         vec![self.scene.clone()]
     }
@@ -175,25 +171,21 @@ impl Source for File {
 /// A picture: when it was taken, and where in the file it is.
 struct Shot {
     times: Times,
-    place: Place,
+    place: RecordPlace,
 }
 
 /// What the first message of each camera says, and of each lens.
-fn beginnings(file: &std::fs::File, contents: &Contents) -> Result<(Heads, BTreeMap<String, Lens>), String> {
+fn beginnings(file: &File, contents: &Contents) -> Result<(Heads, BTreeMap<String, Lens>), String> {
     let (mut heads, mut lenses) = (Heads::new(), BTreeMap::new());
-    let wanted = channels(contents, |kind| (kind.is_picture() || kind == Kind::Lens).then_some(HEAD_BYTES));
-    let mut missing: Vec<&str> = wanted.values().map(|(name, ..)| *name).collect();
-    let most = wanted.iter().map(|(id, (.., most))| (*id, *most)).collect();
-    gather::messages(file, contents, &most, &mut |message: Message<'_>| {
-        let Some((name, kind, _)) = wanted.get(&message.channel) else { return Ok(ControlFlow::Continue(())) };
-        if missing.contains(name) {
-            missing.retain(|missing| missing != name);
-            if *kind == Kind::Lens {
-                // A lens that cannot be read is one that nobody knows.
-                lenses.extend(Lens::read(message.bytes).ok().map(|lens| ((*name).to_owned(), lens)));
-            } else {
-                heads.insert((*name).to_owned(), PictureHead::read(*kind, message.bytes)?);
-            }
+    let wanted = contents.channels(|_, kind| kind.is_picture() || kind == MessageKind::Lens);
+    let mut missing: BTreeSet<&str> = wanted.values().map(|(topic, _)| *topic).collect();
+    contents.messages(file, &wanted, &mut |Message { topic, kind, bytes, .. }| {
+        if !missing.remove(topic) {
+        } else if kind == MessageKind::Lens {
+            // A lens that cannot be read is one that nobody knows.
+            lenses.extend(Lens::read(bytes).ok().map(|lens| (topic.to_owned(), lens)));
+        } else {
+            heads.insert(topic.to_owned(), PictureHead::read(kind, bytes)?);
         }
         Ok(if missing.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;
@@ -201,36 +193,17 @@ fn beginnings(file: &std::fs::File, contents: &Contents) -> Result<(Heads, BTree
 }
 
 /// Where all pictures of a camera are, and all poses.
-fn gathered(
-    file: &std::fs::File,
-    contents: &Contents,
-    camera: &str,
-    frame: &str,
-) -> Result<(Vec<Shot>, Poses), String> {
+fn gathered(file: &File, contents: &Contents, camera: &str, frame: &str) -> Result<(Vec<Shot>, Poses), String> {
     let (mut shots, mut poses) = (Vec::new(), Poses::new(frame));
-    let mut wanted = channels(contents, |kind| kind.is_pose().then_some(MAX_POSES_BYTES));
-    let cameras = channels(contents, |kind| kind.is_picture().then_some(HEAD_BYTES));
-    wanted.extend(cameras.into_iter().filter(|(_, (name, ..))| *name == camera));
-    let most = wanted.iter().map(|(id, (.., most))| (*id, *most)).collect();
-    gather::messages(file, contents, &most, &mut |Message { channel, logged_ns, place, bytes }: Message<'_>| {
-        if let Some((name, kind, _)) = wanted.get(&channel) {
-            if kind.is_picture() {
-                let stamp_ns = PictureHead::read(*kind, bytes)?.head.stamp_ns;
-                shots.push(Shot { times: Times { stamp_ns, logged_ns }, place });
-            } else {
-                poses.add(name, *kind, logged_ns, messages::placed(*kind, bytes)?);
-            }
+    let wanted = contents.channels(|topic, kind| kind.is_pose() || topic == camera);
+    contents.messages(file, &wanted, &mut |Message { topic, kind, logged_ns, place, bytes }| {
+        if kind.is_picture() {
+            let stamp_ns = PictureHead::read(kind, bytes)?.head.stamp_ns;
+            shots.push(Shot { times: Times { stamp_ns, logged_ns }, place });
+        } else {
+            poses.add(topic, kind, logged_ns, messages::placed(kind, bytes)?);
         }
         Ok(ControlFlow::Continue(()))
     })?;
     Ok((shots, poses))
-}
-
-/// The channels of some kinds of topics: whose they are, and how much of their messages is wanted.
-fn channels(contents: &Contents, most: impl Fn(Kind) -> Option<u64>) -> BTreeMap<u16, (&str, Kind, u64)> {
-    let wanted = contents.topics.iter().filter_map(|(name, topic)| {
-        let kind = topic.kind?;
-        Some((&topic.channels, (name.as_str(), kind, most(kind)?)))
-    });
-    wanted.flat_map(|(channels, wanted)| channels.iter().map(move |id| (*id, wanted))).collect()
 }

@@ -1,15 +1,17 @@
 //! Pictures as ROS writes them (`sensor_msgs/include/sensor_msgs/image_encodings.hpp`), as RGB.
 
-use super::messages::{self, Kind, Raw};
+use super::messages::{self, MessageKind, Raw};
 use crate::size;
 use wayword_core::Image;
 use wayword_world::files;
 
 /// Why a camera's messages are no pictures, by their encoding; `None` where they are.
-pub(crate) fn unfit(kind: Kind, encoding: &str) -> Option<String> {
+pub(crate) fn unfit(kind: MessageKind, encoding: &str) -> Option<String> {
     let known = match kind {
         // `16UC1; compressedDepth png`; without a word about what is in it, its first bytes tell.
-        Kind::Compressed => !encoding.contains("compressedDepth") && !is_depth(encoding.split(';').next()?.trim()),
+        MessageKind::Compressed => {
+            !encoding.contains("compressedDepth") && !is_depth(encoding.split(';').next()?.trim())
+        }
         _ => Layout::of(encoding).is_some(),
     };
     let depth = is_depth(encoding.split(';').next()?.trim()) || encoding.contains("compressedDepth");
@@ -21,8 +23,8 @@ fn is_depth(encoding: &str) -> bool {
 }
 
 /// Decodes a message of a camera.
-pub(crate) fn picture(kind: Kind, message: &[u8]) -> Result<Image, String> {
-    if kind == Kind::Raw {
+pub(crate) fn picture(kind: MessageKind, message: &[u8]) -> Result<Image, String> {
+    if kind == MessageKind::Raw {
         return raw(&Raw::read(message)?);
     }
     let (format, bytes) = messages::compressed(message)?;
@@ -195,11 +197,11 @@ mod tests {
 
     #[test]
     fn depth_is_no_picture() {
-        assert!(unfit(Kind::Raw, "16UC1").unwrap().contains("depth"));
-        assert!(unfit(Kind::Compressed, "16UC1; compressedDepth png").unwrap().contains("depth"));
-        assert!(unfit(Kind::Raw, "nv12").unwrap().contains("not read"));
+        assert!(unfit(MessageKind::Raw, "16UC1").unwrap().contains("depth"));
+        assert!(unfit(MessageKind::Compressed, "16UC1; compressedDepth png").unwrap().contains("depth"));
+        assert!(unfit(MessageKind::Raw, "nv12").unwrap().contains("not read"));
         for usual in ["jpeg", "png", "rgb8; jpeg compressed bgr8", ""] {
-            assert_eq!(unfit(Kind::Compressed, usual), None);
+            assert_eq!(unfit(MessageKind::Compressed, usual), None);
         }
     }
 }

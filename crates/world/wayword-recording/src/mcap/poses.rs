@@ -1,7 +1,7 @@
 //! Where the camera was: by the tree of frames, odometry, or poses.
 
 use super::{
-    messages::{Head, Kind, Placed, Placing},
+    messages::{Head, MessageKind, Placed, Placing},
     topics::{Unclear, listed},
     tree::{Clock, Edge, Times, Tree, placings},
 };
@@ -24,7 +24,7 @@ pub(crate) struct Poses {
 /// Poses of one topic.
 #[derive(Debug)]
 struct Moves {
-    kind: Kind,
+    kind: MessageKind,
     /// What is placed, where that is told.
     what: Option<String>,
     edge: Edge,
@@ -44,9 +44,9 @@ impl Poses {
     }
 
     /// Takes in a message.
-    pub(crate) fn add(&mut self, topic: &str, kind: Kind, logged_ns: i64, all: Vec<Placed>) {
+    pub(crate) fn add(&mut self, topic: &str, kind: MessageKind, logged_ns: i64, all: Vec<Placed>) {
         for placed in all {
-            if kind == Kind::Transforms {
+            if kind == MessageKind::Transforms {
                 self.tree.add(logged_ns, placed, topic.ends_with("tf_static"));
                 continue;
             }
@@ -62,9 +62,9 @@ impl Poses {
     }
 
     /// The way that is to be read: by the named topic, or the obvious one. `None` where nobody knows where the camera was.
-    pub(crate) fn way(&self, named: Option<(&str, Kind)>) -> Result<Option<Way<'_>>, Unclear> {
+    pub(crate) fn way(&self, named: Option<(&str, MessageKind)>) -> Result<Option<Way<'_>>, Unclear> {
         match named {
-            Some((topic, Kind::Transforms)) => {
+            Some((topic, MessageKind::Transforms)) => {
                 let way = self.tree.way_up(true).map(|edges| Some(Way { edges, of_camera: true }));
                 way.ok_or_else(|| (self.incomplete(topic), "name another topic as `poses`, or leave it out"))
             }
@@ -82,9 +82,10 @@ impl Poses {
         if let Some(edges) = self.tree.way_up(false) {
             return Ok(Some(Way { edges, of_camera: true }));
         }
-        for kind in [Kind::Odometry, Kind::Pose] {
-            let wished =
-                |name: &str| kind == Kind::Pose && WISHED.iter().any(|word| name.to_ascii_lowercase().contains(word));
+        for kind in [MessageKind::Odometry, MessageKind::Pose] {
+            let wished = |name: &str| {
+                kind == MessageKind::Pose && WISHED.iter().any(|word| name.to_ascii_lowercase().contains(word))
+            };
             let of_kind = self.topics.iter().filter(|(name, moves)| moves.kind == kind && !wished(name));
             let found: Vec<(&String, &Moves)> = of_kind.collect();
             match found[..] {
@@ -125,7 +126,7 @@ mod tests {
         Placed { head: Head { stamp_ns, frame: frame.to_owned() }, what: what.map(str::to_owned), placing }
     }
 
-    fn told(poses: &mut Poses, topic: &str, kind: Kind, frame: &str, what: Option<&str>, x: f64) {
+    fn told(poses: &mut Poses, topic: &str, kind: MessageKind, frame: &str, what: Option<&str>, x: f64) {
         for step in 1..=2_i32 {
             let position = DVec3::new(x * f64::from(step), 0.0, 0.0);
             poses.add(topic, kind, i64::from(step), vec![placed(frame, what, i64::from(step), position)]);
@@ -135,9 +136,14 @@ mod tests {
     #[test]
     fn odometry_and_where_the_camera_is_on_the_robot_make_the_cameras_way() {
         let mut poses = Poses::new("cam");
-        told(&mut poses, "/odom", Kind::Odometry, "odom", Some("base"), 1.0);
+        told(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 1.0);
         assert!(!poses.way(None).unwrap().unwrap().of_camera);
-        poses.add("/tf_static", Kind::Transforms, 0, vec![placed("base", Some("cam"), 0, DVec3::new(0.0, 0.0, 0.5))]);
+        poses.add(
+            "/tf_static",
+            MessageKind::Transforms,
+            0,
+            vec![placed("base", Some("cam"), 0, DVec3::new(0.0, 0.0, 0.5))],
+        );
         let way = poses.way(None).unwrap().unwrap();
         assert!(way.of_camera);
         assert_eq!(way.placings(Clock::Log)[1].1.position, DVec3::new(2.0, 0.0, 0.5));
@@ -147,26 +153,26 @@ mod tests {
     fn the_tree_goes_before_odometry_and_odometry_before_poses() {
         let mut poses = Poses::new("cam");
         assert!(poses.way(None).unwrap().is_none());
-        told(&mut poses, "/goal_pose", Kind::Pose, "map", None, 9.0);
+        told(&mut poses, "/goal_pose", MessageKind::Pose, "map", None, 9.0);
         assert!(poses.way(None).unwrap().is_none());
-        told(&mut poses, "/pose", Kind::Pose, "map", None, 1.0);
+        told(&mut poses, "/pose", MessageKind::Pose, "map", None, 1.0);
         let x = |poses: &Poses, named| poses.way(named).unwrap().unwrap().placings(Clock::Stamp)[0].1.position.x;
         assert_eq!(x(&poses, None), 1.0);
-        told(&mut poses, "/odom", Kind::Odometry, "odom", Some("base"), 2.0);
+        told(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 2.0);
         assert_eq!(x(&poses, None), 2.0);
-        assert_eq!(x(&poses, Some(("/goal_pose", Kind::Pose))), 9.0);
-        assert!(poses.way(Some(("/tf", Kind::Transforms))).unwrap_err().0.contains("/tf"));
-        told(&mut poses, "/tf", Kind::Transforms, "map", Some("cam"), 3.0);
+        assert_eq!(x(&poses, Some(("/goal_pose", MessageKind::Pose))), 9.0);
+        assert!(poses.way(Some(("/tf", MessageKind::Transforms))).unwrap_err().0.contains("/tf"));
+        told(&mut poses, "/tf", MessageKind::Transforms, "map", Some("cam"), 3.0);
         assert_eq!(x(&poses, None), 3.0);
     }
 
     #[test]
     fn of_two_odometries_one_has_to_be_named() {
         let mut poses = Poses::new("cam");
-        told(&mut poses, "/wheels", Kind::Odometry, "odom", Some("base"), 1.0);
-        told(&mut poses, "/filtered", Kind::Odometry, "odom", Some("base"), 2.0);
+        told(&mut poses, "/wheels", MessageKind::Odometry, "odom", Some("base"), 1.0);
+        told(&mut poses, "/filtered", MessageKind::Odometry, "odom", Some("base"), 2.0);
         let (why, hint) = poses.way(None).unwrap_err();
         assert!(why.contains("/filtered, /wheels") && hint.contains("poses ="), "{why}");
-        assert!(poses.way(Some(("/wheels", Kind::Odometry))).unwrap().is_some());
+        assert!(poses.way(Some(("/wheels", MessageKind::Odometry))).unwrap().is_some());
     }
 }

@@ -1,237 +1,240 @@
-//! The records of an MCAP file, one after the other, out of the file or out of a compressed chunk (mcap.dev/spec).
+//! The records of a file that tell of messages, one after the other, those in chunks too (mcap.dev/spec).
 //!
-//! Nothing is held but the record that is asked for: chunks are decompressed as they are read, and what is not asked for is passed
-//! over, in the file without reading it.
+//! The crate `mcap` unpacks chunks, a record at a time. What is not compressed is stepped through here: of a picture only the first
+//! bytes are wanted while its time is looked for, and the crate reads every record whole.
 
-use lz4_flex::frame::FrameDecoder;
-use ruzstd::StreamingDecoder;
+use super::found::{Found, RecordPlace};
+use mcap::{
+    records::op,
+    sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
+};
 use std::{
     fs::File,
-    io::{BufReader, Error, ErrorKind, Read, Seek, SeekFrom, Take, copy, sink},
+    io::{BufReader, Error, ErrorKind, Read, Seek, SeekFrom},
+    ops::ControlFlow,
 };
 use wayword_core::contained;
 
-pub(crate) const SCHEMA: u8 = 3;
-pub(crate) const CHANNEL: u8 = 4;
-pub(crate) const MESSAGE: u8 = 5;
-pub(crate) const CHUNK: u8 = 6;
-pub(crate) const DATA_END: u8 = 15;
-
 /// Bytes of a record before its body: what it is, and how long.
 const HEAD_BYTES: u64 = 9;
+/// Bytes of a chunk's body before its records, where these are not compressed.
+const CHUNK_HEAD_BYTES: u64 = 40;
+/// Bytes of a message's body before what was sent.
+const MESSAGE_HEAD_BYTES: u64 = 22;
+/// No schema, channel or list of a chunk's messages is longer.
+const MAX_RECORD_BYTES: u64 = 64 << 20;
 /// What is read from the file at once: a picture's beginning is short, and the rest may be passed over.
 const BUFFER_BYTES: usize = 16 << 10;
 /// A chunk may become this large, and so many times larger than it is in the file.
 const MAX_UNPACKED: (u64, u64) = (256 << 20, 1000);
+/// No record is longer than its chunk, nor than the second number; a chunk may be tiny, but not what is held of it at once.
+const UNPACKED_RECORD: (u64, u64) = (64 << 10, 1 << 30);
 
-/// Records in a row.
+/// How many bytes are wanted of the messages of a channel.
+pub(crate) type Most<'a> = dyn Fn(u16) -> u64 + 'a;
+
+/// Who is handed records, and may have enough.
+pub(crate) type Hear<'a> = dyn FnMut(Found<'_>) -> Result<ControlFlow<()>, String> + 'a;
+
+/// Records in a part of a file.
 pub(crate) struct Records<'a> {
-    from: From<'a>,
-    /// Of the next byte, counted from the first record.
+    file: BufReader<&'a File>,
+    /// Where the record begins that is next, or the compressed chunk that is open.
     at: u64,
-    /// Of the byte behind the last record.
+    /// Where no more records begin.
     end: u64,
-    /// Of the byte behind the record that was found last.
-    next: u64,
-    /// Where in the file it begins, for errors.
-    origin: Origin,
-}
-
-enum From<'a> {
-    File(BufReader<&'a File>),
-    Unpacked(Contained<Box<dyn Read + 'a>>),
-}
-
-#[derive(Clone, Copy)]
-enum Origin {
-    File(u64),
-    Chunk(u64),
-}
-
-/// A record that was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Found {
-    pub(crate) opcode: u8,
-    /// Where it begins, counted from the first record.
-    pub(crate) at: u64,
-}
-
-/// What stands before a message.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct MessageHead {
-    pub(crate) channel: u16,
-    pub(crate) logged_ns: i64,
+    /// Where the chunk ends that was entered last, if it is not compressed.
+    chunk_end: u64,
+    packed: Option<Packed>,
+    body: Vec<u8>,
 }
 
 impl<'a> Records<'a> {
-    /// The records in a part of the file.
-    pub(crate) fn in_file(mut file: &'a File, from: u64, to: u64) -> Result<Self, String> {
-        file.seek(SeekFrom::Start(from)).map_err(|error| format!("byte {from}: {error}"))?;
-        let reader = BufReader::with_capacity(BUFFER_BYTES, file);
-        let end = to.saturating_sub(from);
-        Ok(Self { from: From::File(reader), at: 0, end, next: 0, origin: Origin::File(from) })
+    pub(crate) fn new(file: &'a File, from: u64, end: u64) -> Result<Self, String> {
+        let file = BufReader::with_capacity(BUFFER_BYTES, file);
+        let mut records = Self { file, at: 0, end, chunk_end: 0, packed: None, body: Vec::new() };
+        records.go(RecordPlace { file_at: from, within: None })?;
+        Ok(records)
     }
 
-    /// The records in the chunk that begins at a byte of the file.
-    pub(crate) fn in_chunk(file: &'a File, at: u64) -> Result<Self, String> {
-        let mut records = Self::in_file(file, at, u64::MAX)?;
-        let head = records.exactly::<{ HEAD_BYTES as usize }>()?;
-        if head[0] != CHUNK {
-            return Err(format!("byte {at}: a chunk was expected, not a record of type {:#04x}", head[0]));
+    /// Goes to a record; to the beginning of its compressed chunk, unless that is open and not yet so far.
+    pub(crate) fn go(&mut self, to: RecordPlace) -> Result<(), String> {
+        let ahead = |packed: &Packed| packed.from == to.file_at && to.within.is_some_and(|within| within >= packed.at);
+        if !self.packed.as_ref().is_some_and(ahead) {
+            (self.at, self.chunk_end, self.packed) = (to.file_at, 0, None);
+            self.file.seek(SeekFrom::Start(to.file_at)).map_err(|error| self.broken(&error))?;
         }
-        let fixed = records.exactly::<32>()?;
-        let (unpacked_bytes, name_bytes) =
-            (u64_at(&fixed, 16), u32::from_le_bytes([fixed[28], fixed[29], fixed[30], fixed[31]]));
-        let mut compression = Vec::new();
-        records.read(u64::from(name_bytes.min(64)), &mut compression)?;
-        let packed_bytes = u64::from_le_bytes(records.exactly()?);
-        let From::File(reader) = records.from else { return Err(format!("byte {at}: is no chunk")) };
-        match &*compression {
-            b"" => {
-                let origin = Origin::File(at + records.at);
-                return Ok(Self { from: From::File(reader), at: 0, end: packed_bytes, next: 0, origin });
-            }
-            b"lz4" | b"zstd" => {}
-            _ => {
-                let name = String::from_utf8_lossy(&compression).into_owned();
-                return Err(format!("byte {at}: a chunk is compressed as {name:?}; lz4 and zstd can be read"));
-            }
-        }
-        let most = MAX_UNPACKED.0.saturating_add(packed_bytes.saturating_mul(MAX_UNPACKED.1));
-        if unpacked_bytes > most {
-            return Err(format!("byte {at}: a chunk of {packed_bytes} bytes says that it holds {unpacked_bytes}"));
-        }
-        let unpacking = unpacking(compression == b"zstd", reader.take(packed_bytes));
-        let unpacking = unpacking.map_err(|error| format!("byte {at}: a chunk cannot be decompressed: {error}"))?;
-        let from = From::Unpacked(Contained(unpacking));
-        Ok(Self { from, at: 0, end: unpacked_bytes, next: 0, origin: Origin::Chunk(at) })
+        Ok(())
     }
 
-    /// Goes to the next record; `None` behind the last.
-    pub(crate) fn next(&mut self) -> Result<Option<Found>, String> {
-        self.pass_to(self.next)?;
-        let at = self.at;
-        if at == self.end {
-            return Ok(None);
+    /// Enters the chunk that has to be here.
+    pub(crate) fn enter(&mut self) -> Result<(), String> {
+        match self.head()? {
+            (op::CHUNK, length) => self.open(length),
+            (opcode, _) => Err(format!("byte {}: a chunk was expected, not a record of type {opcode:#04x}", self.at)),
         }
+    }
+
+    /// Where the last record begins that was heard, or the chunk ends in which it is.
+    pub(crate) fn reached(&self) -> u64 {
+        self.packed.as_ref().map_or(self.at, |packed| packed.end)
+    }
+
+    /// Hands out records up to the end of the data, or until somebody has enough, who goes on with [`Records::go`].
+    ///
+    /// # Errors
+    /// When the file is broken, or `hear` fails.
+    pub(crate) fn each(&mut self, most: &Most<'_>, hear: &mut Hear<'_>) -> Result<ControlFlow<()>, String> {
+        loop {
+            if let Some(packed) = &mut self.packed {
+                if packed.each(&mut self.file, most, hear)?.is_break() {
+                    return Ok(ControlFlow::Break(()));
+                }
+                (self.at, self.packed) = (packed.end, None);
+            }
+            if self.at >= self.end {
+                return Ok(ControlFlow::Continue(()));
+            }
+            match self.head()? {
+                (op::DATA_END, _) => return Ok(ControlFlow::Continue(())),
+                (op::CHUNK, length) => self.open(length)?,
+                (opcode, length) => {
+                    let is_wanted = self.body(opcode, length, most)?;
+                    let place = RecordPlace { file_at: self.at, within: None };
+                    if is_wanted && hear(Found { opcode, place, bytes: &self.body })?.is_break() {
+                        return Ok(ControlFlow::Break(()));
+                    }
+                    self.at += HEAD_BYTES + length;
+                }
+            }
+        }
+    }
+
+    /// What the next record is, and how long its body.
+    fn head(&mut self) -> Result<(u8, u64), String> {
         let head = self.exactly::<{ HEAD_BYTES as usize }>()?;
         let (opcode, length) = (head[0], u64_at(&head, 1));
-        let next = self.at.saturating_add(length);
+        let end = if self.at < self.chunk_end { self.chunk_end } else { self.end };
         // Of a chunk that was cut off something can be read.
-        if next > self.end && opcode != CHUNK {
-            return Err(format!("{}: a record of {length} bytes is cut off", self.place(at)));
+        if opcode != op::CHUNK && length > end.saturating_sub(self.at + HEAD_BYTES) {
+            return Err(format!("byte {}: a record of {length} bytes is cut off", self.at));
         }
-        self.next = next.min(self.end);
-        Ok(Some(Found { opcode, at }))
+        Ok((opcode, length))
     }
 
-    /// Goes to the record that begins at a byte, which lies ahead of all that was read.
-    pub(crate) fn go(&mut self, at: u64) -> Result<Option<Found>, String> {
-        self.next = at;
-        self.next()
+    /// Enters the chunk whose head was read.
+    fn open(&mut self, length: u64) -> Result<(), String> {
+        let from = self.at;
+        let end = from.saturating_add(HEAD_BYTES).saturating_add(length).min(self.end);
+        let head = self.exactly::<{ CHUNK_HEAD_BYTES as usize }>()?;
+        let is_packed = head[28..32] != [0; 4];
+        // Whatever is odd is left to the crate.
+        if !is_packed && u64_at(&head, 32).checked_add(CHUNK_HEAD_BYTES) == Some(length) {
+            (self.at, self.chunk_end) = (from + HEAD_BYTES + CHUNK_HEAD_BYTES, end);
+            return Ok(());
+        }
+        let (unpacked_bytes, packed_bytes) = (u64_at(&head, 16), end - from);
+        if is_packed && unpacked_bytes > MAX_UNPACKED.0.saturating_add(packed_bytes.saturating_mul(MAX_UNPACKED.1)) {
+            return Err(format!("byte {from}: a chunk of {packed_bytes} bytes says that it holds {unpacked_bytes}"));
+        }
+        self.file.seek_relative(-((HEAD_BYTES + CHUNK_HEAD_BYTES) as i64)).map_err(|error| self.broken(&error))?;
+        let record_bytes = unpacked_bytes.clamp(UNPACKED_RECORD.0, UNPACKED_RECORD.1) as usize;
+        let options = LinearReaderOptions::default().with_skip_start_magic(true).with_skip_end_magic(true);
+        let reader = LinearReader::new_with_options(options.with_record_length_limit(record_bytes));
+        self.packed = Some(Packed { reader, from, end, left: packed_bytes, at: 0 });
+        Ok(())
     }
 
-    /// What stands before the message that was found.
-    pub(crate) fn message(&mut self) -> Result<MessageHead, String> {
-        let head = self.exactly::<22>()?;
-        let logged_ns = i64::try_from(u64_at(&head, 6)).unwrap_or(i64::MAX);
-        Ok(MessageHead { channel: u16::from_le_bytes([head[0], head[1]]), logged_ns })
+    /// Reads the first bytes of a body, as many as are wanted, and passes over the rest. Whether any are.
+    fn body(&mut self, opcode: u8, length: u64, most: &Most<'_>) -> Result<bool, String> {
+        self.body.clear();
+        let begun = length.min(2);
+        self.append(begun)?;
+        let wanted = wanted(opcode, &self.body, most);
+        let read = wanted.unwrap_or(0).clamp(begun, length);
+        self.append(read - begun)?;
+        let passed = i64::try_from(length - read).map_err(Error::other);
+        passed.and_then(|passed| self.file.seek_relative(passed)).map_err(|error| self.broken(&error))?;
+        Ok(wanted.is_some())
     }
 
-    /// What is left of the record that was found, or the first bytes of it.
-    pub(crate) fn body(&mut self, most: u64, into: &mut Vec<u8>) -> Result<(), String> {
-        self.read(self.next.saturating_sub(self.at).min(most), into)
-    }
-
-    /// How much is left of the record that was found.
-    pub(crate) fn left(&self) -> u64 {
-        self.next.saturating_sub(self.at)
-    }
-
-    /// Where the record that was found ends.
-    pub(crate) fn behind(&self) -> u64 {
-        self.next
-    }
-
-    /// Whether a byte lies ahead of all that was read.
-    pub(crate) fn is_ahead(&self, at: u64) -> bool {
-        at >= self.at
-    }
-
-    /// Where a byte is, for errors.
-    pub(crate) fn place(&self, at: u64) -> String {
-        match self.origin {
-            Origin::File(from) => format!("byte {}", from.saturating_add(at)),
-            Origin::Chunk(chunk) => format!("byte {at} of the chunk at byte {chunk}"),
+    fn append(&mut self, count: u64) -> Result<(), String> {
+        // Grows with what is really there, whatever a length says.
+        match self.file.by_ref().take(count).read_to_end(&mut self.body) {
+            Ok(read) if read as u64 == count => Ok(()),
+            Ok(_) => Err(self.broken(&ErrorKind::UnexpectedEof.into())),
+            Err(error) => Err(self.broken(&error)),
         }
     }
 
     fn exactly<const BYTES: usize>(&mut self) -> Result<[u8; BYTES], String> {
         let mut bytes = [0; BYTES];
-        let read = match &mut self.from {
-            From::File(reader) => reader.read_exact(&mut bytes),
-            From::Unpacked(reader) => reader.read_exact(&mut bytes),
-        };
-        read.map_err(|error| self.broken(&error))?;
-        self.at += BYTES as u64;
+        self.file.read_exact(&mut bytes).map_err(|error| self.broken(&error))?;
         Ok(bytes)
-    }
-
-    fn read(&mut self, count: u64, into: &mut Vec<u8>) -> Result<(), String> {
-        into.clear();
-        // Grows with what is really there, whatever a length says.
-        let read = match &mut self.from {
-            From::File(reader) => reader.take(count).read_to_end(into),
-            From::Unpacked(reader) => reader.take(count).read_to_end(into),
-        };
-        let read =
-            read.and_then(|read| if read as u64 == count { Ok(()) } else { Err(ErrorKind::UnexpectedEof.into()) });
-        read.map_err(|error| self.broken(&error))?;
-        self.at += count;
-        Ok(())
-    }
-
-    fn pass_to(&mut self, at: u64) -> Result<(), String> {
-        let count = at.saturating_sub(self.at);
-        let passed = match &mut self.from {
-            From::File(reader) => {
-                i64::try_from(count).map_err(Error::other).and_then(|count| reader.seek_relative(count))
-            }
-            From::Unpacked(reader) => copy(&mut reader.take(count), &mut sink()).map(drop),
-        };
-        passed.map_err(|error| self.broken(&error))?;
-        self.at += count;
-        Ok(())
     }
 
     fn broken(&self, error: &Error) -> String {
         match error.kind() {
-            ErrorKind::UnexpectedEof => format!("{}: ends in the middle of a record", self.place(self.at)),
-            _ => format!("{}: {error}", self.place(self.at)),
+            ErrorKind::UnexpectedEof => format!("byte {}: the file ends in the middle of a record", self.at),
+            _ => format!("byte {}: {error}", self.at),
         }
     }
 }
 
-fn unpacking<'a>(zstd: bool, packed: Take<BufReader<&'a File>>) -> Result<Box<dyn Read + 'a>, String> {
-    if !zstd {
-        return Ok(Box::new(FrameDecoder::new(packed)));
-    }
-    let begun = contained(|| StreamingDecoder::new(packed).map_err(|error| error.to_string()));
-    Ok(Box::new(begun.unwrap_or_else(|| Err("is broken".to_owned()))?))
+/// A chunk that is unpacked while its records are read.
+struct Packed {
+    reader: LinearReader,
+    /// Where it begins and ends in the file.
+    from: u64,
+    end: u64,
+    /// How much of it was not read yet.
+    left: u64,
+    /// Where in what is unpacked the next record begins.
+    at: u64,
 }
 
-/// Somebody else's decoder, whose panics on broken input become errors.
-struct Contained<R>(R);
+impl Packed {
+    fn each(
+        &mut self,
+        file: &mut BufReader<&File>,
+        most: &Most<'_>,
+        hear: &mut Hear<'_>,
+    ) -> Result<ControlFlow<()>, String> {
+        loop {
+            let place = RecordPlace { file_at: self.from, within: Some(self.at) };
+            let event = contained(|| self.reader.next_event()).ok_or_else(|| format!("{place}: cannot be unpacked"))?;
+            match event.transpose().map_err(|error| format!("{place}: {error}"))? {
+                None => return Ok(ControlFlow::Continue(())),
+                Some(LinearReadEvent::ReadRequest(count)) => {
+                    // Nothing more, where the chunk ends too early: the reader knows what that means.
+                    let count = usize::try_from(self.left).map_or(count, |left| left.min(count));
+                    file.read_exact(self.reader.insert(count)).map_err(|error| format!("{place}: {error}"))?;
+                    self.reader.notify_read(count);
+                    self.left -= count as u64;
+                }
+                Some(LinearReadEvent::Record { opcode, data }) => {
+                    self.at += HEAD_BYTES + data.len() as u64;
+                    let Some(most) = wanted(opcode, data, most) else { continue };
+                    let bytes = usize::try_from(most).ok().and_then(|most| data.get(..most)).unwrap_or(data);
+                    if hear(Found { opcode, place, bytes })?.is_break() {
+                        return Ok(ControlFlow::Break(()));
+                    }
+                }
+            }
+        }
+    }
+}
 
-impl<R: Read> Read for Contained<R> {
-    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
-        let read = contained(|| self.0.read(into));
-        read.unwrap_or_else(|| Err(Error::other("cannot be decompressed")))
+/// How much is wanted of a record; `None` where it tells nothing of messages.
+fn wanted(opcode: u8, body: &[u8], most: &Most<'_>) -> Option<u64> {
+    let id = body.first_chunk().copied().map_or(0, u16::from_le_bytes);
+    match opcode {
+        op::MESSAGE => Some(MESSAGE_HEAD_BYTES + most(id)),
+        op::SCHEMA | op::CHANNEL | op::CHUNK_INDEX | op::STATISTICS | op::FOOTER => Some(MAX_RECORD_BYTES),
+        _ => None,
     }
 }
 
 fn u64_at(bytes: &[u8], at: usize) -> u64 {
-    let mut number = [0; 8];
-    number.copy_from_slice(&bytes[at..at + 8]);
-    u64::from_le_bytes(number)
+    bytes.get(at..).and_then(<[u8]>::first_chunk).copied().map_or(0, u64::from_le_bytes)
 }

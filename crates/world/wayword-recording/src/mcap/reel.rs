@@ -1,16 +1,10 @@
 //! The pictures of one topic.
 
-use super::{
-    HINT,
-    contents::Stretch,
-    gather::Place,
-    messages::Kind,
-    pixels,
-    records::{MESSAGE, Records},
-};
+use super::{HINT, found::RecordPlace, messages::MessageKind, pixels, records::Records};
 use crate::reel::{Reel, Take};
-use std::{fs::File, path::PathBuf};
-use wayword_core::{PlatformError, contained};
+use mcap::records::Record;
+use std::{fs::File, ops::ControlFlow, path::PathBuf};
+use wayword_core::{Image, PlatformError, contain::decoded};
 use wayword_world::files;
 
 /// Largest message of a picture: 64 megapixels of four bytes.
@@ -20,10 +14,9 @@ const MAX_MESSAGE_BYTES: u64 = 257 << 20;
 pub(crate) struct Pictures {
     pub(crate) file: PathBuf,
     pub(crate) topic: String,
-    pub(crate) kind: Kind,
-    pub(crate) stretches: Vec<Stretch>,
+    pub(crate) kind: MessageKind,
     /// Where each picture is.
-    pub(crate) places: Vec<Place>,
+    pub(crate) places: Vec<RecordPlace>,
     /// When each was taken, after the first.
     pub(crate) times_s: Vec<f64>,
 }
@@ -38,38 +31,35 @@ impl Reel for Pictures {
     }
 
     fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
-        let opened = File::open(&self.file).map_err(|error| files::wrong(&self.file, error.to_string(), HINT))?;
-        // What is open: pictures mostly lie one behind the other, and a chunk can only be read from its front.
-        let mut open: Option<(usize, Records<'_>)> = None;
-        let mut message = Vec::new();
+        let unreadable = |error: std::io::Error| files::wrong(&self.file, error.to_string(), HINT);
+        let file = File::open(&self.file).map_err(unreadable)?;
+        let length = file.metadata().map_err(unreadable)?.len();
+        // Pictures mostly lie one behind the other, and a compressed chunk can only be read from its front.
+        let mut records = Records::new(&file, 0, length).map_err(|why| files::wrong(&self.file, why, HINT))?;
         for &number in wanted {
-            let wrong = |why: String| {
+            let place = self.places.get(number).ok_or_else(|| "there is no such picture".to_owned());
+            let picture = place.and_then(|place| self.picture(&mut records, *place)).map_err(|why| {
                 let reason = format!("picture {number} of {}: {why}", self.topic);
                 files::wrong(&self.file, reason, "repair the file with `mcap recover`, or leave this part out")
-            };
-            let place = self.places.get(number).ok_or_else(|| wrong("there is no such picture".to_owned()))?;
-            let mut records = match open.take() {
-                Some((stretch, records)) if stretch == place.stretch && records.is_ahead(place.at) => records,
-                _ => self.stretches[place.stretch].open(&opened).map_err(wrong)?,
-            };
-            read(&mut records, place.at, &mut message).map_err(wrong)?;
-            let decoded = contained(|| pixels::picture(self.kind, &message));
-            let decoded = decoded.unwrap_or_else(|| Err("is broken".to_owned()));
-            let picture = decoded.map_err(|why| wrong(format!("message at {}: {why}", records.place(place.at))))?;
+            })?;
             take(number, picture)?;
-            open = Some((place.stretch, records));
         }
         Ok(())
     }
 }
 
-fn read(records: &mut Records<'_>, at: u64, message: &mut Vec<u8>) -> Result<(), String> {
-    match records.go(at)? {
-        Some(found) if found.opcode == MESSAGE => records.message()?,
-        _ => return Err(format!("{}: there is no message any more", records.place(at))),
-    };
-    if records.left() > MAX_MESSAGE_BYTES {
-        return Err(format!("{}: has {} bytes, more than 64 megapixels", records.place(at), records.left()));
+impl Pictures {
+    fn picture(&self, records: &mut Records<'_>, place: RecordPlace) -> Result<Image, String> {
+        let mut picture = Err("there is no message any more".to_owned());
+        records.go(place)?;
+        let heard = records.each(&|_| MAX_MESSAGE_BYTES, &mut |found| {
+            if found.place == place
+                && let Record::Message { data, .. } = found.record()?
+            {
+                picture = decoded(|| pixels::picture(self.kind, &data));
+            }
+            Ok(if found.place < place { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        });
+        heard.and(picture.map_err(|why| format!("message at {place}: {why}")))
     }
-    records.body(MAX_MESSAGE_BYTES, message)
 }

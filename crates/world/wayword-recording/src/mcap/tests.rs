@@ -1,6 +1,6 @@
 //! Recordings that other programs wrote (`fixtures/make_mcap.py`), and broken and odd ones of our own.
 
-use super::{contents::Stretch, *};
+use super::*;
 use crate::reel::Recording;
 use proptest::prelude::*;
 use tempfile::TempDir;
@@ -11,7 +11,7 @@ fn fixture(name: &str) -> PathBuf {
 }
 
 fn read(path: &Path, described: Description) -> Result<Recording, String> {
-    let file = File::open(path, described).map_err(|error| error.to_string())?;
+    let file = McapFile::open(path, described).map_err(|error| error.to_string())?;
     file.open(&file.scenes()[0]).map_err(|error| error.to_string())
 }
 
@@ -96,26 +96,38 @@ fn what_other_programs_wrote_comes_back() {
 #[test]
 fn the_summary_of_a_file_tells_what_going_through_it_tells() {
     for (name, _) in ALL {
-        let file = std::fs::File::open(fixture(name)).unwrap();
+        let file = File::open(fixture(name)).unwrap();
         let bytes = std::fs::read(fixture(name)).unwrap();
         let told = Contents::of(&file).unwrap();
         let (folder, _) = bytes_read(&bytes[..bytes.len() - 8], Description::default());
-        let walked = Contents::of(&std::fs::File::open(folder.path().join("made.mcap")).unwrap()).unwrap();
+        let walked = Contents::of(&File::open(folder.path().join("made.mcap")).unwrap()).unwrap();
         assert_eq!(told.topics, walked.topics, "{name}");
-        let places = |contents: &Contents| -> Vec<String> {
-            let known = contents.stretches.iter().map(|stretch| match stretch {
-                Stretch::Chunk { at, .. } => format!("chunk {at}"),
-                bare => format!("{bare:?}"),
-            });
-            known.collect()
-        };
-        assert_eq!(places(&told), places(&walked), "{name}");
+        assert_eq!(places(&file, &told), places(&file, &walked), "{name}");
         // Only the end of the summary is gone.
         assert_eq!(walked.broken, None, "{name}");
         assert!(told.broken.is_none(), "{name}: {:?}", told.broken);
     }
-    let lz4 = Contents::of(&std::fs::File::open(fixture("odometry_lz4.mcap")).unwrap()).unwrap();
-    assert!(lz4.stretches.len() > 2, "one chunk would show nothing");
+    assert!(chunks("odometry_lz4.mcap").len() > 2, "one chunk would show nothing");
+}
+
+/// Where all messages are that are read.
+fn places(file: &File, contents: &Contents) -> Vec<(String, RecordPlace)> {
+    let mut places = Vec::new();
+    let heard = contents.messages(file, &contents.channels(|_, _| true), &mut |message| {
+        places.push((message.topic.to_owned(), message.place));
+        Ok(ControlFlow::Continue(()))
+    });
+    heard.unwrap();
+    places
+}
+
+/// Where a file's compressed chunks begin.
+fn chunks(name: &str) -> BTreeSet<usize> {
+    let file = File::open(fixture(name)).unwrap();
+    let places = places(&file, &Contents::of(&file).unwrap());
+    let chunks =
+        places.iter().filter_map(|(_, place)| place.to_string().split_once(" of the chunk at byte ")?.1.parse().ok());
+    chunks.collect()
 }
 
 #[test]
@@ -319,14 +331,29 @@ fn a_picture_that_is_cut_off_is_told_by_its_number() {
 fn lengths_that_lie_take_no_memory() {
     // A chunk that says that it becomes enormous, and a record that says it is.
     let bytes = std::fs::read(fixture("odometry_lz4.mcap")).unwrap();
-    let contents = Contents::of(&std::fs::File::open(fixture("odometry_lz4.mcap")).unwrap()).unwrap();
-    let Stretch::Chunk { at, .. } = contents.stretches[0] else { panic!("is chunked") };
+    let at = *chunks("odometry_lz4.mcap").first().unwrap();
     for (from, to) in [(at + 1, at + 9), (at + 9 + 16, at + 9 + 24)] {
         let mut bytes = bytes.clone();
-        bytes[from as usize..to as usize].fill(0x7f);
+        bytes[from..to].fill(0x7f);
         let (_folder, recording) = bytes_read(&bytes, Description::default());
         if let Err(error) = recording.and_then(|recording| pictures(&recording, &[0])) {
             assert!(error.contains("byte"), "{error}");
+        }
+    }
+}
+
+#[test]
+fn a_damaged_chunk_in_a_file_with_a_summary_is_an_error_that_names_the_byte() {
+    for name in ["odometry_lz4.mcap", "odometry_zstd.mcap"] {
+        let whole = std::fs::read(fixture(name)).unwrap();
+        let at = *chunks(name).last().unwrap();
+        // What it is, the name of its compression, and the first bytes of what it holds.
+        for damaged in [at, at + 9 + 32, at + 9 + 44] {
+            let mut bytes = whole.clone();
+            bytes[damaged] ^= 0x55;
+            let (_folder, recording) = bytes_read(&bytes, Description::default());
+            let error = recording.and_then(|recording| pictures(&recording, &[0])).err().unwrap_or_default();
+            assert!(error.contains(&format!("byte {at}")), "{name} {damaged}: {error}");
         }
     }
 }

@@ -11,7 +11,6 @@ use parquet::{
     errors::ParquetError,
     file::metadata::ColumnChunkMetaData,
 };
-use ruzstd::StreamingDecoder;
 use std::{
     fs::File,
     io::{Read, Seek, SeekFrom},
@@ -275,7 +274,7 @@ fn unfolded(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Ve
             read.map(|_| unfolded).map_err(|error| error.to_string())
         }
         CompressionCodec::GZIP => filled(&mut flate2::read::MultiGzDecoder::new(folded)),
-        CompressionCodec::ZSTD => filled(&mut StreamingDecoder::new(folded).map_err(|error| error.to_string())?),
+        CompressionCodec::ZSTD => filled(&mut zstd::Decoder::with_buffer(folded).map_err(|error| error.to_string())?),
         other => Err(format!("is compressed with {other}, which is not read here")),
     }
 }

@@ -1,0 +1,96 @@
+//! A record that was found: where, and what it says.
+
+use mcap::records::{Record, op};
+use std::fmt;
+use wayword_core::contain::decoded;
+
+/// Where a record begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct RecordPlace {
+    /// Where in the file; of a record in a compressed chunk, where that chunk is.
+    pub(crate) file_at: u64,
+    /// Where in that chunk, once it is unpacked.
+    pub(crate) within: Option<u64>,
+}
+
+impl fmt::Display for RecordPlace {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.within {
+            Some(within) => write!(out, "byte {within} of the chunk at byte {}", self.file_at),
+            None => write!(out, "byte {}", self.file_at),
+        }
+    }
+}
+
+/// A record that was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Found<'a> {
+    pub(crate) opcode: u8,
+    pub(crate) place: RecordPlace,
+    /// Its body; of a message perhaps only the first bytes.
+    pub(crate) bytes: &'a [u8],
+}
+
+impl<'a> Found<'a> {
+    /// What it says.
+    ///
+    /// # Errors
+    /// When it is broken, with its place.
+    pub(crate) fn record(&self) -> Result<Record<'a>, String> {
+        let parsed =
+            texts_fit(self.opcode, self.bytes).ok_or_else(|| "a length in the record leads out of it".to_owned());
+        let parse = || mcap::parse_record(self.opcode, self.bytes).map_err(|error| error.to_string());
+        parsed.and_then(|()| decoded(parse)).map_err(|why| format!("{}: {why}", self.place))
+    }
+}
+
+/// `None` where a text of a record leads out of it: `mcap` takes as much memory for a text as its length says, before it looks
+/// whether it is there.
+fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
+    let mut rest = body;
+    match opcode {
+        op::SCHEMA => drop((text(&mut rest, 2)?, text(&mut rest, 0)?)),
+        op::CHUNK_INDEX => drop((text(&mut rest, 32)?, text(&mut rest, 8)?)),
+        op::CHANNEL => {
+            let (_topic, _encoding, mut metadata) = (text(&mut rest, 4)?, text(&mut rest, 0)?, text(&mut rest, 0)?);
+            while !metadata.is_empty() {
+                text(&mut metadata, 0)?;
+            }
+        }
+        // These have none.
+        op::MESSAGE | op::STATISTICS | op::FOOTER => {}
+        _ => return None,
+    }
+    Some(())
+}
+
+/// The bytes behind their number, which stands so many bytes further on.
+fn text<'a>(rest: &mut &'a [u8], further: usize) -> Option<&'a [u8]> {
+    let (count, behind) = rest.get(further..)?.split_first_chunk()?;
+    let (text, behind) = behind.split_at_checked(usize::try_from(u32::from_le_bytes(*count)).ok()?)?;
+    *rest = behind;
+    Some(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(text: &str) -> Vec<u8> {
+        [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat()
+    }
+
+    #[test]
+    fn lengths_that_lead_out_of_a_record_are_found_wherever_they_stand() {
+        let pairs = [text("key"), text("value")].concat();
+        let counted_pairs = [(pairs.len() as u32).to_le_bytes().to_vec(), pairs].concat();
+        let channel = [vec![1, 0, 2, 0], text("/camera"), text("cdr"), counted_pairs].concat();
+        assert!(texts_fit(op::CHANNEL, &channel).is_some());
+        for length_at in [4, 4 + 4 + 7, 4 + 4 + 7 + 4 + 3, 4 + 4 + 7 + 4 + 3 + 4, 4 + 4 + 7 + 4 + 3 + 4 + 4 + 3] {
+            let mut broken = channel.clone();
+            broken[length_at + 3] = 0x65;
+            assert!(texts_fit(op::CHANNEL, &broken).is_none(), "the length at byte {length_at} was believed");
+        }
+        assert!((0..channel.len()).all(|end| texts_fit(op::CHANNEL, &channel[..end]).is_none()));
+    }
+}
