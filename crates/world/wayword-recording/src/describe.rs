@@ -56,6 +56,16 @@ impl Description {
         Ok(described)
     }
 
+    /// Reads the description of a file: `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same folder.
+    ///
+    /// # Errors
+    /// As [`Description::read`].
+    #[cfg(any(feature = "mcap", feature = "video"))]
+    pub(crate) fn beside(recording: &Path) -> Result<Self, PlatformError> {
+        let own = recording.with_extension("toml");
+        Self::read(&if own.is_file() { own } else { recording.with_file_name("recording.toml") })
+    }
+
     /// How poses are to be read, where their format has orientations of `usual` in a world with z up.
     pub(crate) fn axes(&self, usual: Axes) -> Axes {
         Axes {

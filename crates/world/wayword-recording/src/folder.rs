@@ -2,12 +2,11 @@
 
 use crate::{
     describe::{Description, HINT},
-    open::{entries, scene_of, unknown},
+    names::{entries, scene_of, unknown},
     poses,
     reel::{Recording, Reel, Source, Take},
 };
 use std::{
-    cmp::Ordering,
     collections::BTreeSet,
     path::{Component, Path, PathBuf},
 };
@@ -183,40 +182,10 @@ fn time_of(name: &str) -> Option<f64> {
     Some(number / per_s)
 }
 
-/// The order of names in which numbers count as numbers.
-pub(crate) fn in_order(a: &str, b: &str) -> Ordering {
-    let (mut left, mut right) = (a.as_bytes(), b.as_bytes());
-    while let (Some(x), Some(y)) = (left.first(), right.first()) {
-        let order = if x.is_ascii_digit() && y.is_ascii_digit() {
-            let (x, y) = (leading_number(&mut left), leading_number(&mut right));
-            // Without leading zeros the longer number is the greater.
-            x.len().cmp(&y.len()).then_with(|| x.cmp(y))
-        } else {
-            let order = x.cmp(y);
-            (left, right) = (&left[1..], &right[1..]);
-            order
-        };
-        if order != Ordering::Equal {
-            return order;
-        }
-    }
-    left.len().cmp(&right.len()).then_with(|| a.cmp(b))
-}
-
-/// Takes the digits at the beginning off; returns them without leading zeros.
-fn leading_number<'a>(text: &mut &'a [u8]) -> &'a [u8] {
-    let end = text.iter().position(|byte| !byte.is_ascii_digit()).unwrap_or(text.len());
-    let (number, rest) = text.split_at(end);
-    *text = rest;
-    let zeros = number.iter().position(|digit| *digit != b'0').unwrap_or(number.len());
-    &number[zeros..]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use image::{Rgb, RgbImage};
-    use proptest::prelude::*;
 
     /// A folder with pictures whose red is their number.
     fn folder(names: &[&str]) -> tempfile::TempDir {
@@ -294,14 +263,5 @@ mod tests {
     fn a_folder_without_pictures_is_no_recording() {
         let folder = tempfile::tempdir().unwrap();
         assert!(Folder::open(folder.path()).unwrap().is_none());
-    }
-
-    proptest! {
-        #[test]
-        fn the_order_of_names_is_one(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
-            names.sort_by(|a, b| in_order(a, b));
-            prop_assert_ne!(in_order(&names[0], &names[2]), Ordering::Greater);
-            prop_assert_eq!(in_order(&names[0], &names[1]), in_order(&names[1], &names[0]).reverse());
-        }
     }
 }

@@ -12,6 +12,7 @@ mod folder;
 mod lerobot;
 #[cfg(feature = "mcap")]
 mod mcap;
+mod names;
 mod open;
 mod platform;
 mod poses;

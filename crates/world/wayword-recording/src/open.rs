@@ -3,7 +3,8 @@
 #[cfg(any(feature = "lerobot", feature = "mcap", feature = "video"))]
 use crate::describe::Description;
 use crate::{
-    folder::{self, Folder},
+    folder::Folder,
+    names::{entries, unknown},
     reel::{Recording, Source},
 };
 use std::{collections::BTreeSet, path::Path};
@@ -12,11 +13,6 @@ use wayword_world::files;
 
 const HINT: &str = "give a folder of pictures, a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file; \
                     of another video, ffmpeg -i IN -c copy OUT.mp4 may make one";
-/// Most recordings that an error names.
-const MOST_NAMED: usize = 12;
-/// Most entries of a folder that are looked at.
-const MAX_ENTRIES: usize = 1_000_000;
-
 /// Opens what lies under a path: one recording, or a folder that holds several.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
     if let Some(source) = one(path)? {
@@ -88,7 +84,7 @@ fn lerobot(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
 
 #[cfg(feature = "video")]
 fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Ok(Box::new(crate::video::FilmFile::open(path, description_beside(path)?)?))
+    Ok(Box::new(crate::video::FilmFile::open(path, Description::beside(path)?)?))
 }
 
 #[cfg(not(feature = "video"))]
@@ -98,7 +94,7 @@ fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
 
 #[cfg(feature = "mcap")]
 fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Ok(Box::new(crate::mcap::McapFile::open(path, description_beside(path)?)?))
+    Ok(Box::new(crate::mcap::McapFile::open(path, Description::beside(path)?)?))
 }
 
 #[cfg(not(feature = "mcap"))]
@@ -110,40 +106,6 @@ fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
 fn absent(path: &Path, what: &str) -> PlatformError {
     let hint = "build it with `cargo build --release --features full`";
     files::wrong(path, format!("this build reads no {what}"), hint)
-}
-
-/// `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same folder.
-#[cfg(any(feature = "mcap", feature = "video"))]
-fn description_beside(path: &Path) -> Result<Description, PlatformError> {
-    let own = path.with_extension("toml");
-    let file = if own.is_file() { own } else { path.with_file_name("recording.toml") };
-    Description::read(&file)
-}
-
-/// The name of the recording that a file or folder is.
-pub(crate) fn scene_of(path: &Path) -> Result<SceneId, PlatformError> {
-    let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
-    let name = match name {
-        Some(name) => name.to_string_lossy().into_owned(),
-        // "." and "/" have no name of their own.
-        None => "recording".to_owned(),
-    };
-    SceneId::new(name).map_err(|error| files::wrong(path, error.to_string(), "give the file or folder another name"))
-}
-
-/// The names in a folder, sorted as people count: `2.png` before `10.png`.
-pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
-    let wrong = |error: std::io::Error| files::wrong(folder, error.to_string(), HINT);
-    let mut names = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(wrong)? {
-        if names.len() == MAX_ENTRIES {
-            return Err(files::wrong(folder, format!("holds more than {MAX_ENTRIES} files"), "split it up"));
-        }
-        // A name that is not text cannot be one of ours.
-        names.extend(entry.map_err(wrong)?.file_name().into_string().ok());
-    }
-    names.sort_by(|a, b| folder::in_order(a, b));
-    Ok(names)
 }
 
 /// Several sources in one folder.
@@ -162,14 +124,6 @@ impl Source for Shelf {
         let source = self.sources.iter().find(|source| source.scenes().contains(scene));
         source.map_or_else(|| Err(unknown(scene, &self.scenes())), |source| source.open(scene))
     }
-}
-
-/// There is no such recording among those that there are.
-pub(crate) fn unknown(scene: &SceneId, there: &[SceneId]) -> PlatformError {
-    let names: Vec<&str> = there.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
-    let more = if there.len() > MOST_NAMED { ", ..." } else { "" };
-    let hint = format!("--data holds {}{more}", names.join(", "));
-    PlatformError::UnknownScene { scene: scene.to_string(), hint }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::{
     parquet::Table,
     template::{self, Value},
 };
-use crate::open::entries;
+use crate::names::entries;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use wayword_core::PlatformError;

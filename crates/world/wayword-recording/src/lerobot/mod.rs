@@ -12,7 +12,7 @@ mod template;
 
 use crate::{
     describe::Description,
-    open::{scene_of, unknown},
+    names::{scene_of, unknown},
     reel::{Recording, Reel, Source},
     track::{Fix, Track},
 };

@@ -18,7 +18,7 @@ mod tree;
 use crate::{
     axes::{Axes, Body},
     describe::Description,
-    open,
+    names,
     reel::{Recording, Source},
     track::{Fix, Track},
 };
@@ -62,7 +62,7 @@ impl McapFile {
             };
             return Err(files::wrong(path, reason, HINT));
         }
-        Ok(Self { path: path.to_owned(), scene: open::scene_of(path)?, described })
+        Ok(Self { path: path.to_owned(), scene: names::scene_of(path)?, described })
     }
 
     fn wrong(&self, (reason, hint): topics::Unclear) -> PlatformError {
@@ -162,7 +162,7 @@ impl Source for McapFile {
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         if *scene != self.scene {
-            return Err(open::unknown(scene, &self.scenes()));
+            return Err(names::unknown(scene, &self.scenes()));
         }
         self.read()
     }

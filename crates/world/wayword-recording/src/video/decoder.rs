@@ -1,10 +1,6 @@
 //! What the decoders of all codecs have in common.
 
-use super::{
-    av1::Av1,
-    colour::{Colour, Planes},
-    h264::{self, H264},
-};
+use super::colour::Planes;
 use crate::size;
 
 /// A sample on its way into a decoder.
@@ -28,31 +24,6 @@ pub(super) trait Decode {
 
     /// Hands out what is left when nothing more comes.
     fn finish(&mut self, out: &mut Out<'_>) -> Result<(), String>;
-}
-
-/// A codec that is read, with what its decoder has to know.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Codec {
-    H264(h264::Setup),
-    /// What the container says of the colours.
-    Av1(Colour),
-}
-
-impl Codec {
-    pub(super) fn decoder(&self) -> Result<Box<dyn Decode>, String> {
-        Ok(match self {
-            Self::H264(setup) => Box::new(H264::new(setup)?),
-            Self::Av1(colour) => Box::new(Av1::new(*colour)?),
-        })
-    }
-
-    /// Whether decoding can begin with a sample that the container marks so.
-    pub(super) fn can_begin_with(&self, sample: &[u8]) -> bool {
-        match self {
-            Self::H264(setup) => setup.can_begin_with(sample),
-            Self::Av1(_) => true,
-        }
-    }
 }
 
 /// Refuses pictures of sizes that no camera has.

@@ -27,7 +27,7 @@ const KNOWN: [(&[u8; 4], &str); 14] = [
 
 /// A codec, with what its decoder needs to know beforehand.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Codec {
+pub(super) enum NamedCodec {
     /// `AVCDecoderConfigurationRecord` (ISO/IEC 14496-15, section 5.3.3).
     H264(Vec<u8>),
     /// `AV1CodecConfigurationRecord` (AV1 in ISOBMFF, section 2.3).
@@ -39,7 +39,7 @@ pub(super) enum Codec {
 /// A sample entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Entry {
-    pub(super) codec: Codec,
+    pub(super) codec: NamedCodec,
     pub(super) width_px: u16,
     pub(super) height_px: u16,
     /// What the container says of the colours.
@@ -59,9 +59,9 @@ pub(super) fn entry(stsd: &[u8]) -> Result<Entry, String> {
     let (width_px, height_px) = (fields.u16()?, fields.u16()?);
     let within_entry = body.get(BEFORE_BOXES..).unwrap_or_default();
     let codec = match &kind {
-        b"avc1" | b"avc3" => Codec::H264(need(within_entry, b"avcC")?.to_vec()),
-        b"av01" => Codec::Av1,
-        other => Codec::Other(named(other)),
+        b"avc1" | b"avc3" => NamedCodec::H264(need(within_entry, b"avcC")?.to_vec()),
+        b"av01" => NamedCodec::Av1,
+        other => NamedCodec::Other(named(other)),
     };
     Ok(Entry { codec, width_px, height_px, colour: colour(within_entry).map_err(within("colr"))? })
 }

@@ -2,6 +2,7 @@
 
 mod av1;
 mod boxes;
+mod codec;
 mod colour;
 mod decoder;
 mod edits;
@@ -20,7 +21,7 @@ pub(crate) use film::Film;
 
 use crate::{
     describe::Description,
-    open::{scene_of, unknown},
+    names::{scene_of, unknown},
     poses,
     reel::{Recording, Reel, Source, Take},
 };

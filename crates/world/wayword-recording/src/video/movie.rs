@@ -2,7 +2,7 @@
 
 use super::{
     boxes::{Fields, Header, boxes, find, need, within},
-    decoder::Codec,
+    codec::Codec,
     edits::{self, Clocks, Shown},
     entry::{self, Entry, entry},
     fragments::Fragments,
@@ -155,9 +155,9 @@ impl<'a> VideoTrack<'a> {
 
     fn movie(&self, parts: &Parts, file_bytes: u64) -> Result<Movie, String> {
         let codec = match &self.entry.codec {
-            entry::Codec::H264(record) => Codec::H264(h264::Setup::read(record, self.entry.colour)?),
-            entry::Codec::Av1 => Codec::Av1(self.entry.colour),
-            entry::Codec::Other(name) => return Err(format!("is in {name}, and H.264 and AV1 are read")),
+            entry::NamedCodec::H264(record) => Codec::H264(h264::Setup::read(record, self.entry.colour)?),
+            entry::NamedCodec::Av1 => Codec::Av1(self.entry.colour),
+            entry::NamedCodec::Other(name) => return Err(format!("is in {name}, and H.264 and AV1 are read")),
         };
         let mut samples = tables::samples(self.stbl, file_bytes)?;
         let mut fragments = Fragments::new(&parts.moov, self.number, file_bytes)?;
@@ -176,9 +176,9 @@ impl<'a> VideoTrack<'a> {
 
     fn described(&self) -> String {
         let codec = match &self.entry.codec {
-            entry::Codec::H264(_) => "H.264",
-            entry::Codec::Av1 => "AV1",
-            entry::Codec::Other(name) => name,
+            entry::NamedCodec::H264(_) => "H.264",
+            entry::NamedCodec::Av1 => "AV1",
+            entry::NamedCodec::Other(name) => name,
         };
         format!("{} ({codec}, {} x {})", self.number, self.entry.width_px, self.entry.height_px)
     }
@@ -201,7 +201,7 @@ fn chosen<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<
     let mut meant = tracks.iter().filter(|track| match wanted {
         Some(wanted) => track.number.to_string() == wanted,
         // Pictures of the title and previews are no second camera.
-        None => tracks.len() == 1 || !matches!(track.entry.codec, entry::Codec::Other(_)),
+        None => tracks.len() == 1 || !matches!(track.entry.codec, entry::NamedCodec::Other(_)),
     });
     match (meant.next(), meant.next(), wanted) {
         (Some(track), None, _) => Ok(track),

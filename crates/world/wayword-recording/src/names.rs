@@ -1,0 +1,89 @@
+//! What recordings, and the files in their folders, are called.
+
+use std::{cmp::Ordering, path::Path};
+use wayword_core::{PlatformError, SceneId};
+use wayword_world::files;
+
+const HINT: &str = "give a folder that can be read";
+/// Most recordings that an error names.
+const MOST_NAMED: usize = 12;
+/// Most entries of a folder that are looked at.
+const MAX_ENTRIES: usize = 1_000_000;
+
+/// The name of the recording that a file or folder is.
+pub(crate) fn scene_of(path: &Path) -> Result<SceneId, PlatformError> {
+    let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
+    let name = match name {
+        Some(name) => name.to_string_lossy().into_owned(),
+        // "." and "/" have no name of their own.
+        None => "recording".to_owned(),
+    };
+    SceneId::new(name).map_err(|error| files::wrong(path, error.to_string(), "give the file or folder another name"))
+}
+
+/// The names in a folder, sorted as people count: `2.png` before `10.png`.
+pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
+    let wrong = |error: std::io::Error| files::wrong(folder, error.to_string(), HINT);
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(wrong)? {
+        if names.len() == MAX_ENTRIES {
+            return Err(files::wrong(folder, format!("holds more than {MAX_ENTRIES} files"), "split it up"));
+        }
+        // A name that is not text cannot be one of ours.
+        names.extend(entry.map_err(wrong)?.file_name().into_string().ok());
+    }
+    names.sort_by(|a, b| in_order(a, b));
+    Ok(names)
+}
+
+/// There is no such recording among those that there are.
+pub(crate) fn unknown(scene: &SceneId, there: &[SceneId]) -> PlatformError {
+    let names: Vec<&str> = there.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
+    let more = if there.len() > MOST_NAMED { ", ..." } else { "" };
+    let hint = format!("--data holds {}{more}", names.join(", "));
+    PlatformError::UnknownScene { scene: scene.to_string(), hint }
+}
+
+/// The order of names in which numbers count as numbers.
+fn in_order(a: &str, b: &str) -> Ordering {
+    let (mut left, mut right) = (a.as_bytes(), b.as_bytes());
+    while let (Some(x), Some(y)) = (left.first(), right.first()) {
+        let order = if x.is_ascii_digit() && y.is_ascii_digit() {
+            let (x, y) = (leading_number(&mut left), leading_number(&mut right));
+            // Without leading zeros the longer number is the greater.
+            x.len().cmp(&y.len()).then_with(|| x.cmp(y))
+        } else {
+            let order = x.cmp(y);
+            (left, right) = (&left[1..], &right[1..]);
+            order
+        };
+        if order != Ordering::Equal {
+            return order;
+        }
+    }
+    left.len().cmp(&right.len()).then_with(|| a.cmp(b))
+}
+
+/// Takes the digits at the beginning off; returns them without leading zeros.
+fn leading_number<'a>(text: &mut &'a [u8]) -> &'a [u8] {
+    let end = text.iter().position(|byte| !byte.is_ascii_digit()).unwrap_or(text.len());
+    let (number, rest) = text.split_at(end);
+    *text = rest;
+    let zeros = number.iter().position(|digit| *digit != b'0').unwrap_or(number.len());
+    &number[zeros..]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_order_of_names_is_one(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
+            names.sort_by(|a, b| in_order(a, b));
+            prop_assert_ne!(in_order(&names[0], &names[2]), Ordering::Greater);
+            prop_assert_eq!(in_order(&names[0], &names[1]), in_order(&names[1], &names[0]).reverse());
+        }
+    }
+}
