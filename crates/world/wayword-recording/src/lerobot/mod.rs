@@ -7,7 +7,7 @@ mod episodes;
 mod info;
 mod parquet;
 mod pictures;
-mod place;
+mod pose_feature;
 mod template;
 
 use crate::{
@@ -21,7 +21,7 @@ use episodes::Episode;
 use info::{Info, Layout};
 use parquet::Table;
 use pictures::{Stills, Stretch};
-use place::Place;
+use pose_feature::PoseFeature;
 use std::{ops::Range, path::Path};
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
@@ -33,7 +33,7 @@ pub(crate) struct Dataset {
     described: Description,
     info: Info,
     camera: Camera,
-    place: Option<Place>,
+    place: Option<PoseFeature>,
     /// By name, which is also by number.
     episodes: Vec<(SceneId, Episode)>,
 }
@@ -46,7 +46,7 @@ impl Dataset {
     pub(crate) fn open(root: &Path, described: Description) -> Result<Self, PlatformError> {
         let info = Info::read(root)?;
         let camera = camera::choose(root, &info, described.camera.as_deref())?;
-        let place = Place::find(root, &info, &described)?;
+        let place = PoseFeature::find(root, &info, &described)?;
         let name = scene_of(root)?;
         let named = |episode: Episode| {
             let scene = SceneId::new(format!("{name}_{:06}", episode.number));

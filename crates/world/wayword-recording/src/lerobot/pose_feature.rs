@@ -22,7 +22,7 @@ const NO_ROBOT: [&str; 12] =
 
 /// The feature that tells where the robot was, and which of its elements.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PoseFeature {
     pub(super) feature: String,
     /// Number of its elements.
     pub(super) width: usize,
@@ -53,7 +53,7 @@ enum Role {
     Q(usize),
 }
 
-impl Place {
+impl PoseFeature {
     /// Where the user says that poses are, else in the one feature that consists of x, y and a yaw and of nothing else; `None`
     /// where there is no such feature, or several.
     ///
@@ -116,7 +116,7 @@ impl Place {
         Ok(Self { feature: key.to_owned(), width: names.len(), x, y, z: at(Role::Z)?, facing })
     }
 
-    /// The elements that are needed, in the order in which [`Place::fix`] takes them.
+    /// The elements that are needed, in the order in which [`PoseFeature::fix`] takes them.
     pub(super) fn elements(&self) -> Vec<usize> {
         let facing = match self.facing {
             Facing::Unknown => Vec::new(),
@@ -127,7 +127,7 @@ impl Place {
         [self.x, self.y].into_iter().chain(self.z).chain(facing).collect()
     }
 
-    /// Where the robot was, from the numbers of [`Place::elements`].
+    /// Where the robot was, from the numbers of [`PoseFeature::elements`].
     pub(super) fn fix(&self, time_s: f64, numbers: &[f64], described: &Description) -> Option<Fix> {
         let axes = described.axes(Axes::of(Body::Robot));
         let (place, facing) = numbers.split_at_checked(2 + usize::from(self.z.is_some()))?;
@@ -189,9 +189,9 @@ mod tests {
         serde_json::from_value(info).unwrap()
     }
 
-    fn find(features: &[(&str, &[&str])], poses: Option<&str>) -> Result<Option<Place>, String> {
+    fn find(features: &[(&str, &[&str])], poses: Option<&str>) -> Result<Option<PoseFeature>, String> {
         let described = Description { poses: poses.map(str::to_owned), ..Description::default() };
-        Place::find(Path::new("d"), &info(features), &described).map_err(|error| error.to_string())
+        PoseFeature::find(Path::new("d"), &info(features), &described).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -242,6 +242,6 @@ mod tests {
         let described =
             Description { poses: Some("state".to_owned()), world: Some(World::YUp), ..Description::default() };
         let info = info(&[("state", &["x", "y", "yaw"])]);
-        assert!(Place::find(Path::new("d"), &info, &described).unwrap_err().to_string().contains("z-up"));
+        assert!(PoseFeature::find(Path::new("d"), &info, &described).unwrap_err().to_string().contains("z-up"));
     }
 }
