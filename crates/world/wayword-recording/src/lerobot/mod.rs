@@ -33,7 +33,7 @@ pub(crate) struct Dataset {
     described: Description,
     info: Info,
     camera: Camera,
-    place: Option<PoseFeature>,
+    pose_feature: Option<PoseFeature>,
     /// By name, which is also by number.
     episodes: Vec<(SceneId, Episode)>,
 }
@@ -46,7 +46,7 @@ impl Dataset {
     pub(crate) fn open(root: &Path, described: Description) -> Result<Self, PlatformError> {
         let info = Info::read(root)?;
         let camera = camera::choose(root, &info, described.camera.as_deref())?;
-        let place = PoseFeature::find(root, &info, &described)?;
+        let pose_feature = PoseFeature::find(root, &info, &described)?;
         let name = scene_of(root)?;
         let named = |episode: Episode| {
             let scene = SceneId::new(format!("{name}_{:06}", episode.number));
@@ -59,19 +59,19 @@ impl Dataset {
         if episodes.is_empty() {
             return Err(files::wrong(&root.join("meta"), "lists no episodes", HINT));
         }
-        Ok(Self { described, info, camera, place, episodes })
+        Ok(Self { described, info, camera, pose_feature, episodes })
     }
 
     /// Where the robot was in each row.
     fn track(&self, table: &Table, rows: Range<u64>, times_s: &[f64]) -> Result<Option<Track>, PlatformError> {
-        let Some(place) = &self.place else { return Ok(None) };
-        let elements = place.elements();
-        let numbers = table.lists(&place.feature, rows, place.width, &elements)?;
+        let Some(feature) = &self.pose_feature else { return Ok(None) };
+        let elements = feature.elements();
+        let numbers = table.lists(&feature.feature, rows, feature.width, &elements)?;
         let fixes = times_s.iter().zip(numbers.chunks_exact(elements.len()));
         let fixes: Vec<Fix> =
-            fixes.filter_map(|(time_s, numbers)| place.fix(*time_s, numbers, &self.described)).collect();
+            fixes.filter_map(|(time_s, numbers)| feature.fix(*time_s, numbers, &self.described)).collect();
         Track::new(fixes).map(Some).ok_or_else(|| {
-            let reason = format!("column {:?}: no row holds a place in metres", place.feature);
+            let reason = format!("column {:?}: no row holds a place in metres", feature.feature);
             files::wrong(
                 table.path(),
                 reason,

@@ -27,8 +27,9 @@ const MAX_RECORD_BYTES: u64 = 64 << 20;
 const BUFFER_BYTES: usize = 16 << 10;
 /// A chunk may become this large, and so many times larger than it is in the file.
 const MAX_UNPACKED: (u64, u64) = (256 << 20, 1000);
-/// No record is longer than its chunk, nor than the second number; a chunk may be tiny, but not what is held of it at once.
-const UNPACKED_RECORD: (u64, u64) = (64 << 10, 1 << 30);
+/// No record is longer than its chunk, nor than the second number; a chunk may be tiny, but not what is held of it at once. The
+/// crate makes room for a whole record before its bytes are there, so the second number is that of the largest picture.
+const UNPACKED_RECORD: (u64, u64) = (64 << 10, 258 << 20);
 
 /// How many bytes are wanted of the messages of a channel.
 pub(crate) type Most<'a> = dyn Fn(u16) -> u64 + 'a;

@@ -32,25 +32,40 @@ const HEADER: &str = "the header needs a column `time_s` or `image`, and `x`, `y
 pub(super) fn read(text: &str) -> Result<Rows, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let (_, header) = lines.next().ok_or("is empty")?;
-    let names = cells(header.trim_start_matches('\u{feff}')).map_err(|reason| format!("line 1: {reason}"))?;
-    let names: Vec<String> = names.into_iter().map(name_of).collect();
+    let names: Vec<String> = Cells::of(header.trim_start_matches('\u{feff}')).plain.into_iter().map(name_of).collect();
     let columns = Columns::of(&names).ok_or_else(|| format!("line 1: {HEADER}"))?;
-    let rows = lines.filter(|(_, line)| !line.starts_with('#')).map(|(at, line)| {
-        cells(line).and_then(|cells| columns.row(&cells)).map_err(|reason| format!("line {}: {reason}", at + 1))
-    });
+    let rows = lines
+        .filter(|(_, line)| !line.starts_with('#'))
+        .map(|(at, line)| columns.row(&Cells::of(line)).map_err(|reason| format!("line {}: {reason}", at + 1)));
     // The sensor of EuRoC has z ahead and x up (`body_T_cam` in its sensor.yaml).
     let is_euroc = header.to_ascii_lowercase().contains(EUROC_POSITION);
     let body = if is_euroc { Body::Optical } else { Body::Robot };
     Ok(Rows { usual: Axes::of(body), rows: rows.collect::<Result<_, _>>()? })
 }
 
-/// The cells of a line. One that holds what stands between cells would shift all that follow, so it is refused.
-fn cells(line: &str) -> Result<Vec<&str>, String> {
-    let between = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
-    let plain = |cell: &str| !cell.starts_with('"') || (cell.len() > 1 && cell.ends_with('"'));
-    let refused = || format!("a cell in quotes holds {between:?}, which is not read");
-    let cells = line.split(between).map(str::trim);
-    cells.map(|cell| plain(cell).then(|| cell.trim_matches('"')).ok_or_else(refused)).collect()
+/// The cells of a line, up to one in quotes that holds what stands between cells: it shifts all that follow.
+struct Cells<'a> {
+    plain: Vec<&'a str>,
+    /// What the first cell that is not read holds, where there is one.
+    held: Option<char>,
+}
+
+impl<'a> Cells<'a> {
+    fn of(line: &'a str) -> Self {
+        let between = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
+        let is_plain = |cell: &&str| !cell.starts_with('"') || (cell.len() > 1 && cell.ends_with('"'));
+        let cells = || line.split(between).map(str::trim);
+        let plain: Vec<&str> = cells().take_while(is_plain).map(|cell| cell.trim_matches('"')).collect();
+        let held = (plain.len() < cells().count()).then_some(between);
+        Self { plain, held }
+    }
+
+    fn get(&self, column: usize) -> Result<&'a str, String> {
+        self.plain.get(column).copied().ok_or_else(|| match self.held {
+            Some(between) => format!("a cell in quotes holds {between:?}, which is not read"),
+            None => format!("only {} cells", self.plain.len()),
+        })
+    }
 }
 
 /// A column's name as it is compared: `#timestamp [ns]` is `timestamp_ns`, `p_RS_R_x [m]` is `x`.
@@ -84,8 +99,8 @@ impl Columns {
         Some(Self { of, position: [axis("x")?, axis("y")?, axis("z").or_else(|| axis("x"))?], facing: Seat::of(&find) })
     }
 
-    fn row(&self, cells: &[&str]) -> Result<Row, String> {
-        let cell = |column: usize| cells.get(column).copied().ok_or_else(|| format!("only {} cells", cells.len()));
+    fn row(&self, cells: &Cells<'_>) -> Result<Row, String> {
+        let cell = |column: usize| cells.get(column);
         let value = |column: usize| number(cell(column)?);
         let of = match self.of {
             Index::Time { column, unit } => Of::Time(seconds(value(column)?, unit)),

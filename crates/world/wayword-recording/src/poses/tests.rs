@@ -78,6 +78,7 @@ fn what_is_wrong_is_told_with_its_line() {
         ("poses.csv", "time,x,y\n1,2,here\n", "line 2: \"here\" is no number"),
         ("poses.csv", "time,x,y\n1,2\n", "line 2: only 2 cells"),
         ("poses.csv", "image,x,y\n\"0, or so.png\",1,2\n", "line 2: a cell in quotes holds ','"),
+        ("poses.csv", "time,note,x,y\n1,\"left, then right\",1,2\n", "line 2: a cell in quotes holds ','"),
         ("poses.tum", "1 2 3\n", "line 1: 3 numbers, not 8"),
         ("poses.tum", "1 0 0 0 0 0 0 1\n1 2 3\n", "line 2: 3 numbers"),
         ("poses.json", "[{\"position\": [0, 0, 0]}]", "pose 0: expected"),

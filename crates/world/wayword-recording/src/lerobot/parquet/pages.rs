@@ -2,7 +2,7 @@
 //!
 //! The crate has a reader of pages as well. It takes as much memory as a page's header announces, up to 2 GiB, and unfolds gzip to any
 //! length; and five bytes of a broken header can keep it busy for minutes, where they announce a long list in a field that it passes
-//! over. So headers are read here, and pages are unfolded before the crate decodes them. That also needs no Zstandard in C.
+//! over. So headers are read here, and pages are unfolded before the crate decodes them.
 
 use super::thrift::{self, Thrift};
 use parquet::{
@@ -27,10 +27,11 @@ const HEADER_BYTES: [u64; 2] = [1 << 9, 1 << 20];
 const USUAL_BYTES: usize = 8 << 20;
 /// And larger ones to this many times of what they are compressed.
 const MAX_RATIO: usize = 256;
-/// Values that the pages of a few rows may announce in any file, and for each of its bytes. A page whose values are all the same
-/// takes a few bytes for any number of them, but there are other columns whose values are not.
+/// Values that the pages of a few rows may announce in any file, for each of its bytes, and at most. A page whose values are all the
+/// same takes a few bytes for any number of them, but there are other columns whose values are not. Each takes up to 12 bytes.
 const USUAL_VALUES: u64 = 16 << 20;
 const MAX_VALUES_PER_BYTE: u64 = 64;
+const MOST_VALUES: u64 = 64 << 20;
 
 /// Where a column lies in its file; `None` where that cannot be.
 pub(super) fn place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
@@ -124,7 +125,7 @@ impl Pages {
     pub(super) fn new(file: File, chunk: &ColumnChunkMetaData, announced: Arc<AtomicU64>) -> Result<Self, String> {
         let place = place(chunk).ok_or("has no place")?;
         let length = file.metadata().map_err(|error| error.to_string())?.len();
-        let max_announced = length.saturating_mul(MAX_VALUES_PER_BYTE).max(USUAL_VALUES);
+        let max_announced = length.saturating_mul(MAX_VALUES_PER_BYTE).clamp(USUAL_VALUES, MOST_VALUES);
         Ok(Self { file, place, header: None, codec: chunk.compression_codec(), announced, max_announced })
     }
 
