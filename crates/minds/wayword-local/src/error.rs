@@ -15,16 +15,6 @@ pub enum LocalError {
         /// What is wrong with it.
         problem: String,
     },
-    /// The name of a file that only servers run.
-    #[error(
-        "{name:?} is a GGUF file, which no model in process is made of\nhint: start it with a server, and name it by that server:{servers}"
-    )]
-    Gguf {
-        /// What was given.
-        name: String,
-        /// A line for each server: how it is started, and the model's name then.
-        servers: String,
-    },
     /// A file that has to be there is not.
     #[error("{}: {what} is missing\nhint: {hint}", file.display())]
     Missing {

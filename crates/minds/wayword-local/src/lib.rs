@@ -13,7 +13,6 @@ mod clip;
 mod device;
 mod error;
 mod eyes;
-mod gguf;
 mod greedy;
 mod hub;
 mod json;

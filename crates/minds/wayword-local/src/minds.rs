@@ -5,7 +5,6 @@ use crate::{
     blip::{BlipCaptioner, BlipVqa},
     blip2::Blip2,
     eyes::{Blip2Eye, BlipEye, Eye},
-    gguf,
     hub::{Hub, ModelFolder, ModelName, Needs, Progress},
     json,
     kept::LocalModel,
@@ -162,8 +161,8 @@ fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
     let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
     let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));
     let parts: Vec<ModelName> = parts.collect::<Result<_, _>>()?;
-    if let Some(file) = parts.iter().find(|part| part.is_gguf()) {
-        return Err(gguf::refused(&file.to_string()));
+    if parts.iter().any(ModelName::is_gguf) {
+        return Err(no_name(name, "no model in process is made of a GGUF file"));
     }
     if parts.len() > 2 {
         return Err(no_name(name, "two parts are one BLIP that answers and one that describes"));

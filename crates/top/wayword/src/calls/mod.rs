@@ -1,6 +1,7 @@
 //! The calls of a command to models: reached over HTTP or made in process, kept in the ledger, bounded by a budget.
 
 mod configured;
+mod gguf;
 #[cfg(feature = "local")]
 mod local;
 #[cfg(not(feature = "local"))]
@@ -55,6 +56,9 @@ impl Calls {
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
         let services = Services::new(config(job)?, nowhere)?;
         let price = |name: &str| -> Result<Option<Price>, Error> {
+            if let Some(refused) = gguf::refused(name) {
+                return Err(refused);
+            }
             if is_in_process(name) {
                 Local::rehearse(job, name)?;
                 return Ok(Some(Price::nothing()));
@@ -93,6 +97,9 @@ impl Calls {
         let run = ledger.run(run, Limits { max_usd: service.max_usd, max_calls: service.max_calls })?;
         let services = Services::new(config(job)?, run.clone())?;
         let models = settings.roles.models();
+        if let Some(refused) = models.iter().find_map(|name| gguf::refused(name)) {
+            return Err(refused);
+        }
         let in_process = models.iter().any(|name| is_in_process(name));
         let local = if in_process { Some(Local::open(job, run.clone(), output)?) } else { None };
         // Who waits for nobody over a network has no use for more items than cores.

@@ -3,21 +3,23 @@
 //! candle reads the format, but what turns a file into words (positions, tokenizers, templates, draws) was over a thousand lines,
 //! slower than what llama.cpp does with the same file.
 
-use crate::LocalError;
+use crate::{error::Error, settings::is_in_process};
 use std::{borrow::Cow, path::Path};
 
 /// Longest tag that Ollama takes.
 const LONGEST_TAG: usize = 80;
 
-/// The error for a name that is one of a model in process, and ends in a GGUF file.
-pub(crate) fn refused(name: &str) -> LocalError {
-    let rest = name.strip_prefix("hf/").unwrap_or(name);
+/// The error for a name of a model in process that ends in a GGUF file; `None` for any other.
+pub(super) fn refused(name: &str) -> Option<Error> {
+    let rest = name.strip_prefix("hf/").filter(|_| is_in_process(name))?;
+    Path::new(rest).extension().filter(|ending| ending.eq_ignore_ascii_case("gguf"))?;
     let is_path = rest.starts_with(['/', '.']);
     let servers = match rest.split_once(':').filter(|_| !is_path) {
         Some((repo, file)) => on_hub(repo.split_once('@').map_or(repo, |(repo, _)| repo), file),
         None => on_disk(rest),
     };
-    LocalError::Gguf { name: name.to_owned(), servers }
+    let problem = format!("{name:?} is a GGUF file, which no model in process is made of");
+    Some(Error::usage(problem, format!("start it with a server, and name it by that server:{servers}")))
 }
 
 /// A file of a repository: both servers fetch it themselves.
@@ -68,7 +70,7 @@ mod tests {
 
     /// The hint's lines for a name.
     fn told(name: &str) -> Vec<String> {
-        let error = refused(name).to_string();
+        let error = refused(name).unwrap().to_string();
         let (problem, hint) = error.split_once("\nhint: ").unwrap();
         assert!(problem.contains(name), "{problem}");
         hint.lines().skip(1).map(|line| line.trim().to_owned()).collect()
