@@ -1,7 +1,7 @@
 //! Datasets of LeRobot. The first byte says which file of which dataset the rest stands for: Parquet with rows, with pictures or with
 //! lists of episodes, or the JSON beside it.
 //!
-//! Parquet (`parquet`), what it is packed with (`snap`, `ruzstd`, `flate2`) and pictures (`image`) are read by others' code, whose panics
+//! Parquet (`parquet`), what it is packed with (`snap`, `zstd`, `flate2`) and pictures (`image`) are read by others' code, whose panics
 //! are contained. Memory: pages may unpack to 256 times their length, and a few rows may have 64 values for each byte of a file.
 #![no_main]
 

@@ -78,8 +78,8 @@ impl View {
         self.image.is_none() && self.truth.is_none()
     }
 
-    /// What the platform knows. Only the `labels` minds and the checks' evidence may ask: a test in wayword-synthesis holds
-    /// every other mind to the picture.
+    /// What the platform knows. Only the `labels` minds and the checks' evidence may ask: the invariants test of
+    /// the program holds every other mind to the picture.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&GroundTruth> {
         self.truth.as_ref()

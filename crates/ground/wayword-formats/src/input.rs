@@ -142,10 +142,10 @@ pub(crate) struct Items<'a> {
     file: &'a Path,
     /// The way to what is wrong within an item.
     field: RefCell<String>,
-    progress: RefCell<Progress<'a>>,
+    progress: RefCell<ListProgress<'a>>,
 }
 
-struct Progress<'a> {
+struct ListProgress<'a> {
     take: Take<'a>,
     index: usize,
     inside: bool,
@@ -154,7 +154,7 @@ struct Progress<'a> {
 
 impl<'a> Items<'a> {
     pub(crate) fn new(file: &'a Path, take: Take<'a>) -> Self {
-        let progress = Progress { take, index: 0, inside: false, refused: None };
+        let progress = ListProgress { take, index: 0, inside: false, refused: None };
         Self { file, field: RefCell::default(), progress: progress.into() }
     }
 

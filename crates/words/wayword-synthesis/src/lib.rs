@@ -1,4 +1,4 @@
-//! From views to words: the dialogue, prompts, styles, writing, checks and repair, and the offline minds.
+//! From views to words: the dialogue, prompts, styles, writing and repair, and the offline minds.
 //!
 //! Architecture invariant: nothing here opens a file or a connection, and nothing knows a platform beyond the trait.
 

@@ -30,7 +30,8 @@ pub(super) fn bare_seconds(text: &str) -> Option<Duration> {
     Some(Duration::from_secs_f64(s.min(MOST.as_secs_f64())))
 }
 
-/// How long it is until a moment that is written as an HTTP date (RFC 9110, section 5.6.7, without its obsolete forms).
+/// How long it is until a moment that is written as an HTTP date (RFC 9110, section 5.6.7). In
+/// its two obsolete forms, which no service is known to send, it is not read: then the wait is ours.
 pub(super) fn until_http_date(text: &str, now: SystemTime) -> Option<Duration> {
     let at = DateTimeParser::new().relaxed_weekday(true).parse_timestamp(short(text)?).ok()?;
     Some(until(at.into(), now))

@@ -31,15 +31,15 @@ macro_rules! top_groups {
         /// tell their line.
         #[derive(Default, Deserialize)]
         #[serde(deny_unknown_fields, default)]
-        struct File {
+        struct SettingsFile {
             $($($key: Option<$Type>,)*)*
             roles: AskedRoles,
             service: Service,
             providers: Providers,
         }
 
-        impl From<File> for Asked {
-            fn from(file: File) -> Self {
+        impl From<SettingsFile> for Asked {
+            fn from(file: SettingsFile) -> Self {
                 $(let $name = $Group { $($key: file.$key,)* };)*
                 Self { $($name,)* roles: file.roles, service: file.service, providers: file.providers }
             }
@@ -49,7 +49,7 @@ macro_rules! top_groups {
 
 /// What a run is asked to do. Everything is optional here: what a flag leaves out comes from the file, then from a default.
 #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
-#[serde(from = "File")]
+#[serde(from = "SettingsFile")]
 pub struct Asked {
     /// The world.
     #[command(flatten)]

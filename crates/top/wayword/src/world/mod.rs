@@ -82,10 +82,10 @@ pub const PLATFORMS: [Listed; 7] = [
                 "--data FILE or DIR, with poses in it or beside it for turns and distances (docs/RECORDINGS.md)"
             }
             (true, false) => {
-                "--data DIR of pictures or MCAP, with poses in it or beside it for turns and distances (docs/RECORDINGS.md); MP4 and LeRobot need the feature full"
+                "--data DIR of pictures or MCAP, with poses in it or beside it for turns and distances (docs/RECORDINGS.md); MP4 and LeRobot may need the feature full"
             }
             _ => {
-                "--data DIR of pictures, with poses beside them for turns and distances (docs/RECORDINGS.md); other recordings need the feature full"
+                "--data DIR of pictures, with poses beside them for turns and distances (docs/RECORDINGS.md); other recordings may need the feature full"
             }
         },
         offers: "pictures along the way that was recorded, and nothing else: a model has to see",
