@@ -180,3 +180,17 @@ pub enum PlatformError {
         hint: &'static str,
     },
 }
+
+impl PlatformError {
+    /// There is nowhere in a scene to stand where a frame says: its viewpoint is unknown, or else its place.
+    #[must_use]
+    pub fn nowhere(scene: &SceneId, frame: &Frame) -> Self {
+        let eye = frame.pose.position;
+        let place = format!("{:.2} {:.2} {:.2}", eye.x, eye.y, eye.z);
+        let named = frame.viewpoint.clone().map_or_else(|| ViewpointId::new(place), Ok);
+        named.map_or_else(
+            |_| Self::NotAViewpoint { scene: scene.clone() },
+            |viewpoint| Self::UnknownViewpoint { scene: scene.clone(), viewpoint },
+        )
+    }
+}

@@ -18,6 +18,7 @@ use wayword_core::{
     ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
+use wayword_world::seen_from;
 
 /// Who stands no farther from the middle of a wall stands in its opening, centimetres.
 const THRESHOLD_CM: i32 = 25;
@@ -117,14 +118,8 @@ impl Home {
         if let Some(seen_from) = self.seen_from.get() {
             return Ok(seen_from);
         }
-        let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
-        for viewpoint in self.graph.viewpoints() {
-            let eye = self.graph.position(viewpoint).unwrap_or_default();
-            for label in self.labels_around(Pose::level(eye, Heading::NORTH))? {
-                seen_from.entry(label.object).or_default().insert(viewpoint.clone());
-            }
-        }
-        Ok(self.seen_from.get_or_init(|| seen_from))
+        let seen = seen_from(&self.graph, |eye| self.labels_around(Pose::level(eye, Heading::NORTH)))?;
+        Ok(self.seen_from.get_or_init(|| seen))
     }
 
     /// Refuses poses outside the house.
@@ -133,12 +128,7 @@ impl Home {
         if eye.is_finite() && self.room_name(eye).is_some() {
             return Ok(());
         }
-        let place = format!("{:.2} {:.2} {:.2}", eye.x, eye.y, eye.z);
-        let named = frame.viewpoint.clone().map_or_else(|| ViewpointId::new(place), Ok);
-        Err(named.map_or_else(
-            |_| PlatformError::NotAViewpoint { scene: self.id.clone() },
-            |viewpoint| PlatformError::UnknownViewpoint { scene: self.id.clone(), viewpoint },
-        ))
+        Err(PlatformError::nowhere(&self.id, frame))
     }
 
     /// Ground under every viewpoint.

@@ -3,7 +3,7 @@
 use crate::{
     raster::Raster,
     sight::{self, Palette},
-    walk,
+    walk::{self, Walkable},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,10 +12,11 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
-    View, ViewpointGraph, ViewpointId,
+    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
+    SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
+use wayword_world::seen_from;
 
 /// Widest gaze that one flat picture can show, radians.
 const WIDEST_RAD: f64 = 2.6;
@@ -273,7 +274,8 @@ impl<S: Simulator> Platform for Live<S> {
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         let known = self.scene(scene)?;
         if known.seen_from.get().is_none() {
-            let seen = walk::seen_from(&mut Walker(self, scene), &known.graph)?;
+            let mut walker = Walker(self, scene);
+            let seen = seen_from(&known.graph, |eye| walker.labels_around(Pose::level(eye, Heading::NORTH)))?;
             // Another thread may have been faster: it found the same.
             let _ = known.seen_from.set(seen);
         }

@@ -1,10 +1,8 @@
 //! Random walks through a live world: a way between two places, with frames along it.
 
 use rand::Rng;
-use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{
-    DVec3, Frame, Gaze, Heading, Label, ObjectId, Path, PathRequest, PlatformError, Pose, SceneId, Target,
-    ViewpointGraph, ViewpointId, path::Stop, rng,
+    DVec3, Frame, Gaze, Label, Path, PathRequest, PlatformError, Pose, SceneId, Target, path::Stop, rng,
 };
 use wayword_world::wander::{Wander, no_such_walk, wander};
 
@@ -95,21 +93,6 @@ fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
     let likely: Vec<&Label> = labels.iter().filter(in_reach).filter(is_alone).collect();
     let chosen = (!likely.is_empty()).then(|| likely[dice.random_range(0..likely.len())])?;
     Some(Target { object: chosen.object.clone(), name: chosen.name.clone(), told_by: Vec::new(), has_namesake: false })
-}
-
-/// The viewpoints from which each object is seen.
-pub(crate) fn seen_from(
-    world: &mut dyn Walkable,
-    graph: &ViewpointGraph,
-) -> Result<BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
-    let mut seen: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
-    for viewpoint in graph.viewpoints() {
-        let eye = graph.position(viewpoint).unwrap_or_default();
-        for label in world.labels_around(Pose::level(eye, Heading::NORTH))? {
-            seen.entry(label.object).or_default().insert(viewpoint.clone());
-        }
-    }
-    Ok(seen)
 }
 
 /// Refuses a frame from which nothing can be looked at.

@@ -3,7 +3,7 @@
 //! [`files`] reads other people's files with a bound. [`said`] reads what a child or a socket says, likewise. [`wander`] walks at
 //! random over open ground, [`graph_walk`] along a viewpoint graph; [`grid_search`] finds shortest ways over a grid, and
 //! [`episode_path`] turns an episode of a dataset into a path.
-//! [`object_names`] and [`region`] put into plain words what Matterport3D's annotators wrote, which other scenes carry too.
+//! [`seen_from`](mod@seen_from) tells which viewpoints show an object. [`object_names`] and [`region`] put into plain words what Matterport3D's annotators wrote, which other scenes carry too.
 //!
 //! Architecture invariant: nothing here knows one platform.
 
@@ -14,6 +14,8 @@ pub mod grid_search;
 pub mod object_names;
 pub mod region;
 pub mod said;
+pub mod seen_from;
 pub mod wander;
 
 pub use episode_path::{labels_around, path_of};
+pub use seen_from::seen_from;

@@ -19,6 +19,7 @@ use wayword_core::{
     ViewpointGraph, ViewpointId,
 };
 use wayword_render::{Camera, RenderError, Scene, render, storey};
+use wayword_world::seen_from;
 
 const MAX_NAVMESH: u64 = 1 << 30;
 const NAVMESH_HINT: &str = "remove it, and the scene's ground is baked instead";
@@ -102,14 +103,8 @@ impl Home {
         if let Some(seen_from) = self.seen_from.get() {
             return Ok(seen_from);
         }
-        let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
-        for viewpoint in self.graph.viewpoints() {
-            let eye = self.graph.position(viewpoint).unwrap_or_default();
-            for label in self.labels_around(eye)? {
-                seen_from.entry(label.object).or_default().insert(viewpoint.clone());
-            }
-        }
-        Ok(self.seen_from.get_or_init(|| seen_from))
+        let seen = seen_from(&self.graph, |eye| self.labels_around(eye))?;
+        Ok(self.seen_from.get_or_init(|| seen))
     }
 
     /// Refuses frames that do not stand on the ground.
@@ -118,12 +113,7 @@ impl Home {
         if self.ground.nearest(eye - DVec3::Z * EYE_M).is_some() {
             return Ok(());
         }
-        let place = format!("{:.2} {:.2} {:.2}", eye.x, eye.y, eye.z);
-        let named = frame.viewpoint.clone().map_or_else(|| ViewpointId::new(place), Ok);
-        Err(named.map_or_else(
-            |_| PlatformError::NotAViewpoint { scene: self.id.clone() },
-            |viewpoint| PlatformError::UnknownViewpoint { scene: self.id.clone(), viewpoint },
-        ))
+        Err(PlatformError::nowhere(&self.id, frame))
     }
 }
 

@@ -1,0 +1,21 @@
+//! Which viewpoints each object is seen from.
+
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{DVec3, Label, ObjectId, PlatformError, ViewpointGraph, ViewpointId};
+
+/// The viewpoints from which each object is seen; `labels_around` tells what is visible around an eye.
+///
+/// # Errors
+/// When the world cannot be looked at.
+pub fn seen_from(
+    graph: &ViewpointGraph,
+    mut labels_around: impl FnMut(DVec3) -> Result<Vec<Label>, PlatformError>,
+) -> Result<BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
+    let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
+    for viewpoint in graph.viewpoints() {
+        for label in labels_around(graph.position(viewpoint).unwrap_or_default())? {
+            seen_from.entry(label.object).or_default().insert(viewpoint.clone());
+        }
+    }
+    Ok(seen_from)
+}
