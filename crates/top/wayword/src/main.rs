@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use wayword::{cli::Cli, commands, output::Output};
 
 fn main() -> ExitCode {
+    wayword_platforms::process::stand_guard_if_asked();
     let tell = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         // A decoder that broke on a file is told of by the error about the file.

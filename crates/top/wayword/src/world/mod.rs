@@ -10,7 +10,7 @@ use wayword_core::Platform;
 #[cfg(feature = "habitat")]
 use wayword_habitat::{HabitatOptions, HabitatPlatform};
 use wayword_house::HousePlatform;
-use wayword_platforms::{matterport::Matterport, process::ProcessPlatform};
+use wayword_platforms::{matterport::Matterport, process};
 use wayword_recording::RecordingPlatform;
 
 pub use remembering::Remembering;
@@ -114,7 +114,7 @@ pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<B
     match name {
         "house" => Ok(Box::new(HousePlatform::default())),
         "matterport" => Ok(Box::new(Matterport::open(data()?)?)),
-        "process" => Ok(Box::new(ProcessPlatform::open(data()?, Arc::new(output::pass_on))?)),
+        "process" => child(data()?),
         #[cfg(feature = "habitat")]
         "habitat" => Ok(Box::new(HabitatPlatform::open(data()?, HabitatOptions::default())?)),
         #[cfg(feature = "live")]
@@ -130,6 +130,12 @@ pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<B
             format!("name one of: {}", PLATFORMS.map(|platform| platform.name).join(", ")),
         )),
     }
+}
+
+/// A world that is another program; a second copy of this one ends it where this one is killed.
+fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
+    let options = process::ProcessOptions { guard: process::this_program(), ..process::ProcessOptions::read(file)? };
+    Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?))
 }
 
 /// The flag that a platform does not use. Whoever gives `--data` and no `--platform` would else get a generated house for it.

@@ -3,28 +3,31 @@
 use super::{
     answer::{Answer, MAX_LINE_BYTES, answer},
     fault::Fault,
+    group::Group,
     options::ProcessOptions,
     stderr::LastWords,
-    stop,
 };
 use serde_json::{Value, json};
 use std::{
     io::{BufReader, Read, Write},
-    process::{Child, Command, Stdio},
+    process::{Command, Stdio},
     sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 use wayword_world::said::{Hear, Line, plain, read_line};
 
 /// How long a child whose input was closed may take to end by itself.
-const FAREWELL: Duration = Duration::from_millis(500);
+pub(crate) const FAREWELL: Duration = Duration::from_millis(500);
 /// How long an end is waited for that its closed output announces, and the rest of its error output after it.
 const AFTERMATH: Duration = Duration::from_millis(500);
+/// How often a child that does not answer is looked at: whatever it has started may keep its output open when it has ended.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
 
-/// A child process. Dropped, it is asked to go by the end of its input, and killed if it stays.
+/// A child process. Dropped, it is asked to go by the end of its input, and killed if it stays; whatever it has started is
+/// killed in either case.
 pub(crate) struct Running {
-    child: Child,
+    group: Group,
     /// To the thread that writes: a child that does not read must not hold up whoever asks. `None` once it has to go.
     requests: Option<SyncSender<Vec<u8>>>,
     /// From the thread that reads. It waits until a line is taken, so a flood stays in the pipe.
@@ -41,9 +44,8 @@ impl Running {
         if let Some(folder) = &options.folder {
             command.current_dir(folder);
         }
-        stop::in_a_group_of_its_own(&mut command);
-        let mut child = command.spawn().map_err(Fault::NotStarted)?;
-        let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+        let started = Group::start(&mut command, options.guard.as_deref(), hear);
+        let (group, (stdin, stdout, stderr)) = started.map_err(Fault::NotStarted)?;
         let (requests, to_write) = sync_channel::<Vec<u8>>(1);
         let (read, lines) = sync_channel(0);
         let last_words = LastWords::default();
@@ -55,12 +57,12 @@ impl Running {
                 words.listen(pipe, &hear);
             }
         });
-        Ok(Self { child, requests: Some(requests), lines, last_words, listener })
+        Ok(Self { group, requests: Some(requests), lines, last_words, listener })
     }
 
     /// Whether it has ended since it was last asked.
-    pub(crate) fn has_ended(&mut self) -> bool {
-        stop::ends_within(&mut self.child, Duration::ZERO)
+    pub(crate) fn has_ended(&self) -> bool {
+        self.group.ends_within(Duration::ZERO)
     }
 
     /// Asks, and waits for the answer.
@@ -75,7 +77,7 @@ impl Running {
         request.push('\n');
         // If it cannot be sent, the child is gone, and its output says the same.
         let _ = self.requests.as_ref().map(|requests| requests.try_send(request.into_bytes()));
-        let answer = match self.lines.recv_timeout(within) {
+        let answer = match self.next_line(within) {
             Ok(Line::Whole(line)) => answer(&line)?,
             Ok(Line::Half(line)) => return Err(self.half(&line)),
             Ok(Line::TooLong) => return Err(Fault::LongLine(MAX_LINE_BYTES)),
@@ -91,15 +93,32 @@ impl Running {
         }
     }
 
-    /// What the end of its output means.
-    fn end(&mut self) -> Fault {
-        if !stop::ends_within(&mut self.child, AFTERMATH) {
-            return Fault::Closed;
+    /// Waits for a line, and no longer than the child lives.
+    fn next_line(&self, within: Duration) -> Result<Line, RecvTimeoutError> {
+        let asked = Instant::now();
+        loop {
+            let left = within.saturating_sub(asked.elapsed());
+            match self.lines.recv_timeout(left.min(LOOK_EVERY)) {
+                Err(RecvTimeoutError::Timeout) if left <= LOOK_EVERY => return Err(RecvTimeoutError::Timeout),
+                Err(RecvTimeoutError::Timeout) if self.has_ended() => {
+                    // What it wrote at last may still be on its way.
+                    return Ok(self.lines.recv_timeout(AFTERMATH).unwrap_or(Line::End));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                line => return line,
+            }
         }
-        Fault::Died(self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string()))
     }
 
-    fn half(&mut self, line: &[u8]) -> Fault {
+    /// What the end of its output means.
+    fn end(&self) -> Fault {
+        if !self.group.ends_within(AFTERMATH) {
+            return Fault::Closed;
+        }
+        Fault::Died(self.group.end().map_or_else(|| "nobody knows how".to_owned(), |status| status.to_string()))
+    }
+
+    fn half(&self, line: &[u8]) -> Fault {
         let end = self.end();
         match answer(line) {
             Err(Fault::Nonsense { start, .. }) => {
@@ -109,10 +128,10 @@ impl Running {
         }
     }
 
-    /// Kills it, and tells what it said at last.
-    pub(crate) fn bury(mut self) -> String {
-        stop::kill(&mut self.child);
-        // Its last words may still be on their way; something that it started may keep the pipe open for ever.
+    /// Kills it with its group, and tells what it said at last.
+    pub(crate) fn bury(self) -> String {
+        self.group.end();
+        // Its last words may still be on their way; a process that left its group may keep the pipe open for ever.
         let mut waited = Duration::ZERO;
         while !self.listener.is_finished() && waited < AFTERMATH {
             thread::sleep(Duration::from_millis(5));
@@ -125,9 +144,8 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         self.requests = None;
-        if !stop::ends_within(&mut self.child, FAREWELL) {
-            stop::kill(&mut self.child);
-        }
+        self.group.ends_within(FAREWELL);
+        self.group.end();
     }
 }
 

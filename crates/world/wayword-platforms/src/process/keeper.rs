@@ -100,7 +100,7 @@ impl Keeper {
 
     /// Starts the child again if it is gone.
     fn revive(&self, state: &mut ChildState) -> Result<(), PlatformError> {
-        if let Some(running) = state.running.as_mut()
+        if let Some(running) = state.running.as_ref()
             && running.has_ended()
         {
             // Nobody was waiting for it, so nobody's request is lost.

@@ -37,6 +37,13 @@ pub struct ProcessOptions {
     pub answer_within: Duration,
     /// How often it is started again; one more each time it has answered 200 requests, but never more than this.
     pub restarts: u32,
+    /// A program that calls [`stand_guard_if_asked`](super::stand_guard_if_asked) first of all:
+    /// [`this_program`](super::this_program), where it does. It is started beside the child, and ends the child with
+    /// whatever that has started where this program is killed, or exits without dropping the platform.
+    ///
+    /// Without a guard, and on systems other than Unix, the child is then only told by the end of its input, and one that
+    /// hangs lives on. A process that leaves the child's group (`setsid`, a daemon) is never ended.
+    pub guard: Option<PathBuf>,
 }
 
 /// A world file.
@@ -59,7 +66,8 @@ struct WorldFile {
 }
 
 impl ProcessOptions {
-    /// A program without arguments; pictures of 640x480, viewpoints 1 m apart, 3 minutes to start, one to answer, 5 restarts.
+    /// A program without arguments; pictures of 640x480, viewpoints 1 m apart, 3 minutes to start, one to answer, 5 restarts,
+    /// no guard.
     #[must_use]
     pub fn new(program: impl Into<PathBuf>) -> Self {
         Self {
@@ -72,6 +80,7 @@ impl ProcessOptions {
             start_within: Duration::from_secs(180),
             answer_within: Duration::from_secs(60),
             restarts: 5,
+            guard: None,
         }
     }
 

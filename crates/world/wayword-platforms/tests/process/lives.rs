@@ -1,6 +1,12 @@
 //! Children come and go with their platform.
 
 use super::{look, pid, started};
+use std::{
+    path::Path,
+    sync::{Arc, Mutex},
+    time::{Duration, Instant},
+};
+use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
 
 /// Whether a process still runs: one that waits to be reaped does not.
 fn runs(pid: u32) -> bool {
@@ -10,14 +16,14 @@ fn runs(pid: u32) -> bool {
 
 fn ends_soon(pid: u32) -> bool {
     (0..1000).any(|_| {
-        std::thread::sleep(std::time::Duration::from_millis(10));
+        std::thread::sleep(Duration::from_millis(10));
         !runs(pid)
     })
 }
 
 /// Whether there is an entry for it in the process table, dead or alive.
 fn is_listed(pid: u32) -> bool {
-    std::path::Path::new(&format!("/proc/{pid}")).exists()
+    Path::new(&format!("/proc/{pid}")).exists()
 }
 
 #[test]
@@ -35,24 +41,65 @@ fn no_child_outlives_its_platform_and_none_stays_as_a_zombie() {
     assert!(!is_listed(child), "a child that died was not reaped");
 }
 
-#[test]
-fn what_a_child_has_started_ends_with_it() {
-    use std::{path::Path, sync::Arc, time::Duration};
-    use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
-    // A script that starts a server for its simulator, and waits for both: as `xvfb-run` does.
+/// A world behind a script that starts two servers for it, as `xvfb-run` does: one keeps the world's pipes open, one does
+/// not. And their process numbers.
+fn with_servers(role: &str) -> (ProcessPlatform, [u32; 2]) {
     let folder = tempfile::tempdir().unwrap();
-    let options = super::options("stays", folder.path());
-    let mut arguments = options.arguments.clone();
-    let note = folder.path().join("pid");
-    arguments[1] = format!("sleep 1000 <&- >&- 2>&- & echo $! > '{}'\n{}", note.display(), arguments[1]);
-    let options = ProcessOptions { arguments, answer_within: Duration::from_secs(60), ..options };
+    let note = folder.path().join("pids");
+    let mut options = super::options(role, folder.path());
+    let servers = "sleep 1000 & first=$!; sleep 1000 <&- >&- 2>&- & echo $first $!";
+    options.arguments[1] = format!("{servers} > '{}'\n{}", note.display(), options.arguments[1]);
     let platform = ProcessPlatform::start(options, Arc::new(|_: &str| ())).unwrap();
     look(&platform, "good").unwrap();
-    let helper: u32 = std::fs::read_to_string(Path::new(&note)).unwrap().trim().parse().unwrap();
-    assert!(runs(helper));
-    drop(platform);
-    // The kill reaches both at once, but the kernel may take a moment.
-    assert!(ends_soon(helper), "the helper outlived its child");
+    let note = std::fs::read_to_string(note).unwrap();
+    let pids: Vec<u32> = note.split_whitespace().map(|pid| pid.parse().unwrap()).collect();
+    assert!(pids.iter().all(|pid| runs(*pid)));
+    (platform, pids.try_into().unwrap())
+}
+
+#[test]
+fn what_a_child_has_started_ends_with_it() {
+    for role in ["behaves", "stays"] {
+        let (platform, servers) = with_servers(role);
+        drop(platform);
+        // The kill reaches all at once, but the kernel may take a moment.
+        assert!(servers.into_iter().all(ends_soon), "{role}: what it has started outlived it");
+    }
+}
+
+#[test]
+fn what_a_child_has_started_ends_where_a_panic_drops_its_platform() {
+    let (platform, servers) = with_servers("behaves");
+    let thread = std::thread::spawn(move || {
+        let _platform = platform;
+        panic!("on purpose");
+    });
+    thread.join().unwrap_err();
+    assert!(servers.into_iter().all(ends_soon));
+}
+
+#[test]
+fn a_child_that_dies_is_told_of_while_what_it_has_started_keeps_its_output_open() {
+    let (platform, servers) = with_servers("dies");
+    let asked = Instant::now();
+    let error = look(&platform, "bad").unwrap_err().to_string();
+    assert!(error.contains("died (exit status: 3)"), "{error}");
+    assert!(asked.elapsed() < Duration::from_secs(20), "it waited for an answer of nobody");
+    assert!(servers.into_iter().all(ends_soon), "what it has started outlived it");
+}
+
+#[test]
+fn a_guard_that_cannot_be_started_is_told_of_and_missed_by_nobody() {
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let hear = Arc::clone(&heard);
+    let options =
+        ProcessOptions { guard: Some("/nowhere/guard".into()), ..super::options("behaves", Path::new("/nowhere")) };
+    let platform =
+        ProcessPlatform::start(options, Arc::new(move |line: &str| hear.lock().unwrap().push(line.to_owned())))
+            .unwrap();
+    look(&platform, "good").unwrap();
+    let heard = heard.lock().unwrap().join("|");
+    assert!(heard.contains("no guard can be started") && heard.contains("by hand"), "{heard}");
 }
 
 #[test]
