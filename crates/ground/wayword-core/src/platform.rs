@@ -1,6 +1,8 @@
 //! What a world must offer.
 
-use crate::{Frame, FromAbove, Gaze, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, graph::GraphError};
+use crate::{
+    Frame, FromAbove, Gaze, Island, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, Way, graph::GraphError,
+};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeSet, ops::RangeInclusive, path::PathBuf, sync::Arc};
 
@@ -64,6 +66,31 @@ pub trait Platform: Send + Sync {
     /// # Errors
     /// When the data cannot be read.
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError>;
+
+    /// The shortest way on foot from one frame to another, over all ground and not only along viewpoints; `None` where the platform
+    /// does not know the ground, or no way leads there.
+    ///
+    /// # Errors
+    /// When there is no such scene or its data cannot be read.
+    fn way(&self, _scene: &SceneId, _from: &Frame, _to: &Frame) -> Result<Option<Way>, PlatformError> {
+        Ok(None)
+    }
+
+    /// The pieces of ground of a scene, the largest first; empty where the platform does not know the ground.
+    ///
+    /// # Errors
+    /// When there is no such scene or its data cannot be read.
+    fn islands(&self, _scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+        Ok(Vec::new())
+    }
+
+    /// The file that a scene is read from, where Habitat reads the same one; `None` elsewhere.
+    ///
+    /// # Errors
+    /// When there is no such scene.
+    fn scene_file(&self, _scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+        Ok(None)
+    }
 }
 
 impl<P: Platform + ?Sized> Platform for Box<P> {
@@ -101,6 +128,18 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         (**self).visible_from(scene, object)
+    }
+
+    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+        (**self).way(scene, from, to)
+    }
+
+    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+        (**self).islands(scene)
+    }
+
+    fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+        (**self).scene_file(scene)
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph,
-    ViewpointId,
+    Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View,
+    ViewpointGraph, ViewpointId, Way,
 };
 
 /// A platform that remembers the views it has given: perception, evidence and report look at the same ones.
@@ -82,5 +83,17 @@ impl Platform for Remembering<'_> {
 
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         self.platform.visible_from(scene, object)
+    }
+
+    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+        self.platform.way(scene, from, to)
+    }
+
+    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+        self.platform.islands(scene)
+    }
+
+    fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+        self.platform.scene_file(scene)
     }
 }

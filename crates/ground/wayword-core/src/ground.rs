@@ -1,0 +1,61 @@
+//! Ground that people walk on, where a world knows more of it than its viewpoints.
+
+use glam::DVec3;
+use serde::Serialize;
+use std::fmt;
+
+/// The shortest way on foot between two places.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Way {
+    /// Places on the ground from start to end, with every one at which the way bends: between two of them the walk is straight.
+    pub corners: Vec<DVec3>,
+    /// Its length, metres.
+    pub length_m: f64,
+}
+
+/// Ground that hangs together: nobody walks from one island to another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Island {
+    /// Its number; 0 is the largest.
+    pub number: usize,
+    /// Its area, square metres.
+    pub area_m2: f64,
+    /// The height of most of it in the world frame, metres.
+    pub height_m: f64,
+    /// What is over most of it.
+    pub cover: Cover,
+    /// Whether random walks keep to it.
+    pub is_walked: bool,
+}
+
+/// What is over a piece of ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cover {
+    /// A ceiling under which people can stand.
+    Ceiling,
+    /// The open sky.
+    Sky,
+    /// The open sky, and rooms below: it is a roof.
+    OnRoof,
+    /// A ceiling under which nobody can stand upright.
+    Low,
+}
+
+impl fmt::Display for Cover {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ceiling => "under a ceiling",
+            Self::Sky => "under the open sky",
+            Self::OnRoof => "on top of a roof",
+            Self::Low => "too low to stand upright",
+        })
+    }
+}
+
+impl fmt::Display for Island {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { number, area_m2, height_m, cover, .. } = self;
+        write!(f, "island {number}: {area_m2:.1} m2 at height {height_m:.1} m, {cover}")
+    }
+}
