@@ -51,7 +51,7 @@ struct Tried {
 const FIGURES: [Metric; 3] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl];
 
 pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let platform = world::open_named("matterport", Some(&flags.data), None)?;
+    let platform = world::open_named("matterport", Some(&flags.data), None, None)?;
     let mut episodes = episodes::read(&flags.episodes, platform.as_ref())?;
     episodes.retain(|episode| !episode.instructions.is_empty() && platform.graph(&episode.scene).is_ok());
     episodes.shuffle(&mut rng(flags.seed, &["sweep"]));

@@ -65,6 +65,10 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
     if scenes.is_empty() {
         return Err(Error::usage("the platform offers no scene", "check --data"));
     }
+    // A single scene on whose ground nobody walks is wrong input, and not a run of which every item fails.
+    if let [scene] = &scenes[..] {
+        platform.islands(scene)?;
+    }
     let scenes: Arc<[SceneId]> = scenes.into();
     let item = |number: usize| Item::Random {
         id: format!("random-{}-{number}", settings.seed),

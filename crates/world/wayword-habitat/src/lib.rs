@@ -4,6 +4,7 @@
 
 pub mod axes;
 pub mod bake;
+mod columns;
 mod fault;
 pub mod ground;
 pub mod navmesh;
@@ -12,6 +13,6 @@ pub mod scene;
 mod semantics;
 
 pub use fault::FileError;
-pub use ground::{Foothold, Ground, NoWay, Way};
+pub use ground::{Foothold, Ground, NoWay};
 pub use navmesh::{NavMesh, NavMeshError, NavMeshSettings};
 pub use platform::{HabitatOptions, HabitatPlatform};

@@ -89,26 +89,18 @@ fn geodesics_and_area_agree_with_habitats_path_finder() {
     }
 }
 
-/// The boxes of the oracle's scene, as its README gives them: low and high corner in Habitat's frame.
-const BOXES: [[[f32; 3]; 2]; 3] =
-    [[[-5.0, -0.1, -4.0], [5.0, 0.0, 4.0]], [[-0.1, 0.0, -4.0], [0.1, 2.5, 2.8]], [[2.0, 0.0, -1.0], [3.0, 1.0, 1.0]]];
-
 /// A box, its faces outwards, in Wayword's frame.
-fn solid([low, high]: [[f32; 3]; 2]) -> Mesh {
-    let corner = |n: usize| {
-        let at = |axis: usize| f64::from([low, high][n >> axis & 1][axis]);
-        wayword_from_habitat(DVec3::new(at(0), at(1), at(2))).as_vec3()
-    };
-    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
-    Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() }
+fn solid(ends: [[f32; 3]; 2]) -> Mesh {
+    let (corners, triangles) = oracles::solid(ends);
+    let place = |corner: [f32; 3]| wayword_from_habitat(glam::Vec3::from(corner).as_dvec3()).as_vec3();
+    Mesh { positions: corners.into_iter().map(place).collect(), triangles, ..Mesh::default() }
 }
 
 #[test]
 fn a_navmesh_baked_with_the_default_settings_is_habitats() {
     let Some(folder) = oracles::folder() else { return };
     let folder = folder.join("habitat_navmesh");
-    let model = Model { meshes: BOXES.map(solid).to_vec(), ..Model::default() };
+    let model = Model { meshes: oracles::ROOMS.map(solid).to_vec(), ..Model::default() };
     let ground = Ground::new(&bake(&model, &NavMeshSettings::default()).unwrap());
     let rooms = oracles::json(&folder.join("rooms.json"));
     let area_m2 = rooms["area"].as_f64().unwrap();

@@ -22,7 +22,9 @@ fn scenes_without_navmesh_are_baked_walked_and_seen() {
             r#"{{"render_asset": {file:?}, "up": [0, 1, 0], "front": [0, 0, -1], "units_to_meters": {units}}}"#
         );
         std::fs::write(&config, text).unwrap();
-        let platform = HabitatPlatform::open(&config, HabitatOptions::default()).unwrap();
+        let platform =
+            HabitatPlatform::open(&config, HabitatOptions::default(), std::sync::Arc::new(|line| println!("{line}")))
+                .unwrap();
         let scene = platform.scenes().unwrap().remove(0);
         let mesh = platform.navmesh(&scene).unwrap();
         let ground = Ground::new(&mesh);

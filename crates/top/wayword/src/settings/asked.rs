@@ -89,6 +89,10 @@ world:
         /// Address of a world that runs: HOST:PORT for tdw, a URL for virtualhome.
         #[arg(long, value_name = "ADDRESS")]
         pub at: Option<String>,
+        /// Walk on this island of a Habitat scene's ground, 0 being the largest; `wayword view map` lists them. [default: the one
+        /// that lies under ceilings, or under the open sky where there are none]
+        #[arg(long, value_name = "N")]
+        pub island: Option<usize>,
     }
 
 walks:

@@ -29,6 +29,9 @@ pub struct Settings {
     /// Address of a platform that runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<String>,
+    /// The island of Habitat's ground that is walked on; chosen where none is named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub island: Option<usize>,
     /// Dataset file whose paths are walked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub episodes: Option<PathBuf>,
@@ -172,6 +175,7 @@ impl Asked {
             platform: world.name().to_owned(),
             data: world.data,
             at: world.at,
+            island: world.island,
             episodes: walks.episodes,
             paths,
             scan: walks.scan.unwrap_or_default(),

@@ -98,15 +98,21 @@ pub const PLATFORMS: [Listed; 7] = [
 /// # Errors
 /// When there is none of that name, or its data cannot be opened.
 pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
-    open_named(&settings.platform, settings.data.as_deref(), settings.at.as_deref())
+    open_named(&settings.platform, settings.data.as_deref(), settings.at.as_deref(), settings.island)
 }
 
-/// Opens a platform by its name, with the folder or file of its data, or the address of one that runs.
+/// Opens a platform by its name, with the folder or file of its data, or the address of one that runs, and the island of its ground
+/// that is walked on.
 ///
 /// # Errors
 /// When there is none of that name in this build, or its data cannot be opened.
-pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<Box<dyn Platform>, Error> {
-    if let Some(flag) = unused(name, data, at) {
+pub fn open_named(
+    name: &str,
+    data: Option<&Path>,
+    at: Option<&str>,
+    island: Option<usize>,
+) -> Result<Box<dyn Platform>, Error> {
+    if let Some(flag) = unused(name, data, at, island) {
         let problem = format!("platform {name} takes no {flag}");
         return Err(Error::usage(problem, "name the world that it is for, as in --platform recording"));
     }
@@ -116,7 +122,10 @@ pub fn open_named(name: &str, data: Option<&Path>, at: Option<&str>) -> Result<B
         "matterport" => Ok(Box::new(Matterport::open(data()?)?)),
         "process" => child(data()?),
         #[cfg(feature = "habitat")]
-        "habitat" => Ok(Box::new(HabitatPlatform::open(data()?, HabitatOptions::default())?)),
+        "habitat" => {
+            let options = HabitatOptions { island, ..HabitatOptions::default() };
+            Ok(Box::new(HabitatPlatform::open(data()?, options, Arc::new(output::pass_on))?))
+        }
         #[cfg(feature = "live")]
         "tdw" => live::tdw(data().ok(), at),
         #[cfg(feature = "live")]
@@ -139,11 +148,12 @@ fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
 }
 
 /// The flag that a platform does not use. Whoever gives `--data` and no `--platform` would else get a generated house for it.
-fn unused(name: &str, data: Option<&Path>, at: Option<&str>) -> Option<&'static str> {
+fn unused(name: &str, data: Option<&Path>, at: Option<&str>, island: Option<usize>) -> Option<&'static str> {
     let runs = matches!(name, "tdw" | "virtualhome");
     match (data, at) {
         (Some(_), _) if matches!(name, "house" | "virtualhome") => Some("--data"),
         (_, Some(_)) if !runs => Some("--at"),
+        _ if island.is_some() && name != "habitat" => Some("--island"),
         _ => None,
     }
 }

@@ -1,8 +1,8 @@
 //! Where frames are taken along a way.
 
-use super::{Ground, Way};
+use super::Ground;
 use crate::axes::EYE_M;
-use wayword_core::{DVec3, path::Stop};
+use wayword_core::{DVec3, Way, path::Stop};
 
 /// Frames of one way, at most.
 const MAX_STOPS: f64 = 10_000.0;

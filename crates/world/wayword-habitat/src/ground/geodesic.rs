@@ -1,16 +1,7 @@
 //! Shortest ways over the ground.
 
 use super::{Foothold, Ground};
-use wayword_core::DVec3;
-
-/// A way over the ground.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Way {
-    /// From start to end, with every place where it bends.
-    pub corners: Vec<DVec3>,
-    /// Sum of the distances between them, metres.
-    pub length_m: f64,
-}
+use wayword_core::{DVec3, Way};
 
 /// Why there is no way.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -12,10 +12,10 @@ const LEAST_SHARE: f64 = 0.15;
 /// Who stands no farther below a floor stands on it: it is nearer than the one below, metres.
 const BELOW_M: f64 = 1.0;
 
-/// Heights of the floors of the largest island, from the lowest. Slices with the most ground are floors, one after the other, as
+/// Heights of the floors of the island that walks keep to, from the lowest. Slices with the most ground are floors, one after the other, as
 /// long as they lie apart from those found before.
 pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
-    let Some(island) = ground.islands.first() else { return Vec::new() };
+    let Some(island) = ground.islands.get(ground.main) else { return Vec::new() };
     let mut slices: std::collections::BTreeMap<i64, f64> = std::collections::BTreeMap::new();
     for triangle in island.polygons.iter().flat_map(|polygon| &ground.polygons[*polygon].triangles) {
         let [a, b, c] = triangle;

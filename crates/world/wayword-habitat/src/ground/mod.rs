@@ -19,7 +19,7 @@ mod sample;
 mod tests;
 
 pub use frames::stops_along;
-pub use geodesic::{NoWay, Way};
+pub use geodesic::NoWay;
 pub use locate::Foothold;
 pub use roadmap::viewpoint_graph;
 
@@ -38,7 +38,9 @@ pub struct Ground {
     polygons: Vec<Polygon>,
     /// By falling area.
     islands: Vec<Island>,
-    /// Heights of the storeys of the largest island, from the lowest.
+    /// The island that walks keep to, the largest unless told otherwise.
+    main: usize,
+    /// Heights of the storeys of that island, from the lowest.
     storeys_m: Vec<f64>,
     /// Highest step that an agent takes, metres.
     climb_m: f64,
@@ -76,9 +78,21 @@ impl Ground {
             polygon.is_walkable &= polygon.area_m2 >= LEAST_AREA_M2;
         }
         let islands = islands::find(&mut polygons);
-        let mut ground = Self { polygons, islands, storeys_m: Vec::new(), climb_m };
-        ground.storeys_m = levels::storeys(&ground);
-        ground
+        Self { polygons, islands, main: 0, storeys_m: Vec::new(), climb_m }.keeping_to(0)
+    }
+
+    /// The same ground, with walks that keep to an island; storeys are counted on it.
+    #[must_use]
+    pub fn keeping_to(mut self, island: usize) -> Self {
+        self.main = island;
+        self.storeys_m = levels::storeys(&self);
+        self
+    }
+
+    /// The island that walks keep to.
+    #[must_use]
+    pub fn main(&self) -> usize {
+        self.main
     }
 
     /// Area of all ground, square metres, as the surface lies.

@@ -1,8 +1,8 @@
 //! The viewpoint graph of an island: places well inside the ground, joined where the walk between is short and nearly straight.
 
-use super::{Ground, Way, polygon::nearest_on_edge};
+use super::{Ground, polygon::nearest_on_edge};
 use crate::axes::EYE_M;
-use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError, rng};
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId, Way, graph::GraphError, rng};
 
 /// No viewpoint lies nearer to another than this on the same floor, metres.
 const APART_M: f64 = 1.8;

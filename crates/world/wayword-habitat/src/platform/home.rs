@@ -1,9 +1,14 @@
 //! One scene, read and made ready.
 
-use super::{HabitatOptions, files::SceneFiles};
+use super::{
+    HabitatOptions,
+    files::SceneFiles,
+    islands::{self, Choice, Survey},
+};
 use crate::{
     axes::EYE_M,
     bake::bake,
+    columns::Columns,
     fault::{self, FileError},
     ground::{Ground, viewpoint_graph},
     navmesh::{NavMesh, NavMeshSettings},
@@ -15,23 +20,27 @@ use std::{
     sync::{Arc, OnceLock},
 };
 use wayword_core::{
-    DVec3, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
-    ViewpointGraph, ViewpointId,
+    DVec3, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Island, Label, ObjectId, PlatformError, Pose, SceneId,
+    View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::{Camera, RenderError, Scene, render, storey};
 use wayword_world::seen_from;
 
 const MAX_NAVMESH: u64 = 1 << 30;
 const NAVMESH_HINT: &str = "remove it, and the scene's ground is baked instead";
+const ISLAND_HINT: &str = "name one that is there with --island, or give the scene a .navmesh of its rooms";
 const DRAW_HINT: &str = "export the scene again as GLB";
 
 /// A scene with its ground.
-#[derive(Debug)]
 pub(super) struct Home {
     pub(super) id: SceneId,
     scene: Scene,
     pub(super) navmesh: NavMesh,
     pub(super) ground: Ground,
+    columns: Columns,
+    surveys: Vec<Survey>,
+    /// What is to be said where another island than the chosen one might be meant.
+    pub(super) doubt: Option<String>,
     pub(super) graph: Arc<ViewpointGraph>,
     pub(super) semantics: Option<Semantics>,
     /// The viewpoints from which each object is seen; looked for when first asked for.
@@ -50,13 +59,36 @@ impl Home {
             None => bake(&model, &NavMeshSettings::default())
                 .map_err(|error| FileError::new(&stage.asset, error.to_string(), "or choose another scene"))?,
         };
+        let columns = Columns::new(model.triangles());
+        let ground = Ground::new(&navmesh);
+        let surveys = islands::survey(&ground, &columns);
+        let choice = island(&ground, &surveys, options, &stage)?;
+        let doubt = choice.is_doubtful.then(|| {
+            let listed = islands::listed(&surveys);
+            format!(
+                "scene {id}: walks keep to island {} of its ground; --island names another ({listed})",
+                choice.number
+            )
+        });
+        let ground = ground.keeping_to(choice.number);
         let semantics = semantics::load(&files.semantics(&stage), stage.habitat_from_asset)?;
         let scene = Scene::new(model.meshes, model.materials, model.textures);
         let scene = scene.map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
-        let ground = Ground::new(&navmesh);
-        let graph = viewpoint_graph(&ground, 0).map_err(|source| PlatformError::Graph { scene: id.clone(), source })?;
+        let graph = viewpoint_graph(&ground, ground.main())
+            .map_err(|source| PlatformError::Graph { scene: id.clone(), source })?;
         let (id, graph) = (id.clone(), Arc::new(graph));
-        Ok(Self { id, scene, navmesh, ground, graph, semantics, seen_from: OnceLock::new() })
+        let seen_from = OnceLock::new();
+        Ok(Self { id, scene, navmesh, ground, columns, surveys, doubt, graph, semantics, seen_from })
+    }
+
+    /// The islands of its ground, the largest first.
+    pub(super) fn islands(&self) -> Vec<Island> {
+        self.surveys.iter().map(|survey| survey.told(Some(self.ground.main()))).collect()
+    }
+
+    /// Whether somebody can stand upright at a place on the ground.
+    pub(super) fn is_headroom(&self, ground: DVec3) -> bool {
+        self.columns.over(ground).is_headroom()
     }
 
     /// What is seen from an eye; the picture where one is wanted, labels where the scene has semantics.
@@ -114,6 +146,24 @@ impl Home {
             return Ok(());
         }
         Err(PlatformError::nowhere(&self.id, frame))
+    }
+}
+
+/// The island that walks keep to: the one that is asked for, else the one on which people would walk.
+fn island(
+    ground: &Ground,
+    surveys: &[Survey],
+    options: &HabitatOptions,
+    stage: &Stage,
+) -> Result<Choice, PlatformError> {
+    let refused = |reason: String| FileError::new(&stage.asset, reason, ISLAND_HINT).into();
+    match options.island {
+        Some(number) if number < ground.islands_m2().count() => Ok(Choice { number, is_doubtful: false }),
+        Some(number) => Err(refused(format!("its ground has no island {number}: {}", islands::listed(surveys)))),
+        None => islands::choose(surveys).ok_or_else(|| {
+            let listed = islands::listed(surveys);
+            refused(format!("nobody would walk on any island of its ground, indoors or under the open sky: {listed}"))
+        }),
     }
 }
 

@@ -2,22 +2,24 @@
 
 mod files;
 mod home;
+mod islands;
 mod sample;
 #[cfg(test)]
 mod tests;
 
-use crate::navmesh::NavMesh;
+use crate::{axes::EYE_M, navmesh::NavMesh};
 use files::SceneFiles;
 use home::Home;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path as FilePath, PathBuf},
-    sync::Arc,
+    sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
-    ViewpointGraph, ViewpointId,
+    DVec3, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
+    ViewpointGraph, ViewpointId, Way,
 };
+use wayword_world::said::Hear;
 
 /// Scenes that are kept ready at a time: one of HM3D takes some hundred MB.
 const READY: usize = 2;
@@ -25,11 +27,13 @@ const READY: usize = 2;
 const WIDEST_RAD: f64 = 2.6;
 
 /// Scenes as Habitat reads them.
-#[derive(Debug)]
 pub struct HabitatPlatform {
     options: HabitatOptions,
+    hear: Hear,
     scenes: BTreeMap<SceneId, SceneFiles>,
     ready: Recent<SceneId, Home>,
+    /// Scenes that something was said of: once is enough.
+    told: Mutex<BTreeSet<SceneId>>,
 }
 
 /// What can be chosen about the platform.
@@ -43,22 +47,26 @@ pub struct HabitatOptions {
     pub interval_m: f64,
     /// A navmesh for the scene, where it does not lie beside it.
     pub navmesh: Option<PathBuf>,
+    /// The island that walks keep to, 0 being the largest; chosen for each scene where none is named.
+    pub island: Option<usize>,
 }
 
 impl Default for HabitatOptions {
     fn default() -> Self {
-        Self { width_px: 640, height_px: 480, interval_m: 1.0, navmesh: None }
+        Self { width_px: 640, height_px: 480, interval_m: 1.0, navmesh: None, island: None }
     }
 }
 
 impl HabitatPlatform {
     /// The scenes at a place: one file (`.glb`, `.gltf`, `.stage_config.json`), or a folder of them, such as HM3D's, Matterport3D's
-    /// or Gibson's. With each belong the navmesh and the semantic files beside it; a scene without a navmesh has one baked.
+    /// or Gibson's. With each belong the navmesh and the semantic files beside it; a scene without a navmesh has one baked. `hear` is
+    /// told where it is doubtful on which of a scene's islands people walk.
     ///
     /// # Errors
     /// When there is no scene, or the folder cannot be read.
-    pub fn open(place: &FilePath, options: HabitatOptions) -> Result<Self, PlatformError> {
-        Ok(Self { options, scenes: files::scenes(place)?, ready: Recent::one_at_a_time(READY) })
+    pub fn open(place: &FilePath, options: HabitatOptions, hear: Hear) -> Result<Self, PlatformError> {
+        let (scenes, ready) = (files::scenes(place)?, Recent::one_at_a_time(READY));
+        Ok(Self { options, hear, scenes, ready, told: Mutex::default() })
     }
 
     /// The navmesh of a scene, as its file has it or as it was baked: [`NavMesh::to_bytes`] gives a file that Habitat reads.
@@ -71,7 +79,15 @@ impl HabitatPlatform {
 
     fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
         let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
-        self.ready.get_or_make(scene.clone(), || Home::build(scene, files, &self.options))
+        self.ready.get_or_make(scene.clone(), || {
+            let home = Home::build(scene, files, &self.options)?;
+            if let Some(doubt) = &home.doubt
+                && self.told.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone())
+            {
+                (self.hear)(doubt);
+            }
+            Ok(home)
+        })
     }
 
     fn unknown(&self, scene: &SceneId) -> PlatformError {
@@ -131,5 +147,20 @@ impl Platform for HabitatPlatform {
             return Ok(None);
         }
         Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
+    }
+
+    /// Over the navmesh, as Habitat measures it.
+    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+        let feet = |frame: &Frame| frame.pose.position - DVec3::Z * EYE_M;
+        Ok(self.home(scene)?.ground.geodesic(feet(from), feet(to)).ok())
+    }
+
+    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+        Ok(self.home(scene)?.islands())
+    }
+
+    fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+        let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
+        Ok(Some(files.stage.clone()))
     }
 }

@@ -1,7 +1,7 @@
-//! Random walks: the shortest way between two random places of the largest island, with frames along it.
+//! Random walks: the shortest way between two random places of the island that walks keep to, with frames along it.
 
 use super::home::Home;
-use crate::ground::stops_along;
+use crate::{axes::EYE_M, ground::stops_along};
 use rand::Rng;
 use wayword_core::{DVec3, Frame, Path, PathRequest, PlatformError, Target, path::Stop, rng};
 use wayword_world::{
@@ -25,13 +25,17 @@ struct Walker<'a, R> {
 
 impl<R: Rng> Wander for Walker<'_, R> {
     fn ends(&mut self) -> Option<(DVec3, DVec3)> {
-        let mut place = || Some(self.home.ground.random_place(0, &mut self.dice)?.place);
+        let mut place = || Some(self.home.ground.random_place(self.home.ground.main(), &mut self.dice)?.place);
         Some((place()?, place()?))
     }
 
     fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError> {
         let ground = &self.home.ground;
-        Ok(ground.geodesic(from, to).ok().map(|way| stops_along(ground, &way, self.interval_m)))
+        let Ok(way) = ground.geodesic(from, to) else { return Ok(None) };
+        let stops = stops_along(ground, &way, self.interval_m);
+        // An agent of Habitat is 1.5 m high, and its ground reaches under what nobody could stand under.
+        let upright = |stop: &Stop| self.home.is_headroom(stop.position - DVec3::Z * EYE_M);
+        Ok(stops.iter().all(upright).then_some(stops))
     }
 
     fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError> {
@@ -46,9 +50,9 @@ impl<R: Rng> Wander for Walker<'_, R> {
 /// What was asked for, beside the ground that there is: a scene in other units, or one that lies on its side, has next to none.
 fn refused(home: &Home, request: &PathRequest) -> String {
     let length_m = &request.length_m;
-    let largest_m2 = home.ground.islands_m2().next().unwrap_or_default();
+    let ground_m2 = home.ground.islands_m2().nth(home.ground.main()).unwrap_or_default();
     format!(
-        "{} to {} metres on its {largest_m2:.1} m2 of ground (a scene is read as metres with z up; where that is wrong, a \
+        "{} to {} metres on its {ground_m2:.1} m2 of ground (a scene is read as metres with z up; where that is wrong, a \
          stage_config.json beside it says units_to_meters, up and front)",
         length_m.start(),
         length_m.end()

@@ -3,7 +3,7 @@
 use super::*;
 use crate::scene::tests::glb;
 use serde_json::json;
-use wayword_core::Heading;
+use wayword_core::{Cover, Heading};
 
 /// A quad as two triangles.
 fn quad(out: &mut Vec<[f32; 3]>, corners: [[f32; 3]; 4]) {
@@ -24,8 +24,13 @@ fn boxed() -> Vec<Vec<[f32; 3]>> {
 
 /// The scene as a GLB with colours at the vertices.
 fn file(colours: [[u8; 4]; 2]) -> Vec<u8> {
+    painted(&boxed(), &colours)
+}
+
+/// Corners of triangles as a GLB, each mesh in its colour.
+fn painted(meshes: &[Vec<[f32; 3]>], colours: &[[u8; 4]]) -> Vec<u8> {
     let (mut bytes, mut views, mut accessors, mut primitives) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (positions, colour) in boxed().iter().zip(colours) {
+    for (positions, colour) in meshes.iter().zip(colours) {
         let count = positions.len();
         let mut view = |data: Vec<u8>| {
             views.push(json!({ "buffer": 0, "byteOffset": bytes.len(), "byteLength": data.len() }));
@@ -71,6 +76,7 @@ fn platform(has_labels: bool) -> (HabitatPlatform, SceneId) {
     let platform = HabitatPlatform::open(
         folder.path(),
         HabitatOptions { width_px: 160, height_px: 120, ..HabitatOptions::default() },
+        Arc::new(|_: &str| {}),
     )
     .unwrap();
     let scene = platform.scenes().unwrap().remove(0);
@@ -139,4 +145,85 @@ fn a_walk_that_finds_no_room_is_told_how_much_ground_there_is() {
     // 8 x 8 m without the box, and an agent's radius from every edge.
     assert!((50.0..60.0).contains(&area.parse::<f64>().unwrap()), "{message}");
     assert!(message.contains("units_to_meters, up and front"), "{message}");
+}
+
+/// A floor of 8 x 8 m, and a ceiling over it whose top is larger: what Recast finds most ground on.
+fn flat() -> [Vec<[f32; 3]>; 2] {
+    let (mut floor, mut slab) = (Vec::new(), Vec::new());
+    quad(&mut floor, [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0], [0.0, 8.0, 0.0]]);
+    let [low, high] = [-1.0, 9.0];
+    quad(&mut slab, [[low, low, 2.8], [high, low, 2.8], [high, high, 2.8], [low, high, 2.8]]);
+    quad(&mut slab, [[low, high, 2.6], [high, high, 2.6], [high, low, 2.6], [low, low, 2.6]]);
+    [floor, slab]
+}
+
+fn open_flat(options: HabitatOptions) -> (HabitatPlatform, SceneId, Arc<Mutex<Vec<String>>>, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("flat.glb"), painted(&flat(), &[[90; 4], [200; 4]])).unwrap();
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let hearing = Arc::clone(&heard);
+    let hear: Hear = Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned()));
+    let platform = HabitatPlatform::open(folder.path(), options, hear).unwrap();
+    let scene = platform.scenes().unwrap().remove(0);
+    (platform, scene, heard, folder)
+}
+
+#[test]
+fn walks_keep_to_the_floor_under_the_ceiling_and_not_to_its_larger_top() {
+    let (platform, scene, heard, _folder) = open_flat(HabitatOptions::default());
+    let islands = platform.islands(&scene).unwrap();
+    let told: Vec<(Cover, bool)> = islands.iter().map(|island| (island.cover, island.is_walked)).collect();
+    assert_eq!(told, [(Cover::OnRoof, false), (Cover::Ceiling, true)]);
+    for seed in 0..50 {
+        let path = platform.sample_path(&scene, &PathRequest::default(), seed).unwrap();
+        assert!(path.frames.iter().all(|frame| frame.pose.position.z < 1.8), "{path:?}");
+    }
+    let graph = platform.graph(&scene).unwrap();
+    assert!(graph.viewpoints().all(|viewpoint| graph.position(viewpoint).unwrap().z < 1.8));
+    let heard = heard.lock().unwrap();
+    assert_eq!(heard.len(), 1, "{heard:?}");
+    assert!(heard[0].contains("walks keep to island 1") && heard[0].contains("--island names another"), "{heard:?}");
+}
+
+#[test]
+fn an_island_that_is_named_is_walked_on_without_a_warning() {
+    let (platform, scene, heard, _folder) = open_flat(HabitatOptions { island: Some(0), ..HabitatOptions::default() });
+    let path = platform.sample_path(&scene, &PathRequest::default(), 1).unwrap();
+    assert!(path.frames.iter().all(|frame| frame.pose.position.z > 4.0), "{path:?}");
+    assert!(heard.lock().unwrap().is_empty());
+    let (platform, scene, _heard, _folder) = open_flat(HabitatOptions { island: Some(2), ..HabitatOptions::default() });
+    let error = platform.graph(&scene).unwrap_err().to_string();
+    assert!(error.contains("has no island 2: island 0: ") && error.contains("--island"), "{error}");
+}
+
+#[test]
+fn a_navmesh_of_roofs_alone_is_refused_with_its_islands() {
+    let folder = tempfile::tempdir().unwrap();
+    let [_, slab] = flat();
+    std::fs::write(folder.path().join("slab.glb"), painted(&[slab], &[[200; 4]])).unwrap();
+    let stage = crate::scene::Stage::of(&folder.path().join("slab.glb")).unwrap();
+    let roofs = crate::bake::bake(&crate::scene::Model::of(&stage).unwrap(), &crate::NavMeshSettings::default());
+    let navmesh = folder.path().join("roofs.navmesh");
+    std::fs::write(&navmesh, roofs.unwrap().to_bytes()).unwrap();
+    let (platform, scene, _heard, _folder) =
+        open_flat(HabitatOptions { navmesh: Some(navmesh), ..HabitatOptions::default() });
+    let error = platform.graph(&scene).unwrap_err().to_string();
+    assert!(error.contains("flat.glb: nobody would walk on any island"), "{error}");
+    assert!(
+        error.contains("island 0: ") && error.contains("on top of a roof") && error.contains("--island"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_way_leads_over_the_ground_with_a_corner_at_every_bend() {
+    let (platform, scene) = platform(false);
+    let standing = |x: f64, y: f64| {
+        let pose = wayword_core::Pose::level(wayword_core::DVec3::new(x, y, 1.5), Heading::NORTH);
+        Frame { pose, viewpoint: None, level: None }
+    };
+    let way = platform.way(&scene, &standing(2.0, 4.0), &standing(6.0, 4.1)).unwrap().unwrap();
+    assert!(way.corners.len() >= 3 && way.length_m > 4.5, "{way:?}");
+    assert!(way.corners.iter().all(|corner| corner.z.abs() < 0.3), "{way:?}");
+    assert_eq!(platform.way(&scene, &standing(2.0, 4.0), &standing(90.0, 4.0)).unwrap(), None);
 }

@@ -1,7 +1,7 @@
 //! Where the answers of the genuine Habitat lie.
 
 #![allow(dead_code, reason = "each test binary uses a part")]
-#![allow(clippy::print_stderr, reason = "a test that is skipped says so")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test that is skipped says so")]
 
 use std::path::{Path, PathBuf};
 use wayword_core::DVec3;
@@ -38,4 +38,39 @@ pub(crate) fn json(file: &Path) -> serde_json::Value {
 pub(crate) fn place(point: &serde_json::Value) -> DVec3 {
     let number = |at: usize| point[at].as_f64().unwrap();
     wayword_from_habitat(DVec3::new(number(0), number(1), number(2)))
+}
+
+/// The boxes of the scene of `rooms.navmesh`, as the oracles' README gives them: low and high corner in Habitat's frame.
+pub(crate) const ROOMS: [[[f32; 3]; 2]; 3] =
+    [[[-5.0, -0.1, -4.0], [5.0, 0.0, 4.0]], [[-0.1, 0.0, -4.0], [0.1, 2.5, 2.8]], [[2.0, 0.0, -1.0], [3.0, 1.0, 1.0]]];
+
+/// The corners of a box in Habitat's frame, and its triangles, which face outwards.
+pub(crate) fn solid([low, high]: [[f32; 3]; 2]) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
+    let corner = |n: usize| std::array::from_fn(|axis| [low, high][n >> axis & 1][axis]);
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    ((0..8).map(corner).collect(), triangles)
+}
+
+/// Writes the scene of `rooms.navmesh` as glTF beside its stage configuration.
+pub(crate) fn write_rooms(stage: &Path) {
+    let solids = ROOMS.map(solid);
+    let corners: Vec<[f32; 3]> = solids
+        .iter()
+        .flat_map(|(corners, triangles)| triangles.iter().flatten().map(|at| corners[*at as usize]))
+        .collect();
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
+    let document = serde_json::json!({
+        "asset": { "version": "2.0" },
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": corners.len(), "type": "VEC3" }],
+        "bufferViews": [{ "buffer": 0, "byteLength": bytes.len() }],
+        "buffers": [{ "byteLength": bytes.len(), "uri": "rooms.bin" }],
+    });
+    std::fs::write(stage.with_file_name("rooms.bin"), bytes).unwrap();
+    std::fs::write(stage.with_file_name("rooms.gltf"), document.to_string()).unwrap();
+    let config = serde_json::json!({ "render_asset": "rooms.gltf", "up": [0, 1, 0], "front": [0, 0, -1] });
+    std::fs::write(stage, config.to_string()).unwrap();
 }

@@ -29,6 +29,9 @@ pub(crate) struct Kept {
     /// Address of a platform that runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) at: Option<String>,
+    /// The island of Habitat's ground that is walked on, where one is named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) island: Option<usize>,
     /// The items.
     pub(crate) episodes: PathBuf,
     /// Sets of instructions: name and source, in order; no source for the episodes' own.
@@ -90,6 +93,7 @@ impl Kept {
             platform: settings.platform.clone(),
             data: settings.data.as_deref().map(absolute).transpose()?,
             at: settings.at.clone(),
+            island: settings.island,
             episodes: absolute(&args.episodes)?,
             instructions,
             agents: args.agents.clone(),
@@ -110,7 +114,7 @@ impl Kept {
     /// # Errors
     /// When it cannot be opened.
     pub(super) fn world(&self) -> Result<Box<dyn Platform>, Error> {
-        world::open_named(&self.platform, self.data.as_deref(), self.at.as_deref())
+        world::open_named(&self.platform, self.data.as_deref(), self.at.as_deref(), self.island)
     }
 }
 

@@ -22,7 +22,8 @@ use wayword_metrics::Rule;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     refuse_to_overwrite(args)?;
-    let platform = world::open_named(args.world.name(), args.world.data.as_deref(), args.world.at.as_deref())?;
+    let platform =
+        world::open_named(args.world.name(), args.world.data.as_deref(), args.world.at.as_deref(), args.world.island)?;
     let episodes = episodes::read(&args.episodes, platform.as_ref())?;
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
     let (episodes, beyond) = episodes.split_at(limit);

@@ -18,7 +18,7 @@ use crate::{
 };
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use wayword_core::{Platform, SceneId};
+use wayword_core::{Island, Platform, SceneId};
 
 /// What was written.
 #[derive(Debug, Serialize)]
@@ -31,6 +31,9 @@ struct Written {
     height: u32,
     /// Pictures, one after the other.
     frames: usize,
+    /// The pieces of ground of the scene, where a map is drawn and the world knows them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    islands: Vec<Island>,
 }
 
 impl fmt::Display for Written {
@@ -39,7 +42,11 @@ impl fmt::Display for Written {
             writeln!(f, "{}", file.display())?;
         }
         let frames = if self.frames == 1 { String::new() } else { format!(", {} frames", self.frames) };
-        write!(f, "{}: {} x {} pixels{frames}", self.scene, self.width, self.height)
+        write!(f, "{}: {} x {} pixels{frames}", self.scene, self.width, self.height)?;
+        for island in &self.islands {
+            write!(f, "\n{island}{}", if island.is_walked { ", which walks keep to" } else { "" })?;
+        }
+        Ok(())
     }
 }
 
@@ -54,7 +61,7 @@ pub(super) fn run(args: &View, output: &Output) -> Result<Exit, Error> {
 }
 
 fn open(world: &World) -> Result<Box<dyn Platform>, Error> {
-    world::open_named(world.name(), world.data.as_deref(), world.at.as_deref())
+    world::open_named(world.name(), world.data.as_deref(), world.at.as_deref(), world.island)
 }
 
 /// The scene of a name, or the world's first.

@@ -28,7 +28,7 @@ pub(super) fn write(args: &ViewPanorama, output: &Output) -> Result<Written, Err
     let bytes = if kind == FileKind::Png { picture::png(&whole)? } else { picture::jpeg(&whole)? };
     Unfinished::whole(&args.out, &bytes)?;
     let (width, height) = (whole.width_px(), whole.height_px());
-    Ok(Written { scene, files: vec![args.out.clone()], width, height, frames: 1 })
+    Ok(Written { scene, files: vec![args.out.clone()], width, height, frames: 1, islands: Vec::new() })
 }
 
 /// Where to stand.

@@ -44,7 +44,8 @@ pub(super) fn write(args: &ViewMap, output: &Output) -> Result<Written, Error> {
         (picture::png(&painted)?, [painted.width_px(), painted.height_px()])
     };
     Unfinished::whole(&args.out, &bytes)?;
-    Ok(Written { scene, files: vec![args.out.clone()], width, height, frames: 1 })
+    let islands = platform.islands(&scene)?;
+    Ok(Written { scene, files: vec![args.out.clone()], width, height, frames: 1, islands })
 }
 
 /// Whether any flag speaks of a path.

@@ -58,7 +58,7 @@ pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> 
             steps.len()
         ));
     }
-    Ok(Written { scene: path.scene, files: film.finish()?, width, height, frames })
+    Ok(Written { scene: path.scene, files: film.finish()?, width, height, frames, islands: Vec::new() })
 }
 
 /// What is seen ahead; of a place between two frames there has to be a picture.

@@ -1,0 +1,199 @@
+//! What lies straight above and below a place of a scene.
+
+use glam::Vec3;
+use wayword_core::DVec3;
+
+/// Smallest side of a cell, metres.
+const FINEST_M: f32 = 0.25;
+/// A triangle counts in so many cells on average, at most; the grid is made coarser where it would be more.
+const CELLS_PER_TRIANGLE: u64 = 8;
+const FREE_CELLS: u64 = 1 << 20;
+/// What lies nearer to the feet than this is the ground itself, metres: a navmesh lies up to a voxel beside the floor, and runs straight
+/// over the treads of stairs.
+const FEET_M: f64 = 0.5;
+/// Somebody who stands needs so much room, metres.
+const HEADROOM_M: f64 = 1.8;
+
+/// The triangles of a scene by the cells that they touch, seen from above. In Wayword's frame.
+#[derive(Debug)]
+pub(crate) struct Columns {
+    triangles: Vec<[Vec3; 3]>,
+    corner: glam::Vec2,
+    side_m: f32,
+    /// Cells along x and along y.
+    size: [usize; 2],
+    /// Where the triangles of each cell begin in `members`; one more than there are cells.
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+/// What is over a place on the ground, or under it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Over {
+    /// A ceiling so many metres above the ground.
+    Ceiling(f64),
+    /// The sky, and solid ground below.
+    Sky,
+    /// The sky, and a space below in which somebody could stand: a roof.
+    SkyOnRoof,
+}
+
+impl Columns {
+    pub(crate) fn new(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
+        // What stands upright has no place seen from above.
+        let lies = |[a, b, c]: &[Vec3; 3]| {
+            let doubled = (*b - *a).truncate().perp_dot((*c - *a).truncate());
+            a.is_finite() && b.is_finite() && c.is_finite() && doubled.abs() > 1e-9
+        };
+        let triangles: Vec<[Vec3; 3]> = triangles.filter(lies).collect();
+        let corners = || triangles.iter().flatten().map(|corner| corner.truncate());
+        let low = corners().reduce(glam::Vec2::min).unwrap_or_default();
+        let high = corners().reduce(glam::Vec2::max).unwrap_or_default();
+        let mut columns =
+            Self { triangles, corner: low, side_m: FINEST_M, size: [1, 1], starts: Vec::new(), members: Vec::new() };
+        let extent = high - low;
+        loop {
+            // Casts saturate; a cell more holds what lies on the far edge.
+            columns.size = [extent.x, extent.y].map(|side| (side / columns.side_m) as usize + 1);
+            let cells = columns.size[0] as u64 * columns.size[1] as u64;
+            let touched: u64 = columns.triangles.iter().map(|triangle| columns.touched(triangle)).sum();
+            let most = FREE_CELLS + CELLS_PER_TRIANGLE * columns.triangles.len() as u64;
+            if columns.size == [1, 1] || (cells <= most && touched <= most) {
+                break;
+            }
+            columns.side_m *= 2.0;
+        }
+        columns.fill();
+        columns
+    }
+
+    fn fill(&mut self) {
+        let cells = self.size[0] * self.size[1];
+        let mut starts = vec![0_u32; cells + 1];
+        for triangle in &self.triangles {
+            self.cells(triangle).for_each(|cell| starts[cell + 1] += 1);
+        }
+        for cell in 0..cells {
+            starts[cell + 1] += starts[cell];
+        }
+        let mut next = starts.clone();
+        self.members = vec![0; starts[cells] as usize];
+        for (number, triangle) in self.triangles.iter().enumerate() {
+            for cell in self.cells(triangle) {
+                self.members[next[cell] as usize] = number as u32;
+                next[cell] += 1;
+            }
+        }
+        self.starts = starts;
+    }
+
+    /// First and last cell along each axis that a triangle's bounds touch.
+    fn span(&self, [a, b, c]: &[Vec3; 3]) -> [[usize; 2]; 2] {
+        let (low, high) = (a.min(*b).min(*c).truncate(), a.max(*b).max(*c).truncate());
+        let at = |place: glam::Vec2| ((place - self.corner) / self.side_m).to_array();
+        let (low, high) = (at(low), at(high));
+        [0, 1].map(|axis| [low[axis], high[axis]].map(|at| (at as usize).min(self.size[axis] - 1)))
+    }
+
+    fn touched(&self, triangle: &[Vec3; 3]) -> u64 {
+        let count = |[first, last]: [usize; 2]| (last - first + 1) as u64;
+        self.span(triangle).map(count).into_iter().product()
+    }
+
+    fn cells(&self, triangle: &[Vec3; 3]) -> impl Iterator<Item = usize> + use<> {
+        let ([[left, right], [near, far]], wide) = (self.span(triangle), self.size[0]);
+        (near..=far).flat_map(move |y| (left..=right).map(move |x| y * wide + x))
+    }
+
+    /// The surfaces that a vertical line through a place meets, from the lowest: height in metres, and whether they face up.
+    fn surfaces(&self, place: DVec3) -> Vec<(f64, bool)> {
+        let at = (place.truncate().as_vec2() - self.corner) / self.side_m;
+        let inside = at.min_element() >= 0.0 && (at.x as usize) < self.size[0] && (at.y as usize) < self.size[1];
+        if !inside {
+            return Vec::new();
+        }
+        let cell = at.y as usize * self.size[0] + at.x as usize;
+        let members = &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+        let mut surfaces: Vec<(f64, bool)> =
+            members.iter().filter_map(|number| met(&self.triangles[*number as usize], place)).collect();
+        surfaces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        surfaces
+    }
+
+    /// What is over a place on the ground.
+    pub(crate) fn over(&self, ground: DVec3) -> Over {
+        let surfaces = self.surfaces(ground);
+        if let Some((height_m, _)) = surfaces.iter().find(|(height_m, _)| *height_m > ground.z + FEET_M) {
+            return Over::Ceiling(height_m - ground.z);
+        }
+        // Whatever lies below faces up where somebody could stand on it, with room above it.
+        let is_room = |pair: &[(f64, bool)]| pair[0].1 && pair[1].0 - pair[0].0 >= HEADROOM_M;
+        if surfaces.windows(2).any(is_room) { Over::SkyOnRoof } else { Over::Sky }
+    }
+}
+
+impl Over {
+    /// Whether somebody can stand upright there.
+    pub(crate) fn is_headroom(&self) -> bool {
+        !matches!(self, Self::Ceiling(height_m) if *height_m < HEADROOM_M)
+    }
+}
+
+/// Where a vertical line through a place meets a triangle, and whether that faces up.
+fn met([a, b, c]: &[Vec3; 3], place: DVec3) -> Option<(f64, bool)> {
+    let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
+    let side = |a: DVec3, b: DVec3| (b - a).truncate().perp_dot((place - a).truncate());
+    let (to_c, to_a, to_b) = (side(a, b), side(b, c), side(c, a));
+    let whole = to_a + to_b + to_c;
+    let within = (to_a >= 0.0 && to_b >= 0.0 && to_c >= 0.0) || (to_a <= 0.0 && to_b <= 0.0 && to_c <= 0.0);
+    (within && whole != 0.0).then(|| ((a.z * to_a + b.z * to_b + c.z * to_c) / whole, whole > 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square around the origin at a height, facing up or down.
+    fn sheet(half_m: f32, height_m: f32, is_up: bool) -> Vec<[Vec3; 3]> {
+        let corner = |x: f32, y: f32| Vec3::new(x * half_m, y * half_m, height_m);
+        let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        if is_up { vec![[a, b, c], [a, c, d]] } else { vec![[a, c, b], [a, d, c]] }
+    }
+
+    fn columns(sheets: &[Vec<[Vec3; 3]>]) -> Columns {
+        Columns::new(sheets.iter().flatten().copied())
+    }
+
+    #[test]
+    fn under_a_slab_there_is_a_ceiling_and_on_top_of_it_a_roof() {
+        let flat = columns(&[sheet(4.0, 0.0, true), sheet(4.0, 2.6, false), sheet(4.0, 2.8, true)]);
+        let Over::Ceiling(height_m) = flat.over(DVec3::new(1.0, 0.5, 0.1)) else { panic!("there is a ceiling") };
+        assert!((height_m - 2.5).abs() < 1e-6);
+        assert_eq!(flat.over(DVec3::new(1.0, 0.5, 2.9)), Over::SkyOnRoof);
+        assert_eq!(flat.over(DVec3::new(9.0, 0.5, 2.9)), Over::Sky);
+    }
+
+    #[test]
+    fn firm_ground_is_no_roof_however_thick() {
+        let block = columns(&[sheet(4.0, -3.0, false), sheet(4.0, 0.0, true)]);
+        assert_eq!(block.over(DVec3::new(1.0, 0.5, 0.0)), Over::Sky);
+        // A crawl space is no room.
+        let raised = columns(&[sheet(4.0, -1.0, true), sheet(4.0, -0.2, false), sheet(4.0, 0.0, true)]);
+        assert_eq!(raised.over(DVec3::new(1.0, 0.5, 0.0)), Over::Sky);
+    }
+
+    #[test]
+    fn a_low_ceiling_leaves_no_headroom() {
+        let cellar = columns(&[sheet(4.0, 0.0, true), sheet(4.0, 1.7, false)]);
+        assert!(!cellar.over(DVec3::ZERO).is_headroom());
+        assert!(Over::Ceiling(1.9).is_headroom() && Over::Sky.is_headroom());
+    }
+
+    #[test]
+    fn a_large_scene_of_large_triangles_takes_a_coarse_grid() {
+        let wide = columns(&[sheet(5e5, 0.0, true), sheet(5e5, 3.0, false)]);
+        assert!(wide.members.len() < 4_000_000 && wide.side_m > FINEST_M);
+        assert_eq!(wide.over(DVec3::new(4e5, -4e5, 0.0)), Over::Ceiling(3.0));
+        assert_eq!(Columns::new(std::iter::empty()).over(DVec3::ZERO), Over::Sky);
+    }
+}

@@ -1,0 +1,185 @@
+//! Which of a navmesh's islands walks keep to.
+//!
+//! Recast finds ground wherever there is room above it, so the top of a ceiling is ground too, and without walls and furniture
+//! it is often the largest. What tells it apart: nothing is above it, and there are rooms below.
+
+use crate::{
+    columns::{Columns, Over},
+    ground::Ground,
+};
+use wayword_core::{Cover, Island, rng};
+
+/// Places that are looked at on each island.
+const PLACES: usize = 400;
+/// Islands that are looked at, the largest first, and the least area of one, square metres.
+const MOST: usize = 64;
+const LEAST_M2: f64 = 1.0;
+/// Walks keep to an island if this share of it is under a ceiling, or under the sky on firm ground.
+const FIT: f64 = 1.0 / 3.0;
+/// An island is indoors if this share of it is under a ceiling.
+const INDOORS: f64 = 0.25;
+/// Rooms count from this share of the open ground on: a shelter in a field does not make the field outdoors of a house.
+const ROOMS: f64 = 0.1;
+/// Another island that has this share of the chosen one's area might have been meant.
+const RIVAL: f64 = 0.5;
+/// Islands that an error or warning names.
+const NAMED: usize = 6;
+
+/// What there is over the places of an island, as shares of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Survey {
+    pub(super) number: usize,
+    area_m2: f64,
+    height_m: f64,
+    ceiling: f64,
+    sky: f64,
+    roof: f64,
+    low: f64,
+}
+
+/// The island that was chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Choice {
+    pub(super) number: usize,
+    /// Whether another might have been meant.
+    pub(super) is_doubtful: bool,
+}
+
+/// Looks at the islands, the largest first.
+pub(super) fn survey(ground: &Ground, columns: &Columns) -> Vec<Survey> {
+    let worth = ground.islands_m2().enumerate().take(MOST).take_while(|(_, area_m2)| *area_m2 >= LEAST_M2);
+    worth.map(|(number, area_m2)| of(ground, columns, number, area_m2)).collect()
+}
+
+fn of(ground: &Ground, columns: &Columns, number: usize, area_m2: f64) -> Survey {
+    let mut dice = rng(0, &["habitat islands", &number.to_string()]);
+    let places = (0..PLACES).filter_map(|_| ground.random_place(number, &mut dice)).map(|foothold| foothold.place);
+    let places: Vec<wayword_core::DVec3> = places.collect();
+    let over: Vec<Over> = places.iter().map(|place| columns.over(*place)).collect();
+    let share = |is: fn(&Over) -> bool| over.iter().filter(|over| is(over)).count() as f64 / over.len().max(1) as f64;
+    let mut heights: Vec<f64> = places.iter().map(|place| place.z).collect();
+    heights.sort_by(f64::total_cmp);
+    Survey {
+        number,
+        area_m2,
+        height_m: heights.get(heights.len() / 2).copied().unwrap_or_default(),
+        ceiling: share(|over| matches!(over, Over::Ceiling(_)) && over.is_headroom()),
+        sky: share(|over| *over == Over::Sky),
+        roof: share(|over| *over == Over::SkyOnRoof),
+        low: share(|over| !over.is_headroom()),
+    }
+}
+
+/// The island that walks keep to: of those under a ceiling the one with the most room there; under the open sky only where the
+/// scene has next to no rooms. `None` where nobody would walk on any.
+pub(super) fn choose(surveys: &[Survey]) -> Option<Choice> {
+    let fit = || surveys.iter().filter(|survey| survey.ceiling + survey.sky >= FIT);
+    let best = |most: fn(&Survey) -> f64, of: Vec<&Survey>| {
+        let better = |a: &&Survey, b: &&Survey| most(a).total_cmp(&most(b)).then(b.number.cmp(&a.number));
+        of.into_iter().max_by(better).copied()
+    };
+    let open = best(Survey::open_m2, fit().collect());
+    let rooms = best(Survey::rooms_m2, fit().filter(|survey| survey.ceiling >= INDOORS).collect());
+    let open_m2 = open.map_or(0.0, |open| open.open_m2());
+    let (chosen, room_m2): (Survey, fn(&Survey) -> f64) =
+        match rooms.filter(|rooms| rooms.rooms_m2() >= ROOMS * open_m2) {
+            Some(rooms) => (rooms, Survey::rooms_m2),
+            None => (open?, Survey::open_m2),
+        };
+    let is_rival = |other: &&Survey| other.number != chosen.number && room_m2(other) >= RIVAL * room_m2(&chosen);
+    let is_doubtful = surveys.iter().any(|other| other.area_m2 > chosen.area_m2) || fit().any(|other| is_rival(&other));
+    Some(Choice { number: chosen.number, is_doubtful })
+}
+
+impl Survey {
+    fn rooms_m2(&self) -> f64 {
+        self.area_m2 * self.ceiling
+    }
+
+    fn open_m2(&self) -> f64 {
+        self.area_m2 * self.sky
+    }
+
+    /// The island as people are told of it; `walked` is the one that walks keep to.
+    pub(super) fn told(&self, walked: Option<usize>) -> Island {
+        let covers = [
+            (self.ceiling, Cover::Ceiling),
+            (self.sky, Cover::Sky),
+            (self.roof, Cover::OnRoof),
+            (self.low, Cover::Low),
+        ];
+        // Of equal shares the first.
+        let most = covers.into_iter().reduce(|best, other| if other.0 > best.0 { other } else { best });
+        Island {
+            number: self.number,
+            area_m2: self.area_m2,
+            height_m: self.height_m,
+            cover: most.map_or(Cover::Sky, |(_, cover)| cover),
+            is_walked: walked == Some(self.number),
+        }
+    }
+}
+
+/// The islands in words, the largest first.
+pub(super) fn listed(surveys: &[Survey]) -> String {
+    if surveys.is_empty() {
+        return format!("it has none of at least {LEAST_M2} m2");
+    }
+    let named: Vec<String> = surveys.iter().take(NAMED).map(|survey| survey.told(None).to_string()).collect();
+    let more = surveys.len().saturating_sub(NAMED);
+    let rest = if more > 0 { format!("; and {more} smaller") } else { String::new() };
+    format!("{}{rest}", named.join("; "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shares: ceiling, sky, roof.
+    fn island(number: usize, area_m2: f64, [ceiling, sky, roof]: [f64; 3]) -> Survey {
+        Survey { number, area_m2, height_m: 0.0, ceiling, sky, roof, low: 1.0 - ceiling - sky - roof }
+    }
+
+    fn chosen(islands: &[Survey]) -> Option<(usize, bool)> {
+        choose(islands).map(|choice| (choice.number, choice.is_doubtful))
+    }
+
+    #[test]
+    fn the_top_of_a_ceiling_is_not_walked_on_however_large() {
+        let flat = [island(0, 67.0, [0.0, 0.1, 0.9]), island(1, 43.5, [1.0, 0.0, 0.0])];
+        assert_eq!(chosen(&flat), Some((1, true)), "a larger island might have been meant");
+        assert_eq!(chosen(&flat[..1]), None);
+    }
+
+    #[test]
+    fn rooms_come_before_the_garden_and_a_shelter_does_not_come_before_a_field() {
+        let garden = island(0, 300.0, [0.02, 0.98, 0.0]);
+        assert_eq!(chosen(&[garden, island(1, 80.0, [0.9, 0.1, 0.0])]), Some((1, true)));
+        assert_eq!(chosen(&[garden, island(1, 4.0, [1.0, 0.0, 0.0])]), Some((0, false)));
+        let house_with_garden = island(0, 300.0, [0.3, 0.7, 0.0]);
+        assert_eq!(chosen(&[house_with_garden]), Some((0, false)));
+    }
+
+    #[test]
+    fn a_scene_without_a_roof_is_walked_on_its_largest_ground() {
+        let scene =
+            [island(0, 50.0, [0.0, 1.0, 0.0]), island(1, 30.0, [0.0, 1.0, 0.0]), island(2, 2.0, [0.0, 1.0, 0.0])];
+        assert_eq!(chosen(&scene), Some((0, true)), "another is more than half as large");
+        assert_eq!(chosen(&[scene[0], scene[2]]), Some((0, false)));
+    }
+
+    #[test]
+    fn where_nobody_can_stand_upright_nothing_is_chosen() {
+        assert_eq!(chosen(&[island(0, 50.0, [0.1, 0.0, 0.0])]), None);
+        assert_eq!(chosen(&[]), None);
+    }
+
+    #[test]
+    fn islands_are_told_with_area_height_and_what_is_over_them() {
+        let told = listed(&[island(0, 67.04, [0.0, 0.1, 0.9]), island(1, 43.5, [1.0, 0.0, 0.0])]);
+        assert_eq!(
+            told,
+            "island 0: 67.0 m2 at height 0.0 m, on top of a roof; island 1: 43.5 m2 at height 0.0 m, under a ceiling"
+        );
+    }
+}
