@@ -17,6 +17,8 @@ pub struct Episode {
     pub viewpoints: Vec<ViewpointId>,
     /// Positions on the floor (not the eye's), world frame, metres, from start to goal. Only VLN-CE has them; empty elsewhere.
     pub floor_positions: Vec<DVec3>,
+    /// What Habitat is told of the scene and of the distance; only VLN-CE's writer asks.
+    pub in_habitat: InHabitat,
     /// How the walker looks before the first hop. `None` where the file does not say.
     pub start_heading: Option<Heading>,
     /// The object of the closing task, where the item has one (REVERIE).
@@ -33,6 +35,17 @@ pub struct Episode {
     pub(crate) as_read: Map<String, Value>,
 }
 
+/// What a world knows of an item that Habitat needs: everything has a default.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct InHabitat {
+    /// VLN-CE's `scene_id`: the scene's file below the folder of scenes. `mp3d/SCENE/SCENE.glb` where it is left out.
+    pub scene_id: Option<String>,
+    /// What has to be put there first, in words, where that is not the file of a dataset.
+    pub scene_needs: Option<String>,
+    /// Shortest distance on foot from start to goal over the scene's navmesh, metres.
+    pub geodesic_m: Option<f64>,
+}
+
 impl Episode {
     /// An item without a path.
     #[must_use]
@@ -43,6 +56,7 @@ impl Episode {
             scene,
             viewpoints: Vec::new(),
             floor_positions: Vec::new(),
+            in_habitat: InHabitat::default(),
             start_heading: None,
             target_object: None,
             split: None,

@@ -25,7 +25,7 @@ mod tally;
 pub mod vlnce;
 mod vocabulary;
 
-pub use episode::Episode;
+pub use episode::{Episode, InHabitat};
 pub use error::{FormatError, ItemPlace, WrongItem};
 pub use format::{Format, UnknownFormat, detect, read};
 pub(crate) use item::Item;

@@ -107,7 +107,9 @@ fn scene_of(item: &Item<'_>, value: &Value) -> Result<SceneId, FormatError> {
 
 fn bare_scene(mesh: &str) -> &str {
     let name = mesh.rsplit('/').next().unwrap_or(mesh);
-    name.rsplit_once('.').map_or(name, |(bare, _)| bare)
+    let bare = name.rsplit_once('.').map_or(name, |(bare, _)| bare);
+    // HM3D's stages are x.basis.glb, and a stage may be named by its configuration.
+    [".basis", ".stage_config"].iter().find_map(|ending| bare.strip_suffix(ending)).unwrap_or(bare)
 }
 
 fn take_positions(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), FormatError> {
@@ -181,8 +183,9 @@ fn take_instruction(
 /// Writes a VLN-CE file, one episode per instruction; gzip where the name ends in `.gz`.
 ///
 /// An episode is named by its item's id, or by `ID_0`, `ID_1`, ... where the item has several instructions. Where the path is not
-/// the one that was read, its goal is its last position (radius 3 m) and `info.geodesic_distance` its length. What does not fit
-/// into the format belongs into a sidecar ([`crate::write_sidecar`]).
+/// the one that was read, its goal is its last position (radius 3 m), and `info.geodesic_distance` is the distance over the scene's
+/// navmesh where the item has it, else the length of the path; `info.geodesic_distance_over` says which. What does not fit into
+/// the format belongs into a sidecar ([`crate::write_sidecar`]).
 ///
 /// # Errors
 /// When an item has no floor positions, two episodes come to the same id, or the file cannot be written.
@@ -234,14 +237,29 @@ fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) ->
     let same_scene = |value: &Value| value.as_str().map(bare_scene) == Some(scene.as_str());
     let mut put = |key: &str, value: Value| drop(fields.insert(key.to_owned(), value));
     put("trajectory_id", episode.name_field("trajectory_id", &episode.path_id));
-    put("scene_id", episode.field("scene_id", same_scene, || format!("mp3d/{scene}/{scene}.glb").into()));
+    let scene_id = || episode.in_habitat.scene_id.clone().unwrap_or_else(|| format!("mp3d/{scene}/{scene}.glb"));
+    put("scene_id", episode.field("scene_id", same_scene, || scene_id().into()));
     put("start_position", episode.field("start_position", |_| same_path, || habitat_value(*start)));
     put("start_rotation", episode.field("start_rotation", same_heading, || json!(habitat_from_heading(heading))));
     let goals = || json!([{ "position": habitat_value(*goal), "radius": GOAL_RADIUS_M }]);
     put("goals", episode.field("goals", |_| same_path, goals));
     put("reference_path", read_path.filter(|_| same_path).cloned().unwrap_or(path));
-    put("info", episode.field("info", |_| same_path, || json!({ "geodesic_distance": episode.floor_length_m() })));
+    put("info", episode.field("info", |_| same_path, || info(episode)));
     Ok(())
+}
+
+/// What may be said beside the format's own fields: loaders take any key there.
+fn info(episode: &Episode) -> Value {
+    let (length_m, over) = match episode.in_habitat.geodesic_m {
+        Some(geodesic_m) => (Some(geodesic_m), "navmesh"),
+        None if episode.viewpoints.is_empty() => (episode.floor_length_m(), "frames"),
+        None => (episode.floor_length_m(), "graph"),
+    };
+    let mut info = json!({ "geodesic_distance": length_m, "geodesic_distance_over": over });
+    if let Some(needs) = &episode.in_habitat.scene_needs {
+        info["scene_needs"] = needs.as_str().into();
+    }
+    info
 }
 
 fn habitat_value(floor: DVec3) -> Value {

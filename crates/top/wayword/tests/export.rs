@@ -138,6 +138,53 @@ fn runs_merge_and_no_scene_is_in_both_splits() {
 }
 
 #[test]
+fn vlnce_says_how_habitat_gets_a_generated_house() {
+    let building = Building::new();
+    houses(&building);
+    let arguments = ["export", "--run", "a", "--style", "r2r", "--format", "vlnce", "--out", "a.json", "--json"];
+    let ran = building.wayword(&arguments);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let needs = "save the house: wayword house --seed 3 --out SCENES/house/house-3";
+    assert!(ran.err.contains(needs) && ran.err.contains("scenes_dir"), "{ran:?}");
+    assert_eq!(ran.json()["scene_needs"], serde_json::json!([needs]));
+    let dataset: Value = serde_json::from_slice(&std::fs::read(building.path("a.json")).unwrap()).unwrap();
+    let episode = &dataset["episodes"][0];
+    assert_eq!(
+        (&episode["scene_id"], &episode["info"]["scene_needs"]),
+        (&"house/house-3/house-3.glb".into(), &needs.into())
+    );
+    assert_eq!(episode["info"]["geodesic_distance_over"], "frames");
+    // What it says to do puts the file there.
+    assert_eq!(building.wayword(&["house", "--seed", "3", "--out", "SCENES/house/house-3"]).code, Some(0));
+    assert!(building.path("SCENES").join(episode["scene_id"].as_str().unwrap()).is_file());
+}
+
+#[test]
+fn vlnce_says_over_what_a_distance_was_measured_and_what_a_recording_lacks() {
+    let building = Building::new();
+    let mut records = building.run_over_episodes("run");
+    let export = |out: &str| {
+        let ran = building.wayword(&["export", "--run", "run", "--style", "r2r", "--format", "vlnce", "--out", out]);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        let dataset: Value = serde_json::from_slice(&std::fs::read(building.path(out)).unwrap()).unwrap();
+        (ran.err, dataset["episodes"][0].clone())
+    };
+    let (said, episode) = export("matterport.json");
+    assert!(!said.contains("scenes_dir"), "{said}");
+    assert_eq!(episode["info"]["geodesic_distance_over"], "graph");
+    let scan = records[0].path.scene.clone();
+    assert_eq!(episode["scene_id"], format!("mp3d/{scan}/{scan}.glb"));
+    for record in &mut records {
+        record.platform = "recording".to_owned();
+    }
+    jsonl::write(&building.path("run/instructions.jsonl"), &records).unwrap();
+    let (said, episode) = export("recording.json");
+    assert_eq!(episode["scene_id"], format!("recording/{scan}/{scan}.glb"));
+    let needs = episode["info"]["scene_needs"].as_str().unwrap();
+    assert!(needs.contains("put a scene of yours at SCENES/recording/") && said.contains(needs), "{needs}: {said}");
+}
+
+#[test]
 fn bad_combinations_are_refused_with_what_to_do() {
     let building = Building::new();
     building.run_over_episodes("run");

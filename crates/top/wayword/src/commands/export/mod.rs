@@ -1,15 +1,18 @@
 //! `wayword export`.
 
+mod in_habitat;
+
 use crate::{
     cli::Export,
     error::{Error, Exit},
     output::Output,
     run::file,
 };
+use in_habitat::World;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 use wayword_formats::{
@@ -22,6 +25,8 @@ use wayword_formats::{
 
 /// Height of the eye over the floor, metres: Matterport3D's camera and the houses' walker. VLN-CE's positions lie on the floor.
 const EYE_HEIGHT_M: f64 = 1.5;
+/// Scenes of which the screen says what they need.
+const NEEDS_SHOWN: usize = 5;
 
 /// What was written.
 #[derive(Debug, Serialize)]
@@ -30,12 +35,16 @@ struct Written {
     file: PathBuf,
     #[serde(skip_serializing_if = "Option::is_none")]
     provenance: Option<PathBuf>,
+    /// What has to be done before Habitat finds the scenes.
+    #[serde(skip_serializing_if = "BTreeSet::is_empty")]
+    scene_needs: BTreeSet<String>,
 }
 
 pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
     let format: Format =
         args.format.parse().map_err(|error| Error::usage(format!("{error}"), "see wayword export --help"))?;
     let mut records = records(&args.run, args.style.as_deref())?;
+    let mut scene_needs = BTreeSet::new();
     let provenance = if format == Format::Wayword {
         if let Some(share) = args.val_share {
             if !(0.0..=1.0).contains(&share) {
@@ -47,9 +56,19 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
         None
     } else {
         refuse_what_only_records_bear(args)?;
-        write_as(format, &args.out, &records)?
+        refuse_without_poses(format, &records)?;
+        let episodes = episodes(format, &args.run, &records)?;
+        scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
+        write_as(format, &args.out, &records, episodes)?
     };
-    let written = Written { instructions: records.len(), file: args.out.clone(), provenance };
+    if !scene_needs.is_empty() {
+        output.say(format_args!("before Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"));
+        scene_needs.iter().take(NEEDS_SHOWN).for_each(|needs| output.say(format_args!("  {needs}")));
+        if let Some(more) = scene_needs.len().checked_sub(NEEDS_SHOWN).filter(|more| *more > 0) {
+            output.say(format_args!("  and {more} more: info.scene_needs of each episode"));
+        }
+    }
+    let written = Written { instructions: records.len(), file: args.out.clone(), provenance, scene_needs };
     let beside =
         written.provenance.as_ref().map_or(String::new(), |file| format!(", provenance in {}", file.display()));
     output.data(&written, format_args!("{} instructions in {}{beside}", written.instructions, args.out.display()));
@@ -60,8 +79,7 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
 fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> {
     let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();
     let mut records = jsonl::merge(&files)?;
-    let styles: std::collections::BTreeSet<String> =
-        records.iter().map(|record| record.instruction.style.clone()).collect();
+    let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
     records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
     if records.is_empty() {
         let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
@@ -89,13 +107,25 @@ fn refuse_what_only_records_bear(args: &Export) -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes one of the field's formats, and provenance beside it where its items have no place for it: VLN-CE's loader
-/// chokes on unknown fields, and R2R's items gather several instructions.
-fn write_as(format: Format, file: &Path, records: &[Record]) -> Result<Option<PathBuf>, Error> {
-    refuse_without_poses(format, records)?;
-    let within = matches!(format, Format::Reverie | Format::Rxr);
-    let episodes: Vec<Episode> = records.iter().map(|record| episode(record, within)).collect();
-    let episodes = if format == Format::Reverie { gathered(episodes) } else { episodes };
+/// Whether items have a place for provenance: VLN-CE's loader chokes on unknown fields, and R2R's items gather several instructions.
+fn bears_provenance(format: Format) -> bool {
+    matches!(format, Format::Reverie | Format::Rxr)
+}
+
+/// The records as items of one of the field's formats.
+fn episodes(format: Format, runs: &[PathBuf], records: &[Record]) -> Result<Vec<Episode>, Error> {
+    let mut episodes: Vec<Episode> = records.iter().map(|record| episode(record, bears_provenance(format))).collect();
+    if let (Format::Vlnce, [run]) = (format, runs) {
+        let world = World::of(run, records)?;
+        for (record, episode) in records.iter().zip(&mut episodes) {
+            world.tell(record, episode)?;
+        }
+    }
+    Ok(if format == Format::Reverie { gathered(episodes) } else { episodes })
+}
+
+/// Writes one of the field's formats, and provenance beside it where its items have no place for it.
+fn write_as(format: Format, file: &Path, records: &[Record], episodes: Vec<Episode>) -> Result<Option<PathBuf>, Error> {
     match format {
         Format::R2r => r2r::write(file, &episodes)?,
         Format::Reverie => reverie::write(file, &episodes)?,
@@ -103,7 +133,7 @@ fn write_as(format: Format, file: &Path, records: &[Record]) -> Result<Option<Pa
         Format::Vlnce => vlnce::write(file, &Dataset::of(episodes))?,
         Format::Wayword => jsonl::write(file, records)?,
     }
-    if within {
+    if bears_provenance(format) {
         return Ok(None);
     }
     let lines: Vec<Value> = records
