@@ -34,7 +34,7 @@ pub fn draw_picture(bytes: &[u8]) -> Option<()> {
 /// Opens a folder of scenes as a platform, and looks from the first viewpoint of its first one.
 pub fn visit(folder: &Path) -> Result<View, PlatformError> {
     let options = HabitatOptions { width_px: 16, height_px: 12, ..HabitatOptions::default() };
-    let platform = HabitatPlatform::open(folder, options)?;
+    let platform = HabitatPlatform::open(folder, options, std::sync::Arc::new(|_: &str| {}))?;
     let scene = platform.scenes()?.remove(0);
     let graph = platform.graph(&scene)?;
     let first = graph.viewpoints().next().cloned();
