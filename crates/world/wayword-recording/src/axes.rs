@@ -71,8 +71,17 @@ impl Axes {
         Heading::new(FRAC_PI_2 - yaw_rad + self.mount_rad).ok()
     }
 
+    /// What the body has above it, in its own frame.
+    pub(crate) fn above(self) -> DVec3 {
+        match self.body {
+            Body::Robot => DVec3::Z,
+            Body::Optical => DVec3::NEG_Y,
+            Body::OpenGl => DVec3::Y,
+        }
+    }
+
     /// What the body has ahead, in its own frame.
-    fn ahead(self) -> DVec3 {
+    pub(crate) fn ahead(self) -> DVec3 {
         match self.body {
             Body::Robot => DVec3::X,
             Body::Optical => DVec3::Z,
@@ -84,6 +93,33 @@ impl Axes {
         let heading = Heading::towards(DVec3::ZERO, self.wayword_from_recorded(recorded))?;
         Some(heading.turned(self.mount_rad))
     }
+}
+
+impl World {
+    /// As `recording.toml` has it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::ZUp => "z-up",
+            Self::YUp => "y-up",
+            Self::YDown => "y-down",
+        }
+    }
+}
+
+impl Body {
+    /// As `recording.toml` has it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Robot => "robot",
+            Self::Optical => "optical",
+            Self::OpenGl => "open-gl",
+        }
+    }
+}
+
+/// The columns of the rotation that a quaternion (x, y, z, w) is; `None` where it is none.
+pub(crate) fn columns(quaternion: [f64; 4]) -> Option<[DVec3; 3]> {
+    Some([rotated(quaternion, DVec3::X)?, rotated(quaternion, DVec3::Y)?, rotated(quaternion, DVec3::Z)?])
 }
 
 /// A vector turned by a quaternion (x, y, z, w), which need not be of length 1.

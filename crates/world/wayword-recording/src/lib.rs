@@ -15,6 +15,7 @@ mod mcap;
 mod names;
 mod open;
 mod platform;
+mod plausible;
 mod poses;
 mod reel;
 #[cfg(any(feature = "mcap", feature = "video"))]

@@ -4,6 +4,7 @@ use crate::{
     choose::{Choice, choose},
     open,
     reel::{Recording, Source},
+    track::Track,
 };
 use image::imageops::{FilterType, resize};
 use rand::Rng;
@@ -76,6 +77,9 @@ impl RecordingPlatform {
                 }
             })?;
             (self.hear)(&told(scene, &recording, &choice));
+            if let Some(doubt) = recording.track.as_ref().and_then(Track::doubt) {
+                (self.hear)(doubt);
+            }
             for number in &choice.stops {
                 if let Some(image) = seen.remove(number) {
                     self.pictures.put((scene.clone(), *number), image);

@@ -24,6 +24,8 @@ pub(crate) struct Fix {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Track {
     fixes: Vec<Fix>,
+    /// What is odd about them, in words.
+    doubt: Option<String>,
 }
 
 impl Track {
@@ -36,7 +38,17 @@ impl Track {
         });
         fixes.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         fixes.dedup_by(|later, first| later.time_s == first.time_s);
-        (!fixes.is_empty()).then_some(Self { fixes })
+        (!fixes.is_empty()).then_some(Self { fixes, doubt: None })
+    }
+
+    /// The same, with what is odd about it.
+    pub(crate) fn in_doubt(self, doubt: String) -> Self {
+        Self { doubt: Some(doubt), ..self }
+    }
+
+    /// What is odd about it, in words.
+    pub(crate) fn doubt(&self) -> Option<&str> {
+        self.doubt.as_deref()
     }
 
     /// Times of the first and last fix, seconds.

@@ -11,8 +11,10 @@ mod pose_feature;
 mod template;
 
 use crate::{
+    axes::{Axes, Body},
     describe::Description,
     names::{scene_of, unknown},
+    plausible::doubt,
     reel::{Recording, Reel, Source},
     track::{Fix, Track},
 };
@@ -70,7 +72,13 @@ impl Dataset {
         let fixes = times_s.iter().zip(numbers.chunks_exact(elements.len()));
         let fixes: Vec<Fix> =
             fixes.filter_map(|(time_s, numbers)| feature.fix(*time_s, numbers, &self.described)).collect();
-        Track::new(fixes).map(Some).ok_or_else(|| {
+        let samples = numbers.chunks_exact(elements.len()).filter_map(|numbers| feature.sample(numbers));
+        let doubt = doubt(&samples.collect::<Vec<_>>(), self.described.axes(Axes::of(Body::Robot)), &self.described);
+        let in_doubt = |track: Track| match doubt {
+            Some(doubt) => track.in_doubt(format!("{}: {}", table.path().display(), doubt.into_words())),
+            None => track,
+        };
+        Track::new(fixes).map(in_doubt).map(Some).ok_or_else(|| {
             let reason = format!("column {:?}: no row holds a place in metres", feature.feature);
             files::wrong(
                 table.path(),

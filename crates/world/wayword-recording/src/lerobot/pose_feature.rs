@@ -2,8 +2,9 @@
 
 use super::info::{Feature, Info};
 use crate::{
-    axes::{Axes, Body, World},
+    axes::{Axes, Body, World, columns},
     describe::Description,
+    plausible::Sample,
     track::Fix,
 };
 use std::path::Path;
@@ -130,14 +131,28 @@ impl PoseFeature {
     /// Where the robot was, from the numbers of [`PoseFeature::elements`].
     pub(super) fn fix(&self, time_s: f64, numbers: &[f64], described: &Description) -> Option<Fix> {
         let axes = described.axes(Axes::of(Body::Robot));
-        let (place, facing) = numbers.split_at_checked(2 + usize::from(self.z.is_some()))?;
-        let recorded = DVec3::new(*place.first()?, *place.get(1)?, place.get(2).copied().unwrap_or(0.0));
+        let (recorded, facing) = self.split(numbers)?;
         let heading = match (self.facing, facing) {
             (Facing::Yaw(_, rad), [yaw]) => axes.heading_by_yaw(yaw * rad),
             (Facing::Quaternion(_), [x, y, z, w]) => axes.heading([*x, *y, *z, *w]),
             _ => None,
         };
         Some(Fix { time_s, position: axes.wayword_from_recorded(recorded), heading })
+    }
+
+    /// The pose as it was written down, from the same numbers.
+    pub(super) fn sample(&self, numbers: &[f64]) -> Option<Sample> {
+        let (position, facing) = self.split(numbers)?;
+        let held = match (self.facing, facing) {
+            (Facing::Quaternion(_), [x, y, z, w]) => columns([*x, *y, *z, *w]),
+            _ => None,
+        };
+        Some(Sample { position, held })
+    }
+
+    fn split<'a>(&self, numbers: &'a [f64]) -> Option<(DVec3, &'a [f64])> {
+        let (place, facing) = numbers.split_at_checked(2 + usize::from(self.z.is_some()))?;
+        Some((DVec3::new(*place.first()?, *place.get(1)?, place.get(2).copied().unwrap_or(0.0)), facing))
     }
 }
 

@@ -16,9 +16,10 @@ mod topics;
 mod tree;
 
 use crate::{
-    axes::{Axes, Body},
+    axes::{Axes, Body, columns},
     describe::Description,
     names,
+    plausible::{Sample, doubt},
     reel::{Recording, Source},
     track::{Fix, Track},
 };
@@ -127,21 +128,34 @@ impl McapFile {
             let (first_ns, last_ns) = (times.clone().min()?, times.max()?);
             let placings = way.placings(clock);
             let meet = placings.first()?.0 <= last_ns && placings.last()?.0 >= first_ns;
-            meet.then(|| self.fixes(&placings, first_ns, way.of_camera, frame)).and_then(Track::new)
+            let axes = self.described.axes(Axes::of(if way.of_camera { body(&placings, frame) } else { Body::Robot }));
+            let track = meet.then(|| fixes(&placings, first_ns, axes)).and_then(Track::new)?;
+            Some(match doubt(&samples(&placings), axes, &self.described) {
+                Some(doubt) => track.in_doubt(format!("{}: {}", self.path.display(), doubt.into_words())),
+                None => track,
+            })
         };
         let clocks = if stamped { &[Clock::Stamp, Clock::Log][..] } else { &[Clock::Log] };
         clocks.iter().find_map(|clock| Some((Some(on(*clock)?), *clock))).unwrap_or((None, usual))
     }
+}
 
-    fn fixes(&self, placings: &[(i64, Placing)], first_ns: i64, of_camera: bool, frame: &str) -> Vec<Fix> {
-        let axes = self.described.axes(Axes::of(if of_camera { body(placings, frame) } else { Body::Robot }));
-        let fix = |(time_ns, placing): &(i64, Placing)| Fix {
-            time_s: seconds(*time_ns, first_ns),
-            position: axes.wayword_from_recorded(DVec3::from(placing.position.to_array())),
-            heading: axes.heading(placing.rotation.to_array()),
-        };
-        placings.iter().map(fix).collect()
-    }
+fn fixes(placings: &[(i64, Placing)], first_ns: i64, axes: Axes) -> Vec<Fix> {
+    let fix = |(time_ns, placing): &(i64, Placing)| Fix {
+        time_s: seconds(*time_ns, first_ns),
+        position: axes.wayword_from_recorded(DVec3::from(placing.position.to_array())),
+        heading: axes.heading(placing.rotation.to_array()),
+    };
+    placings.iter().map(fix).collect()
+}
+
+/// The poses as they were written down.
+fn samples(placings: &[(i64, Placing)]) -> Vec<Sample> {
+    let sample = |(_, placing): &(i64, Placing)| Sample {
+        position: DVec3::from(placing.position.to_array()),
+        held: columns(placing.rotation.to_array()),
+    };
+    placings.iter().map(sample).collect()
 }
 
 /// What pictures say their frame is should be the optical one (`sensor_msgs/msg/Image`); some say the camera's body. No camera

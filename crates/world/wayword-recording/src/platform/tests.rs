@@ -131,3 +131,19 @@ fn large_pictures_are_made_as_large_as_other_worlds_have_them() {
     assert_eq!((upright.width_px(), upright.height_px()), (360, 640));
     assert_eq!(scaled(&upright), upright);
 }
+
+#[test]
+fn what_is_odd_about_poses_is_told() {
+    let folder = walk(true);
+    // North and east in a world with y up.
+    let line = |at: u32| format!("{at}.png,{},1.5,-{}\n", at.saturating_sub(4), at.min(4));
+    let csv: String = (0..=8).map(line).collect();
+    std::fs::write(folder.path().join("poses.csv"), format!("image,x,y,z\n{csv}")).unwrap();
+    let (platform, scene, heard) = open(&folder);
+    platform.graph(&scene).unwrap();
+    assert!(heard.lock().unwrap().iter().any(|line| line.contains("write world = \"y-up\"")), "{heard:?}");
+    std::fs::write(folder.path().join("recording.toml"), "world = \"y-up\"").unwrap();
+    let (platform, scene, heard) = open(&folder);
+    platform.graph(&scene).unwrap();
+    assert_eq!(heard.lock().unwrap().len(), 1, "{heard:?}");
+}

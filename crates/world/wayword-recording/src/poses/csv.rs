@@ -40,7 +40,7 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
     // The sensor of EuRoC has z ahead and x up (`body_T_cam` in its sensor.yaml).
     let is_euroc = header.to_ascii_lowercase().contains(EUROC_POSITION);
     let body = if is_euroc { Body::Optical } else { Body::Robot };
-    Ok(Rows { usual: Axes::of(body), rows: rows.collect::<Result<_, _>>()? })
+    Ok(Rows { usual: Axes::of(body), knows_above: !is_euroc, rows: rows.collect::<Result<_, _>>()? })
 }
 
 /// The cells of a line, up to one in quotes that holds what stands between cells: it shifts all that follow.

@@ -61,7 +61,7 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
 
 fn rows_of(usual: Axes, rows: impl Iterator<Item = Result<Row, (usize, &'static str)>>) -> Result<Rows, String> {
     let rows = rows.collect::<Result<_, _>>().map_err(|(at, what)| format!("{what} {at}: {EXPECTED}"))?;
-    Ok(Rows { usual, rows })
+    Ok(Rows { usual, knows_above: true, rows })
 }
 
 impl Framed {

@@ -28,7 +28,8 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
         })?);
     }
     let kitti = Axes { world: World::YDown, ..Axes::of(Body::Optical) };
-    Ok(Rows { usual: if columns == Some(12) { kitti } else { Axes::of(Body::Optical) }, rows })
+    let usual = if columns == Some(12) { kitti } else { Axes::of(Body::Optical) };
+    Ok(Rows { usual, knows_above: true, rows })
 }
 
 fn row(numbers: &[f64], at: usize) -> Option<Row> {

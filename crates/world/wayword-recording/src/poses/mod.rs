@@ -8,9 +8,10 @@ mod rows;
 use crate::{
     axes::{Axes, World},
     describe::Description,
+    plausible::{self, Doubt},
     track::Track,
 };
-use rows::{Facing, Of, Rows};
+use rows::{Facing, Of};
 use std::path::{Component, Path, PathBuf};
 use wayword_core::PlatformError;
 use wayword_world::files;
@@ -60,15 +61,20 @@ pub(crate) fn track(
     let text =
         files::text_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let Rows { usual, rows } = match ending {
+    let read = match ending {
         "json" => json::read(&text),
         "csv" => csv::read(&text),
         _ => matrix::read(&text),
     }
     .map_err(wrong)?;
-    let axes = described.axes(usual);
+    let axes = described.axes(read.usual);
+    let doubt = plausible::doubt(&read.samples(), axes, described);
+    let rows = read.rows;
     if axes.world != World::ZUp && rows.iter().any(|row| matches!(row.facing, Facing::Yaw(_))) {
         return Err(wrong("a yaw turns about z, so the world of its poses must be z-up".into()));
+    }
+    if let Some(Doubt::Misread(reason)) = doubt {
+        return Err(files::wrong(file, reason, crate::describe::HINT));
     }
     let none = if rows.is_empty() {
         "holds no pose"
@@ -83,7 +89,10 @@ pub(crate) fn track(
             "has poses from {from} to {to} s, and the pictures were taken from {first} to {last} s: no pose belongs to a picture"
         )));
     }
-    Ok(track)
+    Ok(match doubt {
+        Some(Doubt::Odd(words)) => track.in_doubt(format!("{}: {words}", file.display())),
+        _ => track,
+    })
 }
 
 /// Rows as fixes; those of pictures that are not there are left out.

@@ -1,6 +1,10 @@
 //! A line of a pose file.
 
-use crate::{axes::Axes, track::Fix};
+use crate::{
+    axes::{Axes, columns},
+    plausible::Sample,
+    track::Fix,
+};
 use std::path::Path;
 use wayword_core::{DVec3, Heading};
 
@@ -8,6 +12,8 @@ use wayword_core::{DVec3, Heading};
 #[derive(Debug)]
 pub(super) struct Rows {
     pub(super) usual: Axes,
+    /// Whether what the body has above it is known: of EuRoC's sensor only what it has ahead is read.
+    pub(super) knows_above: bool,
     pub(super) rows: Vec<Row>,
 }
 
@@ -55,6 +61,19 @@ impl Row {
             Facing::Heading(rad) => Heading::new(rad + axes.mount_rad).ok(),
         };
         Fix { time_s, position: axes.wayword_from_recorded(self.position), heading }
+    }
+}
+
+impl Rows {
+    /// The poses as they were written down.
+    pub(super) fn samples(&self) -> Vec<Sample> {
+        let held = |facing: Facing| match facing {
+            Facing::Quaternion(quaternion) => columns(quaternion),
+            Facing::Columns(columns) => Some(columns),
+            Facing::Unknown | Facing::Yaw(_) | Facing::Heading(_) => None,
+        };
+        let sample = |row: &Row| Sample { position: row.position, held: held(row.facing).filter(|_| self.knows_above) };
+        self.rows.iter().map(sample).collect()
     }
 }
 

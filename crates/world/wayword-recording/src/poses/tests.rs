@@ -132,3 +132,31 @@ proptest! {
         let _ = read(&format!("poses.{ending}"), &text, 0.0, &Description::default());
     }
 }
+
+/// A level walk around a corner, as a world with y up has it: `image,x,y,z` and, where wanted, a camera of OpenGL that looks along it.
+fn with_y_up(is_held: bool) -> String {
+    let header = if is_held { "image,x,y,z,qx,qy,qz,qw" } else { "image,x,y,z" };
+    // Ahead is -z, then +x: a quarter clockwise seen from above.
+    let looking = |at: usize| if at <= 2 { ",0,0,0,1" } else { ",0,-0.70710678,0,0.70710678" };
+    let line =
+        |(at, [x, z]): (usize, [f64; 2])| format!("{at}.png,{x},1.5,{z}{}\n", if is_held { looking(at) } else { "" });
+    let places = [[0.0, 0.0], [0.0, -2.0], [0.0, -4.0], [3.0, -4.0]];
+    format!("{header}\n{}", places.into_iter().enumerate().map(line).collect::<String>())
+}
+
+#[test]
+fn a_level_walk_that_would_climb_is_refused_until_the_user_says_what_is_up() {
+    let usual = Description::default();
+    let error = read("poses.csv", &with_y_up(true), 0.0, &usual).unwrap_err();
+    assert!(error.contains("poses.csv") && error.contains("walk climbs straight up"), "{error}");
+    assert!(error.contains("Write world = \"y-up\" and orientation = \"open-gl\" into a recording.toml"), "{error}");
+    let meant = Description { world: Some(World::YUp), orientation: Some(crate::axes::Body::OpenGl), ..usual };
+    let track = read("poses.csv", &with_y_up(true), 0.0, &meant).unwrap();
+    assert_eq!((at(&track, 2.0), track.doubt()), ((DVec3::new(0.0, 4.0, 1.5), 0.0), None));
+}
+
+#[test]
+fn places_alone_that_would_climb_are_told_of() {
+    let track = read("poses.csv", &with_y_up(false), 0.0, &Description::default()).unwrap();
+    assert!(track.doubt().unwrap().contains("write world = \"y-up\" into a recording.toml"), "{:?}", track.doubt());
+}

@@ -1,0 +1,224 @@
+//! Whether poses can be meant as they are read: people and robots walk on a level plane and hold their cameras upright.
+//!
+//! Stairs climb at 35 degrees, so a walk that goes straight up again and again while it hardly leaves a vertical plane is read in
+//! the wrong frame, or is a drone's or a lift's. What the cameras have above them tells which. It is only asked for where the user
+//! has not said it: `world` and `orientation` in a `recording.toml` are believed.
+
+use crate::{
+    axes::{Axes, Body, World},
+    describe::Description,
+};
+use wayword_core::DVec3;
+
+/// Nothing is said of shorter walks, metres.
+const LEAST_M: f64 = 3.0;
+/// Steps of a walk are as long as this, metres: shorter ones are the tracker's noise.
+const STEP_M: f64 = 0.4;
+/// Steps that rise or fall by more than this share of their length are steeper than stairs and ramps (55 degrees).
+const STEEP: f64 = 0.82;
+/// So much of a walk over such steps is more than a ladder, as a share of its length.
+const CLIMBING: f64 = 0.25;
+/// The plane of a walk is as thick as this, metres, or this share of the walk's longest side.
+const PLANE_M: f64 = 0.5;
+const PLANE_SHARE: f64 = 0.08;
+/// A camera is upright if what it has above it points up by so much (the cosine of 60 degrees).
+const UPRIGHT: f64 = 0.5;
+/// Cameras are upright in this share of the poses, where these are read as they are meant.
+const MOSTLY: f64 = 0.9;
+/// Another frame is only named if by that one the cameras are held so well on average (the cosine of 37 degrees).
+const WELL_UPRIGHT: f64 = 0.8;
+/// Share of the poses that must tell how the camera was held.
+const TOLD: f64 = 0.8;
+
+/// A pose as it was written down.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample {
+    pub(crate) position: DVec3,
+    /// recorded_from_body by its columns, where the pose tells how the camera was held.
+    pub(crate) held: Option<[DVec3; 3]>,
+}
+
+/// Why poses are hardly meant as they are read.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Doubt {
+    /// By other axes all is well: the user has to say which.
+    Misread(String),
+    /// It is odd, and may be right.
+    Odd(String),
+}
+
+impl Doubt {
+    pub(crate) fn into_words(self) -> String {
+        match self {
+            Self::Misread(words) | Self::Odd(words) => words,
+        }
+    }
+}
+
+/// What is doubtful about poses in the order of their times, if they are read by these axes.
+pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> Option<Doubt> {
+    let walk = Walk::of(samples).filter(|walk| walk.length_m >= LEAST_M)?;
+    let climbs = walk.climbs(axes.world) && !walk.is_level(axes.world);
+    let stands = walk.stands(axes);
+    if stands == Some(true) && !climbs {
+        return None;
+    }
+    if let Some(meant) = meant(&walk, axes, described) {
+        let odd = match (stands == Some(true), climbs) {
+            (true, _) => "the walk climbs straight up",
+            (false, true) => "the camera lies on its side and the walk climbs straight up",
+            (false, false) => "the camera lies on its side",
+        };
+        let words = format!(
+            "read with {}, {odd}; with {} the camera is upright and the walk level. Write {} into a recording.toml beside it, or {} if \
+             that is right",
+            told(axes),
+            told(meant),
+            changed(axes, meant),
+            told(axes)
+        );
+        // A drone may look straight down or go straight up, and a telephone may be held on its side: only both together are sure.
+        let is_misread = climbs && stands == Some(false) && meant.world != axes.world;
+        return Some(if is_misread { Doubt::Misread(words) } else { Doubt::Odd(words) });
+    }
+    match stands {
+        Some(true) => None,
+        Some(false) => walk.upright(axes).filter(|upright| *upright <= -WELL_UPRIGHT).map(|_| {
+            Doubt::Odd(format!(
+                "read with {} the camera stands on its head: say how poses are meant in a recording.toml (world, orientation), or turn \
+                 them so that z is up",
+                told(axes)
+            ))
+        }),
+        None => plane(&walk, axes, described).filter(|_| climbs),
+    }
+}
+
+/// What is odd about places alone: they keep to a plane that would be level in another world.
+fn plane(walk: &Walk, axes: Axes, described: &Description) -> Option<Doubt> {
+    let is_meant = |world: &World| *world != axes.world && walk.is_level(*world) && !walk.climbs(*world);
+    let meant = [World::ZUp, World::YUp].into_iter().find(is_meant).filter(|_| described.world.is_none())?;
+    let (now, meant) = (world_told(axes.world), world_told(meant));
+    Some(Doubt::Odd(format!(
+        "read with {now} the walk climbs and falls {:.1} m straight up, and by {meant} it keeps to one floor: if so, write {meant} into a \
+         recording.toml beside it (y-down where y grows downwards), else {now}",
+        walk.climbed_m(axes.world)
+    )))
+}
+
+/// Other axes by which the cameras are upright and the walk is level: those that change least, then those by which the camera looks
+/// where it goes.
+fn meant(walk: &Walk, axes: Axes, described: &Description) -> Option<Axes> {
+    let worlds = [World::ZUp, World::YUp, World::YDown].into_iter();
+    let worlds = worlds.filter(|world| *world == axes.world || described.world.is_none());
+    let all =
+        worlds.flat_map(|world| [Body::Robot, Body::Optical, Body::OpenGl].map(|body| Axes { world, body, ..axes }));
+    let could = all.filter(|other| *other != axes && (other.body == axes.body || described.orientation.is_none()));
+    let fits =
+        |other: &Axes| walk.upright(*other).is_some_and(|upright| upright >= WELL_UPRIGHT) && !walk.climbs(other.world);
+    let changes = |other: &Axes| usize::from(other.world != axes.world) + usize::from(other.body != axes.body);
+    could.filter(fits).min_by(|a, b| changes(a).cmp(&changes(b)).then(walk.ahead(*b).total_cmp(&walk.ahead(*a))))
+}
+
+/// A walk in the frame in which it was recorded.
+struct Walk {
+    /// At least a step apart.
+    places: Vec<DVec3>,
+    length_m: f64,
+    /// How the camera was held, at those places; empty where too few poses tell.
+    held: Vec<[DVec3; 3]>,
+}
+
+impl Walk {
+    fn of(samples: &[Sample]) -> Option<Self> {
+        let mut places: Vec<DVec3> = Vec::new();
+        let mut held = Vec::new();
+        for sample in samples.iter().filter(|sample| sample.position.is_finite()) {
+            if places.last().is_none_or(|last: &DVec3| last.distance(sample.position) >= STEP_M) {
+                places.push(sample.position);
+                held.extend(sample.held);
+            }
+        }
+        if (held.len() as f64) < TOLD * places.len() as f64 {
+            held.clear();
+        }
+        let length_m = places.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        (!places.is_empty()).then_some(Self { places, length_m, held })
+    }
+
+    fn steps(&self) -> impl Iterator<Item = DVec3> {
+        self.places.windows(2).map(|pair| pair[1] - pair[0])
+    }
+
+    /// How much of what the camera has above it points up, pose by pose; nothing where too few poses tell.
+    fn ups(&self, axes: Axes) -> impl Iterator<Item = f64> {
+        self.held.iter().map(move |held| axes.wayword_from_recorded(along(held, axes.above())).z)
+    }
+
+    /// The same on average.
+    fn upright(&self, axes: Axes) -> Option<f64> {
+        (!self.held.is_empty()).then(|| self.ups(axes).sum::<f64>() / self.held.len() as f64)
+    }
+
+    /// Whether the camera is upright in most of the poses; `None` where too few tell.
+    fn stands(&self, axes: Axes) -> Option<bool> {
+        let upright = self.ups(axes).filter(|up| *up >= UPRIGHT).count();
+        (!self.held.is_empty()).then(|| upright as f64 >= MOSTLY * self.held.len() as f64)
+    }
+
+    /// How much of the steps goes where the camera looks, metres.
+    fn ahead(&self, axes: Axes) -> f64 {
+        self.steps().zip(&self.held).map(|(step, held)| along(held, axes.ahead()).dot(step)).sum()
+    }
+
+    /// Whether much of the walk goes straight up or down.
+    fn climbs(&self, world: World) -> bool {
+        let up = up(world);
+        let steep = self.steps().filter(|step| step.dot(up).abs() > STEEP * step.length());
+        steep.map(DVec3::length).sum::<f64>() >= CLIMBING * self.length_m
+    }
+
+    fn climbed_m(&self, world: World) -> f64 {
+        self.steps().map(|step| step.dot(up(world)).abs()).sum()
+    }
+
+    /// Whether the walk keeps to a plane that is level in a world.
+    fn is_level(&self, world: World) -> bool {
+        let low = self.places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = self.places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let extent = high - low;
+        extent.dot(up(world)).abs() <= PLANE_M.max(PLANE_SHARE * extent.max_element())
+    }
+}
+
+/// A direction of the body in the recorded frame.
+fn along([x, y, z]: &[DVec3; 3], of_body: DVec3) -> DVec3 {
+    *x * of_body.x + *y * of_body.y + *z * of_body.z
+}
+
+/// What is up in the recorded frame.
+fn up(world: World) -> DVec3 {
+    match world {
+        World::ZUp => DVec3::Z,
+        World::YUp => DVec3::Y,
+        World::YDown => DVec3::NEG_Y,
+    }
+}
+
+fn world_told(world: World) -> String {
+    format!("world = \"{}\"", world.name())
+}
+
+fn told(axes: Axes) -> String {
+    format!("world = \"{}\" and orientation = \"{}\"", axes.world.name(), axes.body.name())
+}
+
+/// The settings that lead from one to the other.
+fn changed(from: Axes, to: Axes) -> String {
+    let world = (from.world != to.world).then(|| world_told(to.world));
+    let body = (from.body != to.body).then(|| format!("orientation = \"{}\"", to.body.name()));
+    world.into_iter().chain(body).collect::<Vec<_>>().join(" and ")
+}
+
+#[cfg(test)]
+mod tests;
