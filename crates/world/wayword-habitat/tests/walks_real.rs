@@ -107,6 +107,9 @@ fn an_island_that_is_asked_for_is_walked_on_even_if_it_is_a_roof() {
     );
 }
 
+/// The way from one place on the ground to another.
+type Measure = dyn Fn(DVec3, DVec3) -> Way;
+
 #[test]
 fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
     let Some(folder) = oracles::folder() else { return };
@@ -118,7 +121,7 @@ fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
         let scene = platform.scenes().unwrap().remove(0);
         move |from: DVec3, to: DVec3| platform.way(&scene, &standing(from), &standing(to)).unwrap().unwrap()
     };
-    let mut expected: Vec<(Box<dyn Fn(DVec3, DVec3) -> Way>, DVec3, DVec3, f64)> = Vec::new();
+    let mut expected: Vec<(Box<Measure>, DVec3, DVec3, f64)> = Vec::new();
     for (name, number) in [("flat", 0), ("simple_room", 2)] {
         let file = format!("habitat_frames/traj_{}/trajectory.json", if number == 0 { "flat_a" } else { name });
         let told = oracles::json(&folder.join(file));
