@@ -16,6 +16,14 @@ pub enum LedgerError {
         /// Its format.
         format: i64,
     },
+    /// The file lies, or would lie, where the database cannot be relied on.
+    #[error("{}: a ledger cannot be kept on {kind}, a network's file system: its locks may not hold, and what was paid for could be lost\nhint: name a file on a disk of this machine, as in --ledger /tmp/ledger.db; copy one that you have there while nothing uses it", path.display())]
+    Network {
+        /// The file.
+        path: PathBuf,
+        /// What the file system is called.
+        kind: &'static str,
+    },
     /// The database would not.
     #[error("{}: cannot {doing} the ledger: {reason}\nhint: {hint}", path.display())]
     Store {

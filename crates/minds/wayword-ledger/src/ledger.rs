@@ -3,7 +3,7 @@
 use crate::{
     LedgerError, Row,
     flight::Flights,
-    store::{Store, Write},
+    store::{Store, Write, may_hold},
 };
 use std::{
     fs::File,
@@ -31,12 +31,20 @@ struct Inner {
 }
 
 impl Ledger {
-    /// Opens a ledger, or makes one that only its owner can read. Several programs may have it open.
+    /// Opens a ledger, or makes one that only its owner can read. Several programs of one machine may have it open.
     ///
     /// # Errors
-    /// When the file is something else, or cannot be read and written.
+    /// When the file is something else, lies on a network's file system, or cannot be read and written.
     pub fn open(path: &Path) -> Result<Self, LedgerError> {
         Ok(Self::of(Store::open(path)?, None))
+    }
+
+    /// Whether a ledger may lie there; nothing is opened or made.
+    ///
+    /// # Errors
+    /// When that is on a network's file system.
+    pub fn check_place(path: &Path) -> Result<(), LedgerError> {
+        may_hold(path)
     }
 
     /// A ledger that is gone with the process.

@@ -8,6 +8,7 @@
 
 mod budget;
 mod call;
+mod disk;
 mod error;
 mod flight;
 mod ledger;
@@ -17,6 +18,7 @@ mod store;
 
 pub use budget::{Limits, Refused};
 pub use call::{Answer, Call, Key, Row};
+pub use disk::network_at;
 pub use error::LedgerError;
 pub use ledger::Ledger;
 pub use queries::{By, CostLine, Filter};

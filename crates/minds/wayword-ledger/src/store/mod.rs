@@ -3,7 +3,7 @@
 mod schema;
 mod writer;
 
-use crate::{Answer, Key, LedgerError, budget::Spent, call::Row};
+use crate::{Answer, Key, LedgerError, budget::Spent, call::Row, network_at};
 use rusqlite::{Connection, OpenFlags, OptionalExtension, params};
 use std::{
     fs,
@@ -30,6 +30,7 @@ impl Store {
     pub(crate) fn open(path: &Path) -> Result<Self, LedgerError> {
         // The database gives names such as ":memory:" a meaning of their own, unless they are those of files beyond doubt.
         let path = &std::path::absolute(path).map_err(LedgerError::io(path, "find the ledger"))?;
+        may_hold(path)?;
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(LedgerError::io(folder, "make the folder"))?;
         }
@@ -94,6 +95,14 @@ impl Store {
         let spent =
             reader.query_row(sql, params![run], |row| Ok((row.get(0)?, row.get::<_, i64>(1)?))).map_err(&failed)?;
         Ok(Spent { usd: spent.0, reserved_usd: 0.0, calls: u64::try_from(spent.1).unwrap_or(0) })
+    }
+}
+
+/// Refuses a place where the database cannot rely on the file system.
+pub(crate) fn may_hold(path: &Path) -> Result<(), LedgerError> {
+    match network_at(path) {
+        Some(kind) => Err(LedgerError::Network { path: path.to_owned(), kind }),
+        None => Ok(()),
     }
 }
 
