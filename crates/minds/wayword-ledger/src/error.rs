@@ -24,6 +24,16 @@ pub enum LedgerError {
         /// What the file system is called.
         kind: &'static str,
     },
+    /// An answer is not the one that was written.
+    #[error("{}: the answer of {model} to call {key} was changed after it was written, by a damaged disk or by hand\nhint: `wayword ledger prune --changed` drops all such answers (with --ledger where you name one); the same command then asks them anew", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// The call.
+        key: String,
+        /// Whose answer it was.
+        model: String,
+    },
     /// The database would not.
     #[error("{}: cannot {doing} the ledger: {reason}\nhint: {hint}", path.display())]
     Store {

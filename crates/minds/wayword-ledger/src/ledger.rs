@@ -61,7 +61,7 @@ impl Ledger {
     /// When the recording cannot be read.
     pub fn replay(recording: &Path) -> Result<Self, LedgerError> {
         let store = Store::in_memory()?;
-        read(recording, |row| store.writer.note(Write::Answered { sent: None, row: Box::new(row) }))?;
+        read(recording, |row| store.writer.note(Write::Answered { sent: None, row: Box::new(row), by: None }))?;
         store.writer.flush()?;
         Ok(Self::of(store, Some(recording.to_owned())))
     }

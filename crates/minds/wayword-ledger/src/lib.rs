@@ -2,12 +2,14 @@
 //!
 //! One file for all runs. A call is known by everything that could change its answer; an answer is on disk before anybody hears
 //! it; a request is on disk before it leaves. So a run that was killed pays twice at most for what was on the wire, and knows how
-//! much that was.
+//! much that was. Several programs may use one file at once: each call is made by one of them, and the others wait for its answer.
 //!
 //! Architecture invariant: nothing here knows what a call means, and nothing of the database shows outside.
 
 mod budget;
 mod call;
+mod checksum;
+mod claim;
 mod disk;
 mod error;
 mod flight;

@@ -4,7 +4,7 @@ use crate::{
     LedgerError,
     call::Row,
     ledger::{Ledger, now_unix_s},
-    store::{COLUMNS, row},
+    store::{COLUMNS, sound},
 };
 use rusqlite::{ToSql, params_from_iter};
 use serde::Serialize;
@@ -50,6 +50,9 @@ pub struct CostLine {
     /// Calls whose price was not known.
     pub without_price: u64,
 }
+
+/// Forgets who has used what was dropped, and makes the file smaller.
+const SWEEP: &str = "DELETE FROM uses WHERE key NOT IN (SELECT key FROM calls); VACUUM";
 
 /// A filter as the database takes it.
 struct Where {
@@ -135,10 +138,33 @@ impl Ledger {
         let connection = self.store().reader();
         let dropped =
             connection.execute(&format!("DELETE FROM calls{sql}"), params_from_iter(values)).map_err(&failed)?;
-        connection
-            .execute_batch("DELETE FROM uses WHERE key NOT IN (SELECT key FROM calls); VACUUM")
-            .map_err(&failed)?;
+        connection.execute_batch(SWEEP).map_err(&failed)?;
         Ok(dropped)
+    }
+
+    /// Drops the answers that were changed after they were written; returns how many. What runs have spent stays known.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read or written.
+    pub fn prune_changed(&self) -> Result<usize, LedgerError> {
+        let failed = LedgerError::store(self.path(), "prune");
+        let connection = self.store().reader();
+        let mut changed: Vec<rusqlite::types::Value> = Vec::new();
+        let mut statement = connection.prepare(&format!("SELECT {COLUMNS} FROM calls")).map_err(&failed)?;
+        let mut rows = statement.query([]).map_err(&failed)?;
+        while let Some(row) = rows.next().map_err(&failed)? {
+            match sound(row, self.path()) {
+                Err(LedgerError::Changed { .. }) => changed.push(row.get(0).map_err(&failed)?),
+                other => drop(other?),
+            }
+        }
+        drop(rows);
+        drop(statement);
+        for key in &changed {
+            connection.execute("DELETE FROM calls WHERE key = ?1", [key]).map_err(&failed)?;
+        }
+        connection.execute_batch(SWEEP).map_err(&failed)?;
+        Ok(changed.len())
     }
 
     /// What calls have cost.
@@ -196,7 +222,7 @@ impl Ledger {
         let mut statement = reader.prepare(&format!("SELECT {COLUMNS} FROM calls{sql}{order}")).map_err(&failed)?;
         let mut rows = statement.query(params_from_iter(values)).map_err(&failed)?;
         while let Some(next) = rows.next().map_err(&failed)? {
-            take(row(next).map_err(&failed)?)?;
+            take(sound(next, self.path())?)?;
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use crate::{
     Answer, Call, Key, LedgerError, Limits, Refused, Row,
     budget::{Budget, known},
+    claim::{Claim, PATIENCE, Taken},
     ledger::{Ledger, now_unix_s},
     queries::Filter,
     store::Write,
@@ -102,12 +103,13 @@ impl Ledger {
 }
 
 impl Run {
-    /// The answer of a call. If it is in the ledger, that is the answer; if another thread is making the call, it waits for that;
-    /// else `send` makes it. What `send` answers is on disk before it is returned. If another program was faster, its answer
-    /// stands and is returned: whoever asks hears the same.
+    /// The answer of a call. If it is in the ledger, that is the answer; if another thread or program is making the call, it waits
+    /// for that; else `send` makes it. What `send` answers is on disk before it is returned. If another program was faster after
+    /// all, its answer stands and is returned: whoever asks hears the same.
     ///
     /// # Errors
-    /// When `send` fails, a limit would be broken, or the ledger cannot be used.
+    /// When `send` fails, a limit would be broken, the run is stopped while it waits, the answer was changed after it was
+    /// written, or the ledger cannot be used.
     pub fn once<E>(
         &self,
         call: &Call,
@@ -126,9 +128,18 @@ impl Run {
             if let Some(recording) = self.ledger.recording() {
                 return Err(not_recorded(recording, call));
             }
+            let mut claim = match Claim::take(self.ledger.store(), &key, PATIENCE, || self.is_stopped())? {
+                Taken::Ours(claim) => claim,
+                Taken::Answered => continue,
+                Taken::Stopped => return Err(OnceError::Refused(Refused::Stopped)),
+            };
             let mut attempts = Attempts { run: self, key: &key, open: None };
             return match send(&mut attempts) {
-                Ok(answer) => Ok(attempts.answered(call, answer)?),
+                Ok(answer) => {
+                    let stands = attempts.answered(call, answer)?;
+                    claim.fulfilled();
+                    Ok(stands)
+                }
                 Err(error) => {
                     attempts.failed("given up", true);
                     Err(OnceError::Call(error))
@@ -190,9 +201,7 @@ impl Attempts<'_> {
         }
         let most_usd = known(most_usd);
         self.run.state.budget.reserve(most_usd)?;
-        let write =
-            Write::Sent { run: self.run.state.id.clone(), key: self.key.to_string(), most_usd, at: now_unix_s() };
-        match self.run.ledger.store().writer.keep(write) {
+        match self.keep_sent(most_usd) {
             Ok(sent) => {
                 self.open = Some((sent, most_usd));
                 self.run.count(|totals| totals.calls += 1);
@@ -203,6 +212,12 @@ impl Attempts<'_> {
                 Err(error.into())
             }
         }
+    }
+
+    fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, LedgerError> {
+        let (store, run) = (self.run.ledger.store(), self.run.state.id.clone());
+        let by = store.name()?.map(str::to_owned);
+        store.writer.keep(Write::Sent { run, key: self.key.to_string(), most_usd, at: now_unix_s(), by })
     }
 
     /// The request never left after all.
@@ -245,7 +260,8 @@ impl Attempts<'_> {
         };
         let sent = open.map(|(sent, _)| sent);
         let store = self.run.ledger.store();
-        let is_first = store.writer.keep(Write::Answered { sent, row: Box::new(row) })? != 0;
+        let by = store.name()?.map(str::to_owned);
+        let is_first = store.writer.keep(Write::Answered { sent, row: Box::new(row), by })? != 0;
         self.run.count(|totals| {
             totals.answered += 1;
             totals.tokens_in = totals.tokens_in.saturating_add(answer.tokens_in);

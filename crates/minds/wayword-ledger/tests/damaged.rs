@@ -30,7 +30,7 @@ fn ledger_of(path: &Path, calls: usize) {
     (0..calls).for_each(|number| drop(ask(&run, number).unwrap()));
 }
 
-/// Everything that a program does with a ledger. It may fail, and not panic.
+/// Everything that a program does with a ledger. It may fail, but neither panic nor hear anything but what was answered.
 fn use_all(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let ledger = Ledger::open(path)?;
     ledger.list(&Filter::default())?;
@@ -38,7 +38,7 @@ fn use_all(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     ledger.lost()?;
     let run = ledger.run("a", Limits::default())?;
     for number in 0..25 {
-        ask(&run, number)?;
+        assert_eq!(ask(&run, number)?.text, "yes", "a changed answer is used");
     }
     Ok(())
 }

@@ -1,19 +1,21 @@
 //! The database file.
 
+mod presence;
 mod schema;
 mod writer;
 
-use crate::{Answer, Key, LedgerError, budget::Spent, call::Row, network_at};
+use crate::{Answer, Key, LedgerError, budget::Spent, network_at};
+use presence::Presence;
 use rusqlite::{Connection, OpenFlags, OptionalExtension, params};
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{Mutex, MutexGuard, OnceLock, PoisonError},
     time::Duration,
 };
 
-pub(crate) use schema::{COLUMNS, row};
-pub(crate) use writer::{Write, Writer};
+pub(crate) use schema::{COLUMNS, sound};
+pub(crate) use writer::{Claimed, Write, Writer};
 
 /// How long one program waits for another that writes.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -24,6 +26,18 @@ pub(crate) struct Store {
     path: PathBuf,
     reader: Mutex<Connection>,
     pub(crate) writer: Writer,
+    /// Says that this program is here, from its first claim on. Goes after the writer, which lets go of the claims.
+    presence: OnceLock<Result<Presence, LedgerError>>,
+    is_shared: bool,
+}
+
+/// Who makes a call.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Holder {
+    /// The name of the program.
+    pub(crate) name: String,
+    /// Requests that it has sent for the call.
+    pub(crate) sent: i64,
 }
 
 impl Store {
@@ -43,7 +57,8 @@ impl Store {
         };
         let mut writing = connect()?;
         schema::prepare(&mut writing, path)?;
-        Ok(Self { path: path.to_owned(), reader: Mutex::new(connect()?), writer: Writer::start(writing, path)? })
+        let (reader, writer) = (Mutex::new(connect()?), Writer::start(writing, path)?);
+        Ok(Self { path: path.to_owned(), reader, writer, presence: OnceLock::new(), is_shared: true })
     }
 
     /// A ledger that is gone with the process; the connections share it by a name of its own.
@@ -63,7 +78,8 @@ impl Store {
         let reader = connect()?;
         // Connections that share a cache would otherwise lock each other out.
         reader.pragma_update(None, "read_uncommitted", true).map_err(LedgerError::store(&path, "open"))?;
-        Ok(Self { reader: Mutex::new(reader), writer: Writer::start(writing, &path)?, path })
+        let (reader, writer) = (Mutex::new(reader), Writer::start(writing, &path)?);
+        Ok(Self { path, reader, writer, presence: OnceLock::new(), is_shared: false })
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -80,8 +96,42 @@ impl Store {
         let reader = self.reader();
         let sql = format!("SELECT {} FROM calls WHERE key = ?1", schema::COLUMNS);
         let mut statement = reader.prepare_cached(&sql).map_err(&failed)?;
-        let row = statement.query_row(params![key.as_str()], schema::row).optional().map_err(&failed)?;
-        Ok(row.map(|row: Row| row.answer))
+        let mut rows = statement.query(params![key.as_str()]).map_err(&failed)?;
+        let Some(row) = rows.next().map_err(&failed)? else { return Ok(None) };
+        Ok(Some(schema::sound(row, &self.path)?.answer))
+    }
+
+    /// The name under which other programs know this one; none where there can be no others. What programs left behind that are
+    /// gone is removed when it is first asked for.
+    pub(crate) fn name(&self) -> Result<Option<&str>, LedgerError> {
+        if !self.is_shared {
+            return Ok(None);
+        }
+        let begin = || {
+            let presence = Presence::new(&self.path)?;
+            for by in presence::sweep(&self.path) {
+                self.writer.note(Write::Forget { by });
+            }
+            Ok(presence)
+        };
+        match self.presence.get_or_init(begin) {
+            Ok(presence) => Ok(Some(presence.name())),
+            Err(error) => Err(error.clone()),
+        }
+    }
+
+    /// Which program makes a call at the moment.
+    pub(crate) fn holder(&self, key: &Key) -> Result<Option<Holder>, LedgerError> {
+        let failed = LedgerError::store(&self.path, "read");
+        let reader = self.reader();
+        let mut statement = reader.prepare_cached("SELECT holder, sent FROM claims WHERE key = ?1").map_err(&failed)?;
+        let holder = |row: &rusqlite::Row<'_>| Ok(Holder { name: row.get(0)?, sent: row.get(1)? });
+        statement.query_row(params![key.as_str()], holder).optional().map_err(&failed)
+    }
+
+    /// Whether the program of that name is gone.
+    pub(crate) fn is_gone(&self, name: &str) -> bool {
+        presence::is_gone(&self.path, name)
     }
 
     /// What a run has spent so far: what was paid, and upper bounds of what may have been.

@@ -1,6 +1,6 @@
 //! Tables and rows.
 
-use crate::{Answer, Call, Key, LedgerError, call::Row};
+use crate::{Answer, Call, Key, LedgerError, call::Row, checksum};
 use rusqlite::{Connection, ErrorCode, Transaction, TransactionBehavior};
 use std::{
     path::Path,
@@ -11,15 +11,20 @@ use std::{
 /// Tells a ledger from any other database ("Wway").
 const APPLICATION: i64 = 0x5777_6179;
 /// Version of the tables.
-const FORMAT: i64 = 1;
+const FORMAT: i64 = 2;
+/// That of the first ledgers, whose answers have no checksums.
+const FIRST: i64 = 1;
+/// That of a file without tables.
+const NEW: i64 = 0;
 
-/// `calls`: every answer. `uses`: which run has used which call, its own and others'. `sent`: every request that has left, and what
-/// became of it; an outcome that stays empty is that of a process that died.
+/// `calls`: every answer, with its checksum. `uses`: which run has used which call, its own and others'. `sent`: every request that
+/// has left, and what became of it; an outcome that stays empty is that of a process that died. `claims`: which program makes which
+/// call at the moment, and how many requests it has sent for it.
 const TABLES: &str = "
 CREATE TABLE calls (
     key TEXT PRIMARY KEY, model TEXT NOT NULL, base_url TEXT NOT NULL, request TEXT NOT NULL, replicate INTEGER NOT NULL,
     answer TEXT NOT NULL, finish TEXT NOT NULL, tokens_in INTEGER NOT NULL, tokens_out INTEGER NOT NULL, usd REAL,
-    latency_ms INTEGER NOT NULL, attempts INTEGER NOT NULL, at INTEGER NOT NULL, run TEXT NOT NULL
+    latency_ms INTEGER NOT NULL, attempts INTEGER NOT NULL, at INTEGER NOT NULL, run TEXT NOT NULL, checksum TEXT
 ) WITHOUT ROWID;
 CREATE INDEX calls_of_run ON calls (run);
 CREATE TABLE uses (run TEXT NOT NULL, key TEXT NOT NULL, PRIMARY KEY (run, key)) WITHOUT ROWID;
@@ -28,11 +33,18 @@ CREATE TABLE sent (
     outcome TEXT, reason TEXT
 );
 CREATE INDEX sent_of_run ON sent (run);
+CREATE TABLE claims (key TEXT PRIMARY KEY, holder TEXT NOT NULL, sent INTEGER NOT NULL) WITHOUT ROWID;
+";
+
+/// Makes a ledger of the first format one of this. Its answers stay as they are, without checksums.
+const FROM_FIRST: &str = "
+ALTER TABLE calls ADD COLUMN checksum TEXT;
+CREATE TABLE claims (key TEXT PRIMARY KEY, holder TEXT NOT NULL, sent INTEGER NOT NULL) WITHOUT ROWID;
 ";
 
 /// The columns of [`row`], in its order.
 pub(crate) const COLUMNS: &str = "calls.key, model, base_url, request, replicate, answer, finish, tokens_in, tokens_out, usd, \
-                                  latency_ms, attempts, at, calls.run";
+                                  latency_ms, attempts, at, calls.run, checksum";
 
 /// How long one program waits for others that make the same ledger.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -44,21 +56,22 @@ pub(super) fn prepare(connection: &mut Connection, path: &Path) -> Result<(), Le
     let failed = LedgerError::store(path, "open");
     // Nothing is written to a file that is not ours. One look is one transaction, so that it sees the tables of another program
     // that makes them whole or not at all.
-    is_new(&connection.transaction().map_err(&failed)?, path)?;
+    format(&connection.transaction().map_err(&failed)?, path)?;
     write_ahead(connection).map_err(&failed)?;
     connection.pragma_update(None, "synchronous", "FULL").map_err(&failed)?;
     // Two programs may open a new ledger at the same moment: the second finds the tables made.
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(&failed)?;
-    if is_new(&transaction, path)? {
-        transaction.execute_batch(TABLES).map_err(&failed)?;
+    let before = format(&transaction, path)?;
+    if before != FORMAT {
+        transaction.execute_batch(if before == NEW { TABLES } else { FROM_FIRST }).map_err(&failed)?;
         transaction.pragma_update(None, "application_id", APPLICATION).map_err(&failed)?;
         transaction.pragma_update(None, "user_version", FORMAT).map_err(&failed)?;
     }
     transaction.commit().map_err(&failed)
 }
 
-/// Whether there is nothing in the file yet.
-fn is_new(transaction: &Transaction<'_>, path: &Path) -> Result<bool, LedgerError> {
+/// The version of a file's tables; [`NEW`] where there is nothing in it yet.
+fn format(transaction: &Transaction<'_>, path: &Path) -> Result<i64, LedgerError> {
     let failed = |error: rusqlite::Error| match error.sqlite_error_code() {
         Some(ErrorCode::NotADatabase) => LedgerError::NoLedger(path.to_owned()),
         _ => LedgerError::store(path, "open")(error),
@@ -66,8 +79,8 @@ fn is_new(transaction: &Transaction<'_>, path: &Path) -> Result<bool, LedgerErro
     let number = |sql: &str| transaction.query_row(sql, [], |row| row.get::<_, i64>(0)).map_err(failed);
     let tables = number("SELECT COUNT(*) FROM sqlite_master")?;
     match (number("PRAGMA application_id")?, number("PRAGMA user_version")?) {
-        (0, 0) if tables == 0 => Ok(true),
-        (APPLICATION, FORMAT) => Ok(false),
+        (0, NEW) if tables == 0 => Ok(NEW),
+        (APPLICATION, format @ FIRST..=FORMAT) => Ok(format),
         (APPLICATION, format) => Err(LedgerError::Newer { path: path.to_owned(), format }),
         _ => Err(LedgerError::NoLedger(path.to_owned())),
     }
@@ -86,11 +99,34 @@ fn write_ahead(connection: &Connection) -> rusqlite::Result<()> {
     }
 }
 
-/// A row of `calls` with [`COLUMNS`].
-pub(crate) fn row(row: &rusqlite::Row<'_>) -> rusqlite::Result<Row> {
+/// A row of `calls` with [`COLUMNS`]. Rows without a checksum are those of the first ledgers.
+///
+/// # Errors
+/// When it is not what was written.
+pub(crate) fn sound(row: &rusqlite::Row<'_>, path: &Path) -> Result<Row, LedgerError> {
+    let changed = || LedgerError::Changed {
+        path: path.to_owned(),
+        key: row.get(0).unwrap_or_else(|_| "of an unknown name".to_owned()),
+        model: row.get(1).unwrap_or_else(|_| "an unknown model".to_owned()),
+    };
+    let (kept, checksum) = read(row).map_err(|error| match error {
+        // A column holds what was never written to it.
+        rusqlite::Error::InvalidColumnType(..)
+        | rusqlite::Error::IntegralValueOutOfRange(..)
+        | rusqlite::Error::FromSqlConversionFailure(..)
+        | rusqlite::Error::Utf8Error(..) => changed(),
+        error => LedgerError::store(path, "read")(error),
+    })?;
+    match checksum {
+        Some(checksum) if checksum != checksum::of(&kept.key, &kept.answer) => Err(changed()),
+        _ => Ok(kept),
+    }
+}
+
+fn read(row: &rusqlite::Row<'_>) -> rusqlite::Result<(Row, Option<String>)> {
     let count = |at: usize| row.get::<_, i64>(at).map(|count| u64::try_from(count).unwrap_or(0));
     let request: String = row.get(3)?;
-    Ok(Row {
+    let kept = Row {
         key: Key::stored(row.get(0)?),
         call: Call {
             model: row.get(1)?,
@@ -109,5 +145,6 @@ pub(crate) fn row(row: &rusqlite::Row<'_>) -> rusqlite::Result<Row> {
         },
         at_unix_s: row.get(12)?,
         run: row.get(13)?,
-    })
+    };
+    Ok((kept, row.get(14)?))
 }

@@ -1,6 +1,6 @@
 //! The one thread that writes: it commits in one go whatever has come in while it was busy with the last commit.
 
-use crate::{LedgerError, call::Row};
+use crate::{LedgerError, call::Row, checksum};
 use rusqlite::{Connection, Transaction, TransactionBehavior, params};
 use std::{
     path::{Path, PathBuf},
@@ -19,11 +19,17 @@ const LAST_PATIENCE: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub(crate) enum Write {
     /// A request is about to leave.
-    Sent { run: String, key: String, most_usd: Option<f64>, at: i64 },
+    Sent { run: String, key: String, most_usd: Option<f64>, at: i64, by: Option<String> },
     /// A request came to nothing; `lost` where it may have been paid.
     Ended { sent: i64, outcome: &'static str, reason: String },
-    /// A call was answered.
-    Answered { sent: Option<i64>, row: Box<Row> },
+    /// A call was answered, by a program that need not have claimed it.
+    Answered { sent: Option<i64>, row: Box<Row>, by: Option<String> },
+    /// A program is about to make a call, in place of another where one is named.
+    Claim { key: String, by: String, from: Option<String> },
+    /// It makes it no longer.
+    Release { key: String, by: String },
+    /// A program is gone.
+    Forget { by: String },
     /// A run has used an answer.
     Used { run: String, key: String },
     /// Nothing, but whatever came before it.
@@ -31,8 +37,36 @@ pub(crate) enum Write {
 }
 
 /// What was written: the number of the request, where one is about to leave; for an answer, whether it is the first (1) or one
-/// stood there before (0).
+/// stood there before (0); for a claim, what [`Claimed::of`] reads.
 type Written = Result<i64, LedgerError>;
+
+/// What came of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Claimed {
+    /// Whoever asked has it.
+    Ours,
+    /// Another program has it.
+    Others,
+    /// The call was answered before.
+    Answered,
+}
+
+impl Claimed {
+    pub(crate) fn of(written: i64) -> Self {
+        match written {
+            0 => Self::Ours,
+            1 => Self::Others,
+            _ => Self::Answered,
+        }
+    }
+}
+
+impl Write {
+    /// Whether it has to survive a loss of power. What programs agree upon ends with them.
+    fn has_to_last(&self) -> bool {
+        !matches!(self, Self::Claim { .. } | Self::Release { .. } | Self::Forget { .. } | Self::Flush)
+    }
+}
 
 struct Job {
     write: Write,
@@ -141,6 +175,8 @@ fn tell(group: Vec<Job>, written: &Result<Vec<i64>, LedgerError>) -> Vec<Job> {
 
 fn commit(connection: &mut Connection, group: &[Job], path: &Path) -> Result<Vec<i64>, LedgerError> {
     let failed = LedgerError::store(path, "write");
+    let sync = if group.iter().any(|job| job.write.has_to_last()) { "FULL" } else { "NORMAL" };
+    connection.pragma_update(None, "synchronous", sync).map_err(&failed)?;
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(&failed)?;
     let numbers = group.iter().map(|job| apply(&transaction, &job.write)).collect::<Result<_, _>>().map_err(&failed)?;
     transaction.commit().map_err(&failed)?;
@@ -150,8 +186,10 @@ fn commit(connection: &mut Connection, group: &[Job], path: &Path) -> Result<Vec
 fn apply(transaction: &Transaction<'_>, write: &Write) -> rusqlite::Result<i64> {
     let run = |sql: &str, with: &[&dyn rusqlite::ToSql]| transaction.prepare_cached(sql)?.execute(with);
     match write {
-        Write::Sent { run: by, key, most_usd, at } => {
-            run("INSERT INTO sent (run, key, most_usd, at) VALUES (?1, ?2, ?3, ?4)", params![by, key, most_usd, at])?;
+        Write::Sent { run: for_run, key, most_usd, at, by } => {
+            run("UPDATE claims SET sent = sent + 1 WHERE key = ?1 AND holder = ?2", params![key, by])?;
+            let sql = "INSERT INTO sent (run, key, most_usd, at) VALUES (?1, ?2, ?3, ?4)";
+            run(sql, params![for_run, key, most_usd, at])?;
             return Ok(transaction.last_insert_rowid());
         }
         Write::Ended { sent, outcome, reason } => {
@@ -161,8 +199,18 @@ fn apply(transaction: &Transaction<'_>, write: &Write) -> rusqlite::Result<i64> 
             run("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![by, key])?;
         }
         Write::Flush => {}
-        Write::Answered { sent, row } => {
+        Write::Claim { key, by, from } => {
+            return claim(transaction, key, by, from.as_deref()).map(|claimed| claimed as i64);
+        }
+        Write::Release { key, by } => {
+            run("DELETE FROM claims WHERE key = ?1 AND holder = ?2", params![key, by])?;
+        }
+        Write::Forget { by } => {
+            run("DELETE FROM claims WHERE holder = ?1", params![by])?;
+        }
+        Write::Answered { sent, row, by } => {
             let is_first = answered(transaction, row)?;
+            run("DELETE FROM claims WHERE key = ?1 AND holder = ?2", params![row.key.as_str(), by])?;
             run("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![row.run, row.key.as_str()])?;
             if let Some(sent) = sent {
                 run("UPDATE sent SET outcome = 'answered', usd = ?2 WHERE id = ?1", params![sent, row.answer.usd])?;
@@ -173,13 +221,24 @@ fn apply(transaction: &Transaction<'_>, write: &Write) -> rusqlite::Result<i64> 
     Ok(0)
 }
 
+/// Gives a call to a program, unless it is answered or another has it; that of `from` is taken.
+fn claim(transaction: &Transaction<'_>, key: &str, by: &str, from: Option<&str>) -> rusqlite::Result<Claimed> {
+    if transaction.prepare_cached("SELECT 1 FROM calls WHERE key = ?1")?.exists(params![key])? {
+        return Ok(Claimed::Answered);
+    }
+    let sql = "INSERT INTO claims (key, holder, sent) VALUES (?1, ?2, 0)
+               ON CONFLICT (key) DO UPDATE SET holder = ?2, sent = 0 WHERE holder = ?2 OR holder = ?3";
+    let given = transaction.prepare_cached(sql)?.execute(params![key, by, from])?;
+    Ok(if given == 1 { Claimed::Ours } else { Claimed::Others })
+}
+
 /// The first answer stands: another program may have asked the same at the same time. Whether this is the first.
 fn answered(transaction: &Transaction<'_>, row: &Row) -> rusqlite::Result<bool> {
     let count = |count: u64| i64::try_from(count).unwrap_or(i64::MAX);
     let (call, answer) = (&row.call, &row.answer);
     let added = transaction
         .prepare_cached(
-            "INSERT OR IGNORE INTO calls VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)",
+            "INSERT OR IGNORE INTO calls VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15)",
         )?
         .execute(params![
             row.key.as_str(),
@@ -195,7 +254,8 @@ fn answered(transaction: &Transaction<'_>, row: &Row) -> rusqlite::Result<bool> 
             count(answer.latency_ms),
             answer.attempts,
             row.at_unix_s,
-            row.run
+            row.run,
+            checksum::of(&row.key, answer)
         ])?;
     Ok(added == 1)
 }
