@@ -25,7 +25,7 @@ pub enum LedgerError {
         kind: &'static str,
     },
     /// An answer is not the one that was written.
-    #[error("{}: the answer of {model} to call {key} was changed after it was written, by a damaged disk or by hand\nhint: `wayword ledger prune --changed` drops all such answers (with --ledger where you name one); the same command then asks them anew", path.display())]
+    #[error("{}: the answer of {model} to call {key} was changed after it was written, by a damaged disk or by hand\nhint: `wayword ledger prune --changed --ledger {}` drops all such answers; the same command then asks them anew", path.display(), path.display())]
     Changed {
         /// The file.
         path: PathBuf,

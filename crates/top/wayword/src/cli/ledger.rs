@@ -11,7 +11,8 @@ Examples:
   wayword ledger show --model ollama/llava --limit 5
   wayword ledger cost --by run
   wayword ledger export --out calls.jsonl
-  wayword ledger prune --older-than-days 180")]
+  wayword ledger prune --older-than-days 180
+  wayword ledger prune --changed")]
 pub struct Ledger {
     /// What to do.
     #[command(subcommand)]
@@ -56,6 +57,9 @@ pub enum LedgerCommand {
         /// Those of this model.
         #[arg(long, value_name = "MODEL")]
         model: Option<String>,
+        /// Those whose answer was changed after it was written.
+        #[arg(long, conflicts_with_all = ["older_than_days", "model"])]
+        changed: bool,
     },
 }
 

@@ -37,11 +37,11 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
             let done = Done { ledger: path.display().to_string(), rows };
             output.data(&done, format_args!("{rows} calls written to {}", out.display()));
         }
-        LedgerCommand::Prune { older_than_days, model } => {
-            if older_than_days.is_none() && model.is_none() {
+        LedgerCommand::Prune { older_than_days, model, changed } => {
+            if older_than_days.is_none() && model.is_none() && !changed {
                 return Err(Error::usage(
                     "that would empty the ledger",
-                    "say what to drop: --older-than-days or --model",
+                    "say what to drop: --older-than-days, --model or --changed",
                 ));
             }
             let filter = Filter {
@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
                 model: model.clone(),
                 ..Filter::default()
             };
-            let rows = ledger.prune(&filter)?;
+            let rows = if *changed { ledger.prune_changed()? } else { ledger.prune(&filter)? };
             let done = Done { ledger: path.display().to_string(), rows };
             output.data(&done, format_args!("{rows} calls dropped; asking them again will cost again"));
         }
