@@ -86,6 +86,18 @@ pub enum Error {
     /// Another process has the run folder.
     #[error("{}: another wayword is at work in this run folder\nhint: wait for it, or give another --out", .0.display())]
     Busy(PathBuf),
+    /// A process that cannot be looked for has the run folder, or had it when it was killed.
+    #[error("{}: {by} is at work in this run folder, or was killed there; on {kind}, a network's file system, no lock tells which\nhint: wait for it, or give another --out; if it is gone, remove {} and give the same command", folder.display(), mark.display())]
+    BusyElsewhere {
+        /// The run folder.
+        folder: PathBuf,
+        /// Who, as far as it said.
+        by: String,
+        /// What the file system is called.
+        kind: &'static str,
+        /// The file that says so.
+        mark: PathBuf,
+    },
 }
 
 impl Error {
@@ -117,7 +129,7 @@ impl Error {
     #[must_use]
     pub fn exit_code(&self) -> Exit {
         match self {
-            Self::Busy(_) => Exit::Busy,
+            Self::Busy(_) | Self::BusyElsewhere { .. } => Exit::Busy,
             Self::Model(error) | Self::Observe(ObserveError::Model(error)) if error.ends_run() => Exit::Stopped,
             Self::Walk(error) if error.ends_run() => Exit::Stopped,
             _ => Exit::BadInput,

@@ -4,6 +4,7 @@
 //! `rejected.jsonl` (with reasons), `errors.jsonl` (what the next command tries again), `frames/`. A process that is killed leaves at most one torn last line in each file; the
 //! next one cuts it off and goes on where it stopped, and the files end up the same byte for byte.
 
+mod held;
 mod journal;
 pub(crate) mod lines;
 mod record;
@@ -13,11 +14,13 @@ use serde::{Serialize, de::DeserializeOwned};
 use sha2::{Digest, Sha256};
 use std::{
     collections::BTreeSet,
-    fs::{self, File, TryLockError},
+    fs::{self, File},
     path::{Path, PathBuf},
     time::SystemTime,
 };
 
+use held::Held;
+pub(crate) use held::hold;
 pub use journal::{Journal, read_lines};
 pub use record::{Map, Rejected, WalkRecord, extra};
 
@@ -34,7 +37,7 @@ pub struct RunFolder {
     /// Items that failed because a model gave nothing. It begins empty with each command, which tries them again.
     pub errors: Journal,
     /// Held for as long as the folder is worked in.
-    _lock: File,
+    _held: Held,
 }
 
 /// Names of the files in a run folder.
@@ -57,16 +60,18 @@ pub mod file {
     pub const REPORT: &str = "report.html";
     /// Held by the process that works in the folder.
     pub const LOCK: &str = "run.lock";
+    /// On a network's file system, where locks do not tell: who works in the folder.
+    pub const OWNER: &str = "run.owner";
 }
 
 impl RunFolder {
     /// Opens a run folder for work: makes it, or goes on with what is there.
     ///
     /// # Errors
-    /// When another process works in it, it holds a run with other settings, or it cannot be written.
+    /// When another process works in it or may do, it holds a run with other settings, or it cannot be written.
     pub fn open(folder: &Path, settings: &Settings) -> Result<Self, Error> {
         fs::create_dir_all(folder).map_err(Error::io(folder, "make the run folder"))?;
-        let lock = lock(folder)?;
+        let held = hold(folder)?;
         keep_config(folder, settings)?;
         Ok(Self {
             walks: Journal::open(&folder.join(file::WALKS), WalkRecord::key_of)?,
@@ -74,7 +79,7 @@ impl RunFolder {
             rejected: Journal::open(&folder.join(file::REJECTED), Rejected::key_of)?,
             errors: Journal::begin(&folder.join(file::ERRORS), Rejected::key_of)?,
             folder: folder.to_owned(),
-            _lock: lock,
+            _held: held,
         })
     }
 
@@ -127,18 +132,6 @@ pub(crate) fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
     let id = fresh_id(kind);
     write_whole(&path, &id)?;
     Ok(id)
-}
-
-/// Makes sure that no other process works in a folder, for as long as what is returned lives.
-pub(crate) fn lock(folder: &Path) -> Result<File, Error> {
-    let path = folder.join(file::LOCK);
-    let lock =
-        File::options().create(true).truncate(false).write(true).open(&path).map_err(Error::io(&path, "open"))?;
-    match lock.try_lock() {
-        Ok(()) => Ok(lock),
-        Err(TryLockError::WouldBlock) => Err(Error::Busy(folder.to_owned())),
-        Err(TryLockError::Error(source)) => Err(Error::Io { path, doing: "lock", source }),
-    }
 }
 
 /// A name that no other process gives: kind, time and process.

@@ -1,0 +1,187 @@
+//! Makes sure that one process works in a folder.
+//!
+//! On this machine's own disks a lock does that. On a network's file system a lock may hold for one machine alone, or not at all, so
+//! there a file stands beside it that only one process can make: `run.owner`, which says who that is. It is removed at the end.
+//! Where one is left behind, the process is looked for if it ran on this machine; one of another machine cannot be, so whoever
+//! knows that it is gone has to remove the file. Which file systems are a network's is known on Linux alone.
+
+use super::file;
+use crate::error::Error;
+use serde::{Deserialize, Serialize};
+use std::{
+    fs::{self, File, TryLockError},
+    io::{ErrorKind, Write},
+    path::{Path, PathBuf},
+};
+
+/// A folder that no other process works in for as long as this lives.
+#[derive(Debug)]
+pub(crate) struct Held {
+    /// None where a network's file system has no locks.
+    _lock: Option<File>,
+    _mark: Option<Mark>,
+}
+
+/// The file that says who works in a folder on a network's file system.
+#[derive(Debug)]
+struct Mark(PathBuf);
+
+/// Who works in a folder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Owner {
+    /// The name of its machine, for people.
+    host: String,
+    /// What tells machines, their boots and their containers apart: processes have numbers within one of these.
+    place: String,
+    pid: u32,
+    /// When the process began, as its machine counts: another process of that number began at another time.
+    began: String,
+}
+
+/// Makes sure that no other process works in a folder, for as long as what is returned lives.
+///
+/// # Errors
+/// When one does, or may do.
+pub(crate) fn hold(folder: &Path) -> Result<Held, Error> {
+    hold_on(folder, wayword_ledger::network_at(folder))
+}
+
+fn hold_on(folder: &Path, network: Option<&'static str>) -> Result<Held, Error> {
+    let path = folder.join(file::LOCK);
+    let lock =
+        File::options().create(true).truncate(false).write(true).open(&path).map_err(Error::io(&path, "open"))?;
+    let lock = match lock.try_lock() {
+        Ok(()) => Some(lock),
+        Err(TryLockError::WouldBlock) => return Err(Error::Busy(folder.to_owned())),
+        // It is not what counts there.
+        Err(TryLockError::Error(_)) if network.is_some() => None,
+        Err(TryLockError::Error(source)) => return Err(Error::Io { path, doing: "lock", source }),
+    };
+    let mark = network.map(|kind| Mark::new(folder, kind, &Owner::this())).transpose()?;
+    Ok(Held { _lock: lock, _mark: mark })
+}
+
+impl Mark {
+    fn new(folder: &Path, kind: &'static str, owner: &Owner) -> Result<Self, Error> {
+        let path = folder.join(file::OWNER);
+        let text = serde_json::to_string(owner).map_err(|error| Error::Io {
+            path: path.clone(),
+            doing: "write",
+            source: error.into(),
+        })?;
+        // Twice: once more where the first finds what somebody left behind.
+        for _ in 0..2 {
+            match File::options().create_new(true).write(true).open(&path) {
+                Ok(mut file) => {
+                    file.write_all(text.as_bytes()).map_err(Error::io(&path, "write"))?;
+                    return Ok(Self(path));
+                }
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => give_way(folder, &path, kind, owner)?,
+                Err(source) => return Err(Error::Io { path, doing: "make", source }),
+            }
+        }
+        Err(Error::Busy(folder.to_owned()))
+    }
+}
+
+/// Removes the file of a process that is gone, and refuses otherwise.
+fn give_way(folder: &Path, path: &Path, kind: &'static str, we: &Owner) -> Result<(), Error> {
+    let text = crate::text_file::read(path, "read who works in the folder")?;
+    let by: Option<Owner> = serde_json::from_str(&text).ok();
+    match by {
+        Some(by) if by.place != we.place => {
+            let by = format!("process {} of {}", by.pid, by.host);
+            Err(Error::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
+        }
+        Some(by) if began(by.pid).as_ref() == Some(&by.began) => Err(Error::Busy(folder.to_owned())),
+        Some(_) => fs::remove_file(path).map_err(Error::io(path, "remove")),
+        // Killed before it was written, or still being written.
+        None => {
+            let by = "another process".to_owned();
+            Err(Error::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
+        }
+    }
+}
+
+impl Drop for Mark {
+    fn drop(&mut self) {
+        // What stays is told to whoever comes next.
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+impl Owner {
+    fn this() -> Self {
+        let read = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
+        let space = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+        let pid = std::process::id();
+        Self {
+            host: read("/proc/sys/kernel/hostname"),
+            place: format!("{} {}", read("/proc/sys/kernel/random/boot_id"), space.display()),
+            pid,
+            began: began(pid).unwrap_or_default(),
+        }
+    }
+}
+
+/// When a process of this machine began; `None` where there is none of that number.
+fn began(pid: u32) -> Option<String> {
+    let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    // The name of the program comes second, in brackets, and may hold anything.
+    let (_, fields) = stat.rsplit_once(')')?;
+    fields.split_whitespace().nth(19).map(str::to_owned)
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    fn left_behind(folder: &Path, owner: &Owner) -> PathBuf {
+        let path = folder.join(file::OWNER);
+        fs::write(&path, serde_json::to_string(owner).unwrap()).unwrap();
+        path
+    }
+
+    #[test]
+    fn on_a_network_a_file_says_who_is_at_work() {
+        let folder = tempfile::tempdir().unwrap();
+        let held = hold_on(folder.path(), Some("NFS")).unwrap();
+        assert!(folder.path().join(file::OWNER).exists());
+        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(Error::Busy(_))));
+        drop(held);
+        assert!(!folder.path().join(file::OWNER).exists());
+        drop(hold_on(folder.path(), None).unwrap());
+        assert!(!folder.path().join(file::OWNER).exists(), "a disk of this machine needs none");
+    }
+
+    #[test]
+    fn a_process_of_another_machine_is_never_taken_for_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        let far = Owner { host: "node17".into(), place: "another".into(), ..Owner::this() };
+        let path = left_behind(folder.path(), &far);
+        let error = hold_on(folder.path(), Some("Lustre")).unwrap_err();
+        let told = error.to_string();
+        assert!(["node17", "Lustre", "run.owner", "remove"].iter().all(|part| told.contains(part)), "{told}");
+        assert_eq!(error.exit_code(), crate::error::Exit::Busy);
+        fs::remove_file(path).unwrap();
+        assert!(hold_on(folder.path(), Some("Lustre")).is_ok());
+    }
+
+    #[test]
+    fn a_process_of_this_machine_that_is_gone_gives_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let gone = Owner { began: "1".into(), ..Owner::this() };
+        left_behind(folder.path(), &gone);
+        assert!(hold_on(folder.path(), Some("NFS")).is_ok(), "its number is another process's now");
+        let (other, we) = (std::os::unix::process::parent_id(), Owner::this());
+        left_behind(folder.path(), &Owner { pid: other, began: began(other).unwrap(), ..we });
+        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(Error::Busy(_))));
+    }
+
+    #[test]
+    fn a_file_that_nobody_finished_is_told_of() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(file::OWNER), "{\"host\": \"no").unwrap();
+        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(Error::BusyElsewhere { .. })));
+    }
+}
