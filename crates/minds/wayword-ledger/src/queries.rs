@@ -142,6 +142,18 @@ impl Ledger {
         Ok(dropped)
     }
 
+    /// Whether any answer of a model at an address is kept.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read.
+    pub fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
+        let failed = LedgerError::store(self.path(), "read");
+        let reader = self.store().reader();
+        let sql = "SELECT 1 FROM calls WHERE model = ?1 AND base_url = ?2 LIMIT 1";
+        let mut statement = reader.prepare(sql).map_err(&failed)?;
+        statement.exists([model, base_url]).map_err(&failed)
+    }
+
     /// Drops the answers that were changed after they were written; returns how many. What runs have spent stays known.
     ///
     /// # Errors

@@ -78,6 +78,18 @@ impl Minds {
         parts(name).map(drop)
     }
 
+    /// Sees to it that a model's files are here, of the right kind; fetches them where they are not. Nothing is loaded.
+    ///
+    /// # Errors
+    /// When they cannot be had, or do not see.
+    pub fn at_hand(&self, name: &str) -> Result<(), LocalError> {
+        for part in &parts(name)? {
+            let folder = self.hub.folder(part, &Needs::of_any(part), &*self.progress)?;
+            Architecture::read(&folder.path)?;
+        }
+        Ok(())
+    }
+
     /// A model by its name: `hf/ORG/NAME`, or two of BLIP as `hf/ORG/ANSWERS+ORG/DESCRIBES`. It is fetched where it is not at
     /// hand, and loaded at the first call of this.
     ///

@@ -44,6 +44,14 @@ pub enum ConfigError {
         /// The other.
         second: String,
     },
+    /// A model that cannot be asked at the moment.
+    #[error("{problem}\nhint: {hint}")]
+    NotReady {
+        /// What is missing, and where.
+        problem: String,
+        /// What to do.
+        hint: String,
+    },
     /// A bound on money, and a model without a price.
     #[error(
         "nobody knows what {0} costs, so no bound on money can be kept\nhint: add a row for it to a file, and give it as --prices FILE"

@@ -24,6 +24,7 @@ mod model;
 mod picture;
 mod prices;
 mod provider;
+mod ready;
 mod secret;
 mod services;
 mod transport;

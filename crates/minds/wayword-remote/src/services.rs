@@ -101,6 +101,12 @@ impl Services {
         self.table.names()
     }
 
+    /// Whether the user has said where a provider is.
+    pub(crate) fn has_own_address(&self, provider: &str) -> bool {
+        let own = self.config.providers.get(provider).and_then(|own| own.base_url.as_ref());
+        self.config.base_url.is_some() || own.is_some()
+    }
+
     fn endpoint(&self, provider: &str) -> Result<Arc<Endpoint>, ConfigError> {
         let mut endpoints = self.endpoints.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(endpoint) = endpoints.get(provider) {

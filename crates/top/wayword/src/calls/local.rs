@@ -31,6 +31,11 @@ impl Local {
         Ok(Self { minds: Minds::new(hub, loading(job)?, Box::new(DownloadBar::new(output)), run) })
     }
 
+    /// Sees to it that a model's files are here.
+    pub(super) fn ready(&self, name: &str) -> Result<(), Error> {
+        Ok(self.minds.at_hand(name)?)
+    }
+
     /// Loads a model, once.
     pub(super) fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
         Ok(self.minds.model(name)?)

@@ -7,6 +7,7 @@ mod local;
 #[cfg(not(feature = "local"))]
 #[path = "no_local.rs"]
 mod local;
+mod ready;
 mod spent;
 
 use crate::{
@@ -49,8 +50,8 @@ impl Calls {
     /// model's price, where it is known.
     ///
     /// # Errors
-    /// When a provider is not known, a price is needed and not known, there is no recording to replay, or no folder for one
-    /// to be written.
+    /// When a provider is not known, a price is needed and not known, the ledger would lie on a network's file system, there is
+    /// no recording to replay, or no folder for one to be written.
     pub fn rehearse(job: &Job) -> Result<BTreeMap<String, Option<Price>>, Error> {
         let Job { settings, service, .. } = job;
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
@@ -69,6 +70,8 @@ impl Calls {
         let prices = settings.roles.models().into_iter().map(priced).collect::<Result<_, Error>>()?;
         if let Some(recording) = &service.replay {
             File::open(recording).map_err(Error::io(recording, "read the recording"))?;
+        } else if !settings.roles.models().is_empty() {
+            Ledger::check_place(&ledger_path(service)?)?;
         }
         let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
         if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {

@@ -19,6 +19,10 @@ impl Local {
         Err(refused("a model in process"))
     }
 
+    pub(super) fn ready(&self, _: &str) -> Result<(), Error> {
+        match *self {}
+    }
+
     pub(super) fn model(&self, _: &str) -> Result<Arc<dyn LanguageModel>, Error> {
         match *self {}
     }

@@ -202,7 +202,17 @@ fn request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, Erro
     if !length_m.end().is_finite() {
         return Err(Error::usage("--metres must be finite", "write it as in --metres 5..20"));
     }
-    Ok(PathRequest { hops: hops.map_or(Ok(default.hops), |text| range("--hops", text))?, length_m })
+    let hops = hops.map_or(Ok(default.hops), |text| range("--hops", text))?;
+    if *hops.end() == 0 {
+        return Err(Error::usage("--hops 0: no path has as few", "write it as in --hops 4..7"));
+    }
+    if *length_m.end() <= 0.0 {
+        return Err(Error::usage(
+            format!("--metres {}: no path is as short", metres.unwrap_or_default()),
+            "write it as in --metres 5..20",
+        ));
+    }
+    Ok(PathRequest { hops, length_m })
 }
 
 impl Settings {
@@ -227,13 +237,15 @@ impl Settings {
 fn range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<RangeInclusive<N>, Error> {
     let (from, to) = text.split_once("..").unwrap_or((text, text));
     let parsed = from.trim().parse::<N>().ok().zip(to.trim_start_matches('=').trim().parse::<N>().ok());
-    match parsed {
-        Some((from, to)) if from <= to => Ok(from..=to),
-        _ => Err(Error::usage(
-            format!("{flag} {text}: that is no range"),
-            format!("write it as in {flag} 4..7, the smaller number first"),
-        )),
-    }
+    let problem = match parsed {
+        Some((from, to)) if from <= to => return Ok(from..=to),
+        Some((from, to)) if from > to => "nothing lies between these, because the first is larger",
+        _ => "that is no range",
+    };
+    Err(Error::usage(
+        format!("{flag} {text}: {problem}"),
+        format!("write it as in {flag} 4..7, the smaller number first"),
+    ))
 }
 
 #[cfg(test)]
@@ -258,6 +270,17 @@ mod tests {
         for bad in ["7..4", "x", "", "1..", "NaN..3"] {
             assert!(range::<f64>("--metres", bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn ranges_that_no_path_fits_are_refused() {
+        let told = |hops, metres| request(hops, metres).unwrap_err().to_string();
+        assert!(told(Some("9..3"), None).contains("the first is larger"));
+        assert!(told(Some("9-3"), None).contains("no range"));
+        assert!(told(None, Some("20..5")).contains("--metres 20..5"));
+        assert!(told(Some("0"), None).contains("--hops 0"));
+        assert!(told(None, Some("-3..0")).contains("--metres -3..0"));
+        assert!(request(Some("0..3"), Some("0..5")).is_ok());
     }
 
     #[test]

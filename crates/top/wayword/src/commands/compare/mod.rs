@@ -58,6 +58,7 @@ const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
+    Calls::ready(&job, output)?;
     let kept = Kept::of(args, &job.settings)?;
     let platform = kept.world()?;
     let demands = Demands::new(platform.as_ref());

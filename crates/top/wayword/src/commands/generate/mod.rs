@@ -29,6 +29,7 @@ const FLUSH: usize = 16;
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
     if args.dry_run {
+        Calls::rehearse(&job)?;
         let platform = world::open(&job.settings)?;
         let estimate = Plan::writing(&job, platform.as_ref())?.estimate()?;
         output.data(&estimate, &estimate);
@@ -48,6 +49,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
 /// When the settings, the world, the styles, the folder or the ledger are wrong. An item that fails is a line of
 /// `rejected.jsonl`, or of `errors.jsonl` where a later run may do better.
 pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summary, Error> {
+    Calls::ready(job, output)?;
     let platform = world::open(&job.settings)?;
     let plan = Plan::writing(job, platform.as_ref())?;
     let settings = &plan.settings()?;

@@ -67,6 +67,7 @@ pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
     // As many random paths as views are enough: each new one gives at least a view.
     asked.walks.paths = asked.walks.episodes.is_none().then_some(args.views);
     let job = asked.job()?;
+    Calls::ready(&job, output)?;
     let platform = world::open(&job.settings)?;
     let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or(WAYS.to_vec());
     let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;

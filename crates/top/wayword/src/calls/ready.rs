@@ -1,0 +1,43 @@
+//! What keeps a job's models from being asked, found out before a world is opened or a folder made.
+
+use super::{Calls, configured::config, ledger_path, local::Local};
+use crate::{
+    error::Error,
+    output::Output,
+    settings::{Job, is_in_process},
+};
+use wayword_ledger::{Ledger, Limits};
+use wayword_remote::{ConfigError, Services};
+
+impl Calls {
+    /// Refuses what [`Calls::rehearse`] refuses, and models that cannot be asked: without their key, with nobody at their port,
+    /// or without their files, which are fetched where they can be. A model whose answers are in the ledger is not held up for a key
+    /// or a port: it may never be asked.
+    ///
+    /// # Errors
+    /// What is missing, where, and what to do.
+    pub fn ready(job: &Job, output: &Output) -> Result<(), Error> {
+        Self::rehearse(job)?;
+        let models = job.settings.roles.models();
+        let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
+        let (local, remote): (Vec<&str>, Vec<&str>) = models.into_iter().partition(|name| is_in_process(name));
+        if job.service.replay.is_none() && !remote.is_empty() {
+            let services = Services::new(config(job)?, nowhere.clone())?;
+            remote
+                .iter()
+                .try_for_each(|name| services.ready(name).or_else(|error| kept(job, &services, name, error)))?;
+        }
+        if !local.is_empty() {
+            let files = Local::open(job, nowhere, output)?;
+            local.iter().try_for_each(|name| files.ready(name))?;
+        }
+        Ok(())
+    }
+}
+
+/// Lets a model pass that cannot be asked, where the ledger has answers of it.
+fn kept(job: &Job, services: &Services, name: &str, error: ConfigError) -> Result<(), Error> {
+    let path = ledger_path(&job.service)?;
+    let is_kept = path.exists() && Ledger::open(&path)?.has_answers_of(name, &services.base_url(name)?)?;
+    if is_kept { Ok(()) } else { Err(error.into()) }
+}
