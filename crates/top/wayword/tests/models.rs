@@ -137,8 +137,124 @@ fn a_refused_key_and_an_empty_account_stop_the_run_and_lose_nothing() {
     }
     let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..cast() });
     let without = run(stage.generating("run", &["--paths", "2"]).env_remove(stage::KEY_ENV));
-    assert_eq!(without.code, Some(5), "{without:?}");
-    assert!(without.out.contains(stage::KEY_ENV), "it names the variable: {without:?}");
+    assert!(without.refused().contains(stage::KEY_ENV), "it names the variable: {without:?}");
+    assert!(!stage.building.path("run").exists(), "it was known before a folder was made");
+    assert_eq!(stage.generate("run", &["--paths", "2"]).code, Some(0));
+    let again = run(stage.generating("again", &["--paths", "2"]).env_remove(stage::KEY_ENV));
+    assert_eq!(again.code, Some(0), "what the ledger has needs no key: {again:?}");
+    let more = run(stage.generating("again", &["--paths", "4"]).env_remove(stage::KEY_ENV));
+    assert!(more.code != Some(0), "{more:?}");
+}
+
+/// A port that nobody listens at.
+fn closed_port() -> String {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    format!("http://{}/v1", listener.local_addr().unwrap())
+}
+
+#[test]
+fn what_can_be_known_at_once_is_told_before_the_world_is_opened() {
+    let building = common::Building::new();
+    let closed = closed_port();
+    let lab = format!("[roles]\nllm = 'lab/words'\n[providers.lab]\ndialect = 'openai'\nbase_url = '{closed}'\n");
+    building.write("lab.toml", lab);
+    let base = closed.as_str();
+    for (args, told) in [
+        (&["--llm", "server/words", "--base-url", base][..], &[base, "start server"][..]),
+        (&["--llm", "vllm/words", "--base-url", base], &[base, "start vllm"]),
+        (&["--config", "lab.toml"], &[base, "start lab", "[providers.lab]"]),
+        (&["--llm", "server/words", "--base-url", "http://no-such-host.invalid/v1"], &["no-such-host.invalid"]),
+        (&["--llm", "openai/gpt-4.1-mini", "--key-env", "WAYWORD_NO_SUCH_KEY"], &["WAYWORD_NO_SUCH_KEY", "export"]),
+        (&["--llm", "server/words", "--base-url", base, "--max-usd", "1"], &["--prices"]),
+        (&["--hops", "9-3"], &["--hops 9-3", "4..7"]),
+        (&["--hops", "9..3"], &["--hops 9..3", "4..7"]),
+        (&["--metres", "20..5"], &["--metres 20..5"]),
+        (&["--hops", "0"], &["--hops 0"]),
+    ] {
+        // There is no such world either, and nobody has looked yet.
+        for command in ["generate", "perceive"] {
+            if command == "perceive" && args[0] != "--llm" {
+                continue;
+            }
+            let mut all = vec![command, "--platform", "matterport", "--data", "nowhere", "--ledger", "ledger.db"];
+            all.extend(args);
+            if command == "generate" {
+                all.extend(["--out", "run"]);
+            }
+            let ran = building.wayword(&all);
+            let error = ran.refused();
+            assert!(told.iter().all(|part| error.contains(part)) && !error.contains("nowhere"), "{args:?}: {error}");
+            assert!(!building.path("run").exists() && !building.path("ledger.db").exists(), "{args:?}");
+        }
+    }
+}
+
+#[test]
+fn a_service_that_is_gone_is_not_needed_for_what_the_ledger_has() {
+    let Stage { building, provider } = Stage::new(cast());
+    let base = provider.base_url(wayword_testkit::provider::Dialect::OpenAi);
+    let models = ["--llm", "server/words", "--see", "server/eye", "--base-url", &base, "--ledger", "ledger.db"];
+    let generate = |out: &str, paths: &str| {
+        let walks = ["--hops", "3..7", "--style", "r2r", "--evidence", "captions", "--paths", paths];
+        building.generate(out, &[&models[..], &walks].concat())
+    };
+    assert_eq!(generate("run", "3").code, Some(0));
+    drop(provider);
+    let again = generate("again", "3");
+    assert_eq!(again.code, Some(0), "{again:?}");
+}
+
+#[cfg(feature = "local")]
+#[test]
+fn a_model_in_process_that_is_not_here_is_told_before_the_world_is_opened() {
+    let building = common::Building::new();
+    let cache = tempfile::tempdir().unwrap();
+    for (model, told) in [("hf/./nowhere-at-all", "nowhere-at-all"), ("hf/Org/name", "config.json")] {
+        let args = [
+            "generate",
+            "--platform",
+            "matterport",
+            "--data",
+            "no-world",
+            "--see",
+            model,
+            "--ledger",
+            "l.db",
+            "--out",
+            "run",
+        ];
+        let mut command = building.command(&args);
+        let ran = run(command.env("WAYWORD_OFFLINE", "1").env("HF_HUB_CACHE", cache.path()));
+        let error = ran.refused();
+        assert!(error.contains(told) && !error.contains("no-world"), "{error}");
+        assert!(!building.path("run").exists());
+    }
+}
+
+#[test]
+fn a_changed_answer_stops_the_run_and_is_dropped_by_name() {
+    let stage = Stage::new(cast());
+    assert_eq!(stage.generate("run", &["--paths", "2"]).code, Some(0));
+    let ledger = stage.building.path("ledger.db");
+    // One byte of every caption, in the file itself.
+    let mut bytes = fs::read(&ledger).unwrap();
+    let at: Vec<usize> = bytes.windows(7).enumerate().filter(|(_, at)| at == b"There i").map(|(at, _)| at).collect();
+    assert!(!at.is_empty());
+    at.iter().for_each(|at| bytes[at + 4] = b'a');
+    fs::write(&ledger, bytes).unwrap();
+    let asked = stage.provider.requests();
+    let stopped = stage.generate("again", &["--paths", "2", "--json"]);
+    let reason = stopped.json()["stopped"].as_str().unwrap().to_owned();
+    assert_eq!(stopped.code, Some(5), "{stopped:?}");
+    assert!(reason.contains("ledger.db") && reason.contains("ledger prune --changed"), "{reason}");
+    assert_eq!(stage.provider.requests(), asked, "nothing was asked anew without a word");
+    let dropped = stage.building.wayword(&["ledger", "prune", "--changed", "--ledger", "ledger.db", "--json"]);
+    assert!(dropped.json()["rows"].as_u64().unwrap() > 0, "{dropped:?}");
+    let whole = stage.generate("again", &["--paths", "2"]);
+    assert_eq!(whole.code, Some(0), "{whole:?}");
+    assert!(stage.provider.requests() > asked);
+    let read = |run: &str| fs::read(stage.building.path(run).join("instructions.jsonl")).unwrap();
+    assert!(read("run") == read("again"), "the answers are what they were");
 }
 
 const PRICES: &str = "[\"server/words\"]\nusd_per_million_in = 10.0\nusd_per_million_out = 20.0\nas_of = \"2026-11-01\"\n\
