@@ -16,6 +16,7 @@ mod flight;
 mod ledger;
 mod queries;
 mod run;
+mod stopper;
 mod store;
 
 pub use budget::{Limits, Refused};
@@ -25,3 +26,4 @@ pub use error::LedgerError;
 pub use ledger::Ledger;
 pub use queries::{By, CostLine, Filter};
 pub use run::{Attempts, OnceError, Run, Totals};
+pub use stopper::Stopper;

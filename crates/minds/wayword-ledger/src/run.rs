@@ -1,7 +1,7 @@
 //! A run at work: each of its calls is made once.
 
 use crate::{
-    Answer, Call, Key, LedgerError, Limits, Refused, Row,
+    Answer, Call, Key, LedgerError, Limits, Refused, Row, Stopper,
     budget::{Budget, known},
     claim::{Claim, PATIENCE, Taken},
     ledger::{Ledger, now_unix_s},
@@ -10,10 +10,7 @@ use crate::{
 };
 use std::{
     path::{Path, PathBuf},
-    sync::{
-        Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, Mutex, PoisonError},
 };
 
 /// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones are the same run.
@@ -27,7 +24,7 @@ pub struct Run {
 struct RunState {
     id: String,
     budget: Budget,
-    stopped: AtomicBool,
+    stopper: Stopper,
     totals: Mutex<Totals>,
 }
 
@@ -95,7 +92,7 @@ impl Ledger {
         let state = RunState {
             id: id.to_owned(),
             budget: Budget::new(limits, self.store().spent(id)?),
-            stopped: AtomicBool::new(false),
+            stopper: Stopper::default(),
             totals: Mutex::default(),
         };
         Ok(Run { ledger: self.clone(), state: Arc::new(state) })
@@ -160,13 +157,19 @@ impl Run {
 
     /// From now on no request leaves; those on the wire are finished and kept.
     pub fn stop(&self) {
-        self.state.stopped.store(true, Ordering::SeqCst);
+        self.state.stopper.stop();
     }
 
     /// Whether [`Run::stop`] was called.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
-        self.state.stopped.load(Ordering::SeqCst)
+        self.state.stopper.is_stopped()
+    }
+
+    /// What stops it without keeping the ledger open.
+    #[must_use]
+    pub fn stopper(&self) -> Stopper {
+        self.state.stopper.clone()
     }
 
     /// What was done in this process.

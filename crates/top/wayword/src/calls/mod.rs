@@ -168,7 +168,7 @@ impl Calls {
     /// From now on an interrupt ends the sending, not the process: what is in flight is finished and kept, and the user is told
     /// so. A second interrupt ends the process.
     pub fn stop_on_interrupt(&self, output: &Output) {
-        let (run, output) = (self.run.clone(), *output);
+        let (run, output) = (self.run.stopper(), *output);
         // It can be set once in a process, and a command is one.
         let _ = ctrlc::set_handler(move || {
             if run.is_stopped() {
