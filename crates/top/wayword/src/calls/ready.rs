@@ -5,12 +5,13 @@ use crate::{
     error::Error,
     output::Output,
     settings::{Job, is_in_process},
+    team::prompts,
 };
 use wayword_ledger::{Ledger, Limits};
 use wayword_remote::{ConfigError, Services};
 
 impl Calls {
-    /// Refuses what [`Calls::rehearse`] refuses, and models that cannot be asked: without their key, with nobody at their port,
+    /// Refuses what [`Calls::rehearse`] refuses, templates that cannot be used, and models that cannot be asked: without their key, with nobody at their port,
     /// or without their files, which are fetched where they can be. A model whose answers are in the ledger is not held up for a key
     /// or a port: it may never be asked.
     ///
@@ -18,6 +19,7 @@ impl Calls {
     /// What is missing, where, and what to do.
     pub fn ready(job: &Job, output: &Output) -> Result<(), Error> {
         Self::rehearse(job)?;
+        prompts(&job.settings)?;
         let models = job.settings.roles.models();
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
         let (local, remote): (Vec<&str>, Vec<&str>) = models.into_iter().partition(|name| is_in_process(name));
