@@ -54,7 +54,7 @@ pub enum ConfigError {
     },
     /// A bound on money, and a model without a price.
     #[error(
-        "nobody knows what {0} costs, so no bound on money can be kept\nhint: add a row for it to a file, and give it as --prices FILE"
+        "nobody knows what {0} costs, so no bound on money can be kept\nhint: add a row for it to a file, and give it as --prices FILE; if it runs on this machine, set local = true under its [providers.NAME]"
     )]
     NoPrice(String),
     /// A number or a name that makes no sense.
