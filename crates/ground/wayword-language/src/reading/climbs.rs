@@ -1,26 +1,26 @@
 //! Stairs and floors.
 
-use super::{Event, Floor, Link, What, links::link, vocabulary as v};
-use crate::{
-    lexicon::{is_room, is_thing, normal_word},
-    text::Token,
-};
+use super::{Event, Floor, Link, What, links::link, tokens::Tokens, vocabulary as v};
+use crate::lexicon::{is_room, is_thing, normal_word};
 use wayword_core::Climb;
 
 /// The climbs and floors of a text.
-pub(super) fn climbs_and_floors(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
-    let text = Text { tokens, clauses };
+pub(super) fn climbs_and_floors(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
+    let before_climb = tokens.runs_before(|word| v::BEFORE_CLIMB.contains(&word));
+    let text = Text { tokens, clauses, before_climb };
     let mut events: Vec<Event> = Vec::new();
+    // The climbs that the clause has told: a handful, for a climb is told once in a clause.
+    let mut told: Vec<What> = Vec::new();
     for at in 0..tokens.len() {
-        let said_already = |what: &What| {
-            let of_clause = events.iter().rev().take_while(|event| event.clause == clauses[at]);
-            of_clause.map(|event| &event.what).any(|other| other == what)
-        };
-        if let Some(what) = text.climb(at).filter(|what| !said_already(what)) {
-            events.push(Event { what, span: tokens[at].span, clause: clauses[at], denied: false });
+        if at > 0 && clauses[at] != clauses[at - 1] {
+            told.clear();
+        }
+        if let Some(what) = text.climb(at).filter(|what| !told.contains(what)) {
+            told.push(what.clone());
+            events.push(Event { what, span: tokens.span(at, at), clause: clauses[at], denied: false });
         }
         if let Some((floor, last)) = text.floor(at) {
-            let span = [tokens[at].span[0], tokens[last].span[1]];
+            let span = tokens.span(at, last);
             events.push(Event { what: What::Floor(floor), span, clause: clauses[at], denied: false });
         }
     }
@@ -59,17 +59,19 @@ fn told(climb: Climb, is_command: bool) -> What {
 }
 
 struct Text<'a> {
-    tokens: &'a [Token],
+    tokens: Tokens<'a>,
     clauses: &'a [usize],
+    /// For each token, where the run of adverbs before it begins.
+    before_climb: Vec<usize>,
 }
 
 impl<'a> Text<'a> {
     fn word(&self, at: usize) -> &'a str {
-        self.tokens.get(at).map_or("", |token| token.word.as_str())
+        self.tokens.word(at)
     }
 
     fn before(&self, at: usize) -> &'a str {
-        at.checked_sub(1).map_or("", |before| self.word(before))
+        self.tokens.before(at)
     }
 
     /// The climb that is told at a token, or the place up or down the stairs.
@@ -103,7 +105,7 @@ impl<'a> Text<'a> {
 
     /// What stands before a word of climbing, without adverbs.
     fn before_climb(&self, at: usize) -> Option<usize> {
-        (0..at).rev().find(|before| !v::BEFORE_CLIMB.contains(&self.word(*before)))
+        self.before_climb[at].checked_sub(1)
     }
 
     /// "Up the old stairs", "up one floor", "up to the second floor", but not "up to the stairs".
@@ -116,7 +118,7 @@ impl<'a> Text<'a> {
             let is_end = is_stairs(word) || is_floor(word);
             let is_noun = (is_thing(&name) || is_room(&name)) && !v::ADJECTIVES.contains(&word);
             let breaks = v::BREAKERS.contains(&word) && !v::DETERMINERS.contains(&word) && word != "of";
-            self.tokens.get(*at).is_some_and(Token::is_word)
+            self.tokens.is_word(*at)
                 && joins
                 && (is_end || !(is_noun || breaks || matches!(word, "passed" | "passing")))
         };
@@ -137,9 +139,7 @@ impl<'a> Text<'a> {
 
     /// Whether somebody is told to climb, and not that a place lies up or down there.
     fn commands(&self, at: usize) -> bool {
-        let Some(before) = (0..at).rev().find(|before| !v::BEFORE_CLIMB.contains(&self.word(*before))) else {
-            return true;
-        };
+        let Some(before) = self.before_climb(at) else { return true };
         let name = normal_word(self.word(before));
         let is_place = is_thing(&name) || is_room(&name);
         // "To the bathroom up the stairs", but "past the sofa up the stairs".

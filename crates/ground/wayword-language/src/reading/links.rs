@@ -1,23 +1,17 @@
 //! How a place hangs in its sentence: what the words before it say of it.
 
-use super::{Link, vocabulary as v};
-use crate::{
-    lexicon::{is_room, normal_word},
-    text::Token,
-};
+use super::{Link, tokens::Tokens, vocabulary as v};
+use crate::lexicon::{is_room, normal_word};
 
 /// How far before a place its preposition may stand, words.
 const REACH: usize = 7;
 
 /// How the place that begins at a token hangs in its sentence.
-pub(super) fn link(tokens: &[Token], clauses: &[usize], from: usize) -> Link {
+pub(super) fn link(tokens: Tokens<'_>, clauses: &[usize], from: usize) -> Link {
     // In the order of reading backwards, up to the beginning of the clause.
-    let in_clause = tokens[..from]
-        .iter()
-        .zip(clauses)
-        .rev()
-        .take_while(|(token, clause)| token.is_word() && **clause == clauses[from.min(clauses.len() - 1)]);
-    let words: Vec<&str> = in_clause.map(|(token, _)| token.word.as_str()).take(REACH).collect();
+    let clause = clauses[from.min(clauses.len() - 1)];
+    let in_clause = (0..from).rev().take_while(|at| tokens.is_word(*at) && clauses[*at] == clause);
+    let words: Vec<&str> = in_clause.take(REACH).map(|at| tokens.word(at)).collect();
     let is_link = |word: &&str| {
         let breaks = v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word);
         (breaks || v::BESIDE.contains(word)) && !matches!(*word, "and" | "or")

@@ -5,15 +5,19 @@
 
 mod climbs;
 mod denial;
+#[cfg(test)]
+mod growth;
 mod links;
 mod onward;
 mod places;
 mod task;
+mod tokens;
 mod turns;
 pub mod vocabulary;
 
-use crate::text::{Token, tokens};
+use crate::text::{self, Token};
 use std::collections::BTreeSet;
+use tokens::Tokens;
 use wayword_core::{Climb, Side};
 
 /// What an instruction says, in the order of its text.
@@ -114,21 +118,22 @@ pub struct Task {
 /// Reads a text. `known` holds names, in normal spelling, that the lexicon may lack: those of the evidence.
 #[must_use]
 pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
-    let tokens = tokens(text);
+    let tokens = text::tokens(text);
     let clauses = clauses(&tokens);
-    let mut events = turns::turns(&tokens, &clauses);
-    events.extend(climbs::climbs_and_floors(&tokens, &clauses));
-    events.extend(onward::onward(&tokens, &clauses));
+    let tokens = Tokens::of(&tokens);
+    let mut events = turns::turns(tokens, &clauses);
+    events.extend(climbs::climbs_and_floors(tokens, &clauses));
+    events.extend(onward::onward(tokens, &clauses));
     let taken: Vec<[usize; 2]> =
         events.iter().filter(|event| matches!(event.what, What::Floor(_))).map(|event| event.span).collect();
-    events.extend(places::places(&tokens, &clauses, known, &taken));
+    events.extend(places::places(tokens, &clauses, known, &taken));
     events.sort_by_key(|event| event.span);
-    let denied = denial::denied(&tokens, &clauses);
+    let denied = denial::denied(tokens, &clauses);
     for event in &mut events {
-        event.denied = denied[tokens.partition_point(|token| token.span[0] < event.span[0])];
+        event.denied = denied[tokens.first_from(event.span[0])];
     }
-    mark_turn_places(&tokens, &mut events);
-    let task = task::closing_task(&tokens, &events);
+    mark_turn_places(tokens, &mut events);
+    let task = task::closing_task(tokens, &events);
     Reading { events, task }
 }
 
@@ -149,32 +154,39 @@ impl Reading {
 /// that a verb follows: "the lounge and the bedroom" are in one clause.
 #[must_use]
 pub fn clauses(tokens: &[Token]) -> Vec<usize> {
+    let tokens = Tokens::of(tokens);
+    let behind_adverbs = task::behind_adverbs(tokens);
     let mut clause = 0;
-    let begins = |at: usize, token: &Token| match token.word.as_str() {
-        "and" => task::verb_of(tokens, at + 1).is_some(),
-        word => !token.is_word() || word == "then",
+    let begins = |at: usize| match tokens.word(at) {
+        "and" => behind_adverbs.get(at + 1).is_some_and(|verb| task::verb_at(tokens, *verb).is_some()),
+        word => !tokens.is_word(at) || word == "then",
     };
-    let number = |(at, token)| {
-        clause += usize::from(begins(at, token));
+    let number = |at| {
+        clause += usize::from(begins(at));
         clause
     };
-    tokens.iter().enumerate().map(number).collect()
+    (0..tokens.len()).map(number).collect()
 }
 
 /// Marks the places that say where the turn before them happens.
-fn mark_turn_places(tokens: &[Token], events: &mut [Event]) {
+fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
+    let is_connection =
+        |at: &usize| matches!(tokens.word(*at), "at" | "by" | "near" | "after" | "past" | "when" | "once");
+    let connections: Vec<usize> = (0..tokens.len()).filter(is_connection).collect();
     let connects = |from: usize, to: usize| {
-        let between = tokens.iter().filter(|token| token.span[0] >= from && token.span[1] <= to);
-        between
-            .map(|token| token.word.as_str())
-            .any(|word| matches!(word, "at" | "by" | "near" | "after" | "past" | "when" | "once"))
+        let (from, to) = (tokens.first_from(from), tokens.first_from(to));
+        connections.get(connections.partition_point(|at| *at < from)).is_some_and(|at| *at < to)
     };
-    for at in 1..events.len() {
-        let (before, rest) = events.split_at_mut(at);
-        let Some(turn) = before.iter().rev().find(|event| !matches!(event.what, What::Place(_))) else { continue };
-        let (event, turn_end) = (&mut rest[0], turn.span[1]);
-        if let (What::Turn(_), What::Place(place)) = (&turn.what, &mut event.what) {
-            place.tells_turn = turn.clause == event.clause && connects(turn_end, event.span[0]);
+    // The clause and the end of the last thing told that is no place, where it is a turn.
+    let mut turn = None;
+    for event in events {
+        match (&mut event.what, turn) {
+            (What::Place(place), Some((clause, end))) => {
+                place.tells_turn = clause == event.clause && connects(end, event.span[0]);
+            }
+            (What::Place(_), None) => {}
+            (What::Turn(_), _) => turn = Some((event.clause, event.span[1])),
+            _ => turn = None,
         }
     }
 }

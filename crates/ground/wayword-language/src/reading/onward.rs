@@ -1,16 +1,15 @@
 //! Commands to walk on, whatever lies there.
 
-use super::{Event, What, vocabulary as v};
-use crate::text::Token;
+use super::{Event, What, tokens::Tokens, vocabulary as v};
 
 /// "Walk straight ahead", "continue through the hallway": what nobody does who stays where they are.
-pub(super) fn onward(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+pub(super) fn onward(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
+    let word = |at: usize| tokens.word(at);
     let on = |verb: usize| {
         let end = (verb + 1..verb + 3).find(|at| v::ONWARD.contains(&word(*at)))?;
         let directly =
             (verb + 1..end).all(|at| matches!(word(at), "on" | "back" | "right" | "all" | "going" | "walking"));
-        let span = [tokens[verb].span[0], tokens[end].span[1]];
+        let span = tokens.span(verb, end);
         directly.then(|| Event { what: What::Onward, span, clause: clauses[verb], denied: false })
     };
     (0..tokens.len()).filter(|at| v::CLIMBING.contains(&word(*at))).filter_map(on).collect()

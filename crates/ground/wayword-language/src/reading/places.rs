@@ -1,10 +1,7 @@
 //! Landmarks and rooms.
 
-use super::{Event, Place, What, links::link, vocabulary as v};
-use crate::{
-    lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, thing},
-    text::Token,
-};
+use super::{Event, Place, What, links::link, tokens::Tokens, vocabulary as v};
+use crate::lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, thing};
 use std::collections::BTreeSet;
 use wayword_core::Side;
 
@@ -19,32 +16,35 @@ struct Found {
 
 /// The places of a text; tokens within `taken` spans are left alone.
 pub(super) fn places(
-    tokens: &[Token],
+    tokens: Tokens<'_>,
     clauses: &[usize],
     known: &BTreeSet<String>,
     taken: &[[usize; 2]],
 ) -> Vec<Event> {
-    let free = |at: usize| !taken.iter().any(|span| tokens[at].span[0] >= span[0] && tokens[at].span[1] <= span[1]);
+    let free = free(tokens, taken);
     let mut found: Vec<Found> = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
-        let next = if free(at) { named(tokens, at, known).or_else(|| unnamed(tokens, at, known)) } else { None };
+        let next = if free[at] { named(tokens, at, known).or_else(|| unnamed(tokens, at, known)) } else { None };
         at = next.as_ref().map_or(at + 1, |place| place.to);
         let Some(mut place) = next else { continue };
         // "the kitchen table": what stands right before a place only tells which one it is.
         // A basement does not: it is a floor.
-        let tells_which = |before: &mut Found| before.to == place.from && room_name(&before.name) != Some("basement");
-        if let Some(before) = found.pop_if(tells_which) {
-            place.name =
-                if before.is_room || place.is_room { place.name } else { format!("{} {}", before.name, place.name) };
+        let is_floor = |before: &Found| before.is_room && room_name(&before.name) == Some("basement");
+        let tells_which = |before: &mut Found| before.to == place.from && !is_floor(before);
+        if let Some(mut before) = found.pop_if(tells_which).filter(|before| !before.is_room && !place.is_room) {
+            before.name.push(' ');
+            before.name.push_str(&place.name);
+            place.name = before.name;
         }
         found.push(place);
     }
+    let colours = Colours::of(tokens);
     let event = |place: Found| {
-        let span = [tokens[place.from].span[0], tokens[place.to - 1].span[1]];
+        let span = tokens.span(place.from, place.to - 1);
         let side = side_after(tokens, place.to);
         let link = link(tokens, clauses, place.from);
-        let colour = colour_before(tokens, place.from);
+        let colour = colours.before(place.from);
         let Found { name, is_thing, is_room, .. } = place;
         let what = What::Place(Place { name, is_thing, is_room, link, side, colour, tells_turn: false });
         Event { what, span, clause: clauses[place.from], denied: false }
@@ -52,23 +52,33 @@ pub(super) fn places(
     found.into_iter().map(event).collect()
 }
 
+/// For each token, whether it lies in none of these spans.
+fn free(tokens: Tokens<'_>, taken: &[[usize; 2]]) -> Vec<bool> {
+    let mut free = vec![true; tokens.len()];
+    for span in taken {
+        let within = tokens.first_from(span[0])..tokens.first_from(span[1]);
+        free[within].fill(false);
+    }
+    free
+}
+
 /// The longest known name that begins at a token.
-fn named(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Found> {
+fn named(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Found> {
     let longest = longest_name().max(6).min(tokens.len() - at);
     (1..=longest).rev().find_map(|length| {
-        let run = &tokens[at..at + length];
-        if !run.iter().all(Token::is_word) || is_no_place(tokens, at, length) {
+        let mut run = at..at + length;
+        if !run.clone().all(|at| tokens.is_word(at)) || is_no_place(tokens, at, length) {
             return None;
         }
-        let name = run.iter().map(|token| normal_word(&token.word)).collect::<Vec<_>>().join(" ");
+        let name = run.by_ref().map(|at| normal_word(tokens.word(at))).collect::<Vec<_>>().join(" ");
         let (is_thing, is_room) = (is_thing(&name) || known.contains(&name), is_room(&name));
         (is_thing || is_room).then_some(Found { from: at, to: at + length, name, is_thing, is_room })
     })
 }
 
 /// Words that are names elsewhere but not here: "step" and "turn back" of walking, "light blue", "water the plant".
-fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
+    let word = |at: usize| tokens.word(at);
     if length > 1 {
         return false;
     }
@@ -121,8 +131,8 @@ fn is_no_place(tokens: &[Token], at: usize, length: usize) -> bool {
 }
 
 /// A noun phrase that no name covers: "the shiny gizmo".
-fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Found> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Found> {
+    let word = |at: usize| tokens.word(at);
     let is_article = matches!(word(at), "the" | "a" | "an");
     if is_depicted(tokens, at) || !(is_article || begins_noun(tokens, at)) {
         return None;
@@ -142,7 +152,7 @@ fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Foun
         to += 1;
     }
     // A named place right behind means that these are its adjectives.
-    let ends_in_name = tokens.get(to).is_some_and(Token::is_word) && named(tokens, to, known).is_some();
+    let ends_in_name = tokens.is_word(to) && named(tokens, to, known).is_some();
     let last = word(to - 1);
     let tells_nothing = v::ABSTRACT.contains(&normal_word(last).as_str())
         || v::ADJECTIVES.contains(&last)
@@ -151,46 +161,63 @@ fn unnamed(tokens: &[Token], at: usize, known: &BTreeSet<String>) -> Option<Foun
     if to == at + 1 || ends_in_name || tells_nothing {
         return None;
     }
-    let name = tokens[at + 1..to].iter().map(|token| normal_word(&token.word)).collect::<Vec<_>>().join(" ");
+    let name = (at + 1..to).map(|at| normal_word(word(at))).collect::<Vec<_>>().join(" ");
     Some(Found { from: at + 1, to, name, is_thing: true, is_room: false })
 }
 
 /// "A picture of two horses": the horses are on it and not there.
-fn is_depicted(tokens: &[Token], at: usize) -> bool {
-    let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].word.as_str());
+fn is_depicted(tokens: Tokens<'_>, at: usize) -> bool {
+    let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens.word(at));
     word(1) == "of" && thing(&normal_word(word(2))).is_some_and(|thing| thing.class == Class::WallArt)
 }
 
 /// Whether a word other than an article begins a noun phrase: "my", "two", "past that".
-fn begins_noun(tokens: &[Token], at: usize) -> bool {
-    let word = tokens[at].word.as_str();
+fn begins_noun(tokens: Tokens<'_>, at: usize) -> bool {
+    let word = tokens.word(at);
     if !matches!(word, "this" | "that" | "these" | "those") {
         return v::DETERMINERS.contains(&word) || v::COUNTING.contains(&word);
     }
     // "The door that leads on", "this takes you to the hall": these stand for a noun.
-    let before = at.checked_sub(1).map_or("", |before| tokens[before].word.as_str());
+    let before = tokens.before(at);
     let begins_clause =
         matches!(before, "where" | "when" | "until" | "till" | "while" | "as" | "if" | "that" | "which" | "and" | "so");
     !begins_clause && (v::BREAKERS.contains(&before) || v::WALKING.contains(&before))
 }
 
-/// The colour that is told among the adjectives before a place.
-fn colour_before(tokens: &[Token], from: usize) -> Option<String> {
-    let adjectives: Vec<&str> = tokens[..from]
-        .iter()
-        .rev()
-        .map(|token| token.word.as_str())
-        .take_while(|word| v::ADJECTIVES.contains(word))
-        .collect();
-    let at = adjectives.iter().position(|word| v::COLOURS.contains(word))?;
-    let colour = if adjectives[at] == "gray" { "grey" } else { adjectives[at] };
-    let shade = adjectives.get(at + 1).filter(|word| matches!(**word, "dark" | "light"));
-    Some(shade.map_or(colour.to_owned(), |shade| format!("{shade} {colour}")))
+/// The colours that are told among the adjectives before a place.
+struct Colours<'a> {
+    tokens: Tokens<'a>,
+    /// For each token, the last colour in the run of adjectives that ends with it.
+    last: Vec<Option<usize>>,
+}
+
+impl<'a> Colours<'a> {
+    fn of(tokens: Tokens<'a>) -> Self {
+        let mut last = None;
+        let colour = |at: usize| {
+            let word = tokens.word(at);
+            if v::COLOURS.contains(&word) {
+                last = Some(at);
+            } else if !v::ADJECTIVES.contains(&word) {
+                last = None;
+            }
+            last
+        };
+        Self { tokens, last: (0..tokens.len()).map(colour).collect() }
+    }
+
+    /// The colour of the place that begins at a token.
+    fn before(&self, from: usize) -> Option<String> {
+        let at = self.last[from.checked_sub(1)?]?;
+        let colour = if self.tokens.word(at) == "gray" { "grey" } else { self.tokens.word(at) };
+        let shade = Some(self.tokens.before(at)).filter(|word| matches!(*word, "dark" | "light"));
+        Some(shade.map_or(colour.to_owned(), |shade| format!("{shade} {colour}")))
+    }
 }
 
 /// The side that follows a place: "on your left", "to the right", but not "to the right of".
-fn side_after(tokens: &[Token], to: usize) -> Option<Side> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+fn side_after(tokens: Tokens<'_>, to: usize) -> Option<Side> {
+    let word = |at: usize| tokens.word(at);
     let mut at = to;
     while matches!(word(at), "that" | "is" | "are" | "which") {
         at += 1;

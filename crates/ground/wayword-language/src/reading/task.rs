@@ -1,34 +1,33 @@
 //! The closing task.
 
-use super::{Event, Task, What, vocabulary as v};
-use crate::{
-    lexicon::{is_room, is_thing, normal_word},
-    text::Token,
-};
+use super::{Event, Task, What, tokens::Tokens, vocabulary as v};
+use crate::lexicon::{is_room, is_thing, normal_word};
 
 /// The task that ends a text: the last clause with a verb, where that verb is not one of walking.
-pub(super) fn closing_task(tokens: &[Token], events: &[Event]) -> Option<Task> {
-    let starts = (0..tokens.len())
-        .filter(|at| *at == 0 || !tokens[at - 1].is_word() || matches!(tokens[at - 1].word.as_str(), "and" | "then"));
-    let verbs: Vec<usize> = starts.filter_map(|at| verb_of(tokens, at)).collect();
-    let at = *verbs.last()?;
-    let verb = tokens[at].word.clone();
+pub(super) fn closing_task(tokens: Tokens<'_>, events: &[Event]) -> Option<Task> {
+    let behind_adverbs = behind_adverbs(tokens);
+    let mut starts = (0..tokens.len())
+        .rev()
+        .filter(|at| *at == 0 || !tokens.is_word(at - 1) || matches!(tokens.word(at - 1), "and" | "then"));
+    let at = starts.find_map(|at| verb_at(tokens, behind_adverbs[at]))?;
+    let verb = tokens.word(at).to_owned();
     if is_walking(tokens, at) {
         return None;
     }
     let object = events.iter().position(|event| {
-        event.span[0] > tokens[at].span[0] && matches!(&event.what, What::Place(place) if place.is_thing)
+        event.span[0] > tokens.span(at, at)[0] && matches!(&event.what, What::Place(place) if place.is_thing)
     });
     Some(Task { verb, object })
 }
 
-/// Where the verb of the clause that begins at a token stands; `None` where the clause has none.
-pub(super) fn verb_of(tokens: &[Token], start: usize) -> Option<usize> {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let mut at = start;
-    while v::ADVERBS.contains(&word(at)) {
-        at += 1;
-    }
+/// For each token, the first one from there on that is no adverb: a verb stands behind the adverbs of its clause.
+pub(super) fn behind_adverbs(tokens: Tokens<'_>) -> Vec<usize> {
+    tokens.ends_of_runs(|word| v::ADVERBS.contains(&word))
+}
+
+/// Where the verb of a clause stands, given the first token behind its adverbs; `None` where the clause has none.
+pub(super) fn verb_at(tokens: Tokens<'_>, at: usize) -> Option<usize> {
+    let word = |at: usize| tokens.word(at);
     let first = tokens.get(at).filter(|token| token.is_word())?.word.as_str();
     if v::WALKING.contains(&first) {
         return Some(at);
@@ -45,8 +44,8 @@ pub(super) fn verb_of(tokens: &[Token], start: usize) -> Option<usize> {
 }
 
 /// Whether a verb is one of walking here: "take a left" is, "take the towel" is not.
-fn is_walking(tokens: &[Token], at: usize) -> bool {
-    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+fn is_walking(tokens: Tokens<'_>, at: usize) -> bool {
+    let word = |at: usize| tokens.word(at);
     let turns = || {
         (at + 1..at + 5).map(word).any(|word| matches!(word, "left" | "right" | "stairs" | "door" | "steps" | "few"))
     };

@@ -1,6 +1,6 @@
 //! Turn words.
 
-use super::{Event, What, vocabulary as v};
+use super::{Event, What, tokens::Tokens, vocabulary as v};
 use crate::{
     lexicon::{is_room, is_thing, normal_word},
     text::Token,
@@ -8,13 +8,13 @@ use crate::{
 use wayword_core::Side;
 
 /// The turns of a text.
-pub(super) fn turns(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
-    let text = Text(tokens);
+pub(super) fn turns(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
+    let text = Text::of(tokens);
     let mut turns: Vec<Event> = Vec::new();
     let mut told_in_sentence = false;
     let mut verb_of_about = None;
     for at in 0..tokens.len() {
-        if tokens[at].ends_sentence() {
+        if tokens.get(at).is_some_and(Token::ends_sentence) {
             (told_in_sentence, verb_of_about) = (false, None);
         }
         let found = match text.about(at) {
@@ -30,7 +30,7 @@ pub(super) fn turns(tokens: &[Token], clauses: &[usize]) -> Vec<Event> {
             verb_of_about = verb;
         }
         told_in_sentence = true;
-        let span = [tokens[at].span[0], tokens[last].span[1]];
+        let span = tokens.span(at, last);
         turns.push(Event { what: What::Turn(side), span, clause: clauses[at], denied: false });
     }
     turns
@@ -50,25 +50,36 @@ struct About {
     last: usize,
 }
 
-struct Text<'a>(&'a [Token]);
+/// A text, and for each of its tokens where the run of words before it begins that may stand between a verb and a turn.
+struct Text<'a> {
+    tokens: Tokens<'a>,
+    before_about: Vec<usize>,
+    before_side: Vec<usize>,
+    before_side_of_turn: Vec<usize>,
+}
 
 impl<'a> Text<'a> {
-    /// The word or mark at a place, nothing behind the end.
-    fn word(&self, at: usize) -> &'a str {
-        self.0.get(at).map_or("", |token| token.word.as_str())
+    fn of(tokens: Tokens<'a>) -> Self {
+        let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit() || c == '.');
+        let may_of_turn =
+            |word: &str| v::BEFORE_SIDE.contains(&word) || v::BEFORE_SIDE_OF_TURN.contains(&word) || is_number(word);
+        Self {
+            tokens,
+            before_about: tokens.runs_before(|word| v::BEFORE_ABOUT.contains(&word)),
+            before_side: tokens.runs_before(|word| v::BEFORE_SIDE.contains(&word)),
+            before_side_of_turn: tokens.runs_before(may_of_turn),
+        }
     }
 
-    /// The first of the words right before a place that may all be skipped.
-    fn skip_back(&self, at: usize, may: impl Fn(&str) -> bool) -> usize {
-        (0..at).rev().find(|before| !may(self.word(*before))).map_or(0, |blocks| blocks + 1)
+    fn word(&self, at: usize) -> &'a str {
+        self.tokens.word(at)
     }
 
     /// The turn around that begins at a token.
     fn about(&self, at: usize) -> Option<About> {
         let next = self.word(at + 1);
         let verb = || {
-            let from = self.skip_back(at, |word| v::BEFORE_ABOUT.contains(&word));
-            let verb = from.checked_sub(1).filter(|verb| v::SPINNING.contains(&self.word(*verb)))?;
+            let verb = self.before_about[at].checked_sub(1).filter(|verb| v::SPINNING.contains(&self.word(*verb)))?;
             Some(About { verb: Some(verb), last: at })
         };
         let by_itself = |last: usize| Some(About { verb: None, last });
@@ -99,12 +110,7 @@ impl<'a> Text<'a> {
             return Some((side, None));
         }
         // What stands right before the side, without the words that may come between.
-        let from = self.skip_back(at, |word| v::BEFORE_SIDE.contains(&word));
-        let far = self.skip_back(at, |word| {
-            v::BEFORE_SIDE.contains(&word)
-                || v::BEFORE_SIDE_OF_TURN.contains(&word)
-                || word.chars().all(|c| c.is_ascii_digit())
-        });
+        let (from, far) = (self.before_side[at], self.before_side_of_turn[at]);
         let turning = far.checked_sub(1).filter(|verb| self.turns(*verb, far..at));
         if self.tells_a_place(at, turning) || (side == Side::Right && self.is_adverb(at, turning, told_before)) {
             return None;
@@ -141,7 +147,7 @@ impl<'a> Text<'a> {
         let of_a_noun = is_noun(after) || (v::ADJECTIVES.contains(&after) && is_noun(self.word(at + 2)));
         let definite = at > 0 && matches!(self.word(at - 1), "the" | "your" | "that" | "far");
         let unknown_noun = definite
-            && self.0.get(at + 1).is_some_and(Token::is_word)
+            && self.tokens.is_word(at + 1)
             && !v::BREAKERS.contains(&after)
             && !v::ADVERBS.contains(&after)
             && !matches!(after, "again" | "here" | "during" | "following" | "entering");
@@ -151,7 +157,7 @@ impl<'a> Text<'a> {
     /// "Right before the sofa", "walk right up to the table": no side.
     fn is_adverb(&self, at: usize, turning: Option<usize>, told_before: bool) -> bool {
         let after = self.word(at + 1);
-        let before = at.checked_sub(1).map_or("", |before| self.word(before));
+        let before = self.tokens.before(at);
         // "Left, then right past the sofa" goes on with turns; "stop, then right after the sofa" does not.
         let directly = !v::BEFORE_SIDE.contains(&before) || (matches!(before, "and" | "then") && !told_before);
         matches!(after, "away" | "now")
@@ -173,9 +179,9 @@ impl<'a> Text<'a> {
         let skipped: Vec<&str> = (from..at).map(|at| self.word(at)).collect();
         let joined = skipped.iter().any(|word| matches!(*word, "and" | "then" | "but"));
         let again = skipped.iter().any(|word| matches!(*word, "another" | "again"));
-        let begins = from == 0 || !self.0[from - 1].is_word();
+        let begins = from == 0 || !self.tokens.is_word(from - 1);
         let to = skipped.contains(&"to");
-        let ends = self.0.get(at + 1).is_none_or(|token| !token.is_word() && token.word != ")")
+        let ends = self.tokens.get(at + 1).is_none_or(|token| !token.is_word() && token.word != ")")
             || v::AFTER_SIDE.contains(&self.word(at + 1));
         // "On your left and right": no turn where the side before was none.
         let lists_sides = joined && !told_before && from > 0 && side_word(self.word(from - 1)).is_some();
@@ -188,7 +194,7 @@ impl<'a> Text<'a> {
     /// "Take the hallway left": a side behind a way that is taken.
     fn follows_a_way(&self, at: usize) -> bool {
         let ends =
-            self.0.get(at + 1).is_none_or(|token| !token.is_word()) || v::AFTER_SIDE.contains(&self.word(at + 1));
+            self.tokens.get(at + 1).is_none_or(|token| !token.is_word()) || v::AFTER_SIDE.contains(&self.word(at + 1));
         let Some(noun) = at.checked_sub(1).filter(|_| ends) else { return false };
         let name = normal_word(self.word(noun));
         let verb = (noun.saturating_sub(4)..noun).rev().find(|before| v::DETERMINERS.contains(&self.word(*before)));

@@ -1,0 +1,74 @@
+//! What a long text costs: counted in looks at its tokens, because time depends on the machine.
+
+use super::{read, vocabulary as v};
+use std::{cell::Cell, collections::BTreeSet};
+
+thread_local! {
+    static LOOKS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Counts one look at a token.
+pub(super) fn look() {
+    LOOKS.with(|looks| looks.set(looks.get() + 1));
+}
+
+/// The looks that it takes to read a text.
+fn looks(text: &str) -> usize {
+    LOOKS.with(|looks| looks.set(0));
+    let _ = read(text, &BTreeSet::new());
+    LOOKS.with(Cell::get)
+}
+
+/// What stands in a text over and over: each word that steers the reading, by itself and before what it steers, and what a
+/// reader of one part leaves to that of another.
+fn repeated() -> BTreeSet<String> {
+    let lists = [
+        &v::WALKING,
+        &v::TURNING,
+        &v::BEFORE_ABOUT,
+        &v::BEFORE_CLIMB,
+        &v::BEFORE_SIDE,
+        &v::BEFORE_SIDE_OF_TURN,
+        &v::AFTER_SIDE,
+        &v::DETERMINERS,
+        &v::COUNTING,
+        &v::BREAKERS,
+        &v::ABSTRACT,
+        &v::BESIDE,
+        &v::ADJECTIVES,
+        &v::ADVERBS,
+    ];
+    let words = lists.iter().flat_map(|list| list.iter());
+    let steered = ["", " left", " around", " up the stairs", " sofa", " level 2", " and", ","];
+    let pairs = words.flat_map(|word| steered.map(|end| format!("{word}{end} ")));
+    let more = [
+        "sofa ",
+        "the glass ",
+        "turn left sofa ",
+        "past the sofa ",
+        "to the kitchen past the sofa ",
+        "level 2 up the stairs ",
+        "pass the sofa on level 2 and turn left, ",
+        "do not turn left ",
+        "a picture of a horse ",
+        "in the bedroom on your left that is ",
+    ];
+    pairs.chain(more.map(str::to_owned)).collect()
+}
+
+#[test]
+fn ten_times_the_text_takes_ten_times_the_looks() {
+    for part in repeated() {
+        let (short, long) = (looks(&part.repeat(20)), looks(&part.repeat(200)));
+        assert!(long <= 11 * short, "{part:?}: {short} looks for 20 times, {long} for 200 times");
+    }
+}
+
+#[test]
+fn words_between_a_turn_and_its_places_are_not_looked_at_for_each_place() {
+    for part in ["sofa ", "sofa, ", "at the sofa "] {
+        let text = |times| format!("Turn left {}", part.repeat(times));
+        let (short, long) = (looks(&text(20)), looks(&text(200)));
+        assert!(long <= 11 * short, "{part:?}: {short} looks for 20 times, {long} for 200 times");
+    }
+}
