@@ -85,10 +85,12 @@ fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32
     };
     let ends = |at: usize| {
         let (event, floor) = told[at];
-        let goes_on = reading.events.iter().any(|other| {
-            matches!(other.what, What::Climb(_)) && other.span[0] > event.span[0] && other.clause != event.clause
-        });
-        at + 1 == told.len() && !floor.leaves && !goes_on
+        let goes_on = || {
+            reading.events.iter().any(|other| {
+                matches!(other.what, What::Climb(_)) && other.span[0] > event.span[0] && other.clause != event.clause
+            })
+        };
+        at + 1 == told.len() && !floor.leaves && !goes_on()
     };
     // Whether the levels allow the floors; what is not known allows all.
     let first_off = |allows: &dyn Fn(Option<u32>, Floor) -> bool| {

@@ -87,11 +87,10 @@ pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
         return checked;
     }
     let made_up = made_up::made_up(text, &names(subject.evidence));
-    checked.findings.retain(|finding| {
-        let replaces =
-            |other: &Finding| other.check == finding.check && (finding.span.is_none() || finding.span == other.span);
-        finding.verdict == Verdict::Fail || !made_up.iter().any(replaces)
-    });
+    let replaced: BTreeSet<_> = made_up.iter().flat_map(|by| [(by.check, None), (by.check, by.span)]).collect();
+    checked
+        .findings
+        .retain(|finding| finding.verdict == Verdict::Fail || !replaced.contains(&(finding.check, finding.span)));
     checked.findings.extend(made_up);
     checked.findings.sort_by_key(|finding| finding.check);
     checked

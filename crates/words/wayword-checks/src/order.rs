@@ -20,8 +20,9 @@ pub(super) struct Order {
 /// Checks the order of places by themselves, then that of turns among them.
 pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> Order {
     let sequence = in_order_of_walk(&reading.events);
+    let asides = asides(reading);
     let steps_with = |frames: &dyn Fn(&Shown) -> Vec<usize>| -> Vec<Step> {
-        let step_of = |at: &usize| match is_aside(reading, *at) {
+        let step_of = |at: &usize| match asides[*at] {
             true => Step::Free,
             false => step(&reading.events[*at], frames(&shown[*at]), evidence),
         };
@@ -77,23 +78,27 @@ fn places_alone(steps: &[Step]) -> Vec<Step> {
         .collect()
 }
 
-/// Whether an event is a place that only tells where another place of its clause, or the task's object, is.
-fn is_aside(reading: &Reading, at: usize) -> bool {
-    let event = &reading.events[at];
-    let What::Place(place) = &event.what else { return false };
+/// For each event, whether it is a place that only tells where another place of its clause, or the task's object, is.
+fn asides(reading: &Reading) -> Vec<bool> {
     let object = reading.task.as_ref().and_then(|task| task.object);
-    let in_clause = reading.events[..at].iter().rev().take_while(|other| other.clause == event.clause);
-    let mut before = in_clause.filter_map(|other| match &other.what {
-        What::Place(place) => Some(place),
-        _ => None,
-    });
-    let tells_where = match place.link {
-        Link::Within | Link::Beside => before.next().is_some(),
-        // "To the bathroom past the kitchen": the goal is told first, and reached last.
-        Link::Along => before.any(|other| other.link == Link::Goal),
-        Link::Plain | Link::Goal => false,
+    // What the clause has told before: its number, whether a place, and whether a goal.
+    let (mut clause, mut tells_place, mut tells_goal) = (0, false, false);
+    let is_aside = |(at, event): (usize, &Event)| {
+        if event.clause != clause {
+            (clause, tells_place, tells_goal) = (event.clause, false, false);
+        }
+        let What::Place(place) = &event.what else { return false };
+        let tells_where = match place.link {
+            Link::Within | Link::Beside => tells_place,
+            // "To the bathroom past the kitchen": the goal is told first, and reached last.
+            Link::Along => tells_goal,
+            Link::Plain | Link::Goal => false,
+        };
+        tells_place = true;
+        tells_goal |= place.link == Link::Goal;
+        tells_where || object.is_some_and(|object| object < at)
     };
-    tells_where || object.is_some_and(|object| object < at)
+    reading.events.iter().enumerate().map(is_aside).collect()
 }
 
 fn turn_reason(steps: &[Step], at: usize) -> &'static str {
