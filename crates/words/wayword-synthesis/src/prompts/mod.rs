@@ -3,10 +3,11 @@
 //! The parts of the writing prompt and their order follow arXiv 2403.11487; the words are ours. Beyond it: measured moves,
 //! so that no turn is guessed, and the reasons for which an earlier text was refused.
 
-mod trial;
+mod bounds;
+pub(crate) mod trial;
 mod writing;
 
-use minijinja::{Environment, UndefinedBehavior, context};
+use minijinja::{Environment, ErrorKind, UndefinedBehavior, context};
 use sha2::{Digest, Sha256};
 use wayword_core::{Exchange, ModelError, Sighting, Witness};
 
@@ -59,6 +60,24 @@ pub enum PromptError {
         /// What is wrong with it.
         source: minijinja::Error,
     },
+    /// It asks for something that takes memory or time without bound.
+    #[error("prompt {name}, line {line}: {what}")]
+    Refused {
+        /// Which.
+        name: String,
+        /// Where.
+        line: usize,
+        /// What it asks for, and what prompts offer.
+        what: String,
+    },
+    /// It writes or does more than any prompt needs.
+    #[error("prompt {name}: {what}; write a shorter one")]
+    TooMuch {
+        /// Which.
+        name: String,
+        /// What it does, with the bound.
+        what: String,
+    },
 }
 
 impl From<PromptError> for ModelError {
@@ -78,7 +97,7 @@ impl Prompts {
         if let Some((name, _)) = own.iter().find(|(name, _)| !BUILT_IN.iter().any(|(built_in, _)| built_in == name)) {
             return Err(PromptError::Unknown { name: name.clone() });
         }
-        let mut templates = Environment::new();
+        let mut templates = bounds::environment();
         // A template that asks for what it is not given is a mistake to be told, not a gap in a prompt.
         templates.set_undefined_behavior(UndefinedBehavior::Strict);
         let mut hash = Sha256::new();
@@ -89,6 +108,7 @@ impl Prompts {
             hash.update(source);
             hash.update([0]);
             let failed = |source| PromptError::Template { name: name.to_owned(), source };
+            bounds::allow(name, source)?;
             templates.add_template_owned(name, source.to_owned()).map_err(failed)?;
         }
         let hash = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
@@ -109,9 +129,15 @@ impl Prompts {
     }
 
     fn fill(&self, name: &str, with: minijinja::Value) -> Result<String, PromptError> {
-        let failed = |source| PromptError::Template { name: name.to_owned(), source };
-        let text = self.templates.get_template(name).and_then(|template| template.render(with)).map_err(failed)?;
-        Ok(text.trim().to_owned())
+        let failed = |source: minijinja::Error| match source.kind() {
+            ErrorKind::OutOfFuel => PromptError::TooMuch { name: name.to_owned(), what: bounds::too_many_steps() },
+            ErrorKind::WriteFailure => PromptError::TooMuch { name: name.to_owned(), what: bounds::too_many_bytes() },
+            _ => PromptError::Template { name: name.to_owned(), source },
+        };
+        let mut text = bounds::Text::default();
+        let template = self.templates.get_template(name).map_err(failed)?;
+        template.render_captured_to(with, &mut text).map_err(failed)?;
+        Ok(text.into_string().trim().to_owned())
     }
 
     /// Asks a language model for the next question.

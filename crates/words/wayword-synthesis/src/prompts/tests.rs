@@ -6,7 +6,8 @@ use crate::{
     writer::Complaint,
 };
 use wayword_core::{
-    Check, DVec3, Distinction, Finding, Motion, ObjectId, Observation, Path, SceneId, Side, Target, Verdict, path::Stop,
+    Check, DVec3, Distinction, Finding, Motion, ObjectId, Observation, Path, SceneId, Side, Style, Target, Verdict,
+    path::Stop,
 };
 
 fn transcript() -> Vec<Exchange> {
@@ -118,6 +119,75 @@ fn a_prompt_of_ones_own_takes_the_place_of_the_built_in_one_and_changes_the_hash
     let own = Prompts::new(&[("answer".into(), "{{ question }}!".into())]).unwrap();
     assert_eq!(own.answer(Manner::Chat, "What", &[]).unwrap(), "What!");
     assert_ne!(own.hash(), Prompts::new(&[]).unwrap().hash());
+}
+
+/// Why a prompt of one's own is refused.
+fn refused(source: &str) -> String {
+    Prompts::new(&[("answer".into(), source.into())]).unwrap_err().to_string()
+}
+
+#[test]
+fn a_prompt_that_writes_without_bound_is_refused_with_the_bound() {
+    for source in [
+        "{{ question | indent(4000000000) }}",
+        "{{ question | indent(width=4000000000, first=true) }}",
+        "{% for a in range(1000) %}{{ question | indent(10000, true) }}{% endfor %}",
+        "{{ range(1000) | join('0123456789') | replace('0', range(1000) | join('-')) }}",
+        "{{ [range(1000) | join('0123456789')] | map('replace', '', range(1000) | join('-')) | join }}",
+    ] {
+        let why = refused(source);
+        assert!(why.contains("prompt answer") && why.contains("8388608 bytes"), "{source}: {why}");
+    }
+    let endless = "{% for a in range(1000) %}{% for b in range(1000) %}{% if a %}{% endif %}{% endfor %}{% endfor %}";
+    assert!(refused(endless).contains("200000 steps"), "{}", refused(endless));
+    assert!(refused("{{ range(100000) | length }}").contains("at most 1000"));
+}
+
+#[test]
+fn what_would_grow_without_bound_is_not_offered() {
+    for (source, what) in [
+        ("A\n{% set a = question %}", "`set`"),
+        ("A\n{%- macro f() %}{% endmacro %}", "`macro`"),
+        ("A\n{% filter upper %}{% endfilter %}", "`filter`"),
+        ("A\n{% include 'write' %}", "`include`"),
+        ("A\n{% for a in history recursive %}{% endfor %}", "`recursive`"),
+        ("A\n{{ question * 1000000000 }}", "`*`"),
+        ("A\n{{ '}}' * 1000000000 }}", "`*`"),
+        ("A\n{{ '%1000000000d' | format(1) }}", "`format`"),
+        ("A\n{{ history | pprint }}", "`pprint`"),
+    ] {
+        let why = refused(source);
+        assert!(why.contains("line 2") && why.contains(what), "{source}: {why}");
+    }
+    assert!(refused(&format!("{{{{ {} }}}}", vec!["question"; 100].join(" ~ "))).contains("at most 64"));
+    assert!(refused("{{ history | map('format') | join }}").contains("unknown filter"));
+    assert!(refused(&"a".repeat(70_000)).contains("65536 bytes"));
+}
+
+#[test]
+fn prompts_offer_what_people_write_in_them() {
+    let source = "**A** * {# a * note #}{{ question | upper | replace('A', 'b') ~ '!' }} {{ history | length + 1 }} \
+                  {{ history | map(attribute='answer') | join('; ') | indent(2, true) | trim }} {{ question | tojson }} \
+                  {{ [3, 1, 2] | sort | first | default(4) }}{% raw %} {{ a * b }}{% endraw %}";
+    let own = Prompts::new(&[("answer".into(), source.into())]).unwrap();
+    let history = [Exchange::new("Where?", "In a hall."), Exchange::new("What?", "A <rug>.")];
+    assert_eq!(
+        own.answer(Manner::Chat, "what", &history).unwrap(),
+        "**A** * WHbT! 3 In a hall.; A <rug>. \"what\" 1 {{ a * b }}"
+    );
+}
+
+#[test]
+fn the_longest_style_and_walk_that_are_allowed_fit_into_a_prompt() {
+    let style = Style { references: vec!["a ".repeat(2000); 1000], ..built_in("r2r").unwrap() };
+    let profile = Profile::measure(&built_in("r2r").unwrap().references);
+    let mut long = walk();
+    long.path.frames = long.path.frames.iter().cycle().take(1000).cloned().collect();
+    let summary = "A hallway with a picture. ".repeat(40);
+    let observations = vec![Observation { summary, ..Observation::default() }; 1000];
+    let walk = Walk::new(long.path, observations);
+    let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &[] };
+    assert!(Prompts::new(&[]).unwrap().write(&brief).is_ok());
 }
 
 #[test]

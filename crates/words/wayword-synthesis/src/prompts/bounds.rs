@@ -1,0 +1,270 @@
+//! What a prompt of a user's own may take: so much text, so many steps, and nothing that grows by itself.
+//!
+//! minijinja bounds the steps of a template (`fuel`), and none of the bytes that one step makes: a single `indent` takes as
+//! many gigabytes as it is told. So what a prompt writes is bounded here, within filters too, and what makes a value out of
+//! itself (variables, macros, repetition) is not offered: forty lines of it fill any memory.
+
+use super::PromptError;
+use minijinja::{
+    Environment, Error, ErrorKind, State, filters,
+    machinery::{Token, WhitespaceConfig, tokenize},
+    value::{Kwargs, Object, Rest, Value, ValueKind},
+};
+use std::{
+    fmt::{self, Write as _},
+    io,
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+/// Longest template, bytes.
+const SOURCE_BYTES: usize = 1 << 16;
+/// Most that a prompt writes, bytes; and again, what its filters make on the way. Twice the longest style.
+const MOST_BYTES: usize = 8 << 20;
+/// Most steps of a prompt. One of a thousand references and a thousand frames takes a tenth.
+const MOST_STEPS: u64 = 200_000;
+/// Most numbers of a `range`.
+const MOST_NUMBERS: usize = 1000;
+/// Most `~` and `+` of a template: each may add what it joins once more.
+const MOST_JOINS: usize = 64;
+/// What an item of a list takes beside its text, bytes.
+const ITEM_BYTES: usize = 32;
+
+/// The statements of a prompt.
+const STATEMENTS: [&str; 6] = ["for", "endfor", "if", "elif", "else", "endif"];
+
+pub(super) fn too_many_bytes() -> String {
+    format!("it writes more than {MOST_BYTES} bytes")
+}
+
+pub(super) fn too_many_steps() -> String {
+    format!("it takes more than {MOST_STEPS} steps")
+}
+
+/// Refuses a template that asks for what has no bound.
+pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
+    let refused = |line: usize, what: String| Err(PromptError::Refused { name: name.to_owned(), line, what });
+    if source.len() > SOURCE_BYTES {
+        return refused(1, format!("it is longer than {SOURCE_BYTES} bytes"));
+    }
+    let mut joins = 0;
+    let mut before = None;
+    for token in tokenize(source, false, Default::default(), WhitespaceConfig::default()) {
+        // What is no template at all is told when it is read.
+        let Ok((token, span)) = token else { return Ok(()) };
+        let line = usize::from(span.start_line);
+        match (&before, &token) {
+            (Some(Token::BlockStart), Token::Ident(statement)) if !STATEMENTS.contains(statement) => {
+                let offered = STATEMENTS.join(", ");
+                return refused(line, format!("`{statement}` is not offered in prompts; these are: {offered}"));
+            }
+            (Some(Token::Pipe), Token::Ident(filter)) if !FILTERS.contains(filter) => {
+                let offered = FILTERS.join(", ");
+                return refused(line, format!("the filter `{filter}` is not offered in prompts; these are: {offered}"));
+            }
+            (_, Token::Mul | Token::Pow | Token::Ident("recursive")) => {
+                let what = if let Token::Ident(word) = token { word } else { "*" };
+                return refused(line, format!("`{what}` is not offered in prompts, because it can write without end"));
+            }
+            (_, Token::Tilde | Token::Plus) => joins += 1,
+            _ => {}
+        }
+        if joins > MOST_JOINS {
+            return refused(line, format!("`~` and `+` may stand at most {MOST_JOINS} times in a prompt"));
+        }
+        before = Some(token);
+    }
+    Ok(())
+}
+
+/// What prompts are filled in: with bounds, and with those filters alone that keep to them.
+pub(super) fn environment() -> Environment<'static> {
+    let mut environment = Environment::new();
+    environment.set_fuel(Some(MOST_STEPS));
+    for name in ["debug", "dict", "namespace"] {
+        environment.remove_global(name);
+    }
+    environment.add_function("range", range);
+    for name in NOT_OFFERED {
+        environment.remove_filter(name);
+    }
+    add_filters(&mut environment);
+    environment
+}
+
+/// The filters of minijinja that make more than they are given, and those that prompts have no use for.
+const NOT_OFFERED: [&str; 11] =
+    ["safe", "escape", "e", "batch", "slice", "groupby", "chain", "zip", "pprint", "format", "dictsort"];
+
+/// Makes the filters as they are, each with what it makes counted: those that make a text of one, then those that take any
+/// value. A name with a space cannot be written in a template's filter.
+macro_rules! filters {
+    ($($text:ident)*; $($any:ident)*; $($own:ident)*) => {
+        /// The filters of a prompt.
+        const FILTERS: &[&str] =
+            &[$(stringify!($text),)* $(stringify!($any),)* $(stringify!($own),)* "count", "d"];
+
+        fn add_filters(environment: &mut Environment<'_>) {
+            $(environment.add_filter(concat!(stringify!($text), " itself"), filters::$text);
+            environment.add_filter(stringify!($text), |state: &State<'_, '_>, value: Value, more: Rest<Value>| {
+                let text = Value::from(text_of(state, &value)?);
+                counted(state, concat!(stringify!($text), " itself"), text, &more)
+            });)*
+            $(environment.add_filter(concat!(stringify!($any), " itself"), filters::$any);
+            environment.add_filter(stringify!($any), |state: &State<'_, '_>, value: Value, more: Rest<Value>| {
+                counted(state, concat!(stringify!($any), " itself"), value, &more)
+            });)*
+            $(environment.add_filter(stringify!($own), $own);)*
+            environment.add_filter("count", filters::length);
+            environment.add_filter("d", filters::default);
+            environment.add_filter("indent itself", filters::indent);
+            environment.add_filter("tojson itself", filters::tojson);
+        }
+    };
+}
+
+filters! {
+    upper lower title capitalize trim split lines;
+    length items reverse default round abs int float attr first last min max sort list bool sum select reject selectattr
+    rejectattr map unique;
+    join replace indent tojson string
+}
+
+/// What a filter makes, and what came to it as a list of letters, counted.
+fn counted(state: &State<'_, '_>, filter: &str, value: Value, more: &[Value]) -> Result<Value, Error> {
+    if let Some(text) = value.as_str() {
+        write(state, text.len())?;
+    }
+    let made = state.apply_filter(filter, &[&[value], more].concat())?;
+    let bytes = match made.as_str() {
+        Some(text) => text.len(),
+        None => made.len().unwrap_or_default().saturating_mul(ITEM_BYTES),
+    };
+    write(state, bytes)?;
+    Ok(made)
+}
+
+fn join(state: &State<'_, '_>, value: &Value, between: Option<Value>) -> Result<String, Error> {
+    let between = between.map_or_else(|| Ok(String::new()), |between| text_of(state, &between))?;
+    let mut text = Counted { state, text: String::new() };
+    for (at, item) in value.try_iter()?.enumerate() {
+        if at > 0 {
+            text.add(&between)?;
+        }
+        text.add(item)?;
+    }
+    Ok(text.text)
+}
+
+fn replace(state: &State<'_, '_>, value: &Value, from: &Value, to: &Value) -> Result<String, Error> {
+    let (text, from, to) = (text_of(state, value)?, text_of(state, from)?, text_of(state, to)?);
+    write(state, text.matches(from.as_str()).count().saturating_mul(to.len()))?;
+    Ok(text.replace(&from, &to))
+}
+
+fn indent(
+    state: &State<'_, '_>,
+    value: &Value,
+    width: Option<usize>,
+    first: Option<bool>,
+    named: Kwargs,
+) -> Result<Value, Error> {
+    let width = width.map_or_else(|| named.get("width"), |width| Ok(Some(width)))?.unwrap_or(4);
+    let first = first.map_or_else(|| named.get("first"), |first| Ok(Some(first)))?.unwrap_or(false);
+    let blank = named.get::<Option<bool>>("blank")?.unwrap_or(false);
+    named.assert_all_used()?;
+    let text = text_of(state, value)?;
+    write(state, text.split('\n').count().saturating_mul(width))?;
+    state.apply_filter("indent itself", &[text.into(), width.into(), first.into(), blank.into()])
+}
+
+fn tojson(state: &State<'_, '_>, value: &Value) -> Result<Value, Error> {
+    let mut size = Text::default();
+    serde_json::to_writer(&mut size, value).map_err(|_| too_much())?;
+    write(state, size.into_string().len())?;
+    state.apply_filter("tojson itself", &[value.clone()])
+}
+
+fn string(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
+    text_of(state, value)
+}
+
+/// At most a thousand numbers.
+fn range(lower: isize, upper: Option<isize>, step: Option<isize>) -> Result<Value, Error> {
+    let numbers = minijinja::functions::range(lower, upper, step)?;
+    if numbers.len().is_none_or(|count| count > MOST_NUMBERS) {
+        let why = format!("a `range` has at most {MOST_NUMBERS} numbers in prompts");
+        return Err(Error::new(ErrorKind::InvalidOperation, why));
+    }
+    Ok(numbers)
+}
+
+/// A value as text; one that is none is written within the bound.
+fn text_of(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
+    if value.kind() == ValueKind::Undefined {
+        return Err(Error::from(ErrorKind::UndefinedError));
+    }
+    let mut text = Counted { state, text: String::new() };
+    text.add(value)?;
+    Ok(text.text)
+}
+
+/// What the filters of one prompt have made.
+#[derive(Debug, Default)]
+struct Made(AtomicUsize);
+
+impl Object for Made {}
+
+/// Counts what a filter makes.
+fn write(state: &State<'_, '_>, bytes: usize) -> Result<(), Error> {
+    let made = state.get_or_set_temp_object("made by filters", Made::default);
+    let before = made.0.fetch_add(bytes.min(MOST_BYTES + 1), Ordering::Relaxed);
+    if before.saturating_add(bytes) > MOST_BYTES { Err(too_much()) } else { Ok(()) }
+}
+
+fn too_much() -> Error {
+    Error::new(ErrorKind::WriteFailure, too_many_bytes())
+}
+
+/// A text of a filter, counted as it grows.
+struct Counted<'a, 'b, 'c> {
+    state: &'a State<'b, 'c>,
+    text: String,
+}
+
+impl Counted<'_, '_, '_> {
+    fn add(&mut self, what: impl fmt::Display) -> Result<(), Error> {
+        write!(self, "{what}").map_err(|_| too_much())
+    }
+}
+
+impl fmt::Write for Counted<'_, '_, '_> {
+    fn write_str(&mut self, more: &str) -> fmt::Result {
+        write(self.state, more.len()).map_err(|_| fmt::Error)?;
+        self.text.push_str(more);
+        Ok(())
+    }
+}
+
+/// What a prompt has written.
+#[derive(Debug, Default)]
+pub(super) struct Text(Vec<u8>);
+
+impl Text {
+    pub(super) fn into_string(self) -> String {
+        String::from_utf8(self.0).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
+    }
+}
+
+impl io::Write for Text {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0.len() + bytes.len() > MOST_BYTES {
+            return Err(io::Error::other(too_many_bytes()));
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
