@@ -3,6 +3,10 @@
 use crate::{Finding, Verdict};
 use serde::{Deserialize, Serialize};
 
+/// Longest text of an instruction, bytes: of one that a dataset holds, and of one that a model writes. An instruction is a few
+/// sentences; what is longer is refused unread.
+pub const LONGEST_TEXT_BYTES: usize = 20_000;
+
 /// A wayfinding instruction with where it came from and what was found when it was checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Instruction {

@@ -12,8 +12,8 @@ pub(crate) const VALUES_KEPT: usize = 20_000_000;
 pub(crate) const LINE_BYTES: usize = 16 << 20;
 /// Most nodes or positions of one path.
 pub(crate) const PATH_NODES: usize = 1_000;
-/// Longest instruction, bytes.
-pub(crate) const INSTRUCTION_BYTES: usize = 20_000;
+/// Longest instruction, bytes. A writer's is not longer either: what a run writes can be read again.
+pub(crate) const INSTRUCTION_BYTES: usize = wayword_core::LONGEST_TEXT_BYTES;
 /// Most instructions of one item.
 pub(crate) const INSTRUCTIONS: usize = 1_000;
 /// Longest name (of a path, an item, a split), bytes.

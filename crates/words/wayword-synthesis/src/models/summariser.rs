@@ -10,7 +10,9 @@ use crate::{
     prompts::Prompts,
 };
 use std::sync::Arc;
-use wayword_core::{Caption, Exchange, LanguageModel, Message, ModelError, Sampling, Sighting, Witness};
+use wayword_core::{
+    Caption, Exchange, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling, Sighting, Witness,
+};
 use wayword_language::{lexicon::agree, text::word_count};
 
 /// Has a language model sum up. A caption that names what was denied, or what nobody named, is asked for once more with the
@@ -43,7 +45,13 @@ impl ModelSummariser {
         for _ in 0..ATTEMPTS {
             let reply = say(self.model.as_ref(), Message::user(prompt(&complaints)?), SAMPLING)?;
             let text = plain(whole_sentences(&reply), &["caption", "summary"]);
-            let found = if text.is_empty() { vec!["it was empty".to_owned()] } else { faults(&text) };
+            let found = match text.len() {
+                0 => vec!["it was empty".to_owned()],
+                bytes if bytes > LONGEST_TEXT_BYTES => {
+                    vec![format!("it has {bytes} bytes, more than {LONGEST_TEXT_BYTES}")]
+                }
+                _ => faults(&text),
+            };
             if found.is_empty() {
                 return Ok(Ok(text));
             }

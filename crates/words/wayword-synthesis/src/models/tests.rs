@@ -1,10 +1,12 @@
 use super::*;
 use crate::{
     dialogue::{Asker, OPENING, Summariser},
-    prompts::{Manner, Prompts},
+    prompts::{Manner, Prompts, trial},
+    style::{Profile, built_in},
+    writer::{Brief, WriteError, Writer},
 };
 use std::sync::{Arc, Mutex};
-use wayword_core::{Answerer, Ask, Exchange, Finish, Heading, Image, Pose, View};
+use wayword_core::{Answerer, Ask, Exchange, Finish, Heading, Image, Motion, Pose, View};
 
 /// A model that says what it was told to say, in order, and keeps what it heard.
 pub(crate) struct Scripted {
@@ -111,6 +113,28 @@ fn a_model_is_shown_the_picture_and_one_that_was_cut_off_keeps_whole_sentences()
     assert!(matches!(&answers[0], Err(ModelError::NothingToSee { .. })));
     assert_eq!(answers[1].as_deref(), Ok("A bed."));
     assert_eq!(model.heard.lock().unwrap()[0].messages[0].image, Some(image));
+}
+
+#[test]
+fn a_text_of_two_megabytes_is_refused_and_not_sent_back_whole() {
+    let long = "Go past the sofa and turn left at the lamp. ".repeat(50_000);
+    let walk = trial::walk(Motion::Known).unwrap();
+    let style = built_in("r2r").unwrap();
+    let profile = Profile::measure(&style.references);
+    let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &[] };
+    let writer = ModelWriter::new(Scripted::new(&[&long]), prompts());
+    let Err(WriteError::Unusable { text, reason }) = writer.write(&brief) else { panic!("it is used") };
+    assert!(text.len() < 1000 && text.starts_with("Go past the sofa"), "{} bytes", text.len());
+    assert!(reason.contains("2199999 bytes, more than 20000"), "{reason}");
+}
+
+#[test]
+fn a_summary_of_two_megabytes_is_left_to_rules() {
+    let long = "There is a bed. ".repeat(130_000);
+    let caption =
+        ModelSummariser::new(Scripted::new(&[&long, &long]), prompts()).sum_up(&transcript(), "test").unwrap();
+    assert_eq!(caption.text, "A bedroom with a bed in the middle.");
+    assert!(caption.by.unwrap().contains("more than 20000"));
 }
 
 #[test]

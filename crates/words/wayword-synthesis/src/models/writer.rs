@@ -6,7 +6,7 @@ use crate::{
     writer::{Brief, WriteError, Writer},
 };
 use std::sync::Arc;
-use wayword_core::{Finish, LanguageModel, Message, ModelError, Sampling};
+use wayword_core::{Finish, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling};
 
 /// Has a language model write. What was wrong with earlier texts stands in its prompt.
 #[derive(Clone)]
@@ -19,6 +19,8 @@ pub struct ModelWriter {
 const TEMPERATURE: f64 = 0.7;
 /// Room for the longest instruction of a fine-grained style.
 const MAX_TOKENS: u32 = 300;
+/// What the next prompt shows of a text that is too long, bytes.
+const SHOWN_BYTES: usize = 500;
 
 impl ModelWriter {
     /// A writer behind a model.
@@ -38,10 +40,16 @@ impl Writer for ModelWriter {
         let sampling = Sampling { temperature: TEMPERATURE, max_tokens: MAX_TOKENS, seed: brief.seed };
         let reply = say(self.model.as_ref(), Message::user(prompt), sampling)?;
         let text = plain(&reply.text, &["instruction"]);
+        if text.len() > LONGEST_TEXT_BYTES {
+            let reason = format!("it has {} bytes, more than {LONGEST_TEXT_BYTES}: write a few sentences", text.len());
+            let text = format!("{} ...", &text[..text.floor_char_boundary(SHOWN_BYTES)]);
+            return Err(WriteError::Unusable { text, reason });
+        }
+        let unusable = |reason: &str| Err(WriteError::Unusable { text: text.clone(), reason: reason.to_owned() });
         match reply.finish {
-            Finish::Stop if text.is_empty() => Err(WriteError::Unusable { text, reason: "it was empty" }),
+            Finish::Stop if text.is_empty() => unusable("it was empty"),
             Finish::Stop => Ok(text),
-            Finish::Length => Err(WriteError::Unusable { text, reason: "it was cut off: write a shorter text" }),
+            Finish::Length => unusable("it was cut off: write a shorter text"),
         }
     }
 }

@@ -108,8 +108,8 @@ fn brief<'a>(order: Order<'a>, complaints: &'a [Complaint]) -> Brief<'a> {
     Brief { walk: order.walk, style: order.style, profile: order.profile, seed: order.seed, complaints }
 }
 
-fn unusable(text: String, reason: &str) -> Complaint {
-    let finding = Finding { check: Check::Form, verdict: Verdict::Fail, reason: reason.to_owned(), span: None };
+fn unusable(text: String, reason: String) -> Complaint {
+    let finding = Finding { check: Check::Form, verdict: Verdict::Fail, reason, span: None };
     Complaint { text, findings: vec![finding] }
 }
 

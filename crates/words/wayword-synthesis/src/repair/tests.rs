@@ -105,7 +105,7 @@ const GHOST: &str = "Walk past the piano to the lamp and turn right. Stop at the
 
 #[test]
 fn a_text_with_a_ghost_goes_back_with_the_reason_until_it_is_right() {
-    let cut_off = Err(WriteError::Unusable { text: "Walk past".into(), reason: "it was cut off" });
+    let cut_off = Err(WriteError::Unusable { text: "Walk past".into(), reason: "it was cut off".into() });
     let (outcome, complaints) = outcome(vec![said(GHOST), cut_off, said(GOOD)], true, 3);
     let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert_eq!((instruction.text.as_str(), instruction.provenance.repairs), (GOOD, 2));
@@ -134,7 +134,7 @@ fn without_a_finisher_it_is_rejected_with_the_reason() {
 
 #[test]
 fn a_writer_that_says_nothing_is_rejected_with_that_reason() {
-    let empty = || Err(WriteError::Unusable { text: String::new(), reason: "it was empty" });
+    let empty = || Err(WriteError::Unusable { text: String::new(), reason: "it was empty".into() });
     let (outcome, _) = outcome(vec![empty(), empty()], false, 1);
     let Outcome::Rejected { last: None, reason } = outcome.unwrap() else { panic!("there is a text") };
     assert!(reason.contains("it was empty"), "{reason}");

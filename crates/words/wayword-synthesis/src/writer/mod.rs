@@ -59,7 +59,7 @@ pub enum WriteError {
         /// What came.
         text: String,
         /// What is wrong with it.
-        reason: &'static str,
+        reason: String,
     },
     /// The model that was to write it gave nothing.
     #[error(transparent)]
