@@ -3,9 +3,13 @@
 use super::{finding, pass};
 use std::collections::BTreeSet;
 use wayword_core::{Check, Finding, Verdict};
-use wayword_language::text::{Token, tokens};
+use wayword_language::{
+    reading::vocabulary::STOCK,
+    text::{Token, tokens},
+};
 
-/// A run of this many words that a text shares with a reference is a copy.
+/// A run of this many words that a text shares with a reference is a copy, unless it is a stock phrase ("at the end of the"):
+/// one of words alone that everybody needs.
 pub const SHARED_RUN: usize = 5;
 
 pub(super) fn leak(text: &str, references: &[String]) -> Finding {
@@ -18,7 +22,8 @@ pub(super) fn leak(text: &str, references: &[String]) -> Finding {
     }
 }
 
-/// The byte range of the first run of [`SHARED_RUN`] words that a text shares with any of the references.
+/// The byte range of the first run of [`SHARED_RUN`] words that a text shares with any of the references and that is no stock
+/// phrase.
 #[must_use]
 pub fn shared_run(text: &str, references: &[String]) -> Option<[usize; 2]> {
     let word_tokens = |text: &str| tokens(text).into_iter().filter(Token::is_word).collect::<Vec<_>>();
@@ -28,7 +33,8 @@ pub fn shared_run(text: &str, references: &[String]) -> Option<[usize; 2]> {
         .flat_map(|reference| word_tokens(reference).windows(SHARED_RUN).map(run).collect::<Vec<_>>())
         .collect();
     let words = word_tokens(text);
-    let shared = words.windows(SHARED_RUN).find(|words| known.contains(&run(words)))?;
+    let says_something = |words: &[Token]| words.iter().any(|token| !STOCK.contains(&token.word.as_str()));
+    let shared = words.windows(SHARED_RUN).find(|words| says_something(words) && known.contains(&run(words)))?;
     Some([shared[0].span[0], shared[SHARED_RUN - 1].span[1]])
 }
 
@@ -43,5 +49,16 @@ mod tests {
         assert_eq!(shared_run(text, &references).map(|span| &text[span[0]..span[1]]), Some("walk past the old oak"));
         assert_eq!(shared_run("walk past the old door", &references), None);
         assert!(shared_run("the old oak table then", &references).is_some());
+    }
+
+    #[test]
+    fn a_stock_phrase_of_function_words_is_no_copy_and_one_with_content_is() {
+        let references = vec!["Wait at the end of the hallway, to the left of the oak door.".to_owned()];
+        for text in ["Stop at the end of the rug.", "Stop to the left of the bed.", "It is at the end of the."] {
+            assert_eq!(shared_run(text, &references), None, "{text}");
+        }
+        let text = "Stop at the end of the hallway.";
+        let copied = shared_run(text, &references).map(|span| &text[span[0]..span[1]]);
+        assert_eq!(copied, Some("the end of the hallway"));
     }
 }
