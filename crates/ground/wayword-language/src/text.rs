@@ -1,5 +1,7 @@
 //! Texts as words and sentences, with their places.
 
+use crate::reading::vocabulary as v;
+
 /// A word or a punctuation mark of a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token {
@@ -23,23 +25,35 @@ impl Token {
     }
 }
 
-/// The words and marks of a text. An apostrophe or a hyphen within a word belongs to it.
+/// Abbreviations, whose full stop ends no sentence.
+const ABBREVIATIONS: [&str; 9] = ["approx", "appr", "ca", "vs", "mr", "mrs", "ms", "dr", "prof"];
+/// Abbreviations that may stand last in a sentence too: there a capital follows, or nothing.
+const LAST_ABBREVIATIONS: [&str; 10] = ["etc", "ft", "yd", "yds", "cm", "deg", "incl", "excl", "max", "min"];
+
+/// The words and marks of a text. An apostrophe within a word belongs to it, and so does the point of a number. A full stop
+/// that ends no sentence ("approx.", "e.g.", "J. Smith") is left out.
 #[must_use]
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut tokens = Vec::new();
     let mut start = None;
     let mut chars = text.char_indices().peekable();
     while let Some((at, c)) = chars.next() {
-        let next_is_word = chars.peek().is_some_and(|(_, next)| next.is_alphanumeric());
-        let inside = c.is_alphanumeric() || (start.is_some() && matches!(c, '\'' | '’') && next_is_word);
-        if inside {
+        let next = chars.peek().map(|(_, next)| *next);
+        let joins = match c {
+            '\'' | '’' => next.is_some_and(char::is_alphanumeric),
+            '.' => next.is_some_and(|next| next.is_ascii_digit()) && ends_in_digit(&text[..at]),
+            _ => false,
+        };
+        if c.is_alphanumeric() || (start.is_some() && joins) {
             start.get_or_insert(at);
             continue;
         }
-        if let Some(from) = start.take() {
-            tokens.push(Token { word: text[from..at].to_lowercase(), span: [from, at] });
+        let word = start.take().map(|from| [from, at]);
+        if let Some(span) = word {
+            tokens.push(Token { word: text[span[0]..at].to_lowercase(), span });
         }
-        if !c.is_whitespace() && c != '-' {
+        let is_stop = c != '.' || word.is_none_or(|word| is_full_stop(text, word));
+        if !c.is_whitespace() && c != '-' && is_stop {
             tokens.push(Token { word: c.to_string(), span: [at, at + c.len_utf8()] });
         }
     }
@@ -47,6 +61,36 @@ pub fn tokens(text: &str) -> Vec<Token> {
         tokens.push(Token { word: text[from..].to_lowercase(), span: [from, text.len()] });
     }
     tokens
+}
+
+fn ends_in_digit(text: &str) -> bool {
+    text.ends_with(|c: char| c.is_ascii_digit())
+}
+
+/// Whether the full stop right behind a word ends a sentence, and not just an abbreviation.
+fn is_full_stop(text: &str, [from, to]: [usize; 2]) -> bool {
+    let word = &text[from..to];
+    let behind = &text[to + 1..];
+    let next = behind.trim_start();
+    let goes_on = next.starts_with(char::is_lowercase) || next.starts_with(|c: char| c.is_ascii_digit() || c == ',');
+    let is_in = |list: &[&str]| list.iter().any(|short| short.eq_ignore_ascii_case(word));
+    let is_letter = word.chars().count() == 1 && word.starts_with(char::is_alphabetic);
+    // "E.g.", "a.m.": letters with a stop behind each.
+    let mut letters = behind.chars();
+    let one_follows = letters.next().is_some_and(char::is_alphabetic) && letters.next() == Some('.');
+    let in_a_row = one_follows || (text[..from].ends_with('.') && goes_on);
+    let is_short = is_in(&ABBREVIATIONS) && !next.is_empty() || is_in(&LAST_ABBREVIATIONS) && goes_on;
+    !(is_short || is_letter && (in_a_row || is_initial(word, next)))
+}
+
+/// Whether a letter is an initial by what follows: a name, and not the next sentence ("room B. Turn left").
+fn is_initial(letter: &str, next: &str) -> bool {
+    let name: String = next.chars().take_while(|c| c.is_alphanumeric()).collect();
+    let begins_sentence = [&v::WALKING, &v::TURNING, &v::ADVERBS, &v::DETERMINERS, &v::BREAKERS, &v::FUNCTION]
+        .iter()
+        .any(|list| list.contains(&name.to_lowercase().as_str()));
+    let is_capital = |text: &str| text.starts_with(char::is_uppercase);
+    is_capital(letter) && is_capital(&name) && !begins_sentence
 }
 
 /// The words of a text, lower case, without marks.
@@ -87,6 +131,34 @@ mod tests {
         assert_eq!(words(text)[3], "robot's");
         assert_eq!(sentence_count("no stop at the end"), 1);
         assert_eq!(sentence_count(""), 0);
+    }
+
+    #[test]
+    fn a_point_that_ends_no_sentence_is_no_full_stop() {
+        for text in [
+            "Walk 3.5 meters and stop.",
+            "Walk approx. 3 meters and stop.",
+            "Stop at a seat, e.g. the sofa.",
+            "Stop at a seat (i.e., the sofa).",
+            "Walk 10 ft. ahead",
+            "Stop at the desk of J. Smith.",
+            "Stop at the desk of J. R. Smith.",
+            "Pass Dr. Smith's room, the lamp, etc. and stop",
+        ] {
+            assert_eq!(sentence_count(text), 1, "{text}");
+        }
+        for text in [
+            "Go to level 2. Turn left.",
+            "Go to room B. Turn left.",
+            "Walk 10 ft. Turn left.",
+            "Pass the lamp, the bed, etc. Turn left.",
+            "walk to the sofa. turn left",
+            "Walk to the sofa.Turn left.",
+            "Go to level 2.Turn left.",
+        ] {
+            assert_eq!(sentence_count(text), 2, "{text}");
+        }
+        assert_eq!(words("Walk 3.5 meters"), ["walk", "3.5", "meters"]);
     }
 
     proptest! {

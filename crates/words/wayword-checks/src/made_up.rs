@@ -48,10 +48,11 @@ fn told(event: &Event) -> Option<(Check, &'static str)> {
 
 /// "Three metres", "3m", "a few steps".
 fn distances(tokens: &[Token]) -> impl Iterator<Item = [usize; 2]> {
-    let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit()) || COUNTS.contains(&word);
+    let is_digit = |c: char| c.is_ascii_digit() || c == '.';
+    let is_number = move |word: &str| word.chars().all(is_digit) || COUNTS.contains(&word);
     let pairs = tokens.windows(2).filter(move |pair| is_number(&pair[0].word) && UNITS.contains(&&*pair[1].word));
-    let one = tokens.iter().filter(|token| {
-        let unit = token.word.trim_start_matches(|c: char| c.is_ascii_digit());
+    let one = tokens.iter().filter(move |token| {
+        let unit = token.word.trim_start_matches(is_digit);
         unit.len() < token.word.len() && UNITS.contains(&unit)
     });
     pairs.map(|pair| [pair[0].span[0], pair[1].span[1]]).chain(one.map(|token| token.span))
