@@ -165,6 +165,44 @@ fn each_kind_of_mistake_is_caught_with_its_words() {
 }
 
 #[test]
+fn each_text_of_a_run_is_held_to_the_style_that_it_was_written_in() {
+    let building = Building::new();
+    let styles = ["--style", "reverie", "--style", "r2r"];
+    let run = [&["--episodes", common::EPISODES][..], &styles].concat();
+    assert_eq!(building.generate("run", &run).code, Some(0));
+    let mut lines = building.lines("run/instructions.jsonl");
+    let ran = check(&building, "run/instructions.jsonl", &["--json"]);
+    let (report, texts) = (ran.json(), lines.len() / 2);
+    assert_eq!((ran.code, &report["styles"]), (Some(0), &json!({"reverie": texts, "r2r": texts})), "{report}");
+
+    // A coarse text of two sentences and without a task is a good fine one.
+    let coarse = lines.iter().position(|line| line["style"] == "reverie").unwrap();
+    lines[coarse]["text"] = "Walk on. Stop there.".into();
+    (lines[coarse]["mentions"], lines[coarse]["findings"]) = (json!([]), json!([]));
+    let all = |lines: &[Value]| lines.iter().map(|line| format!("{line}\n")).collect::<String>();
+    building.write("told.jsonl", all(&lines));
+    let report = check(&building, "told.jsonl", &["--json"]).json();
+    let wrong = &report["not_passed"][0];
+    assert_eq!((&report["failed"], &wrong["text"]), (&1.into(), &"Walk on. Stop there.".into()), "{report}");
+    let failed: Vec<&Value> = wrong["findings"].as_array().unwrap().iter().map(|finding| &finding["check"]).collect();
+    assert_eq!(failed, ["form", "task"]);
+
+    // `--style` holds for all.
+    lines.retain(|line| line["text"] == "Walk on. Stop there." || line["style"] == "r2r");
+    building.write("told.jsonl", all(&lines));
+    let report = check(&building, "told.jsonl", &["--style", "r2r", "--json"]).json();
+    assert_eq!((&report["failed"], &report["styles"]), (&0.into(), &json!({"r2r": lines.len()})), "{report}");
+
+    // A style of a user's own is not known by its name.
+    for line in &mut lines {
+        line["provenance"]["style_hash"] = "0123456789abcdef".into();
+    }
+    building.write("told.jsonl", all(&lines));
+    let ran = check(&building, "told.jsonl", &[]);
+    assert!(ran.out.contains("style r2r is not built in") && ran.out.contains("--style"), "{}", ran.out);
+}
+
+#[test]
 fn people_read_the_text_the_check_and_the_reason() {
     let building = Building::new();
     let wrong = FINE.replace("the lamp", "the piano");

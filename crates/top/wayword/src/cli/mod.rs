@@ -153,7 +153,8 @@ pub struct Check {
     /// The world.
     #[command(flatten)]
     pub world: World,
-    /// The style that they are to keep to; without one only what they say of the path is checked.
+    /// The style that all of them are to keep to. Without it, a text of Wayword's own keeps to the built-in style that it was
+    /// written in, and of any other only what it says of the path is checked.
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
     /// Show each instruction that did not pass, up to this number.

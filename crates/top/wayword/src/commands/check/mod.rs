@@ -1,24 +1,23 @@
 //! `wayword check`.
 
+mod held;
+mod walks;
+
 use crate::{
     cli::Check as Args,
     error::{Error, Exit},
     output::Output,
     pipeline::panoramas,
     settings::{Asked, Settings},
-    styles,
     world::{self, Remembering},
 };
+use held::Held;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path as FilePath};
+use walks::{Walk, walks};
 use wayword_checks::{Evidence, Subject, check};
-use wayword_core::{Check, Constraints, Finding, Path, Platform, Style, Verdict};
-use wayword_formats::{
-    Format,
-    jsonl::{self, Record},
-};
-use wayword_world::path_of;
+use wayword_core::{Check, Finding, Platform, Verdict};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = check_file(&args.file, &Asked::from(args.world.clone()).resolve()?, args.style.as_deref(), output)?;
@@ -37,6 +36,10 @@ pub struct CheckReport {
     pub failed: usize,
     /// What the texts were held against.
     pub checked_against: Vec<String>,
+    /// The styles that texts were held against, with the number of texts; none of a dataset without `--style`.
+    pub styles: BTreeMap<String, usize>,
+    /// The styles that texts name and that are not known here, so that those texts were held against none.
+    pub unknown_styles: BTreeMap<String, usize>,
     /// Per check, the texts that passed, were unverified, or failed it.
     pub by_check: BTreeMap<&'static str, Counts>,
     /// Every text that did not pass, with its findings.
@@ -79,84 +82,51 @@ pub fn check_file(
     output: &Output,
 ) -> Result<CheckReport, Error> {
     let platform = world::open(settings)?;
-    let style = match style {
-        Some(name) => styles::find(&[name.to_owned()], settings.seed)?.remove(0).style,
-        None => Style { name: "any".into(), references: Vec::new(), constraints: Constraints::default() },
-    };
-    let subjects = subjects(file, platform.as_ref())?;
-    let bar = output.progress(subjects.len(), "paths");
-    let checked: Vec<_> = subjects
+    let held = Held::to(style, settings.seed)?;
+    let walks = walks(file, platform.as_ref())?;
+    let bar = output.progress(walks.len(), "paths");
+    let checked: Vec<_> = walks
         .par_iter()
-        .map(|(path, texts)| {
-            let checked = check_path(platform.as_ref(), path, texts, &style);
+        .map(|walk| {
+            let checked = check_walk(platform.as_ref(), walk, &held);
             bar.inc(1);
             checked
         })
         .collect::<Result<_, _>>()?;
     bar.finish_and_clear();
     let mut report = CheckReport::default();
-    for (source, texts) in checked {
+    let mut texts = Vec::new();
+    for (source, of_walk) in checked {
         if !report.checked_against.iter().any(|other| other == source) {
             report.checked_against.push(source.to_owned());
         }
-        for (text, findings) in texts {
-            report.add(text, &findings);
-        }
+        texts.extend(of_walk);
+    }
+    for text in walks.iter().flat_map(|walk| &walk.texts) {
+        held.count(text, &mut report);
+    }
+    // As the file has them, whichever were looked at together.
+    texts.sort_by_key(|(at, _, _)| *at);
+    for (_, text, findings) in texts {
+        report.add(text, &findings);
     }
     Ok(report)
 }
 
-/// Paths with what is said about each.
-fn subjects(file: &FilePath, platform: &dyn Platform) -> Result<Vec<(Path, Vec<String>)>, Error> {
-    if wayword_formats::detect(file)? == Format::Wayword {
-        let records = jsonl::read(file)?.into_iter();
-        let subject = |record: Record| Ok((on_graph(platform, record.path)?, vec![record.instruction.text]));
-        return records.map(subject).collect();
-    }
-    let episodes = wayword_formats::read(file)?;
-    let paths = episodes.into_iter().map(|episode| {
-        // A scene that is not here is told once, with its name.
-        let path = path_of(
-            platform,
-            &episode.id,
-            &episode.scene,
-            &episode.viewpoints,
-            episode.start_heading,
-            episode.target_object.as_ref(),
-        )?;
-        Ok((path, episode.instructions))
-    });
-    paths.collect()
-}
+/// What texts were held against, and each with its place in the file and everything that was found.
+type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<Finding>)>);
 
-/// A record's path with the platform's own poses and floors where its frames are viewpoints: a file is not believed.
-fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
-    let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
-    let Some(viewpoints) = viewpoints else { return Ok(path) };
-    // Names of pictures are no viewpoints. The world says whether it has any: a file is not believed in this either.
-    if !path.motion.is_known() && platform.graph(&path.scene)?.is_empty() {
-        return Ok(path);
-    }
-    let heading = path.frames.first().map(|frame| frame.pose.heading);
-    let object = path.target.as_ref().map(|target| &target.object);
-    Ok(path_of(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
-}
-
-/// Each text with everything that was found, and what it was held against.
-type CheckedPath = (&'static str, Vec<(CheckedText, Vec<Finding>)>);
-
-fn check_path(platform: &dyn Platform, path: &Path, texts: &[String], style: &Style) -> Result<CheckedPath, Error> {
+fn check_walk(platform: &dyn Platform, walk: &Walk, held: &Held) -> Result<CheckedWalk, Error> {
     let world = Remembering::new(platform);
-    let views = panoramas(&world, path)?;
-    let evidence = Evidence::from_labels(path, &views).unwrap_or_else(|| Evidence::of_path_alone(path));
-    let checked = texts.iter().map(|text| {
+    let views = panoramas(&world, &walk.path)?;
+    let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+    let checked = walk.texts.iter().map(|text| {
+        let style = held.style_of(text);
         // People call a target what they like, so any object of the final viewpoint will do.
-        let checked = check(text, Subject { evidence: &evidence, style, target: None });
+        let checked = check(&text.words, Subject { evidence: &evidence, style, target: None });
         let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
-        (
-            CheckedText { path: path.id.clone(), text: text.clone(), verdict: checked.verdict(), findings },
-            checked.findings,
-        )
+        let (path, words) = (text.path.clone(), text.words.clone());
+        (text.at, CheckedText { path, text: words, verdict: checked.verdict(), findings }, checked.findings)
     });
     Ok((evidence.source.name(), checked.collect()))
 }
@@ -212,6 +182,17 @@ impl fmt::Display for Shown<'_> {
         for (name, counts) in report.by_check.iter().chain(std::iter::once((&"all", &all))) {
             writeln!(f, "{name:<10} {:>7} {:>11} {:>7}", counts.passed, counts.unverified, counts.failed)?;
         }
-        write!(f, "checked against: {}", report.checked_against.join(", "))
+        write!(f, "checked against: {}", report.checked_against.join(", "))?;
+        if !report.styles.is_empty() {
+            let styles = report.styles.iter().map(|(name, texts)| format!("{name} ({texts})"));
+            write!(f, "\nstyles: {}", styles.collect::<Vec<_>>().join(", "))?;
+        }
+        for (name, texts) in &report.unknown_styles {
+            write!(
+                f,
+                "\nstyle {name} is not built in, so {texts} of it were held against no style: name it with --style"
+            )?;
+        }
+        Ok(())
     }
 }

@@ -1,0 +1,128 @@
+//! The texts of a file, gathered by the way that they are about.
+
+use crate::error::Error;
+use std::{collections::BTreeMap, path::Path as FilePath};
+use wayword_core::{Path, Platform, SceneId, ViewpointId};
+use wayword_formats::{
+    Format,
+    jsonl::{self, Record},
+};
+use wayword_world::path_of;
+
+/// A way through the world, and every text about it: what is seen along it is looked up once for all of them.
+pub(super) struct Walk {
+    pub(super) path: Path,
+    pub(super) texts: Vec<Text>,
+}
+
+/// A text of the file.
+pub(super) struct Text {
+    /// Its place in the file.
+    pub(super) at: usize,
+    /// The name of its path.
+    pub(super) path: String,
+    pub(super) words: String,
+    /// The style that it was written in, where the file says so.
+    pub(super) style: Option<Named>,
+}
+
+/// A style, as a record names it.
+pub(super) struct Named {
+    pub(super) name: String,
+    pub(super) hash: String,
+}
+
+/// The walks of a file, in their order.
+pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk>, Error> {
+    let mut walks = Walks::default();
+    if wayword_formats::detect(file)? == Format::Wayword {
+        for Record { path, instruction, .. } in jsonl::read(file)? {
+            let style = Named { name: instruction.style, hash: instruction.provenance.style_hash };
+            walks.add(on_graph(platform, path)?, instruction.text, Some(style));
+        }
+        return Ok(walks.all);
+    }
+    for episode in wayword_formats::read(file)? {
+        // A scene that is not here is told once, with its name.
+        let path = path_of(
+            platform,
+            &episode.id,
+            &episode.scene,
+            &episode.viewpoints,
+            episode.start_heading,
+            episode.target_object.as_ref(),
+        )?;
+        for text in episode.instructions {
+            walks.add(path.clone(), text, None);
+        }
+    }
+    Ok(walks.all)
+}
+
+/// Walks, gathered from texts.
+#[derive(Default)]
+struct Walks {
+    all: Vec<Walk>,
+    places: BTreeMap<Key, usize>,
+    texts: usize,
+}
+
+/// What evidence depends on: the scene, whether the motion is known, and each frame's place, heading and floor.
+type Key = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
+
+impl Walks {
+    fn add(&mut self, path: Path, words: String, style: Option<Named>) {
+        let frames = path.frames.iter().map(|frame| (frame.place(), frame.pose.heading.rad().to_bits(), frame.level));
+        let key = (path.scene.clone(), path.motion.is_known(), frames.collect());
+        let text = Text { at: self.texts, path: path.id.clone(), words, style };
+        self.texts += 1;
+        let place = *self.places.entry(key).or_insert(self.all.len());
+        match self.all.get_mut(place) {
+            Some(walk) => walk.texts.push(text),
+            None => self.all.push(Walk { path, texts: vec![text] }),
+        }
+    }
+}
+
+/// A record's path with the platform's own poses and floors where its frames are viewpoints: a file is not believed.
+fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
+    let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
+    let Some(viewpoints) = viewpoints else { return Ok(path) };
+    // Names of pictures are no viewpoints. The world says whether it has any: a file is not believed in this either.
+    if !path.motion.is_known() && platform.graph(&path.scene)?.is_empty() {
+        return Ok(path);
+    }
+    let heading = path.frames.first().map(|frame| frame.pose.heading);
+    let object = path.target.as_ref().map(|target| &target.object);
+    Ok(path_of(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::{DVec3, Motion, path::Stop};
+
+    fn path(id: &str, end_m: f64) -> Path {
+        let stop = |y: f64| Stop { position: DVec3::new(0.0, y, 1.5), viewpoint: None, level: None };
+        let frames = Path::frames_along(vec![stop(0.0), stop(end_m)], None);
+        Path { id: id.into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: None }
+    }
+
+    #[test]
+    fn texts_about_one_way_are_one_walk_whatever_their_items_are_called() {
+        let mut walks = Walks::default();
+        for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
+            walks.add(path(id, end_m), "Stop.".into(), None);
+        }
+        let texts: Vec<Vec<(usize, &str)>> = walks
+            .all
+            .iter()
+            .map(|walk| walk.texts.iter().map(|text| (text.at, text.path.as_str())).collect())
+            .collect();
+        assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
+        let mut other = path("1_7", 2.0);
+        other.motion = Motion::Unknown;
+        walks.add(other, "Stop.".into(), None);
+        assert_eq!(walks.all.len(), 3, "what is known of the motion is held against texts too");
+    }
+}
