@@ -66,8 +66,8 @@ impl Heading {
     #[must_use]
     pub fn towards(from: DVec3, to: DVec3) -> Option<Self> {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
-        let far_enough = dx.hypot(dy) > 1e-6;
-        far_enough.then(|| Self::wrapped(dx.atan2(dy)))
+        let far_enough = libm::hypot(dx, dy) > 1e-6;
+        far_enough.then(|| Self::wrapped(libm::atan2(dx, dy)))
     }
 
     /// Radians in [0, 2π).
@@ -110,7 +110,7 @@ impl Heading {
     /// The unit vector along this heading, horizontal.
     #[must_use]
     pub fn direction(self) -> DVec3 {
-        DVec3::new(self.0.sin(), self.0.cos(), 0.0)
+        DVec3::new(libm::sin(self.0), libm::cos(self.0), 0.0)
     }
 }
 

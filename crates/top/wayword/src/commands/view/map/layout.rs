@@ -6,7 +6,7 @@ use crate::report::{
     palette::colour,
     sheet::{Paper, Sheet},
 };
-use wayword_core::{Climb, DVec3, FromAbove, Path, ViewpointGraph, ViewpointId};
+use wayword_core::{Climb, DVec3, FromAbove, Heading, Path, ViewpointGraph, ViewpointId};
 
 /// A page.
 const PAPER: Paper =
@@ -98,7 +98,7 @@ fn walk(plan: &Plan<'_>, path: &Path, stops: &[DVec3], sheet: &Sheet, marks: &mu
         marks.push(Mark::Disc { at: spot.at, radius: 3.0, ink: DARK, title: None });
     }
     if let Some(first) = spots.first() {
-        marks.push(facing(first.badge, start.rad()));
+        marks.push(facing(first.badge, start));
     }
     for spot in &spots {
         let is_here = plan.is_here(path.frames[spot.number - 1].level);
@@ -124,8 +124,8 @@ fn badge(spot: &Spot, is_here: bool, marks: &mut Vec<Mark>) {
 }
 
 /// Which way the walker looks at first.
-fn facing(at: Point, heading_rad: f64) -> Mark {
-    let (sin, cos) = heading_rad.sin_cos();
+fn facing(at: Point, heading: Heading) -> Mark {
+    let (sin, cos) = (heading.direction().x, heading.direction().y);
     let turned = |[x, y]: Point| [at[0] + x * cos - y * sin, at[1] + x * sin + y * cos];
     let corners = [[-8.0, -RADIUS - 0.5], [0.0, -RADIUS - 13.5], [8.0, -RADIUS - 0.5]].map(turned);
     Mark::Triangle { corners, ink: DARK }
