@@ -2,6 +2,7 @@
 
 use super::{finding, or_pass, sides};
 use crate::evidence::{Evidence, Source};
+use std::collections::BTreeMap;
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{
     lexicon::{Class, agree, thing},
@@ -27,13 +28,14 @@ pub(super) struct Shown {
 /// Checks each place of a text but the object of a task that has a check of its own.
 pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<usize>) -> Places {
     let (mut findings, mut all_shown) = (Vec::new(), Vec::new());
+    let seen = Seen::of(evidence);
     for (at, event) in reading.events.iter().enumerate() {
         let What::Place(place) = &event.what else {
             all_shown.push(Shown::default());
             continue;
         };
         let is_object = object == Some(at);
-        let shown = if is_object { at_the_end(place, evidence) } else { shown(place, evidence) };
+        let shown = if is_object { at_the_end(place, evidence) } else { seen.shown(place) };
         let wrong = if is_object { None } else { presence(place, &shown, evidence) };
         findings.extend(
             wrong
@@ -99,25 +101,45 @@ fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict,
     }
 }
 
-fn shown(place: &Place, evidence: &Evidence) -> Shown {
-    let (mut frames, mut unknown) = (Vec::new(), Vec::new());
-    if place.is_room {
-        frames.extend(evidence.frames_in_room(&place.name));
-        unknown.extend(evidence.frames_without_room());
+/// Evidence by the names of what is seen: a path shows a few dozen names over and over, and each place of a text is held
+/// against every one of them once.
+struct Seen<'a> {
+    evidence: &'a Evidence,
+    frames_of_things: BTreeMap<&'a str, Vec<usize>>,
+}
+
+impl<'a> Seen<'a> {
+    fn of(evidence: &'a Evidence) -> Self {
+        let mut frames_of_things: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (at, frame) in evidence.frames.iter().enumerate() {
+            for thing in &frame.things {
+                frames_of_things.entry(&thing.name).or_default().push(at);
+            }
+        }
+        Self { evidence, frames_of_things }
     }
-    if place.is_thing {
-        frames.extend(evidence.frames_with_thing(&place.name));
-        unknown.extend(evidence.frames_without_things());
+
+    fn shown(&self, place: &Place) -> Shown {
+        let (mut frames, mut unknown) = (Vec::new(), Vec::new());
+        if place.is_room {
+            frames.extend(self.evidence.frames_in_room(&place.name));
+            unknown.extend(self.evidence.frames_without_room());
+        }
+        if place.is_thing {
+            let agreeing = self.frames_of_things.iter().filter(|(name, _)| agree(name, &place.name));
+            frames.extend(agreeing.flat_map(|(_, frames)| frames));
+            unknown.extend(self.evidence.frames_without_things());
+        }
+        if thing(&place.name).is_some_and(|thing| thing.class == Class::Stairs) {
+            frames.extend(self.evidence.frames_on_stairs());
+        }
+        frames.sort_unstable();
+        frames.dedup();
+        unknown.sort_unstable();
+        unknown.dedup();
+        unknown.retain(|frame| frames.binary_search(frame).is_err());
+        Shown { frames, unknown }
     }
-    if thing(&place.name).is_some_and(|thing| thing.class == Class::Stairs) {
-        frames.extend(evidence.frames_on_stairs());
-    }
-    frames.sort_unstable();
-    frames.dedup();
-    unknown.sort_unstable();
-    unknown.dedup();
-    unknown.retain(|frame| !frames.contains(frame));
-    Shown { frames, unknown }
 }
 
 fn at_the_end(place: &Place, evidence: &Evidence) -> Shown {
