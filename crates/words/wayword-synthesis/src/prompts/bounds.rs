@@ -96,7 +96,7 @@ const NOT_OFFERED: [&str; 11] =
     ["safe", "escape", "e", "batch", "slice", "groupby", "chain", "zip", "pprint", "format", "dictsort"];
 
 /// Makes the filters as they are, each with what it makes counted: those that make a text of one, then those that take any
-/// value. A name with a space cannot be written in a template's filter.
+/// value. A name with a space cannot be written as a template's filter; `map`, which takes names as text, is kept from it.
 macro_rules! filters {
     ($($text:ident)*; $($any:ident)*; $($own:ident)*) => {
         /// The filters of a prompt.
@@ -116,8 +116,6 @@ macro_rules! filters {
             $(environment.add_filter(stringify!($own), $own);)*
             environment.add_filter("count", filters::length);
             environment.add_filter("d", filters::default);
-            environment.add_filter("indent itself", filters::indent);
-            environment.add_filter("tojson itself", filters::tojson);
         }
     };
 }
@@ -133,6 +131,9 @@ filters! {
 fn counted(state: &State<'_, '_>, filter: &str, value: Value, more: &[Value]) -> Result<Value, Error> {
     if let Some(text) = value.as_str() {
         write(state, text.len())?;
+    }
+    if filter == "map itself" && more.iter().any(|name| name.as_str().is_some_and(|name| name.ends_with(" itself"))) {
+        return Err(Error::from(ErrorKind::UnknownFilter));
     }
     let made = state.apply_filter(filter, &[&[value], more].concat())?;
     let bytes = match made.as_str() {
@@ -167,21 +168,25 @@ fn indent(
     width: Option<usize>,
     first: Option<bool>,
     named: Kwargs,
-) -> Result<Value, Error> {
+) -> Result<String, Error> {
     let width = width.map_or_else(|| named.get("width"), |width| Ok(Some(width)))?.unwrap_or(4);
     let first = first.map_or_else(|| named.get("first"), |first| Ok(Some(first)))?.unwrap_or(false);
     let blank = named.get::<Option<bool>>("blank")?.unwrap_or(false);
     named.assert_all_used()?;
     let text = text_of(state, value)?;
-    write(state, text.split('\n').count().saturating_mul(width))?;
-    state.apply_filter("indent itself", &[text.into(), width.into(), first.into(), blank.into()])
+    let lines = text.strip_suffix('\n').unwrap_or(&text).split('\n');
+    write(state, lines.clone().count().saturating_mul(width))?;
+    let margin = " ".repeat(width);
+    let stays = |at: usize, line: &str| if at == 0 { !first } else { line.is_empty() && !blank };
+    let indented = lines.enumerate().map(|(at, line)| if stays(at, line) { line.to_owned() } else { margin.clone() + line });
+    Ok(indented.collect::<Vec<_>>().join("\n"))
 }
 
 fn tojson(state: &State<'_, '_>, value: &Value) -> Result<Value, Error> {
     let mut size = Text::default();
     serde_json::to_writer(&mut size, value).map_err(|_| too_much())?;
     write(state, size.into_string().len())?;
-    state.apply_filter("tojson itself", &[value.clone()])
+    filters::tojson(value, None, Kwargs::from_iter::<[(&str, Value); 0]>([]))
 }
 
 fn string(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {

@@ -160,7 +160,10 @@ fn what_would_grow_without_bound_is_not_offered() {
         assert!(why.contains("line 2") && why.contains(what), "{source}: {why}");
     }
     assert!(refused(&format!("{{{{ {} }}}}", vec!["question"; 100].join(" ~ "))).contains("at most 64"));
-    assert!(refused("{{ history | map('format') | join }}").contains("unknown filter"));
+    for filter in ["format", "upper itself"] {
+        let why = refused(&format!("{{{{ history | map('{filter}') | join }}}}"));
+        assert!(why.contains("unknown filter"), "{filter}: {why}");
+    }
     assert!(refused(&"a".repeat(70_000)).contains("65536 bytes"));
 }
 
@@ -168,12 +171,12 @@ fn what_would_grow_without_bound_is_not_offered() {
 fn prompts_offer_what_people_write_in_them() {
     let source = "**A** * {# a * note #}{{ question | upper | replace('A', 'b') ~ '!' }} {{ history | length + 1 }} \
                   {{ history | map(attribute='answer') | join('; ') | indent(2, true) | trim }} {{ question | tojson }} \
-                  {{ [3, 1, 2] | sort | first | default(4) }}{% raw %} {{ a * b }}{% endraw %}";
+                  {{ [3, 1, 2] | sort | first }}{{ nothing | default(4) }}{% raw %} {{ a * b }}{% endraw %}";
     let own = Prompts::new(&[("answer".into(), source.into())]).unwrap();
     let history = [Exchange::new("Where?", "In a hall."), Exchange::new("What?", "A <rug>.")];
     assert_eq!(
         own.answer(Manner::Chat, "what", &history).unwrap(),
-        "**A** * WHbT! 3 In a hall.; A <rug>. \"what\" 1 {{ a * b }}"
+        "**A** * WHbT! 3 In a hall.; A <rug>. \"what\" 14 {{ a * b }}"
     );
 }
 
