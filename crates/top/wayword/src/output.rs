@@ -1,11 +1,12 @@
 //! The only place that writes to the terminal: data to standard output, talk and progress to standard error.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // This is the place where that is done.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use serde::Serialize;
 use std::{
-    fmt::Display,
+    fmt::{self, Display},
     io::{self, IsTerminal, Write},
+    time::Duration,
 };
 
 /// How the program speaks.
@@ -68,14 +69,14 @@ impl Output {
     /// A progress bar; hidden where nobody looks.
     #[must_use]
     pub fn progress(&self, total: usize, what: &'static str) -> ProgressBar {
-        self.bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}  {eta} left").with_prefix(what)
+        self.bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}{left}").with_prefix(what)
     }
 
     /// A progress bar for bytes, whose number is told later; hidden where nobody looks.
     #[cfg(feature = "local")]
     #[must_use]
     pub fn bytes(&self) -> ProgressBar {
-        self.bar(0, "{prefix} {bar:32} {bytes}/{total_bytes}  {bytes_per_sec}  {eta} left")
+        self.bar(0, "{prefix} {bar:32} {bytes}/{total_bytes}  {bytes_per_sec}{left}")
     }
 
     fn bar(&self, total: u64, template: &str) -> ProgressBar {
@@ -83,13 +84,75 @@ impl Output {
         if self.quiet || !io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        bar.with_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()))
+        bar.with_style(style(template))
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    style.with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| {
+        // Where this cannot be written, the rest of the bar cannot either.
+        let _ = out.write_str(&left(state.eta()));
+    })
+}
+
+/// How long it still takes. Nobody knows before the first is done, and then nothing is said.
+fn left(eta: Duration) -> String {
+    if eta.is_zero() { String::new() } else { format!("  {:#} left", HumanDuration(eta.max(Duration::from_secs(1)))) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use indicatif::TermLike;
+    use std::sync::{Arc, Mutex};
+
+    /// What is written to a terminal.
+    #[derive(Debug, Clone, Default)]
+    struct Screen(Arc<Mutex<String>>);
+
+    impl TermLike for Screen {
+        fn width(&self) -> u16 {
+            100
+        }
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn write_line(&self, line: &str) -> io::Result<()> {
+            self.write_str(line)
+        }
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.0.lock().unwrap().push_str(text);
+            Ok(())
+        }
+        fn clear_line(&self) -> io::Result<()> {
+            Ok(())
+        }
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_bar_says_nothing_of_the_time_that_nobody_knows_yet() {
+        let screen = Screen::default();
+        let bar = Output::new(false, true).progress(8, "items");
+        bar.set_draw_target(ProgressDrawTarget::term_like(Box::new(screen.clone())));
+        bar.tick();
+        let shown = screen.0.lock().unwrap().clone();
+        assert!(shown.contains("0/8") && !shown.contains("left"), "{shown}");
+        assert_eq!([left(Duration::ZERO), left(Duration::from_millis(300))], ["", "  1s left"]);
+        assert_eq!(left(Duration::from_secs(90)), "  2m left");
+    }
 
     #[test]
     fn errors_are_fit_for_a_terminal() {
