@@ -20,6 +20,7 @@ pub mod plan;
 pub mod report;
 pub mod run;
 pub mod settings;
+mod similar;
 pub mod styles;
 pub mod team;
 mod text_file;

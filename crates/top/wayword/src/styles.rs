@@ -1,10 +1,10 @@
 //! Finds the styles that a run names.
 
-use crate::{error::Error, text_file};
+use crate::{error::Error, similar::did_you_mean, text_file};
 use rand::seq::SliceRandom;
 use std::path::Path;
 use wayword_core::{Constraints, Style, rng};
-use wayword_synthesis::style::{Profile, built_in, parse, validated};
+use wayword_synthesis::style::{Profile, built_in, built_in_names, parse, validated};
 
 /// A style with what its references measure.
 #[derive(Debug, Clone)]
@@ -13,6 +13,23 @@ pub struct Measured {
     pub style: Style,
     /// What its references are like.
     pub profile: Profile,
+}
+
+/// A style's name as a flag takes it: of a built-in style, a TOML file, or NAME=DATASET.
+///
+/// # Errors
+/// When it is none of these. Whether a file is there is seen when it is read.
+pub(crate) fn typed(name: &str) -> Result<String, String> {
+    let names = built_in_names();
+    if name.contains('=') || is_toml(name) || names.contains(&name) {
+        return Ok(name.to_owned());
+    }
+    let (all, meant) = (names.join(", "), did_you_mean(name, names));
+    Err(format!("name {all}, a file that ends in .toml, or NAME=DATASET{meant}"))
+}
+
+fn is_toml(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|end| end == "toml")
 }
 
 /// How many texts of a dataset show its style: enough to measure, few enough for a prompt.
@@ -39,11 +56,10 @@ fn find_one(name: &str, seed: u64) -> Result<Style, Error> {
     if let Some((name, file)) = name.split_once('=') {
         return from_dataset(name, Path::new(file), seed);
     }
-    let file = Path::new(name);
-    if file.extension().is_none_or(|end| end != "toml") {
+    if !is_toml(name) {
         return Ok(built_in(name)?);
     }
-    let text = text_file::read(file, "read the style")?;
+    let text = text_file::read(Path::new(name), "read the style")?;
     Ok(parse(name, &text)?)
 }
 

@@ -1,7 +1,7 @@
 //! `wayword compare` as it is typed.
 
-use crate::settings::{Asked, AskedRoles, Draw, Service, Walks, World};
-use clap::{Args, ValueEnum};
+use crate::settings::{Asked, AskedRoles, Draw, RULES, Service, Walks, World, is_mind};
+use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use std::path::PathBuf;
 use wayword_metrics::Rule;
 use wayword_navigation::swap::Swap;
@@ -36,7 +36,14 @@ pub struct Compare {
     #[arg(long, value_name = "SET")]
     pub instructions: Vec<String>,
     /// Who walks: clip-nav, seq-clip-nav, glip-nav. Floors and ceilings walk beside them.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "clip-nav,seq-clip-nav,glip-nav")]
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        default_value = "clip-nav,seq-clip-nav,glip-nav",
+        value_parser = PossibleValuesParser::new(AGENTS),
+        hide_possible_values = true
+    )]
     pub agents: Vec<String>,
     /// Who says how well phrases fit views: labels/lexical (by words, no weights), labels (with a text encoder), or a CLIP as
     /// hf/ORG/NAME.
@@ -46,7 +53,7 @@ pub struct Compare {
     #[arg(long, value_name = "MODEL", default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]
     pub encoder: String,
     /// Who takes instructions apart: rules, or a language model as provider/model.
-    #[arg(long, value_name = "MODEL", default_value = "rules")]
+    #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = splitter)]
     pub split: String,
     /// Base URL of the provider of --split.
     #[arg(long, value_name = "URL")]
@@ -84,6 +91,17 @@ pub struct Compare {
     /// How models are reached.
     #[command(flatten)]
     pub service: Service,
+}
+
+/// Who can walk by an instruction, as `--agents` takes them.
+const AGENTS: [&str; 3] = ["clip-nav", "seq-clip-nav", "glip-nav"];
+
+/// Who takes instructions apart, as typed.
+fn splitter(name: &str) -> Result<String, String> {
+    if is_mind(name, RULES) {
+        return Ok(name.to_owned());
+    }
+    Err(format!("name {RULES}, or a language model as provider/model, as in --split ollama/qwen3"))
 }
 
 impl Compare {

@@ -9,9 +9,13 @@ mod perceive;
 mod similarity;
 mod view;
 
-use crate::settings::{Asked, World};
-use clap::{Args, Parser, Subcommand};
+use crate::{
+    settings::{Asked, World},
+    styles,
+};
+use clap::{Args, Parser, Subcommand, builder::PossibleValuesParser};
 use std::path::PathBuf;
+use wayword_formats::Format;
 
 pub use compare::{Compare, SuccessRule, SwapName};
 pub use doctor::Doctor;
@@ -155,7 +159,7 @@ pub struct Check {
     pub world: World,
     /// The style that all of them are to keep to. Without it, a text of Wayword's own keeps to the built-in style that it was
     /// written in, and of any other only what it says of the path is checked.
-    #[arg(long, value_name = "STYLE")]
+    #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
     pub style: Option<String>,
     /// Show each instruction that did not pass, up to this number.
     #[arg(long, value_name = "N", default_value_t = 10)]
@@ -176,7 +180,7 @@ pub struct Export {
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
     /// r2r, reverie, rxr, vlnce or wayword.
-    #[arg(long)]
+    #[arg(long, value_parser = PossibleValuesParser::new(Format::ALL.map(Format::name)), hide_possible_values = true)]
     pub format: String,
     /// The file to write; provenance goes beside it where the format's loaders choke on unknown fields.
     #[arg(long, value_name = "FILE")]

@@ -1,7 +1,8 @@
 //! What flags and the settings file ask for, group by group: each group is written once, and both are read into it.
 
 use super::{Against, AskedRoles, Perception, Providers, Service, TargetMode};
-use clap::{Args, ValueEnum};
+use crate::{styles, world};
+use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use serde::Deserialize;
 use std::path::PathBuf;
 use wayword_synthesis::walk::FrameSelection;
@@ -81,7 +82,7 @@ world:
     pub struct World {
         /// The world: house (generated, built in), matterport, habitat, tdw, virtualhome, process or recording; `wayword platforms`
         /// lists what each needs. [default: house]
-        #[arg(long)]
+        #[arg(long, value_parser = PossibleValuesParser::new(world::names()), hide_possible_values = true)]
         pub platform: Option<String>,
         /// Folder or file of the world's data.
         #[arg(long, value_name = "PATH")]
@@ -121,7 +122,7 @@ telling:
     #[derive(Debug, Clone, Default, PartialEq, Args)]
     pub struct Telling {
         /// Style: r2r, reverie, a TOML file, or NAME=DATASET for a dataset's own texts; may be given several times.
-        #[arg(long, value_name = "STYLE")]
+        #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
         pub style: Option<Vec<String>>,
         /// Caption the view along the heading, or four views around. [default: central]
         #[arg(long)]

@@ -14,7 +14,7 @@ use wayword_synthesis::{
 };
 
 pub use asked::{Asked, Draw, Frames, Telling, Walks, World};
-pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, is_in_process, is_model};
+pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, is_in_process, is_mind, is_model};
 pub use service::{Providers, Service};
 
 /// What a run does.
@@ -148,6 +148,12 @@ impl Asked {
         let paths = walks.paths.unwrap_or(if walks.episodes.is_some() { 0 } else { PATHS });
         if walks.episodes.is_some() && paths > 0 {
             return Err(Error::usage("--episodes and --paths exclude each other", "give one of them"));
+        }
+        if walks.paths == Some(0) {
+            return Err(Error::usage("--paths 0: no path would be walked", "give at least 1, or leave it out for 10"));
+        }
+        if draw.limit == Some(0) {
+            return Err(Error::usage("--limit 0: no item would be left", "give at least 1, or leave it out for all"));
         }
         if paths > MOST_PATHS {
             return Err(Error::usage(

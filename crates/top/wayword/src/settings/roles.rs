@@ -166,14 +166,20 @@ impl AskedRoles {
 
 /// A role's name: the embedded mind's, or provider/model.
 fn named(flag: &str, name: String, embedded: &str) -> Result<String, Error> {
-    let is_model = name.split_once('/').is_some_and(|(provider, model)| !provider.is_empty() && !model.is_empty());
-    if name == embedded || is_model {
+    if is_mind(&name, embedded) {
         return Ok(name);
     }
     Err(Error::usage(
         format!("{flag} {name}: there is no such mind"),
         format!("name {embedded}, or a model as provider/model, as in {flag} ollama/llava"),
     ))
+}
+
+/// Whether a role can have that name: the embedded mind's, or provider/model.
+#[must_use]
+pub fn is_mind(name: &str, embedded: &str) -> bool {
+    let is_model = |(provider, model): (&str, &str)| !provider.is_empty() && !model.is_empty();
+    name == embedded || name.split_once('/').is_some_and(is_model)
 }
 
 impl Roles {

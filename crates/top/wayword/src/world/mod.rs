@@ -4,7 +4,7 @@
 mod live;
 mod remembering;
 
-use crate::{error::Error, output, settings::Settings};
+use crate::{error::Error, output, settings::Settings, similar::did_you_mean};
 use std::{path::Path, sync::Arc};
 use wayword_core::Platform;
 #[cfg(feature = "habitat")]
@@ -93,6 +93,11 @@ pub const PLATFORMS: [Listed; 7] = [
     },
 ];
 
+/// The names of all platforms, as `--platform` takes them.
+pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
+    PLATFORMS.map(|platform| platform.name)
+}
+
 /// Opens the platform that the settings name.
 ///
 /// # Errors
@@ -135,8 +140,8 @@ pub fn open_named(
             Err(Error::not_built(format!("this build has no platform {absent}")))
         }
         other => Err(Error::usage(
-            format!("there is no platform {other:?}"),
-            format!("name one of: {}", PLATFORMS.map(|platform| platform.name).join(", ")),
+            format!("there is no platform {other:?}{}", did_you_mean(other, names())),
+            format!("name one of: {}", names().join(", ")),
         )),
     }
 }

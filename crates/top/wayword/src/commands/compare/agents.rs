@@ -7,9 +7,6 @@ use wayword_navigation::{
     comparison::{AgentKind, Walker},
 };
 
-/// Who can walk by an instruction.
-const READERS: [&str; 3] = ["clip-nav", "seq-clip-nav", "glip-nav"];
-
 /// The agent that walks by a detector.
 pub(super) const BY_DETECTOR: &str = "glip-nav";
 
@@ -74,7 +71,7 @@ impl Agent {
 /// What each agent decides by: the defaults of its grounder, with what a file says instead.
 ///
 /// # Errors
-/// When there is no such agent, or the file names what there is not.
+/// When an agent comes twice, or the file names what there is not.
 pub(super) fn parameters(
     names: &[String],
     grounder: &str,
@@ -87,10 +84,6 @@ pub(super) fn parameters(
     }
     let mut all = BTreeMap::new();
     for name in names {
-        if !READERS.contains(&name.as_str()) {
-            let problem = format!("--agents {name}: there is no such agent");
-            return Err(Error::usage(problem, format!("name one of: {}", READERS.join(", "))));
-        }
         let default = Parameters::default_of(name, grounder);
         let own = tables.remove(name);
         let own =
