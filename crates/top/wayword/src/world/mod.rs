@@ -98,12 +98,31 @@ pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
     PLATFORMS.map(|platform| platform.name)
 }
 
-/// Opens the platform that the settings name.
+/// Opens the platform that the settings name, and says what its data lacks.
 ///
 /// # Errors
 /// When there is none of that name, or its data cannot be opened.
 pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
-    open_named(&settings.platform, settings.data.as_deref(), settings.at.as_deref(), settings.island)
+    open_to_tell(&settings.platform, settings.data.as_deref(), settings.at.as_deref(), settings.island)
+}
+
+/// As [`open_named`], and says what the data lacks for telling of objects.
+///
+/// # Errors
+/// As [`open_named`].
+pub(crate) fn open_to_tell(
+    name: &str,
+    data: Option<&Path>,
+    at: Option<&str>,
+    island: Option<usize>,
+) -> Result<Box<dyn Platform>, Error> {
+    let platform = open_named(name, data, at, island)?;
+    if name == "matterport"
+        && let Some(lack) = data.and_then(Matterport::lack_of_objects)
+    {
+        output::pass_on(&lack);
+    }
+    Ok(platform)
 }
 
 /// Opens a platform by its name, with the folder or file of its data, or the address of one that runs, and the island of its ground

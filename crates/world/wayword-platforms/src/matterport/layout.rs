@@ -6,6 +6,9 @@ use wayword_core::{PlatformError, SceneId, ViewpointId};
 
 const HINT: &str = "give the folder that holds Matterport3DSimulator's `connectivity` folder as --data";
 
+/// Where REVERIE's boxes may lie below the data folder.
+const BOXES: [&str; 4] = ["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"];
+
 /// The folders and files that were found below the data folder.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
@@ -44,7 +47,7 @@ impl Layout {
         Ok(Self {
             connectivity,
             scans: all(data, &["matterport/v1/scans", "v1/scans", "matterport/scans", "scans", ""]),
-            boxes: first(data, &["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"]),
+            boxes: first(data, &BOXES),
             object_positions: ["reverie/objpos.json", "objpos.json", "BBox/objpos.json"]
                 .iter()
                 .map(|place| data.join(place))
@@ -64,6 +67,26 @@ impl Layout {
         }
         scenes.sort();
         Ok(scenes)
+    }
+
+    /// Why nothing is known of objects, and what to do: there are neither REVERIE's boxes nor `.house` files. `None` where there
+    /// are some.
+    pub(crate) fn lack_of_objects(&self, data: &Path) -> Option<String> {
+        let has_house = || self.scenes().is_ok_and(|scenes| scenes.iter().any(|scene| self.house(scene).is_some()));
+        if self.boxes.is_some() || has_house() {
+            return None;
+        }
+        let above = data.canonicalize().ok().and_then(|data| data.parent().map(Path::to_owned));
+        let hint = match above.filter(|above| first(above, &BOXES).is_some()) {
+            Some(above) => format!("give the folder above it, which has boxes: --data {}", above.display()),
+            None => format!("put REVERIE's boxes into {}", data.join(BOXES[0]).display()),
+        };
+        Some(format!(
+            "warning: {}: it has neither REVERIE's boxes ({}) nor .house files, so nothing is known of objects: labels name rooms \
+             alone, and objects in texts stay unverified\nhint: {hint}",
+            data.display(),
+            BOXES.join(", ")
+        ))
     }
 
     pub(crate) fn connectivity(&self, scene: &SceneId) -> PathBuf {
@@ -122,6 +145,19 @@ fn first(data: &Path, places: &[&str]) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_without_boxes_says_what_it_lacks_and_names_the_folder_that_has_them() {
+        let above = tempfile::tempdir().unwrap();
+        let data = above.path().join("matterport");
+        std::fs::create_dir_all(data.join("connectivity")).unwrap();
+        let lack = |data: &Path| Layout::find(data).unwrap().lack_of_objects(data);
+        let told = lack(&data).unwrap();
+        assert!(told.contains(&data.display().to_string()) && told.contains("REVERIE's boxes into"), "{told}");
+        std::fs::create_dir_all(above.path().join("reverie/BBox")).unwrap();
+        assert!(lack(&data).unwrap().contains("give the folder above it"));
+        assert_eq!(lack(above.path()), None);
+    }
 
     #[test]
     fn what_is_missing_is_named_with_where_it_was_looked_for() {

@@ -56,6 +56,13 @@ impl Matterport {
         })
     }
 
+    /// What the data below a folder lacks for telling of objects, and what to do; `None` where it lacks nothing, or holds no
+    /// buildings at all.
+    #[must_use]
+    pub fn lack_of_objects(data: &FilePath) -> Option<String> {
+        Layout::find(data).ok()?.lack_of_objects(data)
+    }
+
     fn scene(&self, scene: &SceneId) -> Result<Arc<Scene>, PlatformError> {
         if let Some(loaded) = self.scenes.lock().unwrap_or_else(PoisonError::into_inner).get(scene) {
             return Ok(Arc::clone(loaded));

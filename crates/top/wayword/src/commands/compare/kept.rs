@@ -114,7 +114,7 @@ impl Kept {
     /// # Errors
     /// When it cannot be opened.
     pub(super) fn world(&self) -> Result<Box<dyn Platform>, Error> {
-        world::open_named(&self.platform, self.data.as_deref(), self.at.as_deref(), self.island)
+        world::open_to_tell(&self.platform, self.data.as_deref(), self.at.as_deref(), self.island)
     }
 }
 
