@@ -5,6 +5,7 @@
 pub mod calls;
 pub mod cli;
 pub mod commands;
+mod count;
 pub mod demands;
 #[cfg(feature = "local")]
 mod download_bar;

@@ -1,5 +1,6 @@
 //! What the calls of a command came to.
 
+use crate::count::count;
 use serde::Serialize;
 use std::fmt;
 
@@ -28,16 +29,16 @@ pub struct Spent {
 
 impl fmt::Display for Spent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} calls, {} from the ledger", self.answered, self.from_ledger)?;
+        write!(f, "{}, {} from the ledger", count(self.answered, "call"), self.from_ledger)?;
         if self.failed > 0 {
-            write!(f, ", {} failed attempts", self.failed)?;
+            write!(f, ", {} failed", count(self.failed, "attempt"))?;
         }
         write!(f, ", {} tokens in, {} out", short(self.tokens_in), short(self.tokens_out))?;
         if self.usd > 0.0 {
             write!(f, ", ${:.4}", self.usd)?;
         }
         if self.lost > 0 {
-            write!(f, " ({} answers were lost, at most ${:.4} more)", self.lost, self.maybe_usd)?;
+            write!(f, " ({} lost, at most ${:.4} more)", count(self.lost, "answer"), self.maybe_usd)?;
         }
         Ok(())
     }
@@ -61,6 +62,6 @@ mod tests {
         let free = Spent { answered: 12, from_ledger: 3, tokens_in: 12_345, tokens_out: 99, ..Spent::default() };
         assert_eq!(free.to_string(), "12 calls, 3 from the ledger, 12.3k tokens in, 99 out");
         let paid = Spent { usd: 0.5, lost: 1, maybe_usd: 0.01, failed: 2, ..free };
-        assert!(paid.to_string().ends_with("99 out, $0.5000 (1 answers were lost, at most $0.0100 more)"));
+        assert!(paid.to_string().ends_with("99 out, $0.5000 (1 answer lost, at most $0.0100 more)"));
     }
 }

@@ -3,6 +3,7 @@
 use super::generate_into;
 use crate::{
     cli::Demo,
+    count::count,
     error::{Error, Exit},
     output::Output,
     report,
@@ -48,7 +49,7 @@ impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for walk in &self.walks {
             let length = walk.path.length_m().map_or_else(String::new, |length_m| format!("{length_m:.1} m in "));
-            writeln!(f, "{}: {length}{} frames", walk.path.id, walk.path.frames.len())?;
+            writeln!(f, "{}: {length}{}", walk.path.id, count(walk.path.frames.len(), "frame"))?;
             let moves = walk.path.moves();
             for (at, observation) in walk.observations.iter().enumerate() {
                 let then = moves.get(at).map_or(String::new(), motion);

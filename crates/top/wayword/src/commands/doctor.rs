@@ -4,6 +4,7 @@ use crate::{
     calls::Calls,
     cli::Doctor,
     commands::config,
+    count::count,
     error::{Error, Exit},
     item::items,
     output::Output,
@@ -125,8 +126,12 @@ impl Seen {
     fn finding(&self, about: String, settings: &Settings) -> Finding {
         let Self { scenes, picture, labels } = *self;
         let has = |what: bool| if what { "" } else { "no " };
-        let told =
-            format!("{scenes} scenes; a view of the first has {}picture and {}labels", has(picture), has(labels));
+        let told = format!(
+            "{}; a view of the first has {}picture and {}labels",
+            count(scenes, "scene"),
+            has(picture),
+            has(labels)
+        );
         let see = &settings.roles.see;
         let hint = if is_model(see) && !picture {
             Some(format!("{see} needs pictures: add them to the data folder, or use --see labels"))

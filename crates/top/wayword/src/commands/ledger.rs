@@ -3,6 +3,7 @@
 use crate::{
     calls::ledger_path,
     cli::{Ledger as Args, LedgerCommand},
+    count::count,
     error::{Error, Exit},
     output::Output,
     settings::Service,
@@ -35,7 +36,7 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
         LedgerCommand::Export { filter, out } => {
             let rows = ledger.export_to(&filter.filter(), out)?;
             let done = Done { ledger: path.display().to_string(), rows };
-            output.data(&done, format_args!("{rows} calls written to {}", out.display()));
+            output.data(&done, format_args!("{} written to {}", count(rows, "call"), out.display()));
         }
         LedgerCommand::Prune { older_than_days, model, changed } => {
             if older_than_days.is_none() && model.is_none() && !changed {
@@ -51,7 +52,7 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
             };
             let rows = if *changed { ledger.prune_changed()? } else { ledger.prune(&filter)? };
             let done = Done { ledger: path.display().to_string(), rows };
-            output.data(&done, format_args!("{rows} calls dropped; asking them again will cost again"));
+            output.data(&done, format_args!("{} dropped; asking again will cost again", count(rows, "call")));
         }
     }
     Ok(Exit::Done)
@@ -84,7 +85,7 @@ impl fmt::Display for Shown {
                 row.call.model, row.answer.tokens_in, row.answer.tokens_out, row.answer.latency_ms
             )?;
         }
-        write!(f, "{} calls", self.rows.len())
+        write!(f, "{}", count(self.rows.len(), "call"))
     }
 }
 
@@ -100,14 +101,18 @@ impl fmt::Display for Costs {
         for line in &self.lines {
             let unknown = match line.without_price {
                 0 => String::new(),
-                calls => format!(" and {calls} calls of unknown price"),
+                calls => format!(" and {}", count(calls, "call of unknown price")),
             };
             writeln!(
                 f,
-                "{:<40} {:>8} calls  {:>10} in  {:>10} out  ${:.4}{unknown}",
-                line.of, line.calls, line.tokens_in, line.tokens_out, line.usd
+                "{:<40} {:>14}  {:>10} in  {:>10} out  ${:.4}{unknown}",
+                line.of,
+                count(line.calls, "call"),
+                line.tokens_in,
+                line.tokens_out,
+                line.usd
             )?;
         }
-        write!(f, "{} requests were sent whose answer is not known; they may have been paid for", self.lost)
+        write!(f, "{} sent without a known answer; what was sent may have been paid for", count(self.lost, "request"))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     cli::{Models, ModelsCommand},
+    count::count,
     download_bar::DownloadBar,
     error::{Error, Exit},
     output::Output,
@@ -66,8 +67,9 @@ impl fmt::Display for Listed {
             let commit = model.commit.get(..SHOWN_DIGITS).unwrap_or(&model.commit);
             let bytes = HumanBytes(model.bytes).to_string();
             let revisions = model.revisions.join(", ");
-            writeln!(f, "{:<48} {commit:<12} {bytes:>12} in {:>2} files  {revisions}", model.name, model.files)?;
+            let files = count(model.files, "file");
+            writeln!(f, "{:<48} {commit:<12} {bytes:>12} in {files:>8}  {revisions}", model.name)?;
         }
-        write!(f, "{} models in {}", self.models.len(), self.cache.display())
+        write!(f, "{} in {}", count(self.models.len(), "model"), self.cache.display())
     }
 }

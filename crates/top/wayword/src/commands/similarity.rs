@@ -2,6 +2,7 @@
 
 use crate::{
     cli::Similarity as Args,
+    count::count,
     encoder,
     error::{Error, Exit},
     output::Output,
@@ -75,7 +76,7 @@ impl Compared {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (letter, side) in [("A", &self.a), ("B", &self.b)] {
-            writeln!(f, "{letter}: {}, {} items, {} texts", side.name, side.items, side.texts)?;
+            writeln!(f, "{letter}: {}, {}, {}", side.name, count(side.items, "item"), count(side.texts, "text"))?;
         }
         let is_model = self.encoder != "words";
         writeln!(f, "encoder: {}{}", self.encoder, if is_model { "" } else { " (counted, no model)" })?;
@@ -85,8 +86,8 @@ impl fmt::Display for Report {
         row(f, "A against B, same item", figure.as_ref())?;
         row(f, "B: two texts of an item", same_item.as_ref())?;
         row(f, "B: texts of two paths, at random", random_pairs.as_ref())?;
-        writeln!(f, "only in A: {only_in_a} items; only in B: {only_in_b}")?;
-        write!(f, "left out of the second row, with one text in B: {single_in_b} items")
+        writeln!(f, "only in A: {}; only in B: {only_in_b}", count(*only_in_a, "item"))?;
+        write!(f, "left out of the second row, with one text in B: {}", count(*single_in_b, "item"))
     }
 }
 

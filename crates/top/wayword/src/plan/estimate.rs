@@ -2,6 +2,7 @@
 
 use super::Plan;
 use crate::{
+    count::count,
     error::Error,
     pipeline,
     settings::{Perception, Settings, is_model},
@@ -210,7 +211,8 @@ impl Load {
 
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} items, {} frames, {} different views to caption", self.items, self.frames, self.views)?;
+        let (items, frames) = (count(self.items, "item"), count(self.frames, "frame"));
+        writeln!(f, "{items}, {frames}, {} to caption", count(self.views, "different view"))?;
         if self.models.is_empty() {
             return write!(f, "no model takes part: nothing is asked, nothing is paid");
         }
@@ -221,11 +223,11 @@ impl fmt::Display for Estimate {
         for asked in &self.models {
             write!(
                 f,
-                "  {} ({}): {} calls, about {} tokens in, {} out",
+                "  {} ({}): {}, about {} in, {} out",
                 asked.model,
                 asked.roles.join(", "),
-                asked.calls,
-                asked.tokens_in,
+                count(asked.calls, "call"),
+                count(asked.tokens_in, "token"),
                 asked.tokens_out
             )?;
             match (asked.usd, &asked.price_as_of) {

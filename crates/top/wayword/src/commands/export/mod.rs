@@ -4,6 +4,7 @@ mod in_habitat;
 
 use crate::{
     cli::Export,
+    count::count,
     error::{Error, Exit},
     output::Output,
     run::file,
@@ -71,7 +72,10 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
     let written = Written { instructions: records.len(), file: args.out.clone(), provenance, scene_needs };
     let beside =
         written.provenance.as_ref().map_or(String::new(), |file| format!(", provenance in {}", file.display()));
-    output.data(&written, format_args!("{} instructions in {}{beside}", written.instructions, args.out.display()));
+    output.data(
+        &written,
+        format_args!("{} in {}{beside}", count(written.instructions, "instruction"), args.out.display()),
+    );
     Ok(Exit::Done)
 }
 

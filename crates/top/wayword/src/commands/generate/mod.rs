@@ -7,6 +7,7 @@ use crate::{
     calls::Calls,
     cli::Generate,
     commands::config,
+    count::count,
     error::{Error, Exit},
     in_order::{cores, in_order},
     item::Item,
@@ -61,7 +62,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
     let left: Vec<&Item> = items.iter().filter(|item| !run.is_done(&item.id(), &names)).collect();
     if left.len() < items.len() {
-        output.say(format_args!("continuing: {} of {} items are done", items.len() - left.len(), items.len()));
+        output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
     }
     let bar = output.progress(items.len(), "items");
     bar.set_position((items.len() - left.len()) as u64);

@@ -2,6 +2,7 @@
 
 use crate::{
     calls::Spent,
+    count::count,
     error::{Error, Exit},
     output::tame,
     run::{Rejected, RunFolder, file, lines},
@@ -122,11 +123,14 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{} items: {} instructions passed every check, {} unverified, {} rejected",
-            self.items, self.passed, self.unverified, self.rejected
+            "{}: {} passed every check, {} unverified, {} rejected",
+            count(self.items, "item"),
+            count(self.passed, "instruction"),
+            self.unverified,
+            self.rejected
         )?;
         if self.errors > 0 {
-            writeln!(f, "{} items failed (errors.jsonl); the same command tries them again", self.errors)?;
+            writeln!(f, "{} failed (errors.jsonl); the same command tries again", count(self.errors, "item"))?;
         }
         if let Some(loss) = &self.first_loss {
             writeln!(f, "the first of them, {}", tame(loss))?;
@@ -135,7 +139,8 @@ impl fmt::Display for Summary {
             writeln!(f, "minds: {}", self.minds)?;
         }
         if self.finished_by_rules > 0 {
-            writeln!(f, "{} instructions were written by rules, after the model's had failed", self.finished_by_rules)?;
+            let finished = count(self.finished_by_rules, "instruction");
+            writeln!(f, "{finished} written by rules, after the model's had failed")?;
         }
         if let Some(spent) = &self.spent {
             writeln!(f, "models: {spent}")?;

@@ -1,7 +1,10 @@
 //! The measurement as numbers and as a table.
 
 use super::{Captioned, Measured};
-use crate::settings::{LABELS, Perception};
+use crate::{
+    count::count,
+    settings::{LABELS, Perception},
+};
 use serde::Serialize;
 use std::fmt;
 
@@ -63,7 +66,7 @@ pub(super) struct Table<'a>(pub(super) &'a Measured);
 impl fmt::Display for Table<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Measured { platform, views, minds, rows, shown } = self.0;
-        writeln!(f, "{views} views of {platform}; {minds}")?;
+        writeln!(f, "{} of {platform}; {minds}", count(*views, "view"))?;
         if minds.contains(&format!("answered by {LABELS}")) {
             writeln!(f, "labels answer: this measures how words come through, not perception")?;
         }
@@ -83,7 +86,8 @@ impl fmt::Display for Table<'_> {
                 row.calls_per_view
             )?;
             if row.failed > 0 {
-                writeln!(f, "           {} views were not captioned; each with its reason above", row.failed)?;
+                let views = count(row.failed, "view");
+                writeln!(f, "           no caption for {views}; each with its reason above")?;
             }
         }
         writeln!(f)?;

@@ -1,6 +1,6 @@
 //! The views that are captioned: those ahead along random paths or episodes, each once, where the platform has labels.
 
-use crate::{error::Error, item::Item, plan::Plan, settings::Settings};
+use crate::{count::count, error::Error, item::Item, plan::Plan, settings::Settings};
 use std::collections::BTreeSet;
 use wayword_checks::{Evidence, SeenThing};
 use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
@@ -36,7 +36,7 @@ pub(super) fn labelled_views(plan: &Plan<'_>, most: usize) -> Result<Vec<Labelle
     }
     if views.is_empty() {
         return Err(Error::usage(
-            format!("none of {blind} views has labels to hold a caption against"),
+            format!("none of {} has labels to hold a caption against", count(blind, "view")),
             "give a platform or data folder with labels, or more --paths",
         ));
     }

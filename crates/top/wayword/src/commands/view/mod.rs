@@ -11,6 +11,7 @@ mod walk;
 
 use crate::{
     cli::{View, ViewCommand},
+    count::count,
     error::{Error, Exit},
     output::Output,
     settings::World,
@@ -41,7 +42,7 @@ impl fmt::Display for Written {
         for file in &self.files {
             writeln!(f, "{}", file.display())?;
         }
-        let frames = if self.frames == 1 { String::new() } else { format!(", {} frames", self.frames) };
+        let frames = if self.frames == 1 { String::new() } else { format!(", {}", count(self.frames, "frame")) };
         write!(f, "{}: {} x {} pixels{frames}", self.scene, self.width, self.height)?;
         for island in &self.islands {
             write!(f, "\n{island}{}", if island.is_walked { ", which walks keep to" } else { "" })?;

@@ -17,7 +17,7 @@ use super::{
     replay::{Entry, Replay, ReplayView},
     templates,
 };
-use crate::error::Error;
+use crate::{count::count, error::Error};
 use minijinja::{Value, context};
 use page::PageView;
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub struct Written {
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {} walks step by step", self.page, self.replays)?;
+        write!(f, "{}: {} step by step", self.page, count(self.replays, "walk"))?;
         if self.left_out > 0 { write!(f, "; {} left out (see --items)", self.left_out) } else { Ok(()) }
     }
 }

@@ -1,6 +1,7 @@
 //! What has to be said beside the figures, in words: the same for every format. Nothing here is escaped yet.
 
 use super::figures::{DEAF, Figure, deaf, name, other_path};
+use crate::count::count;
 use wayword_metrics::{Metric, Rule};
 use wayword_navigation::comparison::{About, AgentKind, Comparison, FEWEST_PATHS, Listening, Set, Swapped};
 
@@ -193,9 +194,4 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
 /// As 95 %.
 fn level(level: f64) -> String {
     format!("{} %", (1000.0 * level).round() / 10.0)
-}
-
-/// As 1 item, 2 items.
-pub(super) fn count(count: usize, of: &str) -> String {
-    format!("{count} {of}{}", if count == 1 { "" } else { "s" })
 }

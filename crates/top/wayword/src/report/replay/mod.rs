@@ -9,7 +9,7 @@ use super::{
     map::{MapView, RADIUS, Trail},
     places::frame_anchor,
 };
-use crate::run::Map;
+use crate::{count::count, run::Map};
 use serde::Serialize;
 use steps::{StepView, steps};
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
@@ -137,7 +137,7 @@ impl Replay<'_> {
         );
         let mut meta = vec![
             format!("Scene {}", walk.scene),
-            format!("{} steps", walk.steps.len()),
+            count(walk.steps.len(), "step"),
             format!("{:.1} m", score.length_m),
             off,
             end.to_owned(),

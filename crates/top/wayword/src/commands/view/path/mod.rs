@@ -3,7 +3,7 @@
 mod between;
 
 use super::{Written, film, open, walk};
-use crate::{cli::ViewPath, error::Error, output::Output};
+use crate::{cli::ViewPath, count::count, error::Error, output::Output};
 use between::Step;
 use image::imageops::{self, FilterType};
 use std::sync::Arc;
@@ -48,15 +48,11 @@ pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> 
     }
     bar.finish_and_clear();
     let Some((width, height)) = size else {
-        let problem = format!("path {}: none of its {} frames has a picture", path.id, steps.len());
+        let problem = format!("path {}: no picture of any of its {}", path.id, count(steps.len(), "frame"));
         return Err(Error::usage(problem, "`wayword platforms` says which worlds have pictures, and what they need"));
     };
     if frames < steps.len() {
-        output.say(format_args!(
-            "{} of {} frames have no picture, and were left out",
-            steps.len() - frames,
-            steps.len()
-        ));
+        output.say(format_args!("no picture of {} of {}, left out", steps.len() - frames, count(steps.len(), "frame")));
     }
     Ok(Written { scene: path.scene, files: film.finish()?, width, height, frames, islands: Vec::new() })
 }
