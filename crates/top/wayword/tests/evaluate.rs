@@ -425,11 +425,77 @@ fn a_limit_takes_the_first_items_alone() {
     let numbers = ["instructions", "items", "limit", "left_out"].map(|name| found[name].as_u64().unwrap());
     assert_eq!(numbers, [6, 3, 3, 13]);
     let shown = evaluate(&building, &submitted, R2R, &["--limit", "3"]);
-    let told = format!("only the first 3 items of {R2R} count; 13 trajectories for later ones are left out");
+    let told = format!("only the first 3 items of {R2R} count; left out for later ones: 13 trajectories");
     assert!(shown.out.lines().nth(1).is_some_and(|line| line == told), "{shown:?}");
     let alone = report(&evaluate(&building, &submitted[..6], R2R, &["--limit", "3", "--json"]));
     assert_eq!((&alone["rules"], &alone["left_out"]), (&found["rules"], &json!(0)));
     submitted[12]["instr_id"] = json!("999_0");
     assert_eq!(problems(&evaluate(&building, &submitted, R2R, &["--limit", "3", "--json"])).len(), 1);
     assert_eq!(evaluate(&building, &submitted, R2R, &["--limit", "0"]).code, Some(2));
+}
+
+/// What `wayword compare` leaves of `original`, held against a set that lacks two items.
+fn compared(building: &Building) -> &'static str {
+    let ran = building.generate("run", &["--episodes", EPISODES, "--style", "reverie"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let text = fs::read_to_string(building.path("run/instructions.jsonl")).unwrap();
+    building.write("few.jsonl", text.lines().skip(2).map(|line| format!("{line}\n")).collect::<String>());
+    let sets = ["--instructions", "original", "--instructions", "few=few.jsonl"];
+    let world = ["--platform", "matterport", "--data", "data", "--episodes", EPISODES];
+    let agents = ["--agents", "clip-nav", "--swaps", "none", "--resamples", "100", "--out", "table"];
+    let ran = building.wayword(&[&["compare"][..], &world, &sets, &agents].concat());
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(ran.err.contains("submissions cover 8 of 10 items") && ran.err.contains("--partial"), "{ran:?}");
+    "table/submissions/clip-nav.original.json"
+}
+
+#[test]
+fn a_comparison_s_own_submission_is_scored_with_partial_and_its_extent_is_told() {
+    let building = Building::new();
+    let submission = compared(&building);
+    let refused = evaluate_file(&building, submission, EPISODES, &[]);
+    assert!(refused.code == Some(1) && refused.err.contains("score the others with --partial"), "{refused:?}");
+    let shown = evaluate_file(&building, submission, EPISODES, &["--partial"]);
+    assert_eq!(shown.code, Some(0), "{shown:?}");
+    let told = format!("partial: these are 16 of 20 instructions and 8 of 10 items of {EPISODES}");
+    assert!(shown.out.contains(&told), "{shown:?}");
+    let found = report(&evaluate_file(&building, submission, EPISODES, &["--partial", "--json"]));
+    let numbers = ["instructions", "of_instructions", "items", "of_items"].map(|name| found[name].as_u64().unwrap());
+    assert_eq!(numbers, [16, 20, 8, 10]);
+    let compared: Value = serde_json::from_slice(&fs::read(building.path("table/comparison.json")).unwrap()).unwrap();
+    assert_eq!(compared["about"]["items"], 8, "{compared}");
+}
+
+#[test]
+fn partial_overlooks_what_is_missing_and_nothing_else() {
+    let building = Building::new();
+    let mut submitted = annotated(&building, R2R);
+    submitted.truncate(6);
+    submitted[2]["trajectory"].as_array_mut().unwrap().reverse();
+    submitted[4]["instr_id"] = json!("999_0");
+    let found = problems(&evaluate(&building, &submitted, R2R, &["--partial", "--json"]));
+    assert_eq!(found.len(), 2, "{found:#?}");
+    let mixed = evaluate(&building, &submitted, R2R, &[]);
+    assert!(mixed.err.contains("--partial overlooks 15 instructions"), "{mixed:?}");
+    let none = evaluate(&building, &[], R2R, &["--partial"]);
+    assert!(none.refused().contains("no instruction has a trajectory"), "{none:?}");
+    let whole = evaluate(&building, &annotated(&building, R2R), R2R, &["--partial"]);
+    assert!(whole.code == Some(0) && !whole.out.contains("partial"), "{whole:?}");
+}
+
+#[test]
+fn a_dataset_or_a_folder_is_named_as_what_it_is_and_not_item_by_item() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    fs::create_dir_all(building.path("table/submissions")).unwrap();
+    for (given, told) in [
+        (R2R, "it is a dataset (format r2r), and no submission"),
+        (EPISODES, "it is a dataset (format reverie), and no submission"),
+        ("run/instructions.jsonl", "it is a dataset (format wayword), and no submission"),
+        ("run", "it is a folder, and no submission"),
+        ("table", "name one of the files in table/submissions"),
+    ] {
+        let ran = evaluate_file(&building, given, R2R, &[]);
+        assert!(ran.refused().contains(told) && ran.err.contains("hint:"), "{ran:?}");
+    }
 }

@@ -13,12 +13,12 @@ Examples:
       Success, path length and fidelity of anyone's trajectories, by REVERIE's official rule and by the lenient one.
   wayword evaluate submission.json --episodes R2R_val_seen.json --platform matterport --data DATA --per-item scores.jsonl
   wayword evaluate runs/table/submissions/clip-nav.original.json --episodes REVERIE_val_seen.json \\
-      --platform matterport --data DATA --rule visible --json
-      What `wayword compare` left of its agents' walks.
+      --platform matterport --data DATA --rule visible --partial --json
+      What `wayword compare` left of its agents' walks: of the items that all its sets have, and not of every one.
 
 A submission is a JSON list of {\"instr_id\": \"ID_PLACE\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
-plain or gzip; one item for every instruction. If anything is wrong with it, nothing is scored, all that is wrong is told
-(20 problems on a screen, --json more), and the exit code is 1.")]
+plain or gzip; one item for every instruction, but with --partial. If anything is wrong with it, nothing is scored, all that is
+wrong is told (20 problems on a screen, --json more), and the exit code is 1.")]
 pub struct Evaluate {
     /// The trajectories, as the evaluators of R2R and REVERIE take them.
     #[arg(value_name = "SUBMISSION")]
@@ -29,6 +29,9 @@ pub struct Evaluate {
     /// The world.
     #[command(flatten)]
     pub world: World,
+    /// Score a submission that lacks instructions by those that it has, and say how many they are. Leader boards want all.
+    #[arg(long)]
+    pub partial: bool,
     /// Only this rule of success. [default: every rule that can be applied]
     #[arg(long)]
     pub rule: Option<SuccessRule>,

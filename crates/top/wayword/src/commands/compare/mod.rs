@@ -13,6 +13,7 @@ use crate::{
     calls::Calls,
     cli::Compare,
     commands::config,
+    count::count,
     demands::Demands,
     error::{Error, Exit},
     in_order::{cores, in_order},
@@ -62,7 +63,7 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let kept = Kept::of(args, &job.settings)?;
     let platform = kept.world()?;
     let demands = Demands::new(platform.as_ref());
-    let (items, sizes) = sets::load(&kept, platform.as_ref(), &demands)?;
+    let (items, sizes, of_episodes) = sets::load(&kept, platform.as_ref(), &demands)?;
     let judge = Judge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!("success is judged by distance: item {item} names no object whose place is known"));
@@ -100,6 +101,11 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     page::write(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
     output.data(&comparison, crate::report::comparison::screen(&comparison));
     output.say(format_args!("walks, tables and page: {}", args.out.display()));
+    let walked = gathered.results.extent().0;
+    if walked < of_episodes {
+        let of = count(of_episodes, "item");
+        output.say(format_args!("submissions cover {walked} of {of}: `wayword evaluate` takes them with --partial"));
+    }
     Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
 }
 
@@ -126,7 +132,7 @@ fn walk_all(
     };
     let left: Vec<&Item> = items.iter().filter(|item| !is_done(item)).collect();
     if left.len() < items.len() {
-        output.say(format_args!("continuing: {} of {} items are done", items.len() - left.len(), items.len()));
+        output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
     }
     if let Some(calls) = calls {
         calls.stop_on_interrupt(output);

@@ -36,7 +36,7 @@ pub(super) struct Told {
     pub(super) is_swapped: bool,
 }
 
-/// The common items, and how many items each set has by itself.
+/// The common items, how many items each set has by itself, and how many the episodes have.
 ///
 /// # Errors
 /// When a set cannot be read, or the sets have no item in common.
@@ -44,7 +44,7 @@ pub(super) fn load(
     kept: &Kept,
     platform: &dyn Platform,
     demands: &Demands<'_>,
-) -> Result<(Vec<Item>, Vec<usize>), Error> {
+) -> Result<(Vec<Item>, Vec<usize>, usize), Error> {
     let mut episodes = episodes::read(&kept.episodes, platform)?;
     episodes.truncate(kept.limit.unwrap_or(usize::MAX));
     let ids: BTreeSet<String> = episodes.iter().map(|episode| episode.id.clone()).collect();
@@ -56,6 +56,7 @@ pub(super) fn load(
         texts.retain(|item, texts| ids.contains(item) && !texts.is_empty());
         all.push((name, texts));
     }
+    let of_episodes = episodes.len();
     episodes.retain(|episode| all.iter().all(|(_, texts)| texts.contains_key(&episode.id)));
     if episodes.is_empty() {
         let problem = "the sets of instructions and the episodes have no item in common";
@@ -64,7 +65,7 @@ pub(super) fn load(
     let sizes = all.iter().map(|(_, texts)| texts.len()).collect();
     let mut items: Vec<Item> = episodes.into_iter().map(|episode| item(episode, &all)).collect();
     add_swaps(&mut items, kept, demands)?;
-    Ok((items, sizes))
+    Ok((items, sizes, of_episodes))
 }
 
 /// What there is to say of each set, over the items that were walked.

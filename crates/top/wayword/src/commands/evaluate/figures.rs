@@ -1,7 +1,7 @@
 //! The figures of a submission: means over instructions, as the official evaluators give them, with intervals.
 
-use super::handed_in::Scored;
-use crate::cli::Evaluate;
+use super::handed_in::{All, Scored};
+use crate::{cli::Evaluate, count::count};
 use serde::Serialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -30,6 +30,9 @@ pub(super) struct Report {
     instructions: usize,
     items: usize,
     paths: usize,
+    /// Instructions and items that the episodes have, with or without a trajectory.
+    of_instructions: usize,
+    of_items: usize,
     /// The items that count at most: the first of the episodes.
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<u32>,
@@ -65,7 +68,8 @@ struct Figure {
 }
 
 impl Report {
-    pub(super) fn new(args: &Evaluate, scored: &[Scored<'_>], left_out: usize, rules: &[Rule], drawn: Drawn) -> Self {
+    pub(super) fn new(args: &Evaluate, all: &All<'_>, rules: &[Rule], drawn: Drawn) -> Self {
+        let scored = all.scored.as_slice();
         let has_objects = scored.iter().any(|scored| scored.score.grounding.is_some());
         let by_rule = |rule: &Rule| ByRule {
             rule: *rule,
@@ -78,8 +82,10 @@ impl Report {
             instructions: scored.len(),
             items: scored.iter().map(|scored| scored.item).collect::<BTreeSet<_>>().len(),
             paths: scored.iter().map(|scored| &scored.path).collect::<BTreeSet<_>>().len(),
+            of_instructions: all.instructions,
+            of_items: all.items,
             limit: args.limit,
-            left_out,
+            left_out: all.left_out,
             objects_named: scored.iter().filter(|scored| scored.names_object).count(),
             level: LEVEL,
             drawn,
@@ -120,14 +126,30 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: {} instructions of {} items on {} paths",
-            self.submission, self.instructions, self.items, self.paths
+            "{}: {} of {} on {}",
+            self.submission,
+            count(self.instructions, "instruction"),
+            count(self.items, "item"),
+            count(self.paths, "path")
         )?;
+        if self.instructions < self.of_instructions {
+            writeln!(
+                f,
+                "partial: these are {} of {} and {} of {} of {}; the figures are of these alone",
+                self.instructions,
+                count(self.of_instructions, "instruction"),
+                self.items,
+                count(self.of_items, "item"),
+                self.episodes
+            )?;
+        }
         if let Some(limit) = self.limit {
             writeln!(
                 f,
-                "only the first {limit} items of {} count; {} trajectories for later ones are left out",
-                self.episodes, self.left_out
+                "only the first {} of {} count; left out for later ones: {}",
+                count(u64::from(limit), "item"),
+                self.episodes,
+                count(self.left_out, "trajectory")
             )?;
         }
         for ByRule { words, figures, .. } in &self.rules {

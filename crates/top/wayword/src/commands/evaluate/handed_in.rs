@@ -32,10 +32,14 @@ pub(super) struct All<'e> {
     pub(super) scored: Vec<Scored<'e>>,
     /// Trajectories for items beyond the limit.
     pub(super) left_out: usize,
+    /// Instructions that there are, with or without a trajectory.
+    pub(super) instructions: usize,
+    /// Items that there are.
+    pub(super) items: usize,
 }
 
-/// Scores every instruction of `episodes`. What was handed in for the items `beyond` these is left out. Where anything is wrong: all
-/// problems, of the file and then in the order of the episodes.
+/// Scores every instruction of `episodes`; where `is_partial`, those that have a trajectory. What was handed in for the items
+/// `beyond` these is left out. Where anything is wrong: all problems, of the file and then in the order of the episodes.
 ///
 /// # Errors
 /// When a scene cannot be read.
@@ -44,6 +48,7 @@ pub(super) fn score_all<'e>(
     beyond: &[Episode],
     reading: Reading,
     demands: &Demands<'_>,
+    is_partial: bool,
 ) -> Result<Result<All<'e>, Problems>, Error> {
     let mut problems = Problems::of_file(&reading.problems);
     unknown(episodes, beyond, &reading, &mut problems);
@@ -52,13 +57,14 @@ pub(super) fn score_all<'e>(
     let mut by_id: BTreeMap<String, Submitted> =
         submitted.into_iter().map(|submitted| (submitted.instr_id.clone(), submitted)).collect();
     let mut scored = Vec::new();
+    let instructions = episodes.iter().map(|episode| episode.instructions.len()).sum();
     for episode in episodes {
         let (distances, demand) = demands.of(episode)?;
         for instr_id in names(episode) {
             let Some(submitted) = by_id.remove(&instr_id) else {
                 // What was handed in wrongly is not missing, and what follows where the file broke off may not be.
-                if is_whole && !flawed.contains(&instr_id) {
-                    problems.add(|| Problem::new(instr_id, "it is missing: every instruction needs a trajectory"));
+                if is_whole && !is_partial && !flawed.contains(&instr_id) {
+                    problems.add_missing(instr_id);
                 }
                 continue;
             };
@@ -81,7 +87,7 @@ pub(super) fn score_all<'e>(
         }
     }
     // What nobody asked for and is not unknown either.
-    let all = All { scored, left_out: by_id.len() };
+    let all = All { scored, left_out: by_id.len(), instructions, items: episodes.len() };
     Ok(if problems.count() == 0 { Ok(all) } else { Err(problems) })
 }
 

@@ -15,7 +15,7 @@ use crate::{
 };
 use figures::{Drawn, Report};
 use handed_in::{All, Scored, score_all};
-use refusal::Refusal;
+use refusal::{Refusal, no_submission};
 use std::{fs, path::Path};
 use wayword_formats::submission;
 use wayword_metrics::Rule;
@@ -28,7 +28,10 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
     let (episodes, beyond) = episodes.split_at(limit);
     let reading = submission::read(&args.submission);
-    let All { scored, left_out } = match score_all(episodes, beyond, reading, &Demands::new(platform.as_ref()))? {
+    if let Some(error) = no_submission(&args.submission, &reading) {
+        return Err(error);
+    }
+    let all = match score_all(episodes, beyond, reading, &Demands::new(platform.as_ref()), args.partial)? {
         Ok(all) => all,
         Err(problems) => {
             let refusal = Refusal::new(&args.submission, problems);
@@ -36,12 +39,16 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
             return Err(refusal.into_error());
         }
     };
-    let rules = rules(args, &scored)?;
+    if all.scored.is_empty() {
+        let problem = format!("{}: no instruction has a trajectory; nothing was scored", args.submission.display());
+        return Err(Error::usage(problem, "see that submission and --episodes belong to the same split"));
+    }
+    let rules = rules(args, &all.scored)?;
     if let Some(file) = &args.per_item {
-        write_each(file, &scored)?;
+        write_each(file, &all.scored)?;
     }
     let drawn = Drawn { resamples: args.resamples as usize, seed: args.seed };
-    let report = Report::new(args, &scored, left_out, &rules, drawn);
+    let report = Report::new(args, &all, &rules, drawn);
     output.data(&report, &report);
     Ok(Exit::Done)
 }

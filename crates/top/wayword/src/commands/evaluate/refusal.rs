@@ -1,9 +1,9 @@
 //! Why a submission is not scored: everything that is wrong with it.
 
-use crate::error::Error;
+use crate::{count::count, error::Error};
 use serde::Serialize;
 use std::{fmt, path::Path};
-use wayword_formats::submission;
+use wayword_formats::submission::{self, Reading};
 
 /// Problems that are shown on a screen.
 const SHOWN: usize = 20;
@@ -25,6 +25,8 @@ pub(super) struct Problems {
     told: Vec<Problem>,
     /// How many more there are than are told.
     untold: usize,
+    /// How many of all are instructions without a trajectory.
+    missing: usize,
 }
 
 /// A submission that is not scored.
@@ -50,7 +52,13 @@ impl Problems {
     /// What is wrong with the file itself.
     pub(super) fn of_file(found: &submission::Problems) -> Self {
         let told = found.told.iter().map(|problem| Problem::of_file(&problem.to_string())).collect();
-        Self { told, untold: found.untold }
+        Self { told, untold: found.untold, missing: 0 }
+    }
+
+    /// Takes an instruction without a trajectory.
+    pub(super) fn add_missing(&mut self, instr_id: String) {
+        self.missing += 1;
+        self.add(|| Problem::new(instr_id, "it is missing: every instruction needs a trajectory"));
     }
 
     /// Takes one; beyond the limit it is only counted, and not even made.
@@ -74,13 +82,38 @@ impl Refusal {
 
     /// What ends the program.
     pub(super) fn into_error(self) -> Error {
-        let count = self.problems.count();
-        let problems = if count == 1 { "1 problem".to_owned() } else { format!("{count} problems") };
+        let (all, missing) = (self.problems.count(), self.problems.missing);
+        let problem = format!("{}: {}; nothing was scored", self.submission, count(all, "problem"));
+        let without = count(missing, "instruction");
         Error::usage(
-            format!("{}: {problems}; nothing was scored", self.submission),
-            "mend what is told; --json tells more of it",
+            problem,
+            match all - missing {
+                0 if missing > 0 => {
+                    format!("{without} without a trajectory: hand in all, or score the others with --partial")
+                }
+                _ if missing > 0 => format!("mend what is told; --partial overlooks {without} without a trajectory"),
+                _ => "mend what is told; --json tells more of it".to_owned(),
+            },
         )
     }
+}
+
+/// Why a file is not taken for a submission at all, where it is something else that this program knows.
+pub(super) fn no_submission(file: &Path, reading: &Reading) -> Option<Error> {
+    const HINT: &str = "give what an agent walked: a JSON list of {\"instr_id\": ..., \"trajectory\": [...]}, see \
+                        `wayword evaluate --help`";
+    if file.is_dir() {
+        let folder = file.join("submissions");
+        let hint = if folder.is_dir() { format!("name one of the files in {}", folder.display()) } else { HINT.into() };
+        return Some(Error::usage(format!("{}: it is a folder, and no submission", file.display()), hint));
+    }
+    if !reading.submitted.is_empty() || !reading.flawed.is_empty() {
+        return None;
+    }
+    let format = wayword_formats::detect(file).ok()?;
+    format.read(file).ok()?;
+    let problem = format!("{}: it is a dataset (format {format}), and no submission", file.display());
+    Some(Error::usage(problem, format!("{HINT}; the dataset belongs behind --episodes")))
 }
 
 impl fmt::Display for Refusal {
