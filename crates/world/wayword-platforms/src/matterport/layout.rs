@@ -69,11 +69,12 @@ impl Layout {
         Ok(scenes)
     }
 
-    /// Why nothing is known of objects, and what to do: there are neither REVERIE's boxes nor `.house` files. `None` where there
-    /// are some.
+    /// Why nothing is known of objects in some buildings or all, and what to do: there are no boxes of REVERIE's, and `.house` files
+    /// of few or none. `None` where objects are known everywhere.
     pub(crate) fn lack_of_objects(&self, data: &Path) -> Option<String> {
-        let has_house = || self.scenes().is_ok_and(|scenes| scenes.iter().any(|scene| self.house(scene).is_some()));
-        if self.boxes.is_some() || has_house() {
+        let scenes = self.scenes().ok()?;
+        let houses = scenes.iter().filter(|scene| self.house(scene).is_some()).count();
+        if self.boxes.is_some() || houses == scenes.len() {
             return None;
         }
         let above = data.canonicalize().ok().and_then(|data| data.parent().map(Path::to_owned));
@@ -82,10 +83,11 @@ impl Layout {
             None => format!("put REVERIE's boxes into {}", data.join(BOXES[0]).display()),
         };
         Some(format!(
-            "warning: {}: it has neither REVERIE's boxes ({}) nor .house files, so nothing is known of objects: labels name rooms \
-             alone, and objects in texts stay unverified\nhint: {hint}",
+            "warning: {}: no boxes of REVERIE's ({}), and .house files of {houses} of {} buildings; in the others nothing is known of \
+             objects: labels name rooms alone, and objects in texts stay unverified\nhint: {hint}",
             data.display(),
-            BOXES.join(", ")
+            BOXES.join(", "),
+            scenes.len()
         ))
     }
 
@@ -151,12 +153,17 @@ mod tests {
         let above = tempfile::tempdir().unwrap();
         let data = above.path().join("matterport");
         std::fs::create_dir_all(data.join("connectivity")).unwrap();
+        std::fs::write(data.join("connectivity/s_connectivity.json"), "[]").unwrap();
         let lack = |data: &Path| Layout::find(data).unwrap().lack_of_objects(data);
         let told = lack(&data).unwrap();
         assert!(told.contains(&data.display().to_string()) && told.contains("REVERIE's boxes into"), "{told}");
         std::fs::create_dir_all(above.path().join("reverie/BBox")).unwrap();
         assert!(lack(&data).unwrap().contains("give the folder above it"));
         assert_eq!(lack(above.path()), None);
+        let house = data.join("v1/scans/s/house_segmentations");
+        std::fs::create_dir_all(&house).unwrap();
+        std::fs::write(house.join("s.house"), "").unwrap();
+        assert_eq!(lack(&data), None);
     }
 
     #[test]
