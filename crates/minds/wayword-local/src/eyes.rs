@@ -86,6 +86,6 @@ fn shown<'a>(name: &str, request: &'a Request) -> Result<(&'a Image, &'a str), L
     let wrong = |problem: &str| LocalError::Compute { model: name.to_owned(), problem: problem.to_owned() };
     let [message] = &request.messages[..] else { return Err(wrong("it takes one message, and no conversation")) };
     let picture = message.image.as_deref();
-    let picture = picture.ok_or_else(|| wrong("it answers about pictures and writes no texts; use it with --see"))?;
+    let picture = picture.ok_or_else(|| wrong("it answers about pictures and writes no texts: it can have the role that sees (--see of `generate`), and no other"))?;
     Ok((picture, message.text.trim()))
 }

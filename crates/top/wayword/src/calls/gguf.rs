@@ -43,7 +43,7 @@ fn on_disk(path: &str) -> String {
 }
 
 fn line(server: &str, command: &str, name: &str) -> String {
-    format!("\n  {server}: `{command}`, then --llm {name}")
+    format!("\n  {server}: `{command}`, then as the model {name}")
 }
 
 /// What a model is called after its file.
@@ -84,10 +84,10 @@ mod tests {
             assert_eq!(
                 told(name),
                 [
-                    "Ollama: `ollama run hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf`, then --llm \
+                    "Ollama: `ollama run hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf`, then as the model \
                      ollama/hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf",
                     "llama.cpp: `llama-server -hf Qwen/Qwen3-1.7B-GGUF -hff Qwen3-1.7B-Q8_0.gguf --alias Qwen3-1.7B-Q8_0`, \
-                     then --llm llamacpp/Qwen3-1.7B-Q8_0",
+                     then as the model llamacpp/Qwen3-1.7B-Q8_0",
                 ]
             );
         }
@@ -98,7 +98,7 @@ mod tests {
         assert_eq!(
             told("hf/org/name:q4/it's(x).gguf"),
             [
-                r"llama.cpp: `llama-server -hf org/name -hff 'q4/it'\''s(x).gguf' --alias it-s-x-`, then --llm llamacpp/it-s-x-"
+                r"llama.cpp: `llama-server -hf org/name -hff 'q4/it'\''s(x).gguf' --alias it-s-x-`, then as the model llamacpp/it-s-x-"
             ]
         );
     }
@@ -108,9 +108,9 @@ mod tests {
         assert_eq!(
             told("hf/./my models/a:b.gguf"),
             [
-                "Ollama: `echo FROM './my models/a:b.gguf' > a-b.Modelfile && ollama create a-b -f a-b.Modelfile`, then --llm \
+                "Ollama: `echo FROM './my models/a:b.gguf' > a-b.Modelfile && ollama create a-b -f a-b.Modelfile`, then as the model \
                  ollama/a-b",
-                "llama.cpp: `llama-server -m './my models/a:b.gguf' --alias a-b`, then --llm llamacpp/a-b",
+                "llama.cpp: `llama-server -m './my models/a:b.gguf' --alias a-b`, then as the model llamacpp/a-b",
             ]
         );
         assert!(told("hf//models/x.GGUF")[1].contains("-m /models/x.GGUF --alias x`"));

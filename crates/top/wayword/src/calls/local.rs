@@ -58,7 +58,7 @@ impl Local {
         let mut findings = vec![Finding::ok(format!("{name} is loaded, {}", model.origin()))];
         if !is_to_see {
             findings.push(Finding::error(&format!(
-                "{name} answers about pictures and writes no texts\nhint: let it see, and name another to write: `generate`, `perceive` and `doctor` take it with --see"
+                "{name} answers about pictures and writes no texts\nhint: use it with --see"
             )));
         }
         findings.extend(Finding::of_seeing(model.as_ref()));

@@ -37,7 +37,7 @@ pub(super) fn labelled_views(plan: &Plan<'_>, most: usize) -> Result<Vec<Labelle
     if views.is_empty() {
         return Err(Error::usage(
             format!("none of {} has labels to hold a caption against", count(blind, "view")),
-            "give a platform or data folder with labels, or more --paths",
+            "give a platform or data folder with labels, or other --episodes or --scan",
         ));
     }
     Ok(views)
