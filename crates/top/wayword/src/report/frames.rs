@@ -17,7 +17,7 @@ const MOST_ON_CARD: usize = 6;
 /// A frame.
 #[derive(Debug, Serialize)]
 pub(super) struct FrameView {
-    /// From 1.
+    /// From 0, as run folders and the terminal have it.
     number: usize,
     anchor: String,
     colour: Colour,
@@ -68,11 +68,11 @@ pub(super) fn frames(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut
         let seen: Vec<&Sighting> = sightings(&observation.looks, Witness::Seen).collect();
         let next = moves.get(at);
         FrameView {
-            number: at + 1,
+            number: at,
             anchor: frame_anchor(item, at),
             colour: colour(at, shown),
             picture: if walk.has_pictures { pictures.take(&walk.path.id, at) } else { None },
-            alt: format!("View at frame {}. {}", at + 1, observation.summary),
+            alt: format!("View at frame {at}. {}", observation.summary),
             room: observation.looks.iter().find_map(|look| look.caption.room.clone()),
             level: frame.level.filter(|_| walk.path.motion.is_known()),
             caption: observation.summary.clone(),

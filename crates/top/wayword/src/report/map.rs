@@ -53,7 +53,9 @@ pub(super) struct Hop {
 /// A frame on the map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Spot {
-    /// The frame's number, from 1.
+    /// Its place on the trail, from 0.
+    pub(crate) stop: usize,
+    /// The number that is shown.
     pub(crate) number: usize,
     /// Whether the last frame is here.
     pub(crate) is_last: bool,
@@ -87,7 +89,7 @@ impl MapView {
         }
         let stops: Vec<DVec3> = path.frames.iter().take(frames).map(|frame| frame.pose.position).collect();
         let start = path.frames.first()?.pose.heading;
-        Self::draw(map, &Trail { stops: &stops, start, backs: &[], annotated: &[], is_numbered_once: false })
+        Self::draw(map, &Trail::of_frames(&stops, start))
     }
 
     /// The map of a trail, or `None` where its positions make no map.
@@ -128,8 +130,17 @@ pub(crate) struct Trail<'a> {
     pub(crate) backs: &'a [bool],
     /// The path that people annotated; its last is the goal.
     pub(crate) annotated: &'a [DVec3],
+    /// The number of the first stop.
+    pub(crate) first_number: usize,
     /// Whether a place has one number, that of the first stop there, however often the walk comes by.
     pub(crate) is_numbered_once: bool,
+}
+
+impl<'a> Trail<'a> {
+    /// The frames of a path, numbered from 0 as run folders and the terminal have it.
+    pub(crate) fn of_frames(stops: &'a [DVec3], start: Heading) -> Self {
+        Self { stops, start, backs: &[], annotated: &[], first_number: 0, is_numbered_once: false }
+    }
 }
 
 fn edges(places: &[Option<[f64; 2]>], edges: &[[usize; 2]]) -> String {
@@ -204,7 +215,8 @@ pub(crate) fn spots(trail: &Trail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<S
             .flat_map(|far| WAYS.map(|way| [0, 1].map(|axis| tenth(place[axis] + way[axis] * far * RADIUS))));
         let badge = std::iter::once(*place).chain(beside).find(is_free).unwrap_or(*place);
         spots.push(Spot {
-            number: stop + 1,
+            stop,
+            number: trail.first_number + stop,
             is_last: last == Some(stop),
             at: *place,
             badge,
@@ -286,6 +298,7 @@ mod tests {
             start: Heading::NORTH,
             backs: &[false, true],
             annotated: &annotated,
+            first_number: 1,
             is_numbered_once: true,
         };
         let map = MapView::draw(&Map::default(), &trail).unwrap();

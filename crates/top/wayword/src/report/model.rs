@@ -51,7 +51,7 @@ impl ItemView {
             target: path.target.as_ref().map(target_words),
             levels: levels(path.frames.iter().filter(|_| path.motion.is_known()).filter_map(|frame| frame.level)),
             map_words: length_m.as_ref().map_or_else(String::new, |length_m| {
-                format!("Map of the walk from frame 1 to frame {shown}, {length_m} m, north up")
+                format!("Map of the walk from frame 0 to frame {}, {length_m} m, north up", shown.saturating_sub(1))
             }),
             length_m,
             map,

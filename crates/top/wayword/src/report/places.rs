@@ -18,9 +18,9 @@ pub(super) fn anchor(number: usize) -> String {
     format!("w{number}")
 }
 
-/// The anchor of a frame (from 0) of an item.
-pub(super) fn frame_anchor(item: &str, frame: usize) -> String {
-    format!("{item}-f{}", frame + 1)
+/// The anchor of a frame of an item, by its number.
+pub(super) fn frame_anchor(item: &str, number: usize) -> String {
+    format!("{item}-f{number}")
 }
 
 /// Where that is for the walker.

@@ -25,16 +25,16 @@ pub(super) struct TextView {
     provenance: Option<String>,
 }
 
-/// What became of an instruction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+/// What became of an instruction, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum TextState {
-    /// It passed every check.
-    Passed,
-    /// Something could not be checked.
-    Unverified,
     /// It failed a check, and is not part of the dataset.
     Rejected,
+    /// Something could not be checked.
+    Unverified,
+    /// It passed every check.
+    Passed,
 }
 
 /// A run of an instruction's text.
@@ -53,7 +53,7 @@ struct PartView {
 #[derive(Debug, Serialize)]
 struct LinkView {
     kind: &'static str,
-    /// Of the frame, from 1.
+    /// Of the frame, from 0.
     number: usize,
     /// The frame's; none where the page does not show it.
     anchor: Option<String>,
@@ -123,7 +123,7 @@ fn parts(instruction: &Instruction, places: Places<'_>) -> Vec<PartView> {
 }
 
 fn link(mention: &Mention, text: &str, places: Places<'_>) -> LinkView {
-    let (kind, number) = (kind(mention.kind), mention.frame + 1);
+    let (kind, number) = (kind(mention.kind), mention.frame);
     let words = text.get(mention.span[0]..mention.span[1]).unwrap_or_default();
     LinkView {
         kind,

@@ -95,7 +95,7 @@ impl ReplayView {
         let entry = Entry::new(number, replay);
         let shown = walk.steps.len().min(MOST_STEPS);
         let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
-        let (steps, score_range) = steps(walk, shown, |step| frame_anchor(&entry.anchor, step));
+        let (steps, score_range) = steps(walk, shown, |step| frame_anchor(&entry.anchor, step + 1));
         Self {
             number,
             entry,
@@ -172,7 +172,14 @@ impl Replay<'_> {
         let start = steps.first()?.heading_rad;
         MapView::draw(
             &Map::near(&around, self.graph),
-            &Trail { stops: &stops, start, backs: &backs, annotated: &annotated, is_numbered_once: true },
+            &Trail {
+                stops: &stops,
+                start,
+                backs: &backs,
+                annotated: &annotated,
+                first_number: 1,
+                is_numbered_once: true,
+            },
         )
     }
 }

@@ -84,7 +84,7 @@ fn ways(plan: &Plan<'_>, sheet: &Sheet, position: impl Fn(&ViewpointId) -> Optio
 fn walk(plan: &Plan<'_>, path: &Path, stops: &[DVec3], sheet: &Sheet, marks: &mut Vec<Mark>) {
     let at: Vec<Point> = stops.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
     let Some(start) = path.frames.first().map(|frame| frame.pose.heading) else { return };
-    let trail = Trail { stops, start, backs: &[], annotated: &[], is_numbered_once: false };
+    let trail = Trail::of_frames(stops, start);
     let spots = spots(&trail, &at, sheet.size);
     let line = |points: Vec<Point>, width: f64, ink: Ink, dash| Mark::Line { points, width, ink, dash };
     marks.push(line(at.clone(), 7.5, WHITE, None));
@@ -101,7 +101,7 @@ fn walk(plan: &Plan<'_>, path: &Path, stops: &[DVec3], sheet: &Sheet, marks: &mu
         marks.push(facing(first.badge, start));
     }
     for spot in &spots {
-        let is_here = plan.is_here(path.frames[spot.number - 1].level);
+        let is_here = plan.is_here(path.frames[spot.stop].level);
         badge(spot, is_here, marks);
     }
 }
