@@ -98,7 +98,15 @@ fn a_report_is_written_for_a_run_and_refused_for_what_is_none() {
     assert_eq!((&written["items"], &written["left_out"]), (&3.into(), &7.into()), "{written}");
     assert!(building.path("run/report.html").is_file());
     let before = files(&building.path("."));
-    assert!(building.wayword(&["report", "--run", "data"]).refused().contains("data"));
+    for (given, told) in [
+        ("data", ["--run data: it is no run folder", "`wayword generate`"]),
+        ("nowhere", ["--run nowhere: there is no such folder", "`wayword compare`"]),
+        ("run/walks.jsonl", ["it is a file", "--run run"]),
+        (".", ["it is no run folder", "--run ./run"]),
+    ] {
+        let ran = building.wayword(&["report", "--run", given]);
+        assert!(told.iter().all(|told| ran.refused().contains(told)), "{ran:?}");
+    }
     assert!(files(&building.path(".")) == before);
 }
 
@@ -126,12 +134,11 @@ fn refused(building: &Building, arguments: &[&str]) -> String {
 fn wrong_flags_are_refused_with_what_is_wrong_and_what_to_do() {
     let building = Building::new();
     let matterport = ["--platform", "matterport", "--data", "data"];
-    let cases: [(&[&str], &[&str]); 16] = [
+    building.write("wrong.toml", "platform = \"matterprot\"");
+    let cases: [(&[&str], &[&str]); 18] = [
         (&["--platform", "matterport"], &["--data", "connectivity"]),
         (&["--platform", "matterport", "--data", "nowhere"], &["nowhere", "--data"]),
         (&["--platform", "matterport", "--data", "data/r2r"], &["data/r2r", "connectivity"]),
-        (&["--platform", "moon"], &["\"moon\"", "house, matterport"]),
-        (&["--style", "poem"], &["\"poem\"", "r2r, reverie", ".toml"]),
         (&["--style", "none.toml"], &["none.toml"]),
         (&["--style", "x=none.json"], &["none.json"]),
         (&["--style", "r2r", "--style", "r2r"], &["r2r", "once"]),
@@ -143,9 +150,14 @@ fn wrong_flags_are_refused_with_what_is_wrong_and_what_to_do() {
         (&["--episodes", EPISODES, "--paths", "3"], &["--episodes", "--paths", "exclude"]),
         (&["--episodes", "nowhere.json"], &["nowhere.json"]),
         (&["--config", "nowhere.toml"], &["nowhere.toml"]),
+        (&["--config", "wrong.toml"], &["\"matterprot\"; did you mean \"matterport\"?", "house, matterport"]),
+        (&["--paths", "0"], &["--paths 0: no path would be walked", "leave it out"]),
+        (&["--episodes", EPISODES, "--paths", "0"], &["--paths 0"]),
+        (&["--limit", "0"], &["--limit 0: no item would be left", "leave it out"]),
     ];
     for (arguments, told) in cases {
-        let base: &[&str] = if arguments.contains(&"--platform") { &[] } else { &matterport };
+        let is_whole = arguments.iter().any(|argument| ["--platform", "wrong.toml"].contains(argument));
+        let base: &[&str] = if is_whole { &[] } else { &matterport };
         let error = refused(&building, &[&["generate", "--out", "run"], base, arguments].concat());
         assert!(told.iter().all(|words| error.contains(words)), "{arguments:?}: {error}");
     }
@@ -241,4 +253,46 @@ fn a_reader_that_has_gone_away_is_no_error() {
         let told = String::from_utf8(output.stderr).unwrap();
         assert!(matches!(output.status.code(), Some(0 | 3)) && !told.contains("panicked"), "{arguments:?}: {told}");
     }
+}
+
+#[test]
+fn values_that_no_flag_can_have_are_exit_code_2_and_name_what_was_meant() {
+    let cases: [(&[&str], &[&str]); 12] = [
+        (&["generate", "--out", "x", "--platform", "hause"], &["--platform", "'house'"]),
+        (&["generate", "--out", "x", "--platform", "moon"], &["house, matterport", "virtualhome"]),
+        (&["view", "map", "--out", "x.svg", "--platform", "habitad"], &["'habitat'"]),
+        (&["generate", "--out", "x", "--style", "revery"], &["--style", "did you mean \"reverie\"?"]),
+        (&["generate", "--out", "x", "--style", "poem"], &["r2r, reverie", ".toml", "NAME=DATASET"]),
+        (&["check", "x.json", "--style", "r3r"], &["did you mean \"r2r\"?"]),
+        (&["export", "--run", "x", "--out", "y", "--format", "revere"], &["--format", "'reverie'"]),
+        (&["export", "--run", "x", "--out", "y", "--format", "csv"], &["r2r, reverie, rxr, vlnce, wayword"]),
+        (&["compare", "--episodes", "e", "--out", "x", "--agents", "clip_nav"], &["--agents", "'clip-nav'"]),
+        (&["compare", "--episodes", "e", "--out", "x", "--agents", "clip-nav,flip-nav"], &["flip-nav", "glip-nav"]),
+        (&["compare", "--episodes", "e", "--out", "x", "--split", "foo"], &["--split", "as in --split ollama/qwen3"]),
+        (&["compare", "--episodes", "e", "--out", "x", "--split", "/qwen"], &["name rules", "provider/model"]),
+    ];
+    for (arguments, told) in cases {
+        let ran = run(&mut command(arguments));
+        assert_eq!(ran.code, Some(2), "{arguments:?}: {ran:?}");
+        assert!(told.iter().all(|told| ran.err.contains(told)), "{arguments:?}: {}", ran.err);
+        assert!(!ran.err.contains("--ask"), "{}", ran.err);
+    }
+}
+
+#[test]
+fn a_run_over_buildings_without_boxes_says_what_lacks_and_what_to_do() {
+    let building = Building::new();
+    let scan = wayword_testkit::SCAN;
+    fs::remove_file(building.path(&format!("data/matterport/v1/scans/{scan}/house_segmentations/{scan}.house")))
+        .unwrap();
+    let matterport = |data: &str| {
+        let world = ["generate", "--platform", "matterport", "--data", data, "--paths", "1", "--dry-run"];
+        let ran = building.wayword(&world);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        ran.err
+    };
+    let told = matterport("data/matterport");
+    assert!(told.contains("warning: data/matterport: no boxes of REVERIE's"), "{told}");
+    assert!(told.contains("hint: give the folder above it") && told.contains("/data\n"), "{told}");
+    assert_eq!(matterport("data"), "");
 }

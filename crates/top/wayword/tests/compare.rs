@@ -157,7 +157,6 @@ fn what_makes_no_sense_is_refused_and_leaves_no_folder() {
     let building = Building::new();
     building.run_over_episodes("run");
     for (args, told) in [
-        (vec!["--agents", "flip-nav"], "there is no such agent"),
         (vec!["--agents", "clip-nav,clip-nav"], "it comes twice"),
         (vec!["--instructions", "ours"], "that names no set"),
         (vec!["--instructions", "original", "--instructions", "original"], "comes twice"),

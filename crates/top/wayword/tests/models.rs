@@ -360,7 +360,7 @@ fn what_rules_finished_is_told_on_the_screen() {
     let ran = stage.generate("run", &["--paths", "4", "--repairs", "0"]);
     let finished = stage.building.records("run").into_iter();
     let finished = finished.filter(|record| record.instruction.provenance.finished_for.is_some()).count();
-    assert!(finished > 0 && ran.out.contains(&format!("{finished} instructions were written by rules")), "{ran:?}");
+    assert!(finished > 0 && ran.out.contains(&format!("{finished} instructions written by rules")), "{ran:?}");
 }
 
 #[test]

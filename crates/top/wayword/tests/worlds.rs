@@ -45,7 +45,6 @@ fn what_is_missing_is_told() {
         (&["--platform", "recording", "--data", "nowhere"], "nowhere"),
         (&["--platform", "tdw", "--at", "here"], "--at here"),
         (&["--platform", "virtualhome", "--at", "here"], "--at here"),
-        (&["--platform", "moon"], "virtualhome"),
         (&["--data", "data"], "takes no --data"),
         (&["--at", "127.0.0.1:1071"], "takes no --at"),
     ] {

@@ -77,7 +77,7 @@ pub enum Command {
     Check(Check),
     /// Write a run in the file format that agents read.
     Export(Export),
-    /// Write a run as one HTML page: map, frames, dialogue, captions, instructions and checks.
+    /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
     Report(Report),
     /// Measure how well captions fit the labels of their views: objects, ghosts, calls.
     Perceive(Box<Perceive>),
@@ -202,10 +202,12 @@ pub struct Report {
     /// Run folder, or the folder of a comparison.
     #[arg(long, value_name = "DIR")]
     pub run: PathBuf,
-    /// At most so many items; of a comparison, so many walks: of each agent and set some that succeed and some that do not.
-    #[arg(long, value_name = "N", default_value_t = 100)]
-    pub items: usize,
-    /// The page. [default: report.html in the run folder]
+    /// At most so many items, those with rejected and unverified texts first; of a comparison, so many walks: of each agent and set
+    /// some that succeed and some that do not. [default: 1000; of a comparison 100]
+    #[arg(long, value_name = "N")]
+    pub items: Option<usize>,
+    /// The page; of more than 50 items it is an overview, and the walks are on numbered pages beside it. [default: report.html in
+    /// the run folder]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

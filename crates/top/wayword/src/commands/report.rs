@@ -8,15 +8,57 @@ use crate::{
     report,
     run::file,
 };
+use std::{fs, path::Path};
+
+/// Items of a run that are shown, unless told otherwise.
+const ITEMS: usize = 1000;
+/// Walks of a comparison that are shown, unless told otherwise.
+const WALKS: usize = 100;
+/// Runs below a folder that are named.
+const NAMED: usize = 3;
 
 pub(super) fn run(args: &Report, output: &Output) -> Result<Exit, Error> {
+    expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
     if compare::is_comparison(&args.run) {
-        let written = compare::write_of_folder(&args.run, &out, args.items)?;
+        let written = compare::write_of_folder(&args.run, &out, args.items.unwrap_or(WALKS))?;
         output.data(&written, &written);
         return Ok(Exit::Done);
     }
-    let written = report::write(&args.run, &out, args.items)?;
+    let written = report::write(&args.run, &out, args.items.unwrap_or(ITEMS))?;
     output.data(&written, &written);
     Ok(Exit::Done)
+}
+
+/// Refuses what is no run folder, and names the one that may be meant.
+fn expect_run(folder: &Path) -> Result<(), Error> {
+    if is_run(folder) {
+        return Ok(());
+    }
+    let name = folder.display();
+    let around = folder.parent().filter(|around| folder.is_file() && is_run(around));
+    let within = runs_within(folder);
+    let what = match (fs::exists(folder), folder.is_dir()) {
+        (Ok(false), _) => "there is no such folder".to_owned(),
+        (_, true) => format!("it is no run folder, for it holds no {}", file::CONFIG),
+        _ => "it is a file, and no run folder".to_owned(),
+    };
+    let hint = match around {
+        Some(around) => format!("give the folder that it lies in: --run {}", around.display()),
+        None if !within.is_empty() => format!("name one of the runs in it: --run {}", within.join(", --run ")),
+        None => "give the --out folder of a `wayword generate` or `wayword compare`".to_owned(),
+    };
+    Err(Error::usage(format!("--run {name}: {what}"), hint))
+}
+
+fn is_run(folder: &Path) -> bool {
+    folder.join(file::CONFIG).is_file()
+}
+
+/// The first runs directly below a folder, by name.
+fn runs_within(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut runs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_run(path)).collect();
+    runs.sort();
+    runs.iter().take(NAMED).map(|run| run.display().to_string()).collect()
 }

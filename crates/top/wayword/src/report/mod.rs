@@ -1,79 +1,111 @@
-//! A run as one HTML page that needs nothing but itself: map, frames, dialogue, captions, instructions and checks.
+//! A run as HTML pages that need nothing but themselves: map, frames, dialogue, captions, instructions and checks.
 //!
-//! The page is made item by item, so that its size is not bound by memory, and the same run gives the same bytes. All that
-//! comes from files or models is untrusted: the templates escape it, and the page forbids itself scripts and addresses.
+//! A page is made item by item, so that its size is not bound by memory, and the same run gives the same bytes. All that
+//! comes from files or models is untrusted: the templates escape it, and the pages forbid themselves scripts and addresses.
 
+mod book;
 pub mod comparison;
 pub(crate) mod data_uri;
 mod frames;
 pub(crate) mod map;
 mod model;
+mod order;
 mod page;
 pub(crate) mod palette;
 mod pictures;
 mod places;
 mod records;
 pub mod replay;
+mod rows;
 pub(crate) mod sheet;
 mod spans;
 mod texts;
 
-use crate::error::Error;
-use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use crate::{count::count, error::Error};
+use book::{Book, WALKS_PER_PAGE};
+use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
 use model::ItemView;
 use page::PageView;
 use pictures::Pictures;
+use places::anchor;
 use records::Records;
+use rows::Rows;
 use serde::Serialize;
 use std::{
     fmt,
     fs::{self, File},
     io::{self, BufWriter, Write},
-    path::Path,
+    ops::Range,
+    path::{Path, PathBuf},
 };
 
 /// What was written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Written {
-    /// The page.
+    /// The page, or the overview where there are several.
     pub page: String,
-    /// Items on it.
+    /// Pages of walks beside it, in their order.
+    pub pages: Vec<String>,
+    /// Items that are shown.
     pub items: usize,
-    /// Items of the run that are not on it.
+    /// Items of the run that are not shown.
     pub left_out: usize,
-    /// Pictures on it.
+    /// Pictures that are shown.
     pub pictures: usize,
-    /// Pictures of its items that are not on it: missing, no JPEG, too large, or the page was full.
+    /// Pictures of these items that are not shown: missing, no JPEG, too large, or the page was full.
     pub pictures_left_out: usize,
 }
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {} items, {} pictures", self.page, self.items, self.pictures)?;
+        write!(f, "{}", self.page)?;
+        if let (Some(first), Some(last)) = (self.pages.first(), self.pages.last()) {
+            write!(f, " and {} beside it, {first} to {last}", count(self.pages.len(), "page"))?;
+        }
+        write!(f, ": {}, {}", count(self.items, "item"), count(self.pictures, "picture"))?;
         if self.left_out > 0 {
-            write!(f, "; {} items left out (see --items)", self.left_out)?;
+            write!(f, "; {} left out (see --items)", count(self.left_out, "item"))?;
         }
         if self.pictures_left_out > 0 {
-            write!(f, "; {} pictures left out", self.pictures_left_out)?;
+            write!(f, "; {} left out", count(self.pictures_left_out, "picture"))?;
         }
         Ok(())
     }
 }
 
-/// Writes the page of a run, with its first `most_items` items; what was there before is replaced once the page is whole.
+/// Writes the report of a run, with at most so many of its items, those whose texts did not pass first. What was there before is
+/// replaced once all is whole.
 ///
 /// # Errors
-/// When `run` is no run folder, a line of it is not of its kind, or the page cannot be written.
+/// When `run` is no run folder, a line of it is not of its kind, or a page cannot be written.
 pub fn write(run: &Path, out: &Path, most_items: usize) -> Result<Written, Error> {
+    write_paged(run, out, most_items, WALKS_PER_PAGE)
+}
+
+fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<Written, Error> {
     let records = Records::read(run, most_items)?;
-    let pictures = replace(out, |take| render(&records, run, take))?;
-    Ok(Written {
+    let book = Book::new(out, records.items.len(), per_page);
+    let mut written = Written {
         page: out.display().to_string(),
+        pages: (1..=book.pages()).map(|page| book.file(page).display().to_string()).collect(),
         items: records.items.len(),
         left_out: records.left_out,
-        pictures: pictures.shown,
-        pictures_left_out: pictures.left_out,
-    })
+        pictures: 0,
+        pictures_left_out: 0,
+    };
+    let templates = templates().map_err(broken)?;
+    let sheet = Sheet { records: &records, book: &book, templates: &templates, run };
+    let mut unfinished = Vec::new();
+    for page in (1..=book.pages()).map(Some).chain([None]) {
+        let file = page.map_or_else(|| out.to_owned(), |page| book.file(page));
+        let (made, pictures) = Unfinished::write(&file, |take| sheet.draw(page, take))?;
+        unfinished.push(made);
+        written.pictures += pictures.shown;
+        written.pictures_left_out += pictures.left_out;
+    }
+    unfinished.into_iter().try_for_each(Unfinished::finish)?;
+    book.remove_older_pages()?;
+    Ok(written)
 }
 
 /// Takes a page part by part.
@@ -81,28 +113,84 @@ type Take<'a> = dyn FnMut(&str) -> Result<(), Error> + 'a;
 
 /// Writes a page; what was there before is replaced once the page is whole.
 fn replace<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<T, Error> {
-    let mut name = out.file_name().unwrap_or_default().to_owned();
-    name.push(".new");
-    let unfinished = out.with_file_name(name);
-    let mut page = BufWriter::new(File::create(&unfinished).map_err(Error::io(&unfinished, "write"))?);
-    let told = render(&mut |part| page.write_all(part.as_bytes()).map_err(Error::io(&unfinished, "write")))?;
-    page.into_inner().map_err(io::IntoInnerError::into_error).map_err(Error::io(&unfinished, "write"))?;
-    fs::rename(&unfinished, out).map_err(Error::io(out, "write"))?;
+    let (page, told) = Unfinished::write(out, render)?;
+    page.finish()?;
     Ok(told)
 }
 
-/// Hands the page to `take`, part by part.
-fn render(records: &Records, run: &Path, take: &mut Take<'_>) -> Result<Pictures, Error> {
-    let templates = templates().map_err(broken)?;
-    let draw = |name: &str, view: minijinja::Value| templates.get_template(name)?.render(view);
-    let mut pictures = Pictures::of(run);
-    take(&draw("head.html", minijinja::Value::from_serialize(PageView::new(records))).map_err(broken)?)?;
-    for (at, record) in records.items.iter().enumerate() {
-        let view = ItemView::new(at + 1, record, &mut pictures);
-        take(&draw("item.html", minijinja::Value::from_serialize(view)).map_err(broken)?)?;
+/// A page that is written beside the place where it will be; gone when it is dropped before that.
+struct Unfinished {
+    file: PathBuf,
+    out: PathBuf,
+}
+
+impl Unfinished {
+    fn write<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<(Self, T), Error> {
+        let mut name = out.file_name().unwrap_or_default().to_owned();
+        name.push(".new");
+        let unfinished = Self { file: out.with_file_name(name), out: out.to_owned() };
+        let file = &unfinished.file;
+        let mut page = BufWriter::new(File::create(file).map_err(Error::io(file, "write"))?);
+        let told = render(&mut |part| page.write_all(part.as_bytes()).map_err(Error::io(file, "write")))?;
+        page.into_inner().map_err(io::IntoInnerError::into_error).map_err(Error::io(file, "write"))?;
+        Ok((unfinished, told))
     }
-    take(include_str!("foot.html"))?;
-    Ok(pictures)
+
+    fn finish(self) -> Result<(), Error> {
+        fs::rename(&self.file, &self.out).map_err(Error::io(&self.out, "write"))
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // It is not there any more where all went well.
+        let _ = fs::remove_file(&self.file);
+    }
+}
+
+/// What pages are drawn from.
+struct Sheet<'a> {
+    records: &'a Records,
+    book: &'a Book<'a>,
+    templates: &'a Environment<'static>,
+    run: &'a Path,
+}
+
+impl Sheet<'_> {
+    /// Hands a page of walks to `take`, or the overview, part by part.
+    fn draw(&self, page: Option<usize>, take: &mut Take<'_>) -> Result<Pictures, Error> {
+        let Self { records, book, .. } = self;
+        let pager = book.pager(page);
+        let walks: Range<usize> = match page {
+            Some(page) => book.walks(page),
+            None if pager.is_none() => 0..records.items.len(),
+            None => 0..0,
+        };
+        let all = records.items.len() + records.left_out;
+        let (first, last, shown) = (walks.start + 1, walks.end, records.items.len());
+        let around = context! { pager, first, last, shown, walks => all, platform => records.settings.platform };
+        match page {
+            Some(_) => self.draw_part("leaf.html", around.clone(), take)?,
+            None => {
+                let rows = Rows::of(records, |walk| book.address(walk, &anchor(walk + 1)));
+                let view = context! { ..Value::from_serialize(PageView::new(records)), ..Value::from_serialize(rows), ..around.clone() };
+                self.draw_part("head.html", view, take)?;
+            }
+        }
+        let mut pictures = Pictures::of(self.run);
+        for (at, record) in walks.clone().zip(&records.items[walks]) {
+            let view = Value::from_serialize(ItemView::new(at + 1, record, &mut pictures));
+            self.draw_part("item.html", view, take)?;
+        }
+        self.draw_part("pager.html", around, take)?;
+        take(include_str!("foot.html"))?;
+        Ok(pictures)
+    }
+
+    fn draw_part(&self, name: &str, view: Value, take: &mut Take<'_>) -> Result<(), Error> {
+        let part = self.templates.get_template(name).and_then(|template| template.render(view));
+        take(&part.map_err(broken)?)
+    }
 }
 
 fn templates() -> Result<Environment<'static>, minijinja::Error> {
@@ -112,10 +200,16 @@ fn templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.set_trim_blocks(true);
     templates.set_lstrip_blocks(true);
     templates.set_keep_trailing_newline(true);
+    templates.add_function("count", |number: u64, of: &str| count(number, of));
     templates.add_template("style.css", include_str!("style.css"))?;
     templates.add_template("signs.html", include_str!("signs.html"))?;
     templates.add_template("open.html", include_str!("open.html"))?;
     templates.add_template("head.html", include_str!("head.html"))?;
+    templates.add_template("rows.html", include_str!("rows.html"))?;
+    templates.add_template("rows.css", include_str!("rows.css"))?;
+    templates.add_template("filter.css", include_str!("filter.css"))?;
+    templates.add_template("leaf.html", include_str!("leaf.html"))?;
+    templates.add_template("pager.html", include_str!("pager.html"))?;
     templates.add_template("map.html", include_str!("map.html"))?;
     templates.add_template("text.html", include_str!("text.html"))?;
     templates.add_template("item.html", include_str!("item.html"))?;

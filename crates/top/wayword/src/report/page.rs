@@ -1,10 +1,6 @@
-//! What stands above the items: what the run was, who did it, what came of it, and where to find each item.
+//! What stands above the items: what the run was, who did it, and what came of it.
 
-use super::{
-    places::anchor,
-    records::{Counts, ItemRecord, Minds, Records},
-    texts::{TextState, state},
-};
+use super::records::{Counts, Minds, Records};
 use crate::settings::{Against, Perception, Settings, TargetMode};
 use serde::Serialize;
 use std::path::Path;
@@ -13,14 +9,12 @@ use wayword_synthesis::walk::FrameSelection;
 /// The page around its items.
 #[derive(Debug, Serialize)]
 pub(super) struct PageView {
-    platform: String,
-    walks: usize,
     settings: Vec<(&'static str, String)>,
     minds: Vec<MindsView>,
-    styles: Vec<StyleView>,
-    entries: Vec<EntryView>,
+    outcome: Vec<StyleView>,
     left_out: usize,
-    failed: Vec<FailedView>,
+    /// Items that failed, shown or not.
+    failed: usize,
     failed_left_out: usize,
 }
 
@@ -38,22 +32,6 @@ struct StyleView {
     rejected: usize,
 }
 
-/// A line of the table of contents.
-#[derive(Debug, Serialize)]
-struct EntryView {
-    number: usize,
-    anchor: String,
-    id: String,
-    /// Styles whose instruction is not all good, with what became of it.
-    lacks: Vec<(String, TextState)>,
-}
-
-#[derive(Debug, Serialize)]
-struct FailedView {
-    id: String,
-    reason: String,
-}
-
 impl PageView {
     pub(super) fn new(records: &Records) -> Self {
         let style = |(name, counts): (&String, &Counts)| StyleView {
@@ -63,31 +41,13 @@ impl PageView {
             rejected: counts.rejected,
         };
         Self {
-            platform: records.settings.platform.clone(),
-            walks: records.items.len() + records.left_out,
             settings: settings(&records.settings),
             minds: records.minds.iter().map(minds).collect(),
-            styles: records.counts.iter().map(style).collect(),
-            entries: records.items.iter().enumerate().map(|(at, item)| entry(at + 1, item)).collect(),
+            outcome: records.counts.iter().map(style).collect(),
             left_out: records.left_out,
-            failed: records
-                .failed
-                .iter()
-                .map(|failed| FailedView { id: failed.item.clone(), reason: failed.reason.clone() })
-                .collect(),
+            failed: records.failed.len() + records.failed_left_out,
             failed_left_out: records.failed_left_out,
         }
-    }
-}
-
-fn entry(number: usize, item: &ItemRecord) -> EntryView {
-    let accepted = item.accepted.iter().map(|instruction| (instruction.style.clone(), state(instruction.verdict)));
-    let rejected = item.rejected.iter().map(|rejected| (rejected.style.clone(), TextState::Rejected));
-    EntryView {
-        number,
-        anchor: anchor(number),
-        id: item.walk.path.id.clone(),
-        lacks: accepted.filter(|(_, state)| *state != TextState::Passed).chain(rejected).collect(),
     }
 }
 

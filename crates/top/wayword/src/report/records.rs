@@ -1,5 +1,12 @@
-//! What the page needs of a run: its first items whole, the rest only counted.
+//! What the page needs of a run: some items whole, the rest only counted.
+//!
+//! The files are read twice: first to see what became of each item, then to take those that are shown. What was rejected and what
+//! could not be checked comes first, for that is what a report is opened for.
 
+use super::{
+    order::{Order, Worst},
+    texts::{TextState, state},
+};
 use crate::{
     error::Error,
     run::{
@@ -26,12 +33,13 @@ const MOST_STYLES: usize = 64;
 /// A run as far as the page shows it.
 pub(super) struct Records {
     pub(super) settings: Settings,
-    /// The first items, in the order of the run.
+    /// The items that are shown: those with a rejected text, those with an unverified one, then the others; each of these in the
+    /// order of the run.
     pub(super) items: Vec<ItemRecord>,
     /// Items that were walked and are not shown.
     pub(super) left_out: usize,
-    /// The first items of which nothing could be written.
-    pub(super) failed: Vec<Rejected>,
+    /// The first items that failed.
+    pub(super) failed: Vec<Failed>,
     /// Those that are not shown.
     pub(super) failed_left_out: usize,
     /// Of all items, by style.
@@ -45,6 +53,19 @@ pub(super) struct ItemRecord {
     pub(super) walk: WalkRecord,
     pub(super) accepted: Vec<Instruction>,
     pub(super) rejected: Vec<Rejected>,
+}
+
+/// An item that failed before anything could be written: a line of `errors.jsonl`, or of `rejected.jsonl` without a style.
+#[derive(Debug, Deserialize)]
+pub(super) struct Failed {
+    pub(super) item: String,
+    #[serde(default)]
+    pub(super) style: String,
+    #[serde(default)]
+    pub(super) reason: String,
+    /// Of what kind the failure is, where the line says so: missing, broken, lost.
+    #[serde(default)]
+    pub(super) failure: Option<String>,
 }
 
 /// What became of a style's instructions.
@@ -77,12 +98,12 @@ struct Named {
 }
 
 #[derive(Deserialize)]
-struct Id {
-    id: String,
+pub(super) struct Id {
+    pub(super) id: String,
 }
 
 impl Records {
-    /// Reads a run folder, its first `most_items` items whole.
+    /// Reads a run folder, at most `most_items` of its items whole.
     ///
     /// # Errors
     /// When it is no run folder, a file cannot be read, or a line is not of its kind.
@@ -96,34 +117,19 @@ impl Records {
             counts: BTreeMap::new(),
             minds: BTreeSet::new(),
         };
-        let mut left_bytes = MOST_BYTES;
-        let mut places = BTreeMap::new();
-        lines::each(&run.join(file::WALKS), |line| records.walk(&line, most_items, &mut left_bytes, &mut places))?;
-        lines::each(&run.join(file::INSTRUCTIONS), |line| records.instruction(&line, &mut left_bytes, &places))?;
-        lines::each(&run.join(file::REJECTED), |line| records.rejected(&line, most_items, &mut left_bytes, &places))?;
-        lines::each(&run.join(file::ERRORS), |line| records.rejected(&line, most_items, &mut left_bytes, &places))?;
+        let mut worst = Worst::default();
+        lines::each(&run.join(file::INSTRUCTIONS), |line| records.count_accepted(&line, &mut worst))?;
+        lines::each(&run.join(file::REJECTED), |line| records.count_rejected(&line, most_items, &mut worst))?;
+        lines::each(&run.join(file::ERRORS), |line| {
+            records.fail(line.parse()?, most_items);
+            Ok(())
+        })?;
+        let order = Order::of(&run.join(file::WALKS), most_items, MOST_BYTES, &worst)?;
+        records.take(run, &order)?;
         Ok(records)
     }
 
-    fn walk(
-        &mut self,
-        line: &Line<'_>,
-        most_items: usize,
-        left_bytes: &mut usize,
-        places: &mut Places,
-    ) -> Result<(), Error> {
-        // Once one is left out, so are all after it: the page shows the first items, not those that happen to be small.
-        if self.left_out > 0 || self.items.len() >= most_items || !take(left_bytes, line) {
-            self.left_out += 1;
-            return Ok(());
-        }
-        let walk: WalkRecord = line.parse()?;
-        places.entry(walk.path.id.clone()).or_insert(self.items.len());
-        self.items.push(ItemRecord { walk, accepted: Vec::new(), rejected: Vec::new() });
-        Ok(())
-    }
-
-    fn instruction(&mut self, line: &Line<'_>, left_bytes: &mut usize, places: &Places) -> Result<(), Error> {
+    fn count_accepted(&mut self, line: &Line<'_>, worst: &mut Worst) -> Result<(), Error> {
         let named: Named = line.parse()?;
         if let Some(counts) = self.counts_of(&named.style) {
             *match named.verdict {
@@ -135,39 +141,30 @@ impl Records {
         if self.minds.len() < MOST_MINDS {
             self.minds.insert(named.provenance.into());
         }
-        if let Some(item) = places.get(&named.path.id).and_then(|place| self.items.get_mut(*place))
-            && take(left_bytes, line)
-        {
-            item.accepted.push(line.parse()?);
-        }
+        worst.take(named.path.id, state(named.verdict));
         Ok(())
     }
 
-    fn rejected(
-        &mut self,
-        line: &Line<'_>,
-        most_items: usize,
-        left_bytes: &mut usize,
-        places: &Places,
-    ) -> Result<(), Error> {
+    fn count_rejected(&mut self, line: &Line<'_>, most_items: usize, worst: &mut Worst) -> Result<(), Error> {
         let rejected: Rejected = line.parse()?;
         if rejected.style.is_empty() {
-            if self.failed.len() < most_items && take(left_bytes, line) {
-                self.failed.push(rejected);
-            } else {
-                self.failed_left_out += 1;
-            }
+            let Rejected { item, style, reason, .. } = rejected;
+            self.fail(Failed { item, style, reason, failure: None }, most_items);
             return Ok(());
         }
         if let Some(counts) = self.counts_of(&rejected.style) {
             counts.rejected += 1;
         }
-        if let Some(item) = places.get(&rejected.item).and_then(|place| self.items.get_mut(*place))
-            && take(left_bytes, line)
-        {
-            item.rejected.push(rejected);
-        }
+        worst.take(rejected.item, TextState::Rejected);
         Ok(())
+    }
+
+    fn fail(&mut self, failed: Failed, most_items: usize) {
+        if self.failed.len() < most_items {
+            self.failed.push(failed);
+        } else {
+            self.failed_left_out += 1;
+        }
     }
 
     fn counts_of(&mut self, style: &str) -> Option<&mut Counts> {
@@ -176,14 +173,58 @@ impl Records {
         }
         Some(self.counts.entry(style.to_owned()).or_default())
     }
+
+    /// Takes the items that are shown.
+    fn take(&mut self, run: &Path, order: &Order) -> Result<(), Error> {
+        let mut walks: BTreeMap<usize, WalkRecord> = BTreeMap::new();
+        let mut number = 0;
+        lines::each(&run.join(file::WALKS), |line| {
+            if let Some(place) = order.place(number) {
+                walks.insert(place, line.parse()?);
+            }
+            number += 1;
+            Ok(())
+        })?;
+        let whole = |walk| ItemRecord { walk, accepted: Vec::new(), rejected: Vec::new() };
+        self.items = walks.into_values().map(whole).collect();
+        self.left_out = number - self.items.len();
+        let mut places = BTreeMap::new();
+        for (place, item) in self.items.iter().enumerate() {
+            places.entry(item.walk.path.id.clone()).or_insert(place);
+        }
+        let mut left_bytes = order.left_bytes();
+        lines::each(&run.join(file::INSTRUCTIONS), |line| {
+            let named: PathOf = line.parse()?;
+            if let Some(item) = self.at(&places, &named.path.id).filter(|_| take(&mut left_bytes, line.len())) {
+                item.accepted.push(line.parse()?);
+            }
+            Ok(())
+        })?;
+        lines::each(&run.join(file::REJECTED), |line| {
+            let rejected: Rejected = line.parse()?;
+            let is_text = !rejected.style.is_empty();
+            let item = self.at(&places, &rejected.item).filter(|_| is_text && take(&mut left_bytes, line.len()));
+            if let Some(item) = item {
+                item.rejected.push(rejected);
+            }
+            Ok(())
+        })
+    }
+
+    fn at(&mut self, places: &BTreeMap<String, usize>, id: &str) -> Option<&mut ItemRecord> {
+        self.items.get_mut(*places.get(id)?)
+    }
 }
 
-/// Where each shown item stands.
-type Places = BTreeMap<String, usize>;
+/// The field of a line that names its path.
+#[derive(Deserialize)]
+pub(super) struct PathOf {
+    pub(super) path: Id,
+}
 
-/// Whether a line can be held too.
-fn take(left_bytes: &mut usize, line: &Line<'_>) -> bool {
-    let left = left_bytes.checked_sub(line.len());
+/// Whether so many bytes can be held too.
+pub(super) fn take(left_bytes: &mut usize, bytes: usize) -> bool {
+    let left = left_bytes.checked_sub(bytes);
     *left_bytes = left.unwrap_or(*left_bytes);
     left.is_some()
 }

@@ -5,7 +5,7 @@ use crate::{
     run::{Map, Rejected, WalkRecord, file},
     settings::Asked,
 };
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{
     Caption, Check, DVec3, Exchange, Finding, Gaze, Heading, Instruction, Look, Mention, MentionKind, Motion,
     Observation, Path as WalkPath, Provenance, SceneId, Sighting, Target, Verdict, Where, Witness, path::Stop,
@@ -169,8 +169,8 @@ fn a_walk_without_poses_shows_no_map_no_length_and_no_moves() {
     let mut video = walk("a");
     video.path.motion = Motion::Unknown;
     let run = run_of(&video, &good());
-    let (page, _) = page_of(run.path(), 1);
-    let (_, page) = page.split_once("<article").unwrap();
+    let (page, _) = page_of(run.path(), 100);
+    let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
     assert!(page.contains("The recording has no poses: nothing is known of turns and distances."));
     for told in [" m ·", " m</p>", "5.0 m", "0.0 m", "<svg viewBox", "floor 1", "class=\"then\"><svg", "make no map"] {
         assert!(!page.contains(told), "{told}: {page}");
@@ -216,7 +216,7 @@ fn every_link_leads_to_a_place_on_the_page_and_nothing_is_loaded() {
     for link in &links {
         assert!(link.strip_prefix('#').is_some_and(|place| places.contains(place)), "{link} leads nowhere");
     }
-    for frame in ["#w1-f2", "#w1-f3", "#w2-f2"] {
+    for frame in ["#w1-f1", "#w2-f1", "#w2-f2"] {
         assert!(links.contains(&frame));
     }
     assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("url(") && !page.contains("@import"));
@@ -234,7 +234,7 @@ fn mentions_are_links_to_their_frames() {
             .skip(1)
             .any(|rest| rest.split_once("<span class=\"told\">").is_some_and(|(_, rest)| rest.starts_with(word)))
     };
-    assert!(link("landmark", "w1-f2", "mirror") && link("turn", "w1-f2", "right") && link("target", "w1-f3", "lamp"));
+    assert!(link("landmark", "w2-f1", "mirror") && link("turn", "w2-f1", "right") && link("target", "w2-f2", "lamp"));
 }
 
 #[test]
@@ -253,7 +253,7 @@ fn only_the_first_items_are_shown_and_the_page_says_so() {
     let (page, written) = page_of(run.path(), 1);
     assert_eq!((written.items, written.left_out), (1, 1));
     assert_eq!(page.matches("<article ").count(), 1);
-    assert!(page.contains("the first 1 of 2 walks; 1 are left out"));
+    assert!(page.contains("shows 1 of 2 walks") && page.contains("left out: 1 walk."), "{page}");
     let none = page_of(run.path(), 0).1;
     assert_eq!((none.items, none.left_out), (0, 2));
 }
@@ -290,4 +290,141 @@ fn a_folder_that_is_no_run_is_refused_and_the_old_page_stays() {
     assert!(write(run.path(), &out, 100).unwrap_err().to_string().contains("walks.jsonl: line 1"));
     assert_eq!(fs::read_to_string(&out).unwrap(), before.0);
     assert!(write(&run.path().join("nothing"), &out, 100).is_err());
+}
+
+/// A run of so many items that pass; some are rejected or unverified, by their numbers.
+fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile::TempDir {
+    let run = run_of(&walk("a"), &good());
+    let ids: Vec<String> = (0..items).map(|number| format!("item-{number}")).collect();
+    let (mut walks, mut accepted, mut refused) = (String::new(), String::new(), String::new());
+    for (number, id) in ids.iter().enumerate() {
+        let mut walk = walk(id);
+        walk.path.scene = SceneId::new(format!("scene-{}", number % 3)).unwrap();
+        walks.push_str(&line(&walk));
+        let mut text = good();
+        text.text = format!("{} It is number {number}.", text.text);
+        if rejected.contains(&number) {
+            let reason = "turns: the path turns right there".to_owned();
+            refused.push_str(&line(&Rejected { item: id.clone(), style: "r2r".into(), reason, last: Some(text) }));
+            continue;
+        }
+        if unverified.contains(&number) {
+            text.verdict = Verdict::Unverified;
+        }
+        accepted.push_str(&line(&Record::new("house", walk.path, text)));
+    }
+    fs::write(run.path().join(file::WALKS), walks).unwrap();
+    fs::write(run.path().join(file::INSTRUCTIONS), accepted).unwrap();
+    fs::write(run.path().join(file::REJECTED), refused).unwrap();
+    run
+}
+
+/// The pages of a report by their names, and the overview's name.
+fn pages_of(run: &Path, most_items: usize, per_page: usize) -> (BTreeMap<String, String>, Written) {
+    let written = write_paged(run, &run.join(file::REPORT), most_items, per_page).unwrap();
+    let name = |page: &String| Path::new(page).file_name().unwrap().to_str().unwrap().to_owned();
+    let all = std::iter::once(&written.page).chain(&written.pages);
+    (all.map(|page| (name(page), fs::read_to_string(page).unwrap())).collect(), written)
+}
+
+/// What stands behind each opening, up to the end of the line.
+fn after<'a>(page: &'a str, opening: &str) -> Vec<&'a str> {
+    page.split(opening).skip(1).filter_map(|rest| rest.lines().next()).collect()
+}
+
+#[test]
+fn rejected_and_unverified_texts_come_first_however_late_they_are_in_the_run() {
+    let run = long_run(30, &[28], &[17, 29]);
+    let (page, written) = page_of(run.path(), 5);
+    assert_eq!((written.items, written.left_out), (5, 25));
+    let titles: Vec<&str> = page.split("<article ").skip(1).map(|item| after(item, "</a> <bdi>")[0]).collect();
+    let expected = ["item-28", "item-17", "item-29", "item-0", "item-1"].map(|id| format!("{id}</bdi></h2>"));
+    assert_eq!(titles, expected);
+}
+
+#[test]
+fn the_list_shows_text_scene_and_verdict_of_every_item_and_can_be_filtered() {
+    let run = long_run(6, &[4], &[3]);
+    let (page, _) = page_of(run.path(), 100);
+    let rows: Vec<&str> = page.split("<li class=\"row ").skip(1).collect();
+    let states: Vec<&str> = rows.iter().map(|row| row.split([' ', '"']).next().unwrap()).collect();
+    assert_eq!(states, ["rejected", "unverified", "passed", "passed", "passed", "passed"]);
+    for (row, told) in rows.iter().zip([
+        ["✗ rejected", "href=\"#w1\"", "scene-1</bdi>", "number 4.", "turns: the path turns right there"],
+        ["? unverified", "href=\"#w2\"", "scene-0</bdi>", "number 3.", "r2r"],
+        ["✓ passed", "href=\"#w3\"", "scene-0</bdi>", "number 0.", "r2r"],
+    ]) {
+        assert!(told.iter().all(|told| row.contains(told)), "{row}");
+    }
+    // Without a script: what is chosen hides the rows of another kind.
+    for filter in ["id=\"state-rejected\"", "id=\"scene-2\"", ":root:has(#scene-2:checked) .row:not(.scene-2)"] {
+        assert!(page.contains(filter), "{filter}");
+    }
+    assert!(!page.contains("<script") && !page.contains("id=\"style-0\""), "one style is no choice");
+}
+
+#[test]
+fn items_that_failed_stand_in_the_list_with_their_reasons() {
+    let run = long_run(2, &[], &[]);
+    let lines = [
+        "{\"item\":\"old\",\"style\":\"\",\"reason\":\"the model gave nothing\"}\n",
+        "{\"item\":\"new\",\"failure\":\"lost\",\"reason\":\"the simulator died\",\"more\":1}\n",
+    ];
+    fs::write(run.path().join(file::ERRORS), lines.concat()).unwrap();
+    let (page, _) = page_of(run.path(), 100);
+    let rows: Vec<&str> = page.split("<li class=\"row ").skip(1).collect();
+    assert_eq!(rows.len(), 4);
+    assert!(rows[0].starts_with("failed") && rows[0].contains("the model gave nothing"), "{}", rows[0]);
+    assert!(rows[1].contains("new") && rows[1].contains("lost: the simulator died"), "{}", rows[1]);
+    assert!(page.contains("2 items failed"));
+}
+
+#[test]
+fn many_walks_are_split_into_pages_whose_links_all_lead_somewhere() {
+    let run = long_run(7, &[6], &[]);
+    let (pages, written) = pages_of(run.path(), 100, 3);
+    assert_eq!(pages.keys().collect::<Vec<_>>(), ["report-1.html", "report-2.html", "report-3.html", "report.html"]);
+    assert_eq!((written.items, written.pages.len()), (7, 3));
+    let walks = |name: &str| pages[name].matches("<article ").count();
+    assert_eq!(["report.html", "report-1.html", "report-2.html", "report-3.html"].map(walks), [0, 3, 3, 1]);
+    assert!(pages["report-1.html"].contains("item-6"), "the rejected one is on the first page");
+    assert!(pages["report.html"].contains("href=\"report-3.html#w7\""));
+    for (name, page) in &pages {
+        for link in values(page, "href") {
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            let target = &pages[if file.is_empty() { name } else { file }];
+            assert!(place.is_empty() || values(target, "id").contains(&place), "{name}: {link} leads nowhere");
+        }
+        let places = values(page, "id");
+        assert_eq!(places.iter().collect::<BTreeSet<_>>().len(), places.len(), "{name}: two places of one name");
+    }
+    // A shorter report takes the longer one's pages away, and leaves nothing unfinished.
+    let (pages, _) = pages_of(run.path(), 2, 3);
+    assert_eq!(pages.len(), 1);
+    let left = fs::read_dir(run.path()).unwrap().filter_map(|entry| entry.unwrap().file_name().into_string().ok());
+    let left: Vec<String> = left.filter(|name| name.contains("report")).collect();
+    assert_eq!(left, ["report.html"]);
+}
+
+#[test]
+fn frames_are_counted_from_0_as_on_the_terminal() {
+    let run = run_of(&walk("a"), &good());
+    let (page, _) = page_of(run.path(), 100);
+    let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
+    assert_eq!(after(page, "<li class=\"frame\" id=\"").len(), 3);
+    for told in ["id=\"w2-f0\"", "<span class=\"badge\">0</span>", "aria-label=\"Frame 0\"", "from frame 0 to frame 2"]
+    {
+        assert!(page.contains(told), "{told}");
+    }
+    assert!(!page.contains("w2-f3") && page.contains("title=\"landmark, frame 1\""));
+}
+
+#[test]
+fn print_is_bounded() {
+    let run = long_run(120, &[], &[]);
+    let (pages, _) = pages_of(run.path(), 1000, 50);
+    let overview = &pages["report.html"];
+    assert!(overview.contains(".row:nth-child(n + 101) { display: none; }"));
+    assert!(overview.contains("The first 100 of 120 texts are printed."));
+    assert!(pages.iter().all(|(_, page)| page.matches("<article ").count() <= 50));
 }

@@ -1,0 +1,99 @@
+//! Which items of a run the report shows, and in which order.
+
+use super::{
+    records::{PathOf, take},
+    texts::TextState,
+};
+use crate::{error::Error, run::lines};
+use std::{collections::BTreeMap, path::Path};
+
+/// The worst that became of an item's texts, for items with a text that did not pass.
+#[derive(Default)]
+pub(super) struct Worst(BTreeMap<String, TextState>);
+
+/// The items that are shown, by the number of their line.
+pub(super) struct Order {
+    places: BTreeMap<usize, usize>,
+    left_bytes: usize,
+}
+
+impl Worst {
+    /// Takes what became of a text.
+    pub(super) fn take(&mut self, item: String, state: TextState) {
+        if state != TextState::Passed {
+            let worst = self.0.entry(item).or_insert(state);
+            *worst = (*worst).min(state);
+        }
+    }
+
+    fn of(&self, item: &str) -> TextState {
+        self.0.get(item).copied().unwrap_or(TextState::Passed)
+    }
+}
+
+impl Order {
+    /// The first `most` items of a file of walks, the worst before the others, as far as their lines fit into so many bytes.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or a line names no path.
+    pub(super) fn of(walks: &Path, most: usize, most_bytes: usize, worst: &Worst) -> Result<Self, Error> {
+        let mut found: BTreeMap<TextState, Vec<(usize, usize)>> = BTreeMap::new();
+        let mut number = 0;
+        lines::each(walks, |line| {
+            let named: PathOf = line.parse()?;
+            let same = found.entry(worst.of(&named.path.id)).or_default();
+            if same.len() < most {
+                same.push((number, line.len()));
+            }
+            number += 1;
+            Ok(())
+        })?;
+        let mut left_bytes = most_bytes;
+        let in_order = found.into_values().flatten().take(most);
+        // Once one is left out, so are all after it: the first are shown, not those that happen to be small.
+        let fitting = in_order.map_while(|(number, bytes)| take(&mut left_bytes, bytes).then_some(number));
+        let places = fitting.enumerate().map(|(place, number)| (number, place)).collect();
+        Ok(Self { places, left_bytes })
+    }
+
+    /// Where the item of a line stands; none where it is not shown.
+    pub(super) fn place(&self, line: usize) -> Option<usize> {
+        self.places.get(&line).copied()
+    }
+
+    /// What may still be held of what was written for them.
+    pub(super) fn left_bytes(&self) -> usize {
+        self.left_bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(most: usize, most_bytes: usize) -> Vec<(usize, usize)> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("walks.jsonl");
+        let line = |id: &str| format!("{{\"path\":{{\"id\":\"{id}\"}}}}\n");
+        std::fs::write(&file, ["a", "b", "c", "d"].map(line).concat()).unwrap();
+        let mut worst = Worst::default();
+        for (item, state) in [
+            ("b", TextState::Unverified),
+            ("d", TextState::Passed),
+            ("d", TextState::Rejected),
+            ("d", TextState::Unverified),
+        ] {
+            worst.take(item.to_owned(), state);
+        }
+        let order = Order::of(&file, most, most_bytes, &worst).unwrap();
+        (0..4).filter_map(|line| Some((order.place(line)?, line))).collect::<BTreeMap<_, _>>().into_iter().collect()
+    }
+
+    #[test]
+    fn the_worst_come_first_and_the_others_as_they_were() {
+        assert_eq!(shown(10, 1000), [(0, 3), (1, 1), (2, 0), (3, 2)]);
+        assert_eq!(shown(2, 1000), [(0, 3), (1, 1)]);
+        assert_eq!(shown(0, 1000), []);
+        assert_eq!(shown(10, 60), [(0, 3), (1, 1), (2, 0)]);
+    }
+}

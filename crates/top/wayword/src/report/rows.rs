@@ -1,0 +1,147 @@
+//! The list of all texts: what was written where, and what became of it.
+
+use super::{
+    records::{Failed, ItemRecord, Records},
+    texts::{TextState, state},
+};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Longest text of a row, characters; the walk shows it whole.
+const MOST_CHARS: usize = 700;
+/// Most scenes that can be chosen from.
+const MOST_SCENES: usize = 200;
+/// Rows that are printed.
+const PRINTED: usize = 100;
+
+/// The list.
+#[derive(Debug, Serialize)]
+pub(super) struct Rows {
+    rows: Vec<Row>,
+    /// What can be chosen: verdicts with their numbers, and styles and scenes where there are several.
+    states: Vec<(State, usize)>,
+    styles: Vec<String>,
+    scenes: Vec<String>,
+    printed: usize,
+}
+
+/// A text.
+#[derive(Debug, Serialize)]
+struct Row {
+    state: State,
+    /// Where the walk is; none where there is no walk.
+    href: Option<String>,
+    id: String,
+    scene: Option<String>,
+    style: String,
+    /// Place among the scenes and styles that can be chosen.
+    scene_at: Option<usize>,
+    style_at: Option<usize>,
+    text: String,
+    /// Why it failed or was rejected.
+    reason: Option<String>,
+}
+
+/// What became of a text, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum State {
+    /// The item failed before anything was written.
+    Failed,
+    Rejected,
+    Unverified,
+    /// Nothing was written yet.
+    Unwritten,
+    Passed,
+}
+
+impl From<TextState> for State {
+    fn from(state: TextState) -> Self {
+        match state {
+            TextState::Rejected => Self::Rejected,
+            TextState::Unverified => Self::Unverified,
+            TextState::Passed => Self::Passed,
+        }
+    }
+}
+
+impl Rows {
+    /// The list of a run; `href` tells where the item at a place (from 0) is.
+    pub(super) fn of(records: &Records, href: impl Fn(usize) -> String) -> Self {
+        let mut rows: Vec<Row> = records.failed.iter().map(failed).collect();
+        for (at, item) in records.items.iter().enumerate() {
+            rows.extend(of_item(item, &href(at)));
+        }
+        rows.sort_by_key(|row| row.state);
+        let styles = several(rows.iter().map(|row| row.style.as_str()), usize::MAX);
+        let scenes = several(rows.iter().filter_map(|row| row.scene.as_deref()), MOST_SCENES);
+        for row in &mut rows {
+            row.style_at = styles.binary_search(&row.style).ok();
+            row.scene_at = row.scene.as_ref().and_then(|scene| scenes.binary_search(scene).ok());
+        }
+        let mut states: Vec<(State, usize)> = Vec::new();
+        for row in &rows {
+            match states.last_mut() {
+                Some((state, number)) if *state == row.state => *number += 1,
+                _ => states.push((row.state, 1)),
+            }
+        }
+        Self { rows, states, styles, scenes, printed: PRINTED }
+    }
+}
+
+/// Different names in their order; none where there is no choice, or too much of it.
+fn several<'n>(names: impl Iterator<Item = &'n str>, most: usize) -> Vec<String> {
+    let names: BTreeSet<&str> = names.filter(|name| !name.is_empty()).collect();
+    if (2..=most).contains(&names.len()) { names.into_iter().map(str::to_owned).collect() } else { Vec::new() }
+}
+
+fn failed(failed: &Failed) -> Row {
+    let kind = failed.failure.as_ref().map_or_else(String::new, |kind| format!("{kind}: "));
+    Row {
+        state: State::Failed,
+        href: None,
+        id: failed.item.clone(),
+        scene: None,
+        style: failed.style.clone(),
+        scene_at: None,
+        style_at: None,
+        text: String::new(),
+        reason: Some(short(&format!("{kind}{}", failed.reason))),
+    }
+}
+
+fn of_item(item: &ItemRecord, href: &str) -> Vec<Row> {
+    let row = |state, style: &str, text: &str, reason: Option<&str>| Row {
+        state,
+        href: Some(href.to_owned()),
+        id: item.walk.path.id.clone(),
+        scene: Some(item.walk.path.scene.to_string()),
+        style: style.to_owned(),
+        scene_at: None,
+        style_at: None,
+        text: short(text),
+        reason: reason.map(short),
+    };
+    let accepted = item
+        .accepted
+        .iter()
+        .map(|instruction| row(state(instruction.verdict).into(), &instruction.style, &instruction.text, None));
+    let rejected = item.rejected.iter().map(|rejected| {
+        let text = rejected.last.as_ref().map_or("", |last| last.text.as_str());
+        row(State::Rejected, &rejected.style, text, Some(&rejected.reason))
+    });
+    let mut rows: Vec<Row> = accepted.chain(rejected).collect();
+    if rows.is_empty() {
+        rows.push(row(State::Unwritten, "", "", None));
+    }
+    rows.sort_by(|a, b| a.style.cmp(&b.style));
+    rows
+}
+
+fn short(text: &str) -> String {
+    match text.char_indices().nth(MOST_CHARS) {
+        Some((end, _)) => format!("{} …", &text[..end]),
+        None => text.to_owned(),
+    }
+}
