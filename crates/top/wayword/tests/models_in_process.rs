@@ -85,7 +85,7 @@ mod with_models {
         assert_eq!((&found["file"], &found["identity"]), (&file.to_str().unwrap().into(), &COMMIT.into()));
         let listed = models(cache.path(), &["list"], &reach);
         assert!(listed.out.starts_with("hf/org/name ") && listed.out.contains("0123456789ab "), "{listed:?}");
-        assert!(listed.out.contains("13 B in  1 files  main\n1 models in "), "{listed:?}");
+        assert!(listed.out.contains("13 B in   1 file  main\n1 model in "), "{listed:?}");
         assert_eq!(heads.lock().unwrap().len(), sent, "path and list asked the hub");
         for said in [ran.err, listed.out, listed.err] {
             assert!(!said.contains(TOKEN), "{said}");

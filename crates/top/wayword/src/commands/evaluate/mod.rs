@@ -14,7 +14,7 @@ use crate::{
     world,
 };
 use figures::{Drawn, Report};
-use handed_in::{All, Scored, score_all};
+use handed_in::{Scored, score_all};
 use refusal::{Refusal, no_submission};
 use std::{fs, path::Path};
 use wayword_formats::submission;
