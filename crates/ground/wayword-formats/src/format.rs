@@ -85,7 +85,7 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 /// # Errors
 /// When it cannot be read, or its beginning is none of these.
 pub fn detect(file: &Path) -> Result<Format, FormatError> {
-    let mut parser = serde_json::Deserializer::from_reader(input::open(file)?);
+    let mut parser = input::parser(file)?;
     let told = RefCell::new(None);
     // An error is what stopping early looks like, too: what counts is what was told before.
     let read = (&mut parser).deserialize_any(Beginning(&told));

@@ -1,40 +1,65 @@
 //! Files in: bounded, unzipped where they are gzip, item by item.
 
-use crate::{FormatError, Item, ItemPlace, WrongItem, limits, strict::Strict};
+use crate::{FormatError, Item, ItemPlace, WrongItem, limits, strict::Strict, tokens::Tokens};
 use flate2::bufread::MultiGzDecoder;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, de::IoRead};
 use std::{
     cell::RefCell,
     fmt,
-    fs::File,
-    io::{self, BufRead, BufReader, Read},
+    fs::{self, File},
+    io::{self, BufRead, BufReader, Cursor, Read},
     path::Path,
 };
 
 const TOO_LARGE: &str = "it is larger than 1 GiB";
 const NOT_JSON: &str = "fetch the file again, or mend it there";
 
-/// Opens a file; gzip is told by its first bytes, not by its name.
+/// Most bytes that are read of a file at a time.
+const BUFFER_BYTES: usize = 1 << 16;
+/// Most other fields of an object around a list of items.
+const FIELDS_AROUND: usize = 20;
+
+/// Opens a file; gzip is told by its first bytes, not by its name. The mark that Windows' editors put before UTF-8 is left out.
 pub(crate) fn open(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     let failed = |source| FormatError::io(file, "open", source);
-    let opened = File::open(file).map_err(failed)?;
-    let meta = opened.metadata().map_err(failed)?;
+    // Whoever opens a pipe waits until somebody writes into it, so this is asked first.
+    let meta = fs::metadata(file).map_err(failed)?;
     if !meta.is_file() {
-        return Err(FormatError::document(file, "it is not a file", "give a dataset file"));
+        let what = if meta.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(FormatError::document(file, format!("it is not a file but {what}"), "give a dataset file"));
     }
+    let opened = File::open(file).map_err(failed)?;
     if meta.len() > limits::FILE_BYTES {
         return Err(FormatError::document(file, TOO_LARGE, "split it into parts"));
     }
-    let mut plain = BufReader::with_capacity(1 << 16, opened);
+    let mut plain = BufReader::with_capacity(BUFFER_BYTES, opened);
     let is_gzip = plain.fill_buf().map_err(|source| FormatError::io(file, "read", source))?.starts_with(&[0x1f, 0x8b]);
     // The file may grow while it is read, and gzip may hold a thousand times its size.
-    Ok(if is_gzip {
-        let unzipped = Bounded { inner: MultiGzDecoder::new(plain), left: limits::FILE_BYTES };
-        Box::new(BufReader::with_capacity(1 << 16, unzipped))
-    } else {
-        Box::new(BufReader::with_capacity(1 << 16, Bounded { inner: plain, left: limits::FILE_BYTES }))
-    })
+    let input: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(plain)) } else { Box::new(plain) };
+    let input = BufReader::with_capacity(BUFFER_BYTES, Bounded { inner: input, left: limits::FILE_BYTES });
+    without_mark(file, input)
+}
+
+/// A text without the mark of its encoding.
+fn without_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
+    let mut start = Vec::new();
+    input.by_ref().take(3).read_to_end(&mut start).map_err(|source| FormatError::io(file, "read", source))?;
+    match start.as_slice() {
+        [0xef, 0xbb, 0xbf] => Ok(Box::new(input)),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
+            Err(FormatError::document(file, "it is text in UTF-16", "save it as UTF-8"))
+        }
+        _ => Ok(Box::new(Cursor::new(start).chain(input))),
+    }
+}
+
+/// A parser for a file that is one JSON value.
+pub(crate) fn parser(
+    file: &Path,
+) -> Result<serde_json::Deserializer<IoRead<BufReader<Tokens<Box<dyn BufRead>>>>>, FormatError> {
+    let tokens = Tokens::new(open(file)?);
+    Ok(serde_json::Deserializer::from_reader(BufReader::with_capacity(BUFFER_BYTES, tokens)))
 }
 
 /// A reader that fails, rather than ends, where too much comes out of it.
@@ -64,7 +89,7 @@ pub(crate) fn each_value(
     file: &Path,
     mut take: impl FnMut(ItemPlace, Value) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
-    let mut parser = serde_json::Deserializer::from_reader(open(file)?);
+    let mut parser = parser(file)?;
     let items = Items::new(file, &mut take);
     let read = (&items).deserialize(&mut parser).and_then(|()| parser.end());
     read.map_err(|error| items.explain(&error))
@@ -77,7 +102,7 @@ pub(crate) fn each_item_in(
     field: &'static str,
     mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
 ) -> Result<Map<String, Value>, FormatError> {
-    let mut parser = serde_json::Deserializer::from_reader(open(file)?);
+    let mut parser = parser(file)?;
     let mut take = |place, value| take(Item::new(file, place, value)?);
     let items = Items::new(file, &mut take);
     let read = Within { items: &items, field }.deserialize(&mut parser);
@@ -164,7 +189,9 @@ impl<'a> Items<'a> {
         if let Some(refused) = progress.refused.take() {
             return refused;
         }
-        let problem = format!("{} (line {}, column {})", bare(error), error.line(), error.column());
+        // Of what the file system or a bound ended, `serde_json` does not know the place.
+        let place = || format!(" (line {}, column {})", error.line(), error.column());
+        let problem = bare(error) + &if error.is_io() { String::new() } else { place() };
         if progress.inside {
             broken(self.file, ItemPlace::Item(progress.index), self.field.take(), problem)
         } else {
@@ -238,6 +265,9 @@ impl<'de> Visitor<'de> for Within<'_, '_> {
         while let Some(key) = entries.next_key::<String>()? {
             if rest.contains_key(&key) || (found && key == self.field) {
                 return Err(A::Error::custom(format_args!("field {key:?} is given twice")));
+            }
+            if rest.len() > FIELDS_AROUND {
+                return Err(A::Error::custom("it has too many fields"));
             }
             if key == self.field {
                 found = true;

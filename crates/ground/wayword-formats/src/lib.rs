@@ -22,6 +22,7 @@ mod splits;
 mod strict;
 pub mod submission;
 mod tally;
+mod tokens;
 pub mod vlnce;
 mod vocabulary;
 

@@ -8,8 +8,10 @@ pub(crate) const ITEMS: usize = 1_000_000;
 pub(crate) const VALUES_PER_ITEM: usize = 200_000;
 /// Most JSON values that are held of a whole file (or of files that are merged).
 pub(crate) const VALUES_KEPT: usize = 20_000_000;
-/// Longest line of a JSON Lines file, bytes.
+/// Longest line of a JSON Lines file, bytes; the texts of one item of a JSON list hold no more either.
 pub(crate) const LINE_BYTES: usize = 16 << 20;
+/// Longest JSON text or number of a file, bytes: fifty times the longest instruction.
+pub(crate) const TOKEN_BYTES: usize = 1 << 20;
 /// Most nodes or positions of one path.
 pub(crate) const PATH_NODES: usize = 1_000;
 /// Longest instruction, bytes. A writer's is not longer either: what a run writes can be read again.

@@ -19,7 +19,8 @@ impl<'de> DeserializeSeed<'de> for Strict<'_> {
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
         let (mut track, left) = (Track::new(), Cell::new(limits::VALUES_PER_ITEM));
-        let part = Part { left: &left, is_twice: false };
+        let bytes = Cell::new(limits::LINE_BYTES);
+        let part = Part { left: &left, bytes: &bytes, is_twice: false };
         let read = part.deserialize(serde_path_to_error::Deserializer::new(deserializer, &mut track));
         read.inspect_err(|_| *self.0.borrow_mut() = field(&track.path()))
     }
@@ -40,11 +41,20 @@ fn field(path: &Path) -> String {
     field
 }
 
-/// Reads a part of a value, which may have so many more.
+/// Reads a part of a value, which may have so many more, and so many more bytes of text.
 #[derive(Clone, Copy)]
 struct Part<'l> {
     left: &'l Cell<usize>,
+    bytes: &'l Cell<usize>,
     is_twice: bool,
+}
+
+impl Part<'_> {
+    fn count<E: Error>(self, text: &str) -> Result<(), E> {
+        let left = self.bytes.get().checked_sub(text.len());
+        self.bytes.set(left.ok_or_else(|| E::custom("it has more than 16 MiB of text"))?);
+        Ok(())
+    }
 }
 
 impl<'de> DeserializeSeed<'de> for Part<'_> {
@@ -88,6 +98,7 @@ impl<'de> Visitor<'de> for Part<'_> {
     }
 
     fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
+        self.count(value)?;
         Ok(value.into())
     }
 
@@ -102,6 +113,7 @@ impl<'de> Visitor<'de> for Part<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
         let mut map = Map::new();
         while let Some(key) = entries.next_key::<String>()? {
+            self.count(&key)?;
             let value = entries.next_value_seed(Part { is_twice: map.contains_key(&key), ..self })?;
             map.insert(key, value);
         }

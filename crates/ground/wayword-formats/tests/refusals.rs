@@ -82,6 +82,58 @@ fn evidence_that_leads_out_of_its_text_or_path_is_refused() {
 }
 
 #[test]
+fn a_long_text_is_refused_before_it_is_held() {
+    let long = format!("\"{}\"", "x".repeat(3 << 20));
+    for (format, text, place) in [
+        (Format::R2r, long.clone(), ""),
+        (Format::R2r, format!("[{{\"scan\": {long}}}]"), "item 0: field \"scan\""),
+        (Format::Vlnce, format!("{{\"episodes\": [{{{long}: 1}}]}}"), "item 0"),
+        (Format::Vlnce, format!("{{\"notes\": {long}}}"), ""),
+    ] {
+        let told = refusal(format, "data.json", text.as_bytes());
+        assert!(told.starts_with(&format!("data.json: {place}")), "{told}");
+        assert!(told.contains("a text or number in it is longer than 1 MiB"), "{told}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("data.json");
+    std::fs::write(&file, &long).unwrap();
+    assert!(detect(&file).unwrap_err().to_string().contains("longer than 1 MiB"));
+    let many = refusal_of(Format::R2r, "/distance", json!(vec!["x".repeat(1 << 20); 17]));
+    assert!(many.contains("it has more than 16 MiB of text"), "{many}");
+    let around = format!("{{{}\"episodes\": []}}", (0..30).map(|n| format!("\"f{n}\": 1,")).collect::<String>());
+    assert!(refusal(Format::Vlnce, "data.json", around.as_bytes()).contains("too many fields"));
+}
+
+#[test]
+fn a_mark_before_utf_8_is_passed_over_and_utf_16_is_named() {
+    for (format, name) in [(Format::R2r, "data.json"), (Format::Rxr, "data.jsonl"), (Format::Vlnce, "data.json")] {
+        let text = common::text(format, &common::items(format));
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(name);
+        std::fs::write(&file, format!("\u{feff}{text}")).unwrap();
+        let marked = format.read(&file).unwrap();
+        assert_eq!(detect(&file).unwrap(), format);
+        std::fs::write(&file, &text).unwrap();
+        assert_eq!(format.read(&file).unwrap(), marked);
+        let wide: Vec<u8> = format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(refusal(format, name, &wide), format!("{name}: it is text in UTF-16; save it as UTF-8"));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_and_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.json");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for told in
+        [Format::R2r.read(&pipe).unwrap_err(), detect(&pipe).unwrap_err(), detect("/dev/zero".as_ref()).unwrap_err()]
+    {
+        assert!(told.to_string().contains("it is not a file but a pipe or a device"), "{told}");
+    }
+}
+
+#[test]
 fn limits_on_texts_and_lists_hold() {
     let long = refusal_of(Format::R2r, "/instructions/0", json!("x".repeat(20_001)));
     assert!(long.contains("field \"instructions[0]\": it has 20001 bytes"), "{long}");
@@ -122,6 +174,6 @@ fn what_is_no_dataset_is_told_so() {
         let error = detect(&file).unwrap_err().to_string();
         assert!(error.contains("notes.txt: its beginning is that of no known format"), "{text:?}: {error}");
     }
-    assert!(detect(folder.path()).unwrap_err().to_string().contains("is not a file"));
+    assert!(detect(folder.path()).unwrap_err().to_string().contains("is not a file but a folder"));
     assert!(detect(&folder.path().join("none")).unwrap_err().to_string().contains("cannot open it"));
 }

@@ -30,11 +30,15 @@ impl From<FileError> for PlatformError {
 /// A file's bytes; `None` where there is none.
 pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<Vec<u8>>, FileError> {
     let wrong = |error: std::io::Error| FileError::new(file, error.to_string(), hint);
-    let opened = match std::fs::File::open(file) {
-        Ok(opened) => opened,
+    let about = match std::fs::metadata(file) {
+        Ok(about) => about,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(wrong(error)),
     };
+    if let Some(reason) = wayword_world::files::irregular(&about) {
+        return Err(FileError::new(file, reason, hint));
+    }
+    let opened = std::fs::File::open(file).map_err(wrong)?;
     let mut bytes = Vec::new();
     // One more than allowed tells that there is more, whatever the file system says of its length.
     std::io::Read::read_to_end(&mut std::io::Read::take(opened, most + 1), &mut bytes).map_err(wrong)?;
@@ -52,7 +56,5 @@ pub(crate) fn bytes(file: &Path, most: u64, hint: &'static str) -> Result<Vec<u8
 /// A file's text; `None` where there is none.
 pub(crate) fn text_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<String>, FileError> {
     let Some(bytes) = bytes_if_there(file, most, hint)? else { return Ok(None) };
-    let text = String::from_utf8(bytes);
-    text.map(Some)
-        .map_err(|error| FileError::new(file, format!("byte {}: not UTF-8", error.utf8_error().valid_up_to()), hint))
+    wayword_world::files::text(bytes).map(Some).map_err(|reason| FileError::new(file, reason, hint))
 }

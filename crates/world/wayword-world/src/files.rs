@@ -2,7 +2,7 @@
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::{
-    fs::File,
+    fs::{self, File, Metadata},
     io::{Cursor, ErrorKind, Read},
     path::Path,
 };
@@ -19,22 +19,66 @@ pub fn wrong(file: &Path, reason: impl Into<String>, hint: &'static str) -> Plat
     PlatformError::File { file: file.to_owned(), reason: reason.into(), hint }
 }
 
+/// What lies at a path that is no plain file, in words. Whoever opens a pipe waits until somebody writes into it.
+#[must_use]
+pub fn irregular(about: &Metadata) -> Option<&'static str> {
+    if about.is_dir() {
+        return Some("is a folder, not a file");
+    }
+    (!about.is_file()).then_some("is a pipe or a device, not a file")
+}
+
 /// The bytes of a file, at most `max_bytes` of them; `None` where there is no such file.
 ///
 /// # Errors
 /// When it cannot be read, or has more.
 pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<Vec<u8>>, PlatformError> {
-    let opened = match File::open(file) {
-        Ok(opened) => opened,
+    let failed = |error: std::io::Error| wrong(file, error.to_string(), hint);
+    let too_large = || wrong(file, format!("has more than {max_bytes} bytes, which no such file has"), hint);
+    let about = match fs::metadata(file) {
+        Ok(about) => about,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(wrong(file, error.to_string(), hint)),
+        Err(error) => return Err(failed(error)),
     };
-    let mut bytes = Vec::new();
-    opened.take(max_bytes + 1).read_to_end(&mut bytes).map_err(|error| wrong(file, error.to_string(), hint))?;
-    if bytes.len() as u64 > max_bytes {
-        return Err(wrong(file, format!("has more than {max_bytes} bytes, which no such file has"), hint));
+    if let Some(reason) = irregular(&about) {
+        return Err(wrong(file, reason, hint));
     }
-    Ok(Some(bytes))
+    if about.len() > max_bytes {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    // It may grow while it is read.
+    File::open(file).and_then(|file| file.take(max_bytes + 1).read_to_end(&mut bytes)).map_err(failed)?;
+    if bytes.len() as u64 > max_bytes { Err(too_large()) } else { Ok(Some(bytes)) }
+}
+
+/// The bytes of a JSON file, as [`bytes_if_there`] reads them, without the mark that Windows' editors put before UTF-8.
+///
+/// # Errors
+/// As [`bytes_if_there`].
+pub fn json_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<Vec<u8>>, PlatformError> {
+    Ok(bytes_if_there(file, max_bytes, hint)?.map(without_mark))
+}
+
+/// The mark that says that a text is in UTF-8.
+const MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+
+fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
+    if bytes.starts_with(&MARK) {
+        bytes.drain(..MARK.len());
+    }
+    bytes
+}
+
+/// Bytes as text, without a mark of UTF-8.
+///
+/// # Errors
+/// In words, when they are another encoding's.
+pub fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err("is text in UTF-16; save it as UTF-8");
+    }
+    String::from_utf8(without_mark(bytes)).map_err(|_| "is not text in UTF-8")
 }
 
 /// The text of a file, at most `max_bytes` of it; `None` where there is no such file.
@@ -45,7 +89,7 @@ pub fn text_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<
     let Some(bytes) = bytes_if_there(file, max_bytes, hint)? else {
         return Ok(None);
     };
-    String::from_utf8(bytes).map(Some).map_err(|_| wrong(file, "is not text in UTF-8", hint))
+    text(bytes).map(Some).map_err(|reason| wrong(file, reason, hint))
 }
 
 /// Decodes a JPEG or PNG file, within bounds.
@@ -101,6 +145,35 @@ mod tests {
             assert_eq!((read.width_px(), read.height_px()), size, "{orientation}");
             assert!(read.rgb()[0].abs_diff(top_left) < 10, "{orientation}: {}", read.rgb()[0]);
         }
+    }
+
+    /// A text as it is read from a file.
+    fn read(bytes: &[u8]) -> Result<Option<String>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("poses.csv");
+        fs::write(&file, bytes).unwrap();
+        text_if_there(&file, 100, "?").map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_mark_before_utf_8_is_passed_over_and_utf_16_is_named() {
+        assert_eq!(read(b"\xef\xbb\xbfx,y"), Ok(Some("x,y".to_owned())));
+        assert_eq!(read(b"x,y"), Ok(Some("x,y".to_owned())));
+        assert!(read(b"\xff\xfex\0").unwrap_err().contains("UTF-16"));
+        assert!(read(b"x\xff").unwrap_err().contains("not text in UTF-8"));
+        assert!(read(&[b'x'; 101]).unwrap_err().contains("more than 100 bytes"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_is_refused_and_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for (file, told) in [(pipe.as_path(), "is a pipe or a device"), (folder.path(), "is a folder")] {
+            assert!(bytes_if_there(file, 100, "?").unwrap_err().to_string().contains(told));
+        }
+        assert!(bytes_if_there(&folder.path().join("none"), 100, "?").unwrap().is_none());
     }
 
     #[test]

@@ -39,16 +39,35 @@ pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> Line {
     }
 }
 
-/// A text without what could move a cursor or break a line, and not too long.
+/// Whether a character does something to a terminal, or to the text around it, that nobody sees: it moves the cursor, turns the
+/// direction of writing, or has no width.
+#[must_use]
+pub fn is_unseen(c: char) -> bool {
+    c.is_control()
+        || matches!(c,
+            // Soft hyphen, and signs that only join, part or turn others (Unicode's category Cf).
+            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
+            | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
+            // Ends of lines and paragraphs.
+            | '\u{2028}' | '\u{2029}')
+}
+
+/// A text without what could move a cursor, break a line or turn it round, and not too long.
 #[must_use]
 pub fn plain(text: &str, max_chars: usize) -> String {
-    text.chars().filter(|c| !c.is_control()).take(max_chars).collect()
+    text.chars().filter(|c| !is_unseen(*c)).take(max_chars).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::io::Cursor;
+
+    #[test]
+    fn what_a_world_says_turns_nothing_round_and_hides_nothing() {
+        assert_eq!(plain("a\u{202e}b\u{200b}c\u{1b}[31m\u{2066}d\u{feff}", 100), "abc[31md");
+        assert_eq!(plain("Stra\u{df}e \u{4e2d} \u{627}", 100), "Stra\u{df}e \u{4e2d} \u{627}");
+    }
 
     #[test]
     fn lines_are_cut_at_their_bound_and_half_lines_are_told_from_whole_ones() {

@@ -104,7 +104,7 @@ pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<Ray> {
 /// # Errors
 /// When it is not such a file; the message names the object and the field.
 pub(crate) fn read(file: &Path, viewpoint: &ViewpointId) -> Result<Option<Vec<Listed>>, PlatformError> {
-    let Some(bytes) = read::bytes_if_there(file, MAX_BYTES, HINT)? else {
+    let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);
     };
     parse(&bytes, viewpoint).map(Some).map_err(|reason| read::wrong(file, reason, HINT))

@@ -48,7 +48,7 @@ impl Viewpoint {
 /// # Errors
 /// When it is not such a file; the message names the viewpoint and the field.
 pub(crate) fn read(file: &Path) -> Result<Option<Connectivity>, PlatformError> {
-    let Some(bytes) = read::bytes_if_there(file, MAX_BYTES, HINT)? else {
+    let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);
     };
     parse(&bytes).map(Some).map_err(|reason| read::wrong(file, reason, HINT))

@@ -17,7 +17,7 @@ pub(crate) type ObjectPositions = BTreeMap<String, BTreeMap<String, DVec3>>;
 /// # Errors
 /// When it is not such a file; the message names the scan and the object.
 pub(crate) fn read(file: &Path) -> Result<ObjectPositions, PlatformError> {
-    let Some(bytes) = read::bytes_if_there(file, MAX_BYTES, HINT)? else {
+    let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(ObjectPositions::new());
     };
     parse(&bytes).map_err(|reason| read::wrong(file, reason, HINT))

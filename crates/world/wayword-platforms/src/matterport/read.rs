@@ -5,7 +5,7 @@ use std::path::Path;
 use wayword_core::{Image, PlatformError};
 use wayword_world::files;
 
-pub(crate) use wayword_world::files::{bytes_if_there, text_if_there, wrong};
+pub(crate) use wayword_world::files::{bytes_if_there, json_if_there, text_if_there, wrong};
 
 /// Largest file of a picture.
 const MAX_PICTURE_BYTES: u64 = 32 << 20;
