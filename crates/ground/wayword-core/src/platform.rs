@@ -19,6 +19,15 @@ pub trait Platform: Send + Sync {
     /// When its data cannot be read.
     fn scenes(&self) -> Result<Vec<SceneId>, PlatformError>;
 
+    /// Looks whether scenes can be read, where that can be known before anything is made of them. One that is not there is no
+    /// concern of this.
+    ///
+    /// # Errors
+    /// When one cannot.
+    fn check(&self, _scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        Ok(())
+    }
+
     /// The viewpoint graph of a scene.
     ///
     /// # Errors
@@ -100,6 +109,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         (**self).scenes()
+    }
+
+    fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        (**self).check(scenes)
     }
 
     fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {

@@ -27,7 +27,7 @@ pub enum Item {
 /// The items of a run, in their order.
 ///
 /// # Errors
-/// When the episodes cannot be read, or nothing is left.
+/// When the episodes or their scenes cannot be read, or nothing is left.
 pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
     let mut items = match &settings.episodes {
         Some(file) => episodes(wayword_formats::read(file)?, settings)?,
@@ -37,6 +37,7 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
     if items.is_empty() {
         return Err(Error::usage("there is nothing to do: no episode is left", "check --scan, --limit and --episodes"));
     }
+    platform.check(&items.iter().map(Item::scene).collect())?;
     Ok(items)
 }
 
@@ -87,6 +88,14 @@ impl Item {
         match self {
             Self::Episode(episode) => episode.id.clone(),
             Self::Random { id, .. } => id.clone(),
+        }
+    }
+
+    /// The scene in which its path is looked for first.
+    fn scene(&self) -> &SceneId {
+        match self {
+            Self::Episode(episode) => &episode.scene,
+            Self::Random { scenes, first, .. } => &scenes[*first],
         }
     }
 

@@ -36,8 +36,9 @@ fn walk(stage: &Stage, poses: bool) {
 /// Instructions for one path through a recording, by the models of the test.
 fn generate(stage: &Stage, data: &str, args: &[&str]) -> Ran {
     let models = stage.models();
-    let mut all = vec!["generate", "--platform", "recording", "--data", data, "--paths", "1", "--out", "run", "--json"];
+    let mut all = vec!["generate", "--platform", "recording", "--data", data, "--out", "run", "--json"];
     all.extend(["--style", "r2r", "--hops", "1..1000"]);
+    all.extend(if args.contains(&"--paths") { &[][..] } else { &["--paths", "1"] });
     all.extend(models.iter().map(String::as_str));
     all.extend(args);
     run(stage.building.command(&all).env(KEY_ENV, KEY))
@@ -135,4 +136,31 @@ fn what_other_programs_have_written_becomes_instructions() {
         assert!(walked["path"]["frames"].as_array().unwrap().len() > 1, "{file}");
         assert_eq!(walked["has_pictures"], true, "{file}");
     }
+}
+
+/// A run over a folder of recordings, of which one is none: a person's, before anything is made.
+#[test]
+fn a_recording_that_cannot_be_read_ends_the_run_before_it_begins() {
+    let stage = Stage::new(cast());
+    walk(&stage, true);
+    let shelf = stage.building.path("shelf");
+    fs::create_dir(&shelf).unwrap();
+    fs::rename(stage.building.path("walk"), shelf.join("walk")).unwrap();
+    fs::write(shelf.join("empty.mp4"), "").unwrap();
+    fs::write(shelf.join("bag.mcap"), "#ROSBAG V2.0\n").unwrap();
+    fs::create_dir(shelf.join("phone")).unwrap();
+    fs::write(shelf.join("phone/1.jpg"), b"RIFF\x24\0\0\0WEBPVP8 ").unwrap();
+    let ran = generate(&stage, "shelf", &["--paths", "4"]);
+    let told = ran.refused();
+    for words in ["3 of 4 recordings", "empty.mp4: is empty", "a ROS 1 bag", "a WebP picture", "--scan"] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    assert!(!stage.building.path("run").exists());
+    for (data, words) in [("shelf/empty.mp4", "is empty"), ("shelf/phone", "1.jpg: is a WebP picture")] {
+        let ran = generate(&stage, data, &[]);
+        assert!(ran.refused().contains(words), "{ran:?}");
+        assert!(!stage.building.path("run").exists());
+    }
+    let ran = generate(&stage, "shelf", &["--scan", "walk"]);
+    assert!(matches!(ran.code, Some(0 | 3)) && ran.json()["errors"] == 0, "{ran:?}");
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     describe::{Description, HINT},
+    kind::Kind,
     names::{entries, scene_of, unknown},
     poses,
     reel::{Recording, Reel, Source, Take},
@@ -14,13 +15,15 @@ use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
 /// Subfolders in which datasets keep their pictures.
-const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
+pub(crate) const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
 /// What stands in the names of pictures that datasets keep beside photographs.
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
 /// TUM's list of pictures with their times.
 const LIST: &str = "rgb.txt";
 const MAX_LIST_BYTES: u64 = 64 << 20;
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
+/// Kinds of files that are read as pictures, whatever their names end in.
+const PICTURES: [&str; 2] = ["a PNG picture", "a JPEG picture"];
 const PICTURE_HINT: &str = "take the picture out, or give a whole one";
 
 /// A folder of pictures.
@@ -50,9 +53,13 @@ impl Folder {
         Ok(None)
     }
 
-    /// The first file of a kind that lies among the pictures.
-    pub(crate) fn beside_pictures(&self, is_wanted: fn(&str) -> bool) -> Result<Option<String>, PlatformError> {
-        Ok(entries(&self.pictures)?.into_iter().find(|name| is_wanted(name)))
+    /// The first file of a kind that lies among the pictures, and how many there are.
+    pub(crate) fn beside_pictures(
+        &self,
+        is_wanted: fn(&str) -> bool,
+    ) -> Result<Option<(PathBuf, usize)>, PlatformError> {
+        let mut names = entries(&self.pictures)?.into_iter().filter(|name| is_wanted(name));
+        Ok(names.next().map(|first| (self.pictures.join(first), 1 + names.count())))
     }
 
     /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else one after
@@ -115,10 +122,22 @@ impl Reel for Pictures {
             let wrong = |reason: String| files::wrong(file, reason, PICTURE_HINT);
             let bytes = files::bytes_if_there(file, MAX_PICTURE_BYTES, PICTURE_HINT)?;
             let bytes = bytes.ok_or_else(|| wrong("there is no such file".to_owned()))?;
-            take(*number, files::picture(&bytes).map_err(wrong)?)?;
+            let picture = files::picture(&bytes);
+            take(*number, picture.map_err(|reason| unfit(file).unwrap_or_else(|| wrong(reason)))?)?;
         }
         Ok(())
     }
+
+    fn glance(&self, wanted: &[usize]) -> Result<(), PlatformError> {
+        let unfit = wanted.iter().filter_map(|number| self.files.get(*number)).find_map(|file| unfit(file));
+        unfit.map_or(Ok(()), Err)
+    }
+}
+
+/// What a file is, where its first bytes are those of something else than a picture that is read.
+fn unfit(file: &Path) -> Option<PlatformError> {
+    let kind = Kind::at(file).filter(|kind| !PICTURES.contains(&kind.name))?;
+    Some(files::wrong(file, format!("is {}, neither PNG nor JPEG", kind.name), kind.hint))
 }
 
 /// Lines of `time file`; files lie below the folder.
@@ -152,6 +171,12 @@ fn is_picture(name: &str) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     // macOS leaves "._x.jpg" beside "x.jpg" on foreign disks.
     !name.starts_with('.') && ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+/// Whether a file is a picture of a kind that is not read, as its name ends.
+pub(crate) fn is_unread_picture(name: &str) -> bool {
+    let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    !name.starts_with('.') && ["heic", "heif", "webp", "avif"].iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
 /// Names without those of depth maps and the like, unless there is nothing else.
@@ -256,7 +281,7 @@ mod tests {
         let folder = folder(&["1.png"]);
         std::fs::write(folder.path().join("2.png"), "no picture").unwrap();
         let error = open(folder.path()).reel.pictures(&[1], &mut |_, _| Ok(())).unwrap_err().to_string();
-        assert!(error.contains("2.png") && error.contains("neither PNG nor JPEG"), "{error}");
+        assert!(error.contains("2.png") && error.contains("is text, neither PNG nor JPEG"), "{error}");
     }
 
     #[test]

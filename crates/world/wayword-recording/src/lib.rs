@@ -8,6 +8,7 @@ mod axes;
 mod choose;
 mod describe;
 mod folder;
+mod kind;
 #[cfg(feature = "lerobot")]
 mod lerobot;
 #[cfg(feature = "mcap")]

@@ -3,7 +3,8 @@
 #[cfg(any(feature = "lerobot", feature = "mcap", feature = "video"))]
 use crate::describe::Description;
 use crate::{
-    folder::Folder,
+    folder::{Folder, WITHIN, is_unread_picture},
+    kind::{self, Kind, Unread},
     names::{entries, unknown},
     reel::{Recording, Source},
 };
@@ -11,25 +12,35 @@ use std::{collections::BTreeSet, path::Path};
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
-const HINT: &str = "give a folder of pictures, a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file; \
-                    of another video, ffmpeg -i IN -c copy OUT.mp4 may make one";
-/// Opens what lies under a path: one recording, or a folder that holds several.
-pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+const HINT: &str =
+    "give a folder of pictures (PNG, JPEG), a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file";
+
+/// Opens what lies under a path: one recording, or a folder that holds several. `hear` is told what is passed over in it.
+pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, PlatformError> {
     if let Some(source) = one(path)? {
         return Ok(source);
     }
     if !path.is_dir() {
-        let reason =
-            if path.exists() { "is no recording that is known here" } else { "there is no such file or folder" };
-        return Err(files::wrong(path, reason, HINT));
+        return Err(no_recording(path));
     }
-    let mut sources = Vec::new();
+    let (mut sources, mut passed_over) = (Vec::new(), Vec::new());
     // macOS leaves "._x.mp4" beside "x.mp4" on foreign disks, and file managers leave folders of small pictures.
-    for entry in entries(path)?.iter().filter(|name| !name.starts_with('.')) {
-        sources.extend(one(&path.join(entry))?);
+    for entry in entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
+        match one(&path.join(&entry))? {
+            Some(source) => sources.push(source),
+            None => passed_over.push(entry),
+        }
     }
     if sources.is_empty() {
-        return Err(files::wrong(path, "holds no pictures and no recordings", HINT));
+        return Err(match kind::unread(path, &WITHIN)? {
+            Some(Unread { what, hint }) => files::wrong(path, format!("holds no recording that is read: {what}"), hint),
+            None => files::wrong(path, "holds no pictures and no recordings", HINT),
+        });
+    }
+    for entry in passed_over {
+        if let Some(Unread { what, hint }) = kind::unread(&path.join(&entry), &WITHIN)? {
+            hear(&format!("{entry} is passed over: it holds no recording that is read ({what}); {hint}"));
+        }
     }
     let mut scenes = BTreeSet::new();
     if let Some(twice) = sources.iter().flat_map(|source| source.scenes()).find(|scene| !scenes.insert(scene.clone())) {
@@ -37,6 +48,15 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
         return Err(files::wrong(path, reason, "give one of them another name, or name the file itself"));
     }
     Ok(Box::new(Shelf { sources }))
+}
+
+/// Why there is no recording at a path that is no folder.
+fn no_recording(path: &Path) -> PlatformError {
+    match Kind::at(path) {
+        Some(kind) => files::wrong(path, format!("is no recording that is read: it is {}", kind.name), kind.hint),
+        None if path.exists() => files::wrong(path, "is no recording that is known here", HINT),
+        None => files::wrong(path, "there is no such file or folder", HINT),
+    }
 }
 
 /// The source that a path is, if it is one.
@@ -47,9 +67,19 @@ fn one(path: &Path) -> Result<Option<Box<dyn Source>>, PlatformError> {
         }
         let Some(folder) = Folder::open(path)? else { return Ok(None) };
         // Whoever keeps a picture beside her videos means these.
-        if let Some(file) = folder.beside_pictures(is_file_of_ours)? {
+        if let Some((file, _)) = folder.beside_pictures(is_file_of_ours)? {
+            let file = file.file_name().unwrap_or_default().display();
             let reason = format!("holds pictures, and recordings as {file} too");
             return Err(files::wrong(path, reason, "give the recording's own path, or move the pictures away"));
+        }
+        // A walk in which every second picture is missing is another walk.
+        if let Some((file, count)) = folder.beside_pictures(is_unread_picture)? {
+            let kind = Kind::at(&file).map_or("a picture that is not read", |kind| kind.name);
+            let more = if count > 1 { format!(", as are {} more", count - 1) } else { String::new() };
+            let reason =
+                format!("holds pictures, but {} is {kind}{more}", file.file_name().unwrap_or_default().display());
+            let hint = Kind::at(&file).map_or("move it away", |kind| kind.hint);
+            return Err(files::wrong(path, reason, hint));
         }
         return Ok(Some(Box::new(folder)));
     }
@@ -124,6 +154,11 @@ impl Source for Shelf {
         let source = self.sources.iter().find(|source| source.scenes().contains(scene));
         source.map_or_else(|| Err(unknown(scene, &self.scenes())), |source| source.open(scene))
     }
+
+    fn check(&self, scene: &SceneId) -> Result<(), PlatformError> {
+        let source = self.sources.iter().find(|source| source.scenes().contains(scene));
+        source.map_or_else(|| Err(unknown(scene, &self.scenes())), |source| source.check(scene))
+    }
 }
 
 #[cfg(test)]
@@ -145,7 +180,7 @@ mod tests {
     fn each_recording_of_a_folder_is_a_scene_and_what_is_hidden_is_none() {
         let shelf = shelf(&["b/1.png", "a/rgb/1.png", ".small/1.png", "notes/1.txt"]);
         std::fs::write(shelf.path().join("._a.mp4"), "").unwrap();
-        let scenes = open(shelf.path()).map(|source| source.scenes()).unwrap();
+        let scenes = open(shelf.path(), &|_| ()).map(|source| source.scenes()).unwrap();
         assert_eq!(scenes.iter().map(SceneId::as_str).collect::<Vec<_>>(), ["a", "b"]);
     }
 
@@ -153,14 +188,72 @@ mod tests {
     fn pictures_beside_recordings_are_not_taken_for_what_is_meant() {
         let shelf = shelf(&["map.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
-        let error = open(shelf.path()).err().unwrap().to_string();
+        let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();
         assert!(error.contains("holds pictures, and recordings as walk.mp4 too"), "{error}");
+    }
+
+    /// The beginning of a file as other programs write it.
+    const WEBM: &[u8] = b"\x1a\x45\xdf\xa3\x9fB\x86\x81\x01B\xf7\x81\x01B\xf2\x81\x04B\xf3\x81\x08B\x82\x84webm";
+    const HEIC: &[u8] = b"\0\0\0\x1cftypheic\0\0\0\0mif1heicmiaf";
+    const WEBP: &[u8] = b"RIFF\x24\0\0\0WEBPVP8 ";
+
+    fn refused(files: &[(&str, &[u8])], path: &str) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, bytes) in files {
+            let file = folder.path().join(name);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, bytes).unwrap();
+        }
+        open(&folder.path().join(path), &|_| ()).err().unwrap().to_string()
+    }
+
+    #[test]
+    fn what_is_not_read_is_named_for_what_it_is_with_what_makes_something_of_it() {
+        for (files, path, told) in [
+            (
+                &[("1.heic", HEIC), ("2.heic", HEIC)][..],
+                "",
+                &["1.heic is an HEIC picture, as are 1 more", "heif-convert"][..],
+            ),
+            (&[("rgb/1.webp", WEBP)], "", &["1.webp is a WebP picture", "ffmpeg -i IN -frames:v 1 OUT.png"]),
+            (&[("walk.webm", WEBM)], "walk.webm", &["it is a WebM video", "-c:v libx264 -pix_fmt yuv420p"]),
+            (&[("walk.webm", WEBM), ("notes.txt", b"no video")], "", &["walk.webm is a WebM video", "libx264"]),
+            (
+                &[("1.png", b""), ("2.heic", HEIC)],
+                "",
+                &["holds pictures, but 2.heic is an HEIC picture", "heif-convert"],
+            ),
+            (&[("walk.avi", b"RIFF\xdc\x6d\0\0AVI LIST")], "walk.avi", &["it is an AVI video", "libx264"]),
+            (&[("walk.bag", b"#ROSBAG V2.0\n")], "walk.bag", &["it is a ROS 1 bag", "rosbags-convert"]),
+            (&[("notes.txt", b"no video")], "", &["holds no pictures and no recordings", "PNG, JPEG"]),
+        ] {
+            let error = refused(files, path);
+            assert!(told.iter().all(|words| error.contains(words)), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_is_passed_over_beside_recordings_is_told() {
+        let shelf = shelf(&["a/1.png"]);
+        std::fs::write(shelf.path().join("b.webm"), WEBM).unwrap();
+        std::fs::create_dir(shelf.path().join("c")).unwrap();
+        std::fs::write(shelf.path().join("c/1.heic"), HEIC).unwrap();
+        std::fs::write(shelf.path().join("notes.txt"), "notes").unwrap();
+        let heard = std::cell::RefCell::new(Vec::new());
+        open(shelf.path(), &|line| heard.borrow_mut().push(line.to_owned())).unwrap();
+        let heard = heard.into_inner();
+        assert_eq!(heard.len(), 2, "{heard:?}");
+        assert!(heard[0].starts_with("b.webm is passed over") && heard[0].contains("a WebM video"), "{heard:?}");
+        assert!(
+            heard[1].starts_with("c is passed over") && heard[1].contains("1.heic is an HEIC picture"),
+            "{heard:?}"
+        );
     }
 
     #[test]
     fn who_asks_for_another_recording_is_told_which_there_are() {
         let shelf = shelf(&["b/1.png", "a/1.png"]);
-        let source = open(shelf.path()).unwrap();
+        let source = open(shelf.path(), &|_| ()).unwrap();
         let error = source.open(&SceneId::new("c").unwrap()).err().unwrap().to_string();
         assert!(error.contains("--data holds a, b"), "{error}");
     }
@@ -170,7 +263,7 @@ mod tests {
     fn no_recording_is_passed_over_because_another_has_its_name() {
         let shelf = shelf(&["walk/1.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
-        let error = open(shelf.path()).err().unwrap().to_string();
+        let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();
         assert!(error.contains("two recordings that are called walk"), "{error}");
     }
 }

@@ -11,7 +11,7 @@ use rand::Rng;
 use std::{
     collections::{BTreeMap, BTreeSet},
     ops::RangeInclusive,
-    path::Path as FilePath,
+    path::{Path as FilePath, PathBuf},
     sync::Arc,
 };
 use wayword_core::{
@@ -30,6 +30,8 @@ const AHEAD: usize = 16;
 const LONGEST_PX: u32 = 640;
 /// Horizontal field of view where nobody says, radians: a robot's or a telephone's usual camera.
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
+/// Unreadable recordings that are told one by one.
+const MOST_TOLD: usize = 3;
 const HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
 
 /// Folders of pictures, videos, MCAP files and LeRobot datasets.
@@ -37,6 +39,7 @@ const HINT: &str = "record more, or set interval_m or interval_s in a recording.
 /// A scene is one recording; it can be seen from where its pictures were taken, in the direction in which they were taken, and
 /// from nowhere else. It knows neither objects nor rooms.
 pub struct RecordingPlatform {
+    path: PathBuf,
     source: Box<dyn Source>,
     hear: Hear,
     /// One is opened at a time: all its pictures are looked at then, which two need not do at once.
@@ -63,8 +66,14 @@ impl RecordingPlatform {
     /// # Errors
     /// When there is none, or this build cannot read its kind.
     pub fn open(path: &FilePath, hear: Hear) -> Result<Self, PlatformError> {
-        let source = open::open(path)?;
-        Ok(Self { source, hear, opened: Recent::one_at_a_time(OPEN), pictures: Recent::new(KEPT) })
+        let source = open::open(path, &*hear)?;
+        Ok(Self {
+            path: path.to_owned(),
+            source,
+            hear,
+            opened: Recent::one_at_a_time(OPEN),
+            pictures: Recent::new(KEPT),
+        })
     }
 
     fn opened(&self, scene: &SceneId) -> Result<Arc<Opened>, PlatformError> {
@@ -197,6 +206,28 @@ impl Platform for RecordingPlatform {
 
     fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         Ok(self.source.scenes())
+    }
+
+    /// Opens each recording and looks at its first picture: what is found here, a run would find item by item.
+    fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        let all = self.source.scenes();
+        let known = scenes.iter().filter(|scene| all.binary_search(scene).is_ok());
+        let mut wrong: Vec<PlatformError> = known.filter_map(|scene| self.source.check(scene).err()).collect();
+        if all.len() < 2 {
+            return wrong.pop().map_or(Ok(()), Err);
+        }
+        if wrong.is_empty() {
+            return Ok(());
+        }
+        let told: String = wrong.iter().take(MOST_TOLD).map(|error| format!("\n  {error}")).collect();
+        let more = wrong.len().saturating_sub(MOST_TOLD);
+        let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
+        let reason = format!(
+            "{} of {} recordings cannot be read; move them away, or name the others with --scan:{told}{more}",
+            wrong.len(),
+            all.len()
+        );
+        Err(files::wrong(&self.path, reason, "docs/RECORDINGS.md tells what is read"))
     }
 
     /// The frames one after another, not joined where the way between them is not known; empty where no pose is known.

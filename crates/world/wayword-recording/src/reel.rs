@@ -1,6 +1,6 @@
 //! What every kind of recording gives: pictures in the order of their times, and where the camera was.
 
-use crate::{describe::Description, track::Track};
+use crate::{choose::wanted, describe::Description, track::Track};
 use wayword_core::{Image, PlatformError, SceneId};
 
 /// A file or folder that holds recordings.
@@ -13,6 +13,17 @@ pub(crate) trait Source: Send + Sync {
     /// # Errors
     /// When its files cannot be read.
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError>;
+
+    /// Looks whether one of [`Source::scenes`] can be read, as far as its index and the first picture tell.
+    ///
+    /// # Errors
+    /// When it cannot.
+    fn check(&self, scene: &SceneId) -> Result<(), PlatformError> {
+        let recording = self.open(scene)?;
+        let wanted = wanted(&recording);
+        recording.reel.glance(&wanted)?;
+        recording.reel.pictures(&wanted[..wanted.len().min(1)], &mut |_, _| Ok(()))
+    }
 }
 
 /// One recording of one camera.
@@ -44,4 +55,12 @@ pub(crate) trait Reel: Send + Sync {
     /// # Errors
     /// When one cannot be read, or `take` fails.
     fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError>;
+
+    /// Looks whether the wanted pictures are ones, where that costs little.
+    ///
+    /// # Errors
+    /// When one is none.
+    fn glance(&self, _wanted: &[usize]) -> Result<(), PlatformError> {
+        Ok(())
+    }
 }

@@ -44,9 +44,7 @@ pub(crate) struct Choice {
 /// When a picture cannot be read.
 pub(crate) fn choose(recording: &Recording, each: &mut dyn FnMut(usize, &Image)) -> Result<Choice, PlatformError> {
     let (marks, without_pose) = marks::of(recording);
-    let mut wanted: Vec<usize> = marks.iter().flat_map(|mark| mark.candidates.iter().copied()).collect();
-    wanted.sort_unstable();
-    wanted.dedup();
+    let wanted = candidates(&marks);
     let mut looks = Vec::with_capacity(wanted.len());
     recording.reel.pictures(&wanted, &mut |number, image| {
         each(number, &image);
@@ -54,6 +52,18 @@ pub(crate) fn choose(recording: &Recording, each: &mut dyn FnMut(usize, &Image))
         Ok(())
     })?;
     Ok(Choice { without_pose, ..among(recording, &marks, &looks) })
+}
+
+/// The pictures that are looked at to choose among them, ascending.
+pub(crate) fn wanted(recording: &Recording) -> Vec<usize> {
+    candidates(&marks::of(recording).0)
+}
+
+fn candidates(marks: &[Mark]) -> Vec<usize> {
+    let mut wanted: Vec<usize> = marks.iter().flat_map(|mark| mark.candidates.iter().copied()).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    wanted
 }
 
 /// The same, once every candidate has been looked at.

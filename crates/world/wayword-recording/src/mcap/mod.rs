@@ -18,7 +18,7 @@ mod tree;
 use crate::{
     axes::{Axes, Body, columns},
     describe::Description,
-    names,
+    kind, names,
     plausible::{Sample, doubt},
     reel::{Recording, Source},
     track::{Fix, Track},
@@ -52,18 +52,26 @@ pub(crate) struct McapFile {
 }
 
 impl McapFile {
-    /// Opens a file, and looks whether it is one.
+    /// A file that is one by its name.
+    ///
+    /// # Errors
+    /// When its name is none that a scene can have.
     pub(crate) fn open(path: &Path, described: Description) -> Result<Self, PlatformError> {
-        let mut begin = [0; MAGIC.len()];
-        let read = File::open(path).and_then(|mut file| file.read_exact(&mut begin));
-        if read.is_err() || begin != *MAGIC {
-            let reason = match read {
-                Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.to_string(),
-                _ => "byte 0: does not begin as an MCAP file does".to_owned(),
-            };
-            return Err(files::wrong(path, reason, HINT));
-        }
         Ok(Self { path: path.to_owned(), scene: names::scene_of(path)?, described })
+    }
+
+    /// Looks whether it is one by its first bytes, too.
+    fn check(&self) -> Result<(), PlatformError> {
+        let mut begin = [0; MAGIC.len()];
+        let read = File::open(&self.path).and_then(|mut file| file.read_exact(&mut begin));
+        if read.is_ok() && begin == *MAGIC {
+            return Ok(());
+        }
+        let reason = match read {
+            Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.to_string(),
+            _ => "byte 0: does not begin as an MCAP file does".to_owned(),
+        };
+        Err(kind::refusal(&self.path, "an MCAP file", (reason, HINT)))
     }
 
     fn wrong(&self, (reason, hint): topics::Unclear) -> PlatformError {
@@ -71,6 +79,7 @@ impl McapFile {
     }
 
     fn read(&self) -> Result<Recording, PlatformError> {
+        self.check()?;
         let broken = |why: String| {
             self.wrong((why, "if it is damaged, `mcap recover IN.mcap -o OUT.mcap` saves what can be saved"))
         };

@@ -189,9 +189,13 @@ fn messages_that_are_compressed_by_themselves_are_told_apart() {
 
 #[test]
 fn what_is_no_mcap_file_is_refused_at_once() {
-    for bytes in [&b"\x89MCAP"[..], b"#ROSBAG V2.0\n....", b""] {
+    for (bytes, told) in [
+        (&b"\x89MCAP"[..], "byte 0: does not begin as an MCAP file does"),
+        (b"#ROSBAG V2.0\n....", "is a ROS 1 bag, not an MCAP file"),
+        (b"", "is empty"),
+    ] {
         let error = bytes_read(bytes, Description::default()).1.err().unwrap();
-        assert!(error.contains("byte 0: does not begin as an MCAP file does"), "{error}");
+        assert!(error.contains(told), "{error}");
     }
     assert!(bytes_read(MAGIC, Description::default()).1.err().unwrap().contains("has no messages"));
 }

@@ -104,6 +104,38 @@ fn no_path_leads_over_a_gap_in_the_track() {
     assert!(heard.lock().unwrap()[0].contains("1 gaps over which no path leads"), "{heard:?}");
 }
 
+/// Two good recordings and two that are none.
+fn with_unreadable() -> tempfile::TempDir {
+    let shelf = tempfile::tempdir().unwrap();
+    for name in ["a", "b"] {
+        let folder = shelf.path().join(name);
+        std::fs::create_dir(&folder).unwrap();
+        RgbImage::from_pixel(4, 3, Rgb([9; 3])).save(folder.join("1.png")).unwrap();
+    }
+    let phone = shelf.path().join("phone");
+    std::fs::create_dir(&phone).unwrap();
+    std::fs::write(phone.join("1.jpg"), b"\0\0\0\x1cftypheic\0\0\0\0mif1heic").unwrap();
+    std::fs::create_dir(shelf.path().join("torn")).unwrap();
+    std::fs::write(shelf.path().join("torn/1.png"), b"\x89PNG\r\n\x1a\n").unwrap();
+    shelf
+}
+
+#[test]
+fn recordings_that_cannot_be_read_are_told_at_once_unless_others_are_meant() {
+    let shelf = with_unreadable();
+    let (platform, ..) = open(&shelf);
+    let scenes: Vec<SceneId> = ["a", "b", "phone", "torn", "elsewhere"].map(|name| SceneId::new(name).unwrap()).into();
+    let told = platform.check(&scenes.iter().collect()).unwrap_err().to_string();
+    assert!(told.contains("2 of 4 recordings cannot be read") && told.contains("--scan"), "{told}");
+    assert!(told.contains("1.jpg: is an HEIC picture") && told.contains("heif-convert"), "{told}");
+    assert!(told.contains("torn/1.png: is no picture that can be read"), "{told}");
+    platform.check(&scenes[..2].iter().collect()).unwrap();
+    let alone = RecordingPlatform::open(&shelf.path().join("phone"), Arc::new(|_: &str| {})).unwrap();
+    let told = alone.check(&scenes.iter().collect()).unwrap_err().to_string();
+    assert!(told.contains("1.jpg: is an HEIC picture, neither PNG nor JPEG"), "{told}");
+    assert!(alone.graph(&scenes[2]).unwrap_err().to_string().contains("HEIC"));
+}
+
 #[test]
 fn what_is_not_there_is_refused() {
     let folder = walk(true);

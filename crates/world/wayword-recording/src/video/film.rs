@@ -6,7 +6,7 @@ use super::{
     edits::Shown,
     movie::{HINT, Movie, bytes_at},
 };
-use crate::reel::Take;
+use crate::{kind, reel::Take};
 use std::{
     collections::{BTreeMap, btree_map::Entry},
     fs::File,
@@ -36,7 +36,7 @@ impl Film {
     pub(crate) fn open(file: &Path, camera: Option<&str>) -> Result<Self, PlatformError> {
         let mut opened = File::open(file).map_err(|error| files::wrong(file, error.to_string(), HINT))?;
         let movie = Movie::read(&mut opened, camera);
-        let movie = movie.map_err(|refusal| files::wrong(file, refusal.reason, refusal.hint))?;
+        let movie = movie.map_err(|refusal| kind::refusal(file, "an MP4 video", (refusal.reason, refusal.hint)))?;
         let times_s = movie.shown.iter().map(|shown| shown.time_s).collect();
         Ok(Self { file: file.to_owned(), movie, times_s })
     }

@@ -22,8 +22,7 @@ const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
 const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 
 /// What to do about a file that is not read.
-pub(super) const HINT: &str = "copy or record it again; if players show it, this makes a file that is read here: \
-    ffmpeg -i IN.mp4 -c:v libx264 -pix_fmt yuv420p -fps_mode passthrough -an OUT.mp4";
+pub(super) const HINT: &str = crate::kind::ENCODE;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
 
 /// A video track.

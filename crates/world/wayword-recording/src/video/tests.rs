@@ -146,14 +146,14 @@ fn colours_are_what_the_stream_says() {
 fn what_cannot_be_read_is_named_with_what_to_do() {
     let said = |name: &str, camera| Film::open(&fixture(name), camera).unwrap_err().to_string();
     let hevc = said("hevc.mp4", None);
-    assert!(hevc.contains("HEVC (H.265)") && hevc.contains("ffmpeg -i IN.mp4 -c:v libx264"), "{hevc}");
+    assert!(hevc.contains("HEVC (H.265)") && hevc.contains("ffmpeg -i IN -c:v libx264"), "{hevc}");
     assert!(said("interlaced.mp4", None).contains("interlaced"));
     let two = said("two_cameras.mp4", None);
     assert!(two.contains("1 (H.264, 98 x 66), 2 (H.264, 96 x 64)") && two.contains("camera ="), "{two}");
     assert!(said("two_cameras.mp4", Some("3")).contains("no video track \"3\""));
     let second = Film::open(&fixture("two_cameras.mp4"), Some("2")).unwrap();
     assert_eq!(pictures(&second, &[4]).unwrap()[0].1.width_px(), 96);
-    assert!(said("../make_video.py", None).contains("moov"));
+    assert!(said("../make_video.py", None).contains("is text, not an MP4 video"));
 }
 
 #[test]
@@ -239,5 +239,25 @@ proptest! {
     #[test]
     fn any_bytes_are_a_parameter_set_or_none(unit in prop::collection::vec(any::<u8>(), 0..80)) {
         let _ = super::sps::Sps::read(&unit);
+    }
+}
+
+/// Files that are called .mp4 and are something else, as a person may have them.
+#[test]
+fn what_is_no_mp4_is_named_for_what_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let webm = b"\x1a\x45\xdf\xa3\x9fB\x86\x81\x01B\xf7\x81\x01B\xf2\x81\x04B\xf3\x81\x08B\x82\x84webm";
+    for (bytes, told) in [
+        (&b""[..], "is empty"),
+        (b"It is no video.\n", "is text"),
+        (b"version https://git-lfs.github.com/spec/v1\n", "is a pointer of git-lfs"),
+        (webm, "is a WebM video, not an MP4 video; if players show it"),
+        (b"\0\0\0\x08free\0\0\0\x08mdat", "it has no box `moov`"),
+    ] {
+        let file = folder.path().join("walk.mp4");
+        std::fs::write(&file, bytes).unwrap();
+        let error = Film::open(&file, None).unwrap_err().to_string();
+        assert!(error.contains(told), "{error}");
+        assert!(!error.contains("-c copy"), "{error}");
     }
 }

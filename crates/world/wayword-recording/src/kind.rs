@@ -1,0 +1,212 @@
+//! What a file is that is not read here, by its first bytes, and what makes of it one that is.
+
+use crate::names::entries;
+use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
+use wayword_core::PlatformError;
+use wayword_world::files;
+
+/// What makes a file that is read here of any video that ffmpeg reads. It codes the pictures anew: few videos hold H.264 or AV1,
+/// and only these may be copied.
+pub(crate) const ENCODE: &str =
+    "if players show it, this makes a video that is read here: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
+const CONVERT: &str = "this makes a picture that is read here: ffmpeg -i IN -frames:v 1 OUT.png";
+const CONVERT_HEIC: &str = "this makes a picture that is read here: heif-convert IN OUT.jpg (package libheif-examples), \
+                            or on macOS: sips -s format jpeg IN --out OUT.jpg";
+const BAG_1: &str =
+    "rosbags-convert --src IN.bag --dst OUT --dst-storage mcap --dst-typestore ros2_humble (PyPI rosbags)";
+const BAG_2: &str = "rosbags-convert --src FOLDER --dst OUT --dst-storage mcap (PyPI rosbags)";
+const POINTER: &str = "fetch the file itself: git lfs pull";
+const AGAIN: &str = "copy or record it again";
+
+/// Bytes that tell what a file is.
+const HEAD_BYTES: u64 = 512;
+/// Files of a folder that are looked into.
+const MOST_LOOKED_INTO: usize = 200;
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Kind {
+    /// As it stands behind "is".
+    pub(crate) name: &'static str,
+    /// What to do about it.
+    pub(crate) hint: &'static str,
+    /// Whether it holds pictures or a recording, rather than nothing of use.
+    pub(crate) is_recording: bool,
+}
+
+impl Kind {
+    const fn recording(name: &'static str, hint: &'static str) -> Self {
+        Self { name, hint, is_recording: true }
+    }
+
+    const fn other(name: &'static str, hint: &'static str) -> Self {
+        Self { name, hint, is_recording: false }
+    }
+
+    /// What lies at a path; `None` where nobody can tell.
+    pub(crate) fn at(file: &Path) -> Option<Self> {
+        if !file.is_file() {
+            return None;
+        }
+        let mut head = Vec::new();
+        File::open(file).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+        Self::of(&head)
+    }
+
+    /// What begins so.
+    fn of(head: &[u8]) -> Option<Self> {
+        if head.is_empty() {
+            return Some(EMPTY);
+        }
+        let begins = |at: usize, bytes: &[u8]| head.get(at..).is_some_and(|rest| rest.starts_with(bytes));
+        if begins(0, b"G") && begins(188, b"G") {
+            return Some(Self::recording("an MPEG transport stream", ENCODE));
+        }
+        if begins(0, MATROSKA) && head.windows(4).take(60).any(|four| four == b"webm") {
+            return Some(Self::recording("a WebM video", ENCODE));
+        }
+        let known = STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes)).map(|(.., kind)| *kind);
+        known.or_else(|| of_text(head))
+    }
+}
+
+/// Nobody finished writing it.
+const EMPTY: Kind = Kind::other("empty", AGAIN);
+/// EBML's number, with which Matroska and WebM begin.
+const MATROSKA: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
+const HEIC: Kind = Kind::recording("an HEIC picture", CONVERT_HEIC);
+const MP4: Kind = Kind::recording("an MP4 video", "rename it to end in .mp4");
+/// What stands where in which files; the first that fits counts.
+const STARTS: &[(usize, &[u8], Kind)] = &[
+    (0, b"\x89PNG\r\n\x1a\n", Kind::recording("a PNG picture", "rename it to end in .png")),
+    (0, &[0xff, 0xd8, 0xff], Kind::recording("a JPEG picture", "rename it to end in .jpg")),
+    (0, b"GIF8", Kind::recording("a GIF picture", CONVERT)),
+    (0, b"II*\0", Kind::recording("a TIFF or raw picture", CONVERT)),
+    (0, b"MM\0*", Kind::recording("a TIFF or raw picture", CONVERT)),
+    (8, b"WEBP", Kind::recording("a WebP picture", CONVERT)),
+    (4, b"ftypavif", Kind::recording("an AVIF picture", CONVERT)),
+    (4, b"ftypavis", Kind::recording("an AVIF picture", CONVERT)),
+    (4, b"ftyphei", HEIC),
+    (4, b"ftyphev", HEIC),
+    (4, b"ftypmif1", HEIC),
+    (4, b"ftypmsf1", HEIC),
+    (4, b"ftypcrx ", Kind::recording("a raw picture", "make a JPEG of it")),
+    (4, b"ftyp", MP4),
+    (4, b"moov", MP4),
+    (4, b"mdat", MP4),
+    (4, b"wide", MP4),
+    (4, b"free", MP4),
+    (8, b"AVI ", Kind::recording("an AVI video", ENCODE)),
+    (0, MATROSKA, Kind::recording("a Matroska video", ENCODE)),
+    (0, b"FLV\x01", Kind::recording("a Flash video", ENCODE)),
+    (0, &[0x30, 0x26, 0xb2, 0x75, 0x8e, 0x66, 0xcf, 0x11], Kind::recording("a Windows Media video", ENCODE)),
+    (0, b"OggS", Kind::recording("an Ogg video", ENCODE)),
+    (0, &[0, 0, 1, 0xba], Kind::recording("an MPEG video", ENCODE)),
+    (0, &[0, 0, 0, 1], Kind::recording("a bare video stream", ENCODE)),
+    (0, b"#ROSBAG V", Kind::recording("a ROS 1 bag", BAG_1)),
+    (0, b"SQLite format 3\0", Kind::recording("an SQLite file, as ROS 2 bags are", BAG_2)),
+    (0, b"\x89MCAP0\r\n", Kind::recording("an MCAP file", "rename it to end in .mcap")),
+    (0, &[0x1f, 0x8b], Kind::other("an archive", "unpack it")),
+    (0, b"PK\x03\x04", Kind::other("an archive", "unpack it")),
+    (0, b"version https://git-lfs", Kind::other("a pointer of git-lfs", POINTER)),
+];
+
+fn of_text(head: &[u8]) -> Option<Kind> {
+    // The last letter may be cut.
+    let text = match std::str::from_utf8(head) {
+        Ok(text) => text,
+        Err(error) if error.error_len().is_none() => std::str::from_utf8(&head[..error.valid_up_to()]).ok()?,
+        Err(_) => return None,
+    };
+    let start = text.trim_start().to_ascii_lowercase();
+    if start.starts_with("<!doctype html") || start.starts_with("<html") {
+        return Some(Kind::other("a web page", "a server sent it for the file; fetch the file again"));
+    }
+    let is_text = text.chars().all(|c| !c.is_control() || matches!(c, '\n' | '\r' | '\t'));
+    is_text.then(|| Kind::other("text", AGAIN))
+}
+
+/// Recordings that are not read, in words, and what to do about the first.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Unread {
+    /// As "a WebM video", or of a folder "1.heic is an HEIC picture, as are 3 more".
+    pub(crate) what: String,
+    pub(crate) hint: &'static str,
+}
+
+/// The recording that is not read at a path: a file, or a folder with pictures or videos. `None` where there is nothing of the kind.
+///
+/// # Errors
+/// When a folder cannot be read.
+pub(crate) fn unread(path: &Path, within: &[&str]) -> Result<Option<Unread>, PlatformError> {
+    if !path.is_dir() {
+        let kind = Kind::at(path).filter(|kind| kind.is_recording);
+        return Ok(kind.map(|kind| Unread { what: kind.name.to_owned(), hint: kind.hint }));
+    }
+    let folders = std::iter::once(path.to_owned()).chain(within.iter().map(|name| path.join(name)));
+    let mut counts: BTreeMap<&str, (usize, String, &'static str)> = BTreeMap::new();
+    for folder in folders.filter(|folder| folder.is_dir()) {
+        let names = entries(&folder)?.into_iter().filter(|name| !name.starts_with('.'));
+        for name in names.take(MOST_LOOKED_INTO) {
+            if let Some(kind) = Kind::at(&folder.join(&name)).filter(|kind| kind.is_recording) {
+                counts.entry(kind.name).or_insert((0, name, kind.hint)).0 += 1;
+            }
+        }
+    }
+    let Some(hint) = counts.values().max_by_key(|(count, ..)| *count).map(|(.., hint)| *hint) else { return Ok(None) };
+    let told = counts.iter().map(|(kind, (count, name, _))| match count {
+        1 => format!("{name} is {kind}"),
+        more => format!("{name} is {kind}, as are {} more", more - 1),
+    });
+    Ok(Some(Unread { what: told.collect::<Vec<_>>().join("; "), hint }))
+}
+
+/// A file that should be a recording by its name and is none: what it is, or what its reader says of it.
+pub(crate) fn refusal(file: &Path, own: &str, (reason, hint): (String, &'static str)) -> PlatformError {
+    match Kind::at(file).filter(|kind| kind.name != own) {
+        Some(kind) if kind.hint.starts_with("rename") => {
+            files::wrong(file, format!("is {} in spite of its name", kind.name), kind.hint)
+        }
+        Some(kind) => files::wrong(file, format!("is {}, not {own}", kind.name), kind.hint),
+        None => files::wrong(file, reason, hint),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(head: &[u8]) -> &'static str {
+        Kind::of(head).map_or("?", |kind| kind.name)
+    }
+
+    #[test]
+    fn files_are_named_by_their_first_bytes() {
+        // As heif-enc, cwebp and ffmpeg write them.
+        assert_eq!(name(b"\0\0\0\x1cftypheic\0\0\0\0mif1heicmiaf"), "an HEIC picture");
+        assert_eq!(name(b"\0\0\0\x1cftypavif\0\0\0\0avifmif1miaf"), "an AVIF picture");
+        assert_eq!(name(b"\0\0\0\x20ftypisom\0\0\x02\0isomiso2"), "an MP4 video");
+        assert_eq!(name(b"\0\0\0\x01mdat\0\0\0\0\0\0\0\x20"), "an MP4 video");
+        assert_eq!(name(b"RIFF\x24\0\0\0WEBPVP8 "), "a WebP picture");
+        assert_eq!(name(b"RIFF\xdc\x6d\0\0AVI LIST"), "an AVI video");
+        assert_eq!(
+            name(b"\x1a\x45\xdf\xa3\x9fB\x86\x81\x01B\xf7\x81\x01B\xf2\x81\x04B\xf3\x81\x08B\x82\x84webm"),
+            "a WebM video"
+        );
+        assert_eq!(name(b"\x1a\x45\xdf\xa3\xa3B\x86\x81\x01B\xf7\x81\x01B\x82\x88matroska"), "a Matroska video");
+        assert_eq!(name(b""), "empty");
+        assert_eq!(name("It was no video, but a caf\u{e9}".as_bytes()), "text");
+        assert_eq!(name(&"\u{e9}".as_bytes()[..1]), "text", "the last letter is cut");
+        assert_eq!(name(b"<!DOCTYPE html><title>404"), "a web page");
+        assert_eq!(name(b"version https://git-lfs.github.com/spec/v1\noid"), "a pointer of git-lfs");
+        assert_eq!(name(b"#ROSBAG V2.0\n"), "a ROS 1 bag");
+        assert_eq!(name(b"\x02\x03\x04\x05 nothing"), "?");
+    }
+
+    #[test]
+    fn no_command_copies_what_is_not_read() {
+        for (_, _, kind) in STARTS {
+            assert!(!kind.hint.contains("copy "), "{}", kind.hint);
+        }
+    }
+}
