@@ -16,7 +16,7 @@ use wayword_core::{
     SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
-use wayword_world::seen_from;
+use wayword_world::{said::Hear, seen_from};
 
 /// Widest gaze that one flat picture can show, radians.
 const WIDEST_RAD: f64 = 2.6;
@@ -30,6 +30,9 @@ pub(crate) trait Simulator: Send + fmt::Debug {
 
     /// Where it is, for messages.
     fn address(&self) -> String;
+
+    /// Has somebody told what is waited for, and what the simulator's scenes lack.
+    fn tell(&mut self, ear: Ear);
 
     /// The scenes that it lists.
     fn scenes(&self) -> Vec<String>;
@@ -54,6 +57,26 @@ pub(crate) trait Simulator: Send + fmt::Debug {
 
     /// Whether the simulator is lost over an error, so that trying once more makes sense.
     fn is_loss(error: &Self::Error) -> bool;
+}
+
+/// Who hears what a simulator is waited for; nobody at first.
+#[derive(Clone)]
+pub(crate) struct Ear(Hear);
+
+impl Ear {
+    pub(crate) fn deaf() -> Self {
+        Self(Arc::new(|_: &str| {}))
+    }
+
+    pub(crate) fn hear(&self, line: &str) {
+        (self.0)(line);
+    }
+}
+
+impl fmt::Debug for Ear {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Ear")
+    }
 }
 
 /// What a scene holds.
@@ -185,13 +208,23 @@ impl<S: Simulator> Live<S> {
         }
     }
 
-    /// The picture, what shows in it, and the room.
-    fn seen(&self, scene: &SceneId, eye: DVec3, gaze: Gaze) -> Result<(Vec<u8>, GroundTruth), PlatformError> {
+    /// Has `hear` told what is waited for, and what the simulator's scenes lack.
+    #[must_use]
+    pub fn heard_by(self, hear: Hear) -> Self {
+        self.lock().simulator.tell(Ear(hear));
+        self
+    }
+
+    /// The picture, what shows in it, and the room: nothing of that where the scene has neither objects nor named rooms, as
+    /// nobody has labelled what shows there.
+    fn seen(&self, scene: &SceneId, eye: DVec3, gaze: Gaze) -> Result<(Vec<u8>, Option<GroundTruth>), PlatformError> {
         let camera = self.camera(eye, gaze);
         self.with(scene, |simulator, known| {
             let Shot { rgb, ids } = simulator.shoot(&camera)?;
             let labels = sight::labels(&camera, gaze, ids, &known.survey.palette);
-            Ok((rgb, GroundTruth { labels, lists_objects: true, room: known.survey.room(eye) }))
+            let (lists_objects, room) = (!known.survey.palette.is_empty(), known.survey.room(eye));
+            let is_known = lists_objects || !known.survey.rooms.is_empty();
+            Ok((rgb, is_known.then_some(GroundTruth { labels, lists_objects, room })))
         })
     }
 }
@@ -229,7 +262,8 @@ impl<S: Simulator> walk::Walkable for Walker<'_, S> {
     }
 
     fn labels(&mut self, pose: Pose, gaze: Gaze) -> Result<Vec<Label>, PlatformError> {
-        self.0.seen(self.1, pose.position, gaze).map(|(_, truth)| truth.labels)
+        let (_, truth) = self.0.seen(self.1, pose.position, gaze)?;
+        Ok(truth.map_or_else(Vec::new, |truth| truth.labels))
     }
 }
 
@@ -262,7 +296,7 @@ impl<S: Simulator> Platform for Live<S> {
         let image = Image::new(self.pictures.width_px, self.pictures.height_px, rgb);
         let pose = Pose::level(from.pose.position, gaze.heading);
         // The picture was held against this size when it was decoded.
-        Ok(View::new(pose, gaze.horizontal_fov_rad, image.ok().map(Arc::new), Some(truth)))
+        Ok(View::new(pose, gaze.horizontal_fov_rad, image.ok().map(Arc::new), truth))
     }
 
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
@@ -273,6 +307,9 @@ impl<S: Simulator> Platform for Live<S> {
 
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         let known = self.scene(scene)?;
+        if known.survey.palette.is_empty() {
+            return Ok(None);
+        }
         if known.seen_from.get().is_none() {
             let mut walker = Walker(self, scene);
             let seen = seen_from(&known.graph, |eye| walker.labels_around(Pose::level(eye, Heading::NORTH)))?;

@@ -2,7 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::{collections::BTreeSet, net::SocketAddr, time::Duration};
+use std::{
+    collections::BTreeSet,
+    fs,
+    net::SocketAddr,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex},
+    time::Duration,
+};
 use wayword_core::{Gaze, Heading, ObjectId, PathRequest, Platform, SceneId};
 use wayword_house::{Ground, HouseOptions, HousePlatform, HouseScene, Role, generate};
 use wayword_live::{
@@ -14,13 +21,17 @@ use wayword_live::{
 };
 
 fn start(options: StandInOptions) -> (TdwPlatform, StandIn) {
+    start_with(options, None)
+}
+
+fn start_with(options: StandInOptions, package: Option<PathBuf>) -> (TdwPlatform, StandIn) {
     let controller = ControllerOptions {
         address: SocketAddr::from(([127, 0, 0, 1], 0)),
         connect_timeout: Duration::from_secs(20),
         step_timeout: Duration::from_secs(60),
     };
     let pictures = Pictures { width_px: 160, height_px: 120, ..Pictures::default() };
-    let platform = TdwPlatform::new(TdwOptions { controller, pictures, ..TdwOptions::default() }).unwrap();
+    let platform = TdwPlatform::new(TdwOptions { controller, pictures, package }).unwrap();
     let address = platform.waits_at().trim_start_matches("tcp://").parse().unwrap();
     let build = StandIn::start(address, options);
     (platform, build)
@@ -143,4 +154,59 @@ fn a_scene_that_nobody_knows_is_refused_without_a_build() {
     let alone = platform.graph(&scene()).unwrap_err().to_string();
     assert!(alone.contains("tcp://127.0.0.1") && alone.contains("TDW.x86_64"), "{alone}");
     assert!(platform.scenes().unwrap().contains(&scene()));
+}
+
+/// As much of the Python package `tdw` as a plan with one sofa takes.
+fn package(folder: &Path) {
+    let write = |name: &str, text: String| {
+        fs::create_dir_all(folder.join(name).parent().unwrap()).unwrap();
+        fs::write(folder.join(name), text).unwrap();
+    };
+    let (place, one) = (r#"{"x":1,"y":0,"z":1}"#, r#"{"x":1,"y":1,"z":1}"#);
+    let sofa = format!(
+        r#"{{"name":"sofa_a","library":"models.json","position":{place},"rotation":{place},"scale_factor":{one}}}"#
+    );
+    write("add_ons/floorplan_layouts.json", format!(r#"{{"1":{{"0":[{sofa}]}}}}"#));
+    let urls = r#"{"Linux":"u","Darwin":"u","Windows":"u"}"#;
+    let record = format!(r#"{{"urls":{urls},"scale_factor":1.0,"wcategory":"sofa"}}"#);
+    write("metadata_libraries/models.json", format!(r#"{{"records":{{"sofa_a":{record}}}}}"#));
+}
+
+/// What is known of all that is seen from the first eye of a scene.
+fn truths(platform: &TdwPlatform, scene: &str) -> Vec<Option<wayword_core::GroundTruth>> {
+    let scene = SceneId::new(scene).unwrap();
+    let graph = platform.graph(&scene).unwrap();
+    let eyes: Vec<_> = graph.viewpoints().step_by(7).cloned().collect();
+    let frames = eyes.iter().map(|eye| graph.walk(std::slice::from_ref(eye), None).unwrap().remove(0));
+    let look = |frame| platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap().ground_truth().cloned();
+    frames.map(look).collect()
+}
+
+#[test]
+fn a_plan_without_furniture_has_no_labels_and_says_how_it_is_furnished() {
+    let folder = tempfile::tempdir().unwrap();
+    package(folder.path());
+    let honest = StandInOptions { furnishes: false, ..StandInOptions::default() };
+    let (platform, _build) = start_with(honest, Some(folder.path().to_owned()));
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let hearing = heard.clone();
+    let platform = platform.heard_by(Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned())));
+    assert!(truths(&platform, "floorplan_1a").iter().all(Option::is_none), "what shows there is not known");
+    let port = platform.waits_at().rsplit(':').next().unwrap().to_owned();
+    let lines = heard.lock().unwrap().join("\n");
+    for told in [
+        &format!("waiting up to 20 s for a ThreeDWorld build to connect to 127.0.0.1:{port}"),
+        &format!("TDW.x86_64 -port {port}"),
+        "build 1.13.0.0 has connected",
+        "loads floorplan_1a;",
+        "floorplan_1a holds no furniture",
+        "as floorplan_1a_0;",
+        "--data",
+    ] {
+        assert!(lines.contains(told), "{told}: {lines}");
+    }
+    heard.lock().unwrap().clear();
+    let furnished = truths(&platform, "floorplan_1a_0");
+    assert!(furnished.iter().flatten().any(|truth| truth.lists_objects && !truth.labels.is_empty()));
+    assert!(!heard.lock().unwrap().join("\n").contains("holds no furniture"));
 }

@@ -122,6 +122,28 @@ fn scenes_are_homes_and_a_simulator_that_is_not_there_is_named() {
     assert!(gone.contains("http://127.0.0.1") && gone.contains("-http-port"), "{gone}");
 }
 
+/// The stand-in says that it cannot clear what is empty, as the genuine executable may; the genuine client goes on.
+#[test]
+fn a_clear_that_fails_is_no_fault() {
+    let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
+    let mut client = Client::new(simulator.url(), Duration::from_secs(20));
+    client.reset(0).unwrap();
+    assert!(!client.environment_graph().unwrap().nodes.is_empty());
+}
+
+#[test]
+fn who_waits_is_told_for_what_and_how_it_is_started() {
+    let (platform, simulator) = start();
+    let heard = std::sync::Arc::new(std::sync::Mutex::new(Vec::new()));
+    let hearing = heard.clone();
+    let hear = move |line: &str| hearing.lock().unwrap().push(line.to_owned());
+    let platform = platform.heard_by(std::sync::Arc::new(hear));
+    platform.graph(&scene()).unwrap();
+    let lines = heard.lock().unwrap().join("\n");
+    assert!(lines.contains(&format!("asking VirtualHome at {} for home_0", simulator.url())), "{lines}");
+    assert!(lines.contains(&format!("-batchmode -http-port={}", simulator.port())), "{lines}");
+}
+
 /// What the client makes of an answer, whatever is asked.
 fn answered(status: &'static str, announced: usize, content: &'static str) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();

@@ -1,7 +1,7 @@
 //! Simulators that run beside this program.
 
-use crate::error::Error;
-use std::path::Path;
+use crate::{error::Error, output};
+use std::{path::Path, sync::Arc};
 use wayword_core::Platform;
 use wayword_live::{
     tdw::{ControllerOptions, TdwOptions, TdwPlatform},
@@ -18,7 +18,7 @@ pub(super) fn tdw(package: Option<&Path>, at: Option<&str>) -> Result<Box<dyn Pl
     let options = TdwOptions { controller, package: package.map(Path::to_owned), ..TdwOptions::default() };
     let platform = TdwPlatform::new(options)
         .map_err(|error| Error::usage(error.to_string(), "free the port, or name another with --at 127.0.0.1:1072"))?;
-    Ok(Box::new(platform))
+    Ok(Box::new(platform.heard_by(Arc::new(output::pass_on))))
 }
 
 /// Speaks to the executable at an address.
@@ -31,5 +31,5 @@ pub(super) fn virtualhome(at: Option<&str>) -> Result<Box<dyn Platform>, Error> 
         }
         options.url = at.to_owned();
     }
-    Ok(Box::new(VirtualHomePlatform::new(options)))
+    Ok(Box::new(VirtualHomePlatform::new(options).heard_by(Arc::new(output::pass_on))))
 }

@@ -64,7 +64,7 @@ pub const PLATFORMS: [Listed; 7] = [
         name: "tdw",
         what: "ThreeDWorld: waits for a build to connect",
         needs: "a TDW build started with -port 1071, or another as in --at 127.0.0.1:1072; --data PACKAGE for furnished floor plans",
-        offers: "pictures, labels",
+        offers: "pictures; labels of furniture, in furnished plans (floorplan_1a_0) alone",
         is_here: cfg!(feature = "live"),
     },
     Listed {

@@ -1,5 +1,5 @@
 //! Runs a stand-in for a simulator, for demonstrations without one:
-//! `cargo run --example stand_in --features stand-in -- tdw 1071` connects to a controller on that port, as TDW's build does;
+//! `cargo run -p wayword-live --features stand-in -- tdw 1071` connects to a controller on that port, as TDW's build does;
 //! `... -- virtualhome 8080` listens there, as VirtualHome's executable does.
 
 use std::{env, error::Error, net::SocketAddr, thread::park};
@@ -11,7 +11,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [simulator, port] = arguments.as_slice() else { return Err(usage.into()) };
     let address = SocketAddr::from(([127, 0, 0, 1], port.parse()?));
     match simulator.as_str() {
-        "tdw" => tdw::stand_in::StandIn::start(address, tdw::stand_in::StandInOptions::default()).join(),
+        "tdw" => {
+            // As in the genuine build, a floor plan without furniture has none, and no labels.
+            let options = tdw::stand_in::StandInOptions { furnishes: false, ..Default::default() };
+            tdw::stand_in::StandIn::start(address, options).join();
+        }
         "virtualhome" => {
             let _running = virtualhome::stand_in::StandIn::start(address)?;
             loop {

@@ -134,6 +134,12 @@ impl Controller {
         self.build.as_ref().map(|build| &build.version)
     }
 
+    /// How long a build is waited for.
+    #[must_use]
+    pub fn patience(&self) -> Duration {
+        self.options.connect_timeout
+    }
+
     /// Waits for a build, unless one is there, and asks it who it is.
     ///
     /// # Errors

@@ -6,10 +6,11 @@ use super::{
     scenes::{self, Plan},
     session,
 };
-use crate::live::{Live, Pictures, Shot, Simulator, Survey};
+use crate::live::{Ear, Live, Pictures, Shot, Simulator, Survey};
 use std::path::PathBuf;
 use wayword_core::{DVec3, SceneId};
 use wayword_render::Camera;
+use wayword_world::said;
 
 /// What can be chosen about the platform.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -33,6 +34,7 @@ pub struct Tdw {
     package: Option<PathBuf>,
     size: (u32, u32),
     loaded: Option<SceneId>,
+    ear: Ear,
 }
 
 impl TdwPlatform {
@@ -44,7 +46,7 @@ impl TdwPlatform {
         let TdwOptions { controller, package, pictures } = options;
         let controller = Controller::bind(controller)?;
         let size = (pictures.width_px, pictures.height_px);
-        Ok(Self::over(Tdw { controller, package, size, loaded: None }, pictures))
+        Ok(Self::over(Tdw { controller, package, size, loaded: None, ear: Ear::deaf() }, pictures))
     }
 
     /// Where builds connect to: `tcp://` and the port that was really taken.
@@ -54,12 +56,40 @@ impl TdwPlatform {
     }
 }
 
+impl Tdw {
+    fn connect(&mut self) -> Result<(), TdwError> {
+        let (address, seconds) = (self.controller.address(), self.controller.patience().as_secs());
+        self.ear.hear(&format!(
+            "waiting up to {seconds} s for a ThreeDWorld build to connect to {address}; it is started as TDW.x86_64 -port {}",
+            address.port()
+        ));
+        let build = self.controller.connect()?.tdw.clone();
+        self.ear.hear(&format!("ThreeDWorld build {} has connected", said::plain(&build, 40)));
+        Ok(())
+    }
+}
+
+/// What to do about a scene in which nothing has a label: walls, doors and windows are parts of a plan, and no objects of it.
+fn unlabelled(scene: Option<&SceneId>) -> String {
+    let scene = scene.map_or("the scene", SceneId::as_str);
+    let plan =
+        scene.get(.."floorplan_1a".len()).filter(|plan| plan.starts_with("floorplan_")).unwrap_or("floorplan_1a");
+    format!(
+        "{scene} holds no furniture: nothing in it has a label, so a model has to see (--see). Furnished are the plans that end in a \
+         number, as {plan}_0; their furniture is listed in the Python package tdw, whose folder is given as --data"
+    )
+}
+
 impl Simulator for Tdw {
     type Error = TdwError;
     const NAME: &'static str = "tdw";
 
     fn address(&self) -> String {
         format!("tcp://{}", self.controller.address())
+    }
+
+    fn tell(&mut self, ear: Ear) {
+        self.ear = ear;
     }
 
     fn scenes(&self) -> Vec<String> {
@@ -74,7 +104,7 @@ impl Simulator for Tdw {
     fn enter(&mut self, scene: &SceneId) -> Result<(), TdwError> {
         if !self.controller.is_connected() {
             self.loaded = None;
-            self.controller.connect()?;
+            self.connect()?;
         }
         if self.loaded.as_ref() == Some(scene) {
             return Ok(());
@@ -82,13 +112,18 @@ impl Simulator for Tdw {
         self.loaded = None;
         let plan = Plan::of(scene).ok_or_else(|| TdwError::Scene(format!("there is no scene {scene}")))?;
         let commands = plan.commands(self.package.as_deref())?;
+        self.ear.hear(&format!("the build loads {scene}; what it does not have yet it downloads, which takes minutes"));
         session::load(&mut self.controller, commands, self.size)?;
         self.loaded = Some(scene.clone());
         Ok(())
     }
 
     fn survey(&mut self) -> Result<Survey, TdwError> {
-        session::survey(&mut self.controller)
+        let survey = session::survey(&mut self.controller)?;
+        if survey.palette.is_empty() {
+            self.ear.hear(&unlabelled(self.loaded.as_ref()));
+        }
+        Ok(survey)
     }
 
     fn shoot(&mut self, camera: &Camera) -> Result<Shot, TdwError> {

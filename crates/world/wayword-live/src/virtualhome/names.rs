@@ -1,6 +1,20 @@
 //! Words from VirtualHome's names of classes, which run them together.
 
-/// What the first words of names are. What follows has to be a word as well: three letters at least.
+use std::{collections::BTreeMap, sync::LazyLock};
+
+/// The classes that VirtualHome has.
+const LIST: &str = include_str!("classes.txt");
+
+static CLASSES: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
+    let lines = LIST.lines().filter(|line| !line.starts_with('#'));
+    let named = |line: &'static str| match line.split_once(": ") {
+        Some(pair) => vec![pair],
+        None => line.split_whitespace().map(|word| (word, word)).collect(),
+    };
+    lines.flat_map(named).collect()
+});
+
+/// What the first words of other names are: of classes that users add, and of the stand-in's. What follows has to be a word as well: three letters at least.
 const FIRST: [&str; 26] = [
     "bathroom", "bedroom", "ceiling", "clothes", "coffee", "closet", "cutting", "desk", "dining", "dish", "door",
     "floor", "garage", "garbage", "kitchen", "laundry", "light", "living", "picture", "power", "remote", "table",
@@ -9,10 +23,18 @@ const FIRST: [&str; 26] = [
 /// Names that begin with one of these words and are one word.
 const WHOLE: [&str; 8] = ["closets", "doorway", "floors", "kitchens", "lights", "tables", "tablet", "tablets"];
 
-/// `coffeetable` as "coffee table", `wallpictureframe` as "wall picture frame".
+/// `coffeetable` as "coffee table", `clothes_pants` as "pants".
 pub(super) fn words(class_name: &str) -> String {
-    let (name, mut words) = (class_name.to_lowercase(), Vec::new());
-    let mut rest = name.as_str();
+    let name: String = class_name.to_lowercase().chars().filter(|c| !matches!(c, '_' | '-' | ' ')).collect();
+    match CLASSES.get(name.as_str()) {
+        Some(words) => (*words).to_owned(),
+        None => apart(&class_name.to_lowercase().replace('_', " ")),
+    }
+}
+
+/// A name that is on no list, taken apart behind words that such names begin with.
+fn apart(name: &str) -> String {
+    let (mut rest, mut words) = (name, Vec::new());
     while !WHOLE.contains(&rest) {
         let cut = FIRST.iter().find_map(|first| rest.strip_prefix(first).filter(|rest| rest.chars().count() >= 3));
         let Some(after) = cut else { break };
@@ -25,13 +47,30 @@ pub(super) fn words(class_name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::words;
+    use super::{CLASSES, words};
+
+    #[test]
+    fn every_class_of_the_list_has_words_that_are_spelled_as_words() {
+        assert!(CLASSES.len() > 400, "{}", CLASSES.len());
+        for (class, name) in CLASSES.iter() {
+            assert!(class.bytes().all(|byte| byte.is_ascii_lowercase()), "{class}");
+            assert!(!name.is_empty() && !name.contains("  "), "{class}: {name:?}");
+            assert!(name.split(' ').all(|word| word.len() < 12), "{class}: {name} still runs words together");
+        }
+    }
 
     #[test]
     fn names_come_apart_where_words_meet() {
         let expected = [
             ("coffeetable", "coffee table"),
-            ("wallpictureframe", "wall picture frame"),
+            ("wallpictureframe", "picture frame"),
+            ("filingcabinet", "filing cabinet"),
+            ("Filing_Cabinet", "filing cabinet"),
+            ("clothes_pants", "pants"),
+            ("dishbowl", "bowl"),
+            ("food_ice_cream", "ice cream"),
+            ("kitchenisland", "kitchen island"),
+            ("umbrella_stand", "umbrella stand"),
             ("livingroom", "living room"),
             ("Bathroomcabinet", "bathroom cabinet"),
             ("tvstand", "tv stand"),

@@ -8,7 +8,7 @@ use super::{
     names,
 };
 use crate::{
-    live::{Live, Pictures, Room, Shot, Simulator, Survey},
+    live::{Ear, Live, Pictures, Room, Shot, Simulator, Survey},
     sight::{Palette, Thing, colour_id},
     unity::unity_from_wayword,
     walk::EYE_M,
@@ -48,6 +48,7 @@ pub struct VirtualHome {
     size: (u32, u32),
     /// The home that is loaded, and the number of our camera in it.
     loaded: Option<(SceneId, i64)>,
+    ear: Ear,
 }
 
 impl VirtualHomePlatform {
@@ -56,7 +57,7 @@ impl VirtualHomePlatform {
     pub fn new(options: VirtualHomeOptions) -> Self {
         let VirtualHomeOptions { url, timeout, pictures } = options;
         let size = (pictures.width_px, pictures.height_px);
-        Self::over(VirtualHome { client: Client::new(url, timeout), size, loaded: None }, pictures)
+        Self::over(VirtualHome { client: Client::new(url, timeout), size, loaded: None, ear: Ear::deaf() }, pictures)
     }
 }
 
@@ -101,6 +102,10 @@ impl Simulator for VirtualHome {
         self.client.url().to_owned()
     }
 
+    fn tell(&mut self, ear: Ear) {
+        self.ear = ear;
+    }
+
     fn scenes(&self) -> Vec<String> {
         HOMES.map(|home| format!("home_{home}")).collect()
     }
@@ -115,6 +120,11 @@ impl Simulator for VirtualHome {
         }
         self.loaded = None;
         let home = home_of(scene).ok_or_else(|| HomeError::Floor(format!("of {scene} is not known")))?;
+        let url = self.client.url();
+        let port = url.rsplit(':').next().filter(|port| port.parse::<u16>().is_ok()).unwrap_or("8080");
+        self.ear.hear(&format!(
+            "asking VirtualHome at {url} for {scene}; it is started with -batchmode -http-port={port}, and loads a home in some seconds"
+        ));
         self.client.reset(home)?;
         let camera = HomeCamera { position: [0.0, EYE_M, 0.0], rotation_deg: [0.0; 3], field_of_view_deg: 60.0 };
         self.client.add_camera(&camera)?;

@@ -1,7 +1,8 @@
 //! A program that speaks like the TDW build and draws a generated house: what tests and demonstrations drive.
 //!
 //! It knows the commands that Wayword and its tests send and passes over all others, as the build does with what it cannot
-//! do. Rooms, walls and furniture are the house's, whatever scene and objects it is told to load.
+//! do. Rooms, walls and furniture are the house's, whatever scene and objects it is told to load; whether there is furniture may
+//! depend on whether objects were added ([`StandInOptions::furnishes`]).
 
 mod answers;
 mod flat;
@@ -23,6 +24,7 @@ use std::{
     time::{Duration, Instant},
 };
 pub use world::World;
+use world::Worlds;
 
 /// How often it looks whether it is to stop.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -36,6 +38,9 @@ pub struct StandInOptions {
     pub version: &'static str,
     /// Seed of the house that it draws; the next one with a single storey is taken.
     pub house: u64,
+    /// Whether the house is furnished and labelled whatever it is told to load. Else it is as the genuine build's floor plans
+    /// are: without furniture until an object is added, and with labels for furniture alone.
+    pub furnishes: bool,
     /// So many lists of commands it pretends not to have heard (`ftre`).
     pub deaf: u32,
     /// After so many answers the connection breaks, once, and a new build takes over.
@@ -48,7 +53,15 @@ pub struct StandInOptions {
 
 impl Default for StandInOptions {
     fn default() -> Self {
-        Self { version: "1.13.0.0", house: 1, deaf: 0, breaks_after: None, hangs_after: None, canned: None }
+        Self {
+            version: "1.13.0.0",
+            house: 1,
+            furnishes: true,
+            deaf: 0,
+            breaks_after: None,
+            hangs_after: None,
+            canned: None,
+        }
     }
 }
 
@@ -96,11 +109,11 @@ impl Build {
 
     /// Connects again and again: a build that lost its controller waits for the next.
     fn run(&mut self) {
-        let mut world = None;
+        let mut worlds = None;
         while !self.is_stopped() {
             let talked = TcpStream::connect(self.controller)
                 .map_err(|source| WireError::Io { doing: "connecting", source })
-                .and_then(|stream| self.talk(stream, &mut world));
+                .and_then(|stream| self.talk(stream, &mut worlds));
             match talked {
                 Ok(()) => return,
                 Err(_) => sleep(PAUSE),
@@ -108,11 +121,11 @@ impl Build {
         }
     }
 
-    fn talk(&mut self, stream: TcpStream, world: &mut Option<Arc<World>>) -> Result<(), WireError> {
+    fn talk(&mut self, stream: TcpStream, worlds: &mut Option<Worlds>) -> Result<(), WireError> {
         let mut peer = Peer::greet(stream, Role::Req, Instant::now() + PATIENCE)?;
         peer.send(&[b"hello"])?;
-        let world = world.get_or_insert_with(|| Arc::new(World::with_one_storey(self.options.house))).clone();
-        let mut state = BuildState::new(world, self.options.version);
+        let worlds = worlds.get_or_insert_with(|| Worlds::new(self.options.house, self.options.furnishes)).clone();
+        let mut state = BuildState::new(worlds, self.options.version);
         loop {
             while !peer.has_news(PAUSE) {
                 if self.is_stopped() {
@@ -196,9 +209,9 @@ pub(super) fn frames_of_every_kind() -> &'static [(String, Vec<u8>)] {
         {"$type":"send_nav_mesh_path","origin":{"x":1,"y":0,"z":1},"destination":{"x":3,"y":0,"z":3},"id":4},
         {"$type":"terminate"}]"#;
     FRAMES.get_or_init(|| {
-        let mut old = BuildState::new(Arc::new(World::with_one_storey(1)), "1.12.27");
+        let mut old = BuildState::new(Worlds::new(1, true), "1.12.27");
         let mut frames = obey(&mut old, &[br#"[{"$type":"send_version"}]"#.to_vec()]);
-        let mut new = BuildState::new(old.world, "1.13.0.0");
+        let mut new = BuildState::new(old.worlds, "1.13.0.0");
         frames.extend(obey(&mut new, &[COMMANDS.as_bytes().to_vec()]));
         frames.into_iter().map(|frame| (String::from_utf8_lossy(&frame[4..8]).into_owned(), frame)).collect()
     })

@@ -1,6 +1,6 @@
 //! What the stand-in has been told so far.
 
-use super::world::World;
+use super::world::{World, Worlds};
 use crate::unity::{wayword_forward_from_unity_rotation, wayword_from_unity};
 use serde_json::Value;
 use std::sync::Arc;
@@ -27,6 +27,8 @@ pub(super) enum Pictures {
 
 #[derive(Debug)]
 pub(super) struct BuildState {
+    pub(super) worlds: Worlds,
+    /// What is loaded of them.
     pub(super) world: Arc<World>,
     pub(super) version: &'static str,
     pub(super) avatars: Vec<Avatar>,
@@ -38,9 +40,10 @@ pub(super) struct BuildState {
 }
 
 impl BuildState {
-    pub(super) fn new(world: Arc<World>, version: &'static str) -> Self {
+    pub(super) fn new(worlds: Worlds, version: &'static str) -> Self {
         Self {
-            world,
+            world: worlds.loaded.clone(),
+            worlds,
             version,
             avatars: Vec::new(),
             size: (256, 256),
@@ -59,7 +62,11 @@ impl BuildState {
     /// Does what a command says.
     pub(super) fn obey(&mut self, kind: &str, command: &Value) {
         match kind {
-            "load_scene" | "add_scene" => self.avatars.clear(),
+            "load_scene" | "add_scene" => {
+                self.avatars.clear();
+                self.world = self.worlds.loaded.clone();
+            }
+            "add_object" => self.world = self.worlds.furnished.clone(),
             "create_avatar" => self.avatars.push(Avatar {
                 id: command["id"].as_str().unwrap_or("a").to_owned(),
                 position: [0.0; 3],

@@ -1,8 +1,9 @@
 //! The house that the stand-in shows, in Unity's coordinates.
 
 use crate::unity::{unity_from_wayword, wayword_from_unity};
+use std::sync::Arc;
 use wayword_core::DVec3;
-use wayword_house::{Ground, HouseScene, Object, Role, generate};
+use wayword_house::{Ground, House, HouseScene, Object, Role, generate};
 
 /// Steps in which a position on the navmesh is looked for, metres.
 const SNAP_STEP_M: f64 = 0.05;
@@ -12,6 +13,34 @@ const SNAP_STEP_M: f64 = 0.05;
 pub struct World {
     pub(super) scene: HouseScene,
     ground: Ground,
+    /// Whether doors and windows have numbers of their own, as furniture has.
+    counts_fixtures: bool,
+}
+
+/// What a stand-in shows once a scene is loaded, and once an object has been added.
+#[derive(Debug, Clone)]
+pub(super) struct Worlds {
+    pub(super) loaded: Arc<World>,
+    pub(super) furnished: Arc<World>,
+}
+
+impl Worlds {
+    /// The house of a seed; `furnishes` as [`super::StandInOptions`] has it.
+    pub(super) fn new(seed: u64, furnishes: bool) -> Self {
+        if furnishes {
+            let world = Arc::new(World::with_one_storey(seed));
+            return Self { loaded: world.clone(), furnished: world };
+        }
+        let furnished = World::of(one_storey(seed), false);
+        let bare = House { furniture: Vec::new(), ..furnished.scene.house.clone() };
+        Self { loaded: Arc::new(World::of(bare, false)), furnished: Arc::new(furnished) }
+    }
+}
+
+/// The first house with a single storey from a seed on: TDW's floor plans have one.
+#[allow(clippy::expect_used, reason = "a stand-in is for tests, and one house in a few has one storey")]
+fn one_storey(seed: u64) -> House {
+    (seed..).map(generate).find(|house| house.storeys == 1).expect("a house with one storey")
 }
 
 impl World {
@@ -20,11 +49,18 @@ impl World {
     /// # Panics
     /// Never: generated houses can be drawn, and one in a few has one storey.
     #[must_use]
-    #[allow(clippy::expect_used, reason = "a stand-in is for tests, and a generated house can be drawn")]
     pub fn with_one_storey(seed: u64) -> Self {
-        let house = (seed..).map(generate).find(|house| house.storeys == 1).expect("a house with one storey");
+        Self::of(one_storey(seed), true)
+    }
+
+    #[allow(clippy::expect_used, reason = "a stand-in is for tests, and a generated house can be drawn")]
+    fn of(house: House, counts_fixtures: bool) -> Self {
         let ground = Ground::of(&house);
-        Self { scene: HouseScene::new(house).expect("a drawing of the house"), ground }
+        Self { scene: HouseScene::new(house).expect("a drawing of the house"), ground, counts_fixtures }
+    }
+
+    fn counts(&self, object: &Object) -> bool {
+        object.role == Role::Furniture || self.counts_fixtures && object.role == Role::Fixture
     }
 
     /// What it draws.
@@ -34,12 +70,12 @@ impl World {
 
     /// Everything that has a colour of its own in the `_id` pass, by number.
     pub(crate) fn objects(&self) -> impl Iterator<Item = (u32, &Object)> {
-        self.scene.objects.iter().filter(|(_, object)| object.role != Role::Shell).map(|(id, object)| (*id, object))
+        self.scene.objects.iter().filter(|(_, object)| self.counts(object)).map(|(id, object)| (*id, object))
     }
 
     /// Whether a number belongs to something that has a colour of its own.
     pub(crate) fn is_object(&self, id: u32) -> bool {
-        self.scene.objects.get(&id).is_some_and(|object| object.role != Role::Shell)
+        self.scene.objects.get(&id).is_some_and(|object| self.counts(object))
     }
 
     /// The rooms: number, middle and size, Unity's.

@@ -98,7 +98,9 @@ impl Filmed {
         let int = |n: usize| request["intParams"][n].as_u64();
         let text = || serde_json::from_str::<Value>(request["stringParams"][0].as_str()?).ok();
         match request["action"].as_str()? {
-            "idle" | "clear" | "add_character" => {}
+            // With no home in it there is nothing to clear.
+            "clear" => drop(self.home.as_ref()?),
+            "idle" | "add_character" => {}
             "environment" => {
                 self.home = Some(Home::new(int(0).unwrap_or(0)));
                 self.cameras.clear();
