@@ -8,6 +8,7 @@ use std::{
     io::{self, IsTerminal, Write},
     time::Duration,
 };
+use wayword_world::said::is_unseen;
 
 /// How the program speaks.
 #[derive(Debug, Clone, Copy)]
@@ -19,19 +20,37 @@ pub struct Output {
 /// Longest error that is printed, characters: parsers quote the line that they choke on, however long.
 const MOST_ERROR_CHARS: usize = 1000;
 
-/// A text that may hold anything, made fit for a terminal.
+/// A text that may hold anything, made fit for a terminal. Whatever a model, a server, a child or a file says goes through here.
 pub(crate) fn tame(text: &str) -> String {
-    let mut tamed: String =
-        text.chars().take(MOST_ERROR_CHARS).map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect();
+    text.chars().map(|c| if is_unseen(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
+}
+
+/// The same for an error, which is cut where it is long.
+fn tame_error(text: &str) -> String {
+    let mut tamed = tame(&text.chars().take(MOST_ERROR_CHARS).collect::<String>());
     if text.chars().nth(MOST_ERROR_CHARS).is_some() {
         tamed.push_str(" ...");
     }
     tamed
 }
 
+/// JSON with what a terminal would obey written as JSON escapes it: the same values.
+fn tame_json(json: &str) -> String {
+    let mut tamed = String::with_capacity(json.len());
+    for c in json.chars() {
+        if is_unseen(c) {
+            let mut units = [0; 2];
+            tamed.extend(c.encode_utf16(&mut units).iter().map(|unit| format!("\\u{unit:04x}")));
+        } else {
+            tamed.push(c);
+        }
+    }
+    tamed
+}
+
 /// A line of a child process, beside this program's own talk.
 pub(crate) fn pass_on(line: &str) {
-    eprintln!("{}", tame(line));
+    eprintln!("{}", tame_error(line));
 }
 
 impl Output {
@@ -49,21 +68,27 @@ impl Output {
 
     /// Data: `value` as JSON where that is wanted, else the text. A reader that has gone away is no error.
     pub fn data(&self, value: &impl Serialize, text: impl Display) {
-        let line = if self.json { serde_json::to_string(value).unwrap_or_default() } else { text.to_string() };
+        let line = if self.json {
+            // The name of a file need not be UTF-8, and JSON is.
+            let json = serde_json::to_string(value);
+            tame_json(&json.unwrap_or_else(|error| format!("{{\"error\":{:?}}}", error.to_string())))
+        } else {
+            tame(&text.to_string())
+        };
         let _ = writeln!(io::stdout(), "{}", line.trim_end());
     }
 
     /// Talk.
     pub fn say(&self, text: impl Display) {
         if !self.quiet {
-            eprintln!("{text}");
+            eprintln!("{}", tame(&text.to_string()));
         }
     }
 
     /// An error.
     pub fn error(&self, error: &impl Display) {
         let red = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-        eprintln!("{}: {}", if red { "\x1b[31merror\x1b[0m" } else { "error" }, tame(&error.to_string()));
+        eprintln!("{}: {}", if red { "\x1b[31merror\x1b[0m" } else { "error" }, tame_error(&error.to_string()));
     }
 
     /// A progress bar; hidden where nobody looks.
@@ -157,6 +182,16 @@ mod tests {
     #[test]
     fn errors_are_fit_for_a_terminal() {
         assert_eq!(tame("a\x1b[31mb\nc"), "a\u{fffd}[31mb\nc");
-        assert_eq!(tame(&"x".repeat(5000)).chars().count(), MOST_ERROR_CHARS + 4);
+        assert_eq!(tame_error(&"x".repeat(5000)).chars().count(), MOST_ERROR_CHARS + 4);
+    }
+
+    #[test]
+    fn nothing_turns_the_line_round_or_hides_in_it() {
+        assert_eq!(tame("turn \u{202e}tfel\u{2069} now\u{200b}!\n"), "turn \u{fffd}tfel\u{fffd} now\u{fffd}!\n");
+        assert_eq!(tame("caf\u{e9} \u{4e2d}\u{6587}"), "caf\u{e9} \u{4e2d}\u{6587}");
+        let json = serde_json::to_string("a\u{202e}b\u{7f}c\u{9b}d\u{e0041}\"").unwrap();
+        let tamed = tame_json(&json);
+        assert_eq!(tamed, r#""a\u202eb\u007fc\u009bd\udb40\udc41\"""#);
+        assert_eq!(serde_json::from_str::<String>(&tamed).unwrap(), serde_json::from_str::<String>(&json).unwrap());
     }
 }

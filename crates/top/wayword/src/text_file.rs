@@ -1,21 +1,61 @@
 //! Small text files of a user's: read whole, within a bound.
 
 use crate::error::Error;
-use std::{fs::File, io::Read, path::Path};
+use std::{
+    fs::{self, File},
+    io::Read,
+    path::Path,
+};
+use wayword_world::files;
 
 /// Largest file that is read, bytes.
 const MOST_BYTES: u64 = 4 << 20;
 
-/// The text of a file; `what` is told in errors ("the settings").
+/// The text of a file, without the mark that Windows' editors put before it; `what` is told in errors ("read the settings").
 ///
 /// # Errors
-/// When it cannot be read, is no UTF-8, or is larger than 4 MiB.
+/// When it cannot be read, is no file (a pipe, say), is no UTF-8, or is larger than 4 MiB.
 pub(crate) fn read(path: &Path, what: &'static str) -> Result<String, Error> {
-    let mut text = String::new();
-    let file = File::open(path).map_err(Error::io(path, what))?;
-    file.take(MOST_BYTES + 1).read_to_string(&mut text).map_err(Error::io(path, what))?;
-    if text.len() as u64 > MOST_BYTES {
-        return Err(Error::usage(format!("{}: it is larger than 4 MiB", path.display()), "is it the right file?"));
+    let wrong = |reason: &str, hint: &str| Error::usage(format!("{}: it {reason}", path.display()), hint);
+    let about = fs::metadata(path).map_err(Error::io(path, what))?;
+    if let Some(reason) = files::irregular(&about) {
+        return Err(wrong(reason, "name a file"));
     }
-    Ok(text)
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(Error::io(path, what))?;
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(Error::io(path, what))?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(wrong("is larger than 4 MiB", "is it the right file?"));
+    }
+    files::text(bytes).map_err(|reason| wrong(reason, "is it the right file?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_read_with_and_without_a_mark_and_nothing_else_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("settings.toml");
+        let mut told = |bytes: &[u8]| {
+            fs::write(&file, bytes).unwrap();
+            read(&file, "read the settings").map_err(|error| error.to_string())
+        };
+        assert_eq!(told(b"\xef\xbb\xbfseed = 1"), Ok("seed = 1".to_owned()));
+        assert_eq!(told(b"seed = 1"), Ok("seed = 1".to_owned()));
+        assert!(told(b"\xff\xfes\0").unwrap_err().contains("is text in UTF-16; save it as UTF-8"));
+        assert!(told(b"\xff").unwrap_err().contains("not text in UTF-8"));
+        assert!(told(&vec![b' '; (4 << 20) + 1]).unwrap_err().contains("larger than 4 MiB"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_is_refused_and_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(read(&pipe, "read the settings").unwrap_err().to_string().contains("is a pipe or a device"));
+        assert!(read(folder.path(), "read the settings").unwrap_err().to_string().contains("is a folder"));
+    }
 }

@@ -172,6 +172,32 @@ fn wrong_flags_are_refused_with_what_is_wrong_and_what_to_do() {
     assert!(error.contains("data/r2r"), "{error}");
 }
 
+/// What nobody can read to its end, or keep by its name, is told at once and as what it is.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_pipe_for_a_dataset_and_a_name_that_is_no_text_are_refused() {
+    use std::os::unix::ffi::OsStrExt;
+    let building = Building::new();
+    let pipe = building.path("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let matterport = ["--platform", "matterport", "--data", "data"];
+    for command in [
+        &["generate", "--out", "run", "--episodes", "pipe"][..],
+        &["generate", "--out", "run", "--config", "pipe", "--episodes", EPISODES],
+        &["generate", "--out", "run", "--style", "mine=pipe"],
+        &["compare", "--out", "run", "--episodes", "pipe"],
+        &["check", "pipe"],
+    ] {
+        let ran = building.wayword(&[command, &matterport].concat());
+        assert!(ran.refused().contains("a pipe or a device"), "{command:?}: {ran:?}");
+    }
+    let named = std::ffi::OsStr::from_bytes(b"da\xffta");
+    fs::rename(building.data(), building.path(".").join(named)).unwrap();
+    let ran = run(building.command(&["generate", "--platform", "matterport", "--out", "run"]).arg("--data").arg(named));
+    assert!(ran.refused().contains("not UTF-8") && !ran.err.contains("bug"), "{ran:?}");
+    assert!(!building.path("run").exists());
+}
+
 /// The episodes with something done to the second of them.
 fn broken(building: &Building, spoil: impl Fn(&mut Value)) -> &'static str {
     let mut items: Value = serde_json::from_slice(&fs::read(building.reverie()).unwrap()).unwrap();

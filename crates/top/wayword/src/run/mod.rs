@@ -18,6 +18,7 @@ use std::{
     path::{Path, PathBuf},
     time::SystemTime,
 };
+use wayword_world::files;
 
 use held::Held;
 pub(crate) use held::hold;
@@ -199,6 +200,11 @@ fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
 
 /// The beginning of a file's hash, for settings that only name it.
 pub(crate) fn hash_of_file(file: &Path) -> Result<String, Error> {
+    // A pipe would be waited for.
+    let about = fs::metadata(file).map_err(Error::io(file, "read"))?;
+    if let Some(reason) = files::irregular(&about) {
+        return Err(Error::usage(format!("{}: it {reason}", file.display()), "name a file"));
+    }
     let mut hash = Sha256::new();
     let copied = File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash));
     copied.map_err(Error::io(file, "read"))?;

@@ -6,7 +6,12 @@ mod service;
 
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
-use std::{collections::BTreeMap, ops::RangeInclusive, path::PathBuf, str::FromStr};
+use std::{
+    collections::BTreeMap,
+    ops::RangeInclusive,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
 use wayword_core::PathRequest;
 use wayword_synthesis::{
     dialogue::{Mode, QUESTIONS},
@@ -136,7 +141,13 @@ impl Asked {
     pub fn job(mut self) -> Result<Job, Error> {
         let service = std::mem::take(&mut self.service).checked()?;
         let providers = std::mem::take(&mut self.providers);
-        Ok(Job { settings: self.resolve()?, service, providers })
+        let settings = self.resolve()?;
+        for (flag, path) in
+            [("--data", &settings.data), ("--episodes", &settings.episodes), ("--prompts", &settings.roles.prompts)]
+        {
+            nameable(flag, path.as_deref())?;
+        }
+        Ok(Job { settings, service, providers })
     }
 
     /// Resolves it, with defaults for what nobody asked for.
@@ -198,6 +209,17 @@ impl Asked {
             roles,
             inputs: BTreeMap::new(),
         })
+    }
+}
+
+/// Refuses a path that cannot be kept: settings are text in UTF-8, and a file system's names need not be.
+pub(crate) fn nameable(flag: &str, path: Option<&Path>) -> Result<(), Error> {
+    match path {
+        Some(path) if path.to_str().is_none() => Err(Error::usage(
+            format!("{flag} {}: this name is not UTF-8, and a run keeps it as text", path.display()),
+            "rename it, or make a link to it and give the link's name",
+        )),
+        _ => Ok(()),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::{
     cli::{Compare, SwapName},
     error::Error,
     run::hash_of_file,
-    settings::Settings,
+    settings::{Settings, nameable},
     world,
 };
 use serde::{Deserialize, Serialize};
@@ -73,6 +73,8 @@ impl Kept {
     /// # Errors
     /// When a set is named twice or not as it should be, an agent is not known, or a file cannot be read.
     pub(super) fn of(args: &Compare, settings: &Settings) -> Result<Self, Error> {
+        nameable("--episodes", Some(&args.episodes))?;
+        nameable("--data", settings.data.as_deref())?;
         let asked = if args.instructions.is_empty() { &vec![ORIGINAL.to_owned()] } else { &args.instructions };
         let mut instructions: Vec<(String, String)> = Vec::new();
         let mut inputs = BTreeMap::from([("episodes".to_owned(), hash_of_file(&args.episodes)?)]);
