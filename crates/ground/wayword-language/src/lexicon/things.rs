@@ -186,6 +186,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_files_that_the_list_names_are_there() {
+        let words = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/words");
+        let remarks = LIST.lines().filter(|line| line.starts_with('#')).flat_map(str::split_whitespace);
+        let names = remarks.map(|word| word.trim_end_matches([')', '.', ',']));
+        let files: Vec<&str> = names.filter(|name| name.ends_with(".rs")).collect();
+        assert!(!files.is_empty() && files.iter().all(|file| words.join(file).is_file()), "{files:?}");
+    }
+
+    #[test]
     fn names_of_one_thing_agree() {
         for (a, b) in
             [("couch", "sofa"), ("chair", "dining chairs"), ("painting", "picture frame"), ("bin", "trashcan")]
