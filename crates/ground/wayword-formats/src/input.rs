@@ -54,10 +54,11 @@ fn without_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dy
     }
 }
 
+/// Reads a file that is one JSON value.
+type Parser = serde_json::Deserializer<IoRead<BufReader<Tokens<Box<dyn BufRead>>>>>;
+
 /// A parser for a file that is one JSON value.
-pub(crate) fn parser(
-    file: &Path,
-) -> Result<serde_json::Deserializer<IoRead<BufReader<Tokens<Box<dyn BufRead>>>>>, FormatError> {
+pub(crate) fn parser(file: &Path) -> Result<Parser, FormatError> {
     let tokens = Tokens::new(open(file)?);
     Ok(serde_json::Deserializer::from_reader(BufReader::with_capacity(BUFFER_BYTES, tokens)))
 }

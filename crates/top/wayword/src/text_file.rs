@@ -38,7 +38,7 @@ mod tests {
     fn text_is_read_with_and_without_a_mark_and_nothing_else_is() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("settings.toml");
-        let mut told = |bytes: &[u8]| {
+        let told = |bytes: &[u8]| {
             fs::write(&file, bytes).unwrap();
             read(&file, "read the settings").map_err(|error| error.to_string())
         };

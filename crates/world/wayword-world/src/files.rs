@@ -52,6 +52,18 @@ pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result
     if bytes.len() as u64 > max_bytes { Err(too_large()) } else { Ok(Some(bytes)) }
 }
 
+/// Opens a file to read parts of it.
+///
+/// # Errors
+/// When it cannot be opened, or is no plain file.
+pub fn open(file: &Path, hint: &'static str) -> Result<File, PlatformError> {
+    let failed = |error: std::io::Error| wrong(file, error.to_string(), hint);
+    match irregular(&fs::metadata(file).map_err(failed)?) {
+        Some(reason) => Err(wrong(file, reason, hint)),
+        None => File::open(file).map_err(failed),
+    }
+}
+
 /// The bytes of a JSON file, as [`bytes_if_there`] reads them, without the mark that Windows' editors put before UTF-8.
 ///
 /// # Errors
@@ -172,6 +184,7 @@ mod tests {
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         for (file, told) in [(pipe.as_path(), "is a pipe or a device"), (folder.path(), "is a folder")] {
             assert!(bytes_if_there(file, 100, "?").unwrap_err().to_string().contains(told));
+            assert!(open(file, "?").unwrap_err().to_string().contains(told));
         }
         assert!(bytes_if_there(&folder.path().join("none"), 100, "?").unwrap().is_none());
     }

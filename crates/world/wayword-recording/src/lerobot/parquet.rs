@@ -58,7 +58,7 @@ impl Table {
     /// # Errors
     /// When it is no Parquet file.
     pub(super) fn open(path: &Path) -> Result<Self, PlatformError> {
-        let about = File::open(path).map_err(|error| error.to_string()).and_then(|file| footer::read(&file));
+        let about = footer::read(&files::open(path, HINT)?);
         Ok(Self { path: path.to_owned(), about: about.map_err(|reason| files::wrong(path, reason, HINT))? })
     }
 

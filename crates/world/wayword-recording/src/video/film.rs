@@ -34,7 +34,7 @@ impl Film {
     /// # Errors
     /// When it is no MP4 file, is broken, has no such camera, or its pictures are in a codec that is not read.
     pub(crate) fn open(file: &Path, camera: Option<&str>) -> Result<Self, PlatformError> {
-        let mut opened = File::open(file).map_err(|error| files::wrong(file, error.to_string(), HINT))?;
+        let mut opened = files::open(file, HINT)?;
         let movie = Movie::read(&mut opened, camera);
         let movie = movie.map_err(|refusal| kind::refusal(file, "an MP4 video", (refusal.reason, refusal.hint)))?;
         let times_s = movie.shown.iter().map(|shown| shown.time_s).collect();
