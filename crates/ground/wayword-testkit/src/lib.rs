@@ -1,8 +1,10 @@
 //! A small made-up building in the file formats of Matterport3D, REVERIE and R2R, for tests: two storeys with stairs, nine
 //! rooms, 14 viewpoints, 42 objects (some of one name), ten paths with instructions. Nothing of it is taken from a dataset.
-//! And [`provider`]: models behind HTTP that answer by script, with every fault that services have.
+//! And [`provider`]: models behind HTTP that answer by script, with every fault that services have; and [`documents`]: the commands
+//! that the repository's documents tell their readers to type.
 
 mod boxes;
+pub mod documents;
 mod episodes;
 mod house_file;
 mod pictures;

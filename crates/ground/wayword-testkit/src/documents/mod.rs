@@ -1,0 +1,190 @@
+//! The commands that documents tell their readers to type, read from Markdown: from fenced blocks of shell, and from spans of code
+//! within the text. For tests that hold the documents against the real command line.
+
+mod shell;
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// A command of one of this repository's programs, in a document.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Documented {
+    /// The document, relative to the repository's root, and the line on which the command begins, from 1.
+    pub place: String,
+    /// The program: `wayword` or `wayword-measure`, however the document starts it.
+    pub program: String,
+    /// Variables that are set for it alone.
+    pub variables: Vec<(String, String)>,
+    /// Its arguments.
+    pub args: Vec<String>,
+    /// Whether it stands within the text, where `wayword check` may be a name and no command to type.
+    pub is_within_text: bool,
+}
+
+/// Programs of this repository that documents tell of.
+const PROGRAMS: [&str; 2] = ["wayword", "wayword-measure"];
+/// What the fences of shell are called; those without a name are shell as well.
+const SHELL: [&str; 5] = ["", "sh", "bash", "console", "shell"];
+
+/// The commands of `README.md` and of `docs/*.md`, the README's first, then document by document.
+///
+/// # Errors
+/// When a document cannot be read.
+pub fn commands(repository: &Path) -> io::Result<Vec<Documented>> {
+    let docs =
+        fs::read_dir(repository.join("docs"))?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>()?;
+    let mut documents: Vec<PathBuf> =
+        docs.into_iter().filter(|path| path.extension().is_some_and(|end| end == "md")).collect();
+    documents.sort();
+    documents.insert(0, repository.join("README.md"));
+    let mut found = Vec::new();
+    for document in documents {
+        let name = document.strip_prefix(repository).unwrap_or(&document).display().to_string();
+        found.extend(commands_of(&name, &fs::read_to_string(&document)?));
+    }
+    Ok(found)
+}
+
+/// The commands of one document, in its order. Places in it are told with its name.
+#[must_use]
+pub fn commands_of(name: &str, markdown: &str) -> Vec<Documented> {
+    let mut found = Vec::new();
+    for Piece { line, text, is_within_text } in pieces(markdown) {
+        for command in shell::commands(&text) {
+            if let Some((program, args)) = program_of(&command.words) {
+                let place = format!("{name}:{}", line + command.line);
+                found.push(Documented { place, program, variables: command.variables, args, is_within_text });
+            }
+        }
+    }
+    found
+}
+
+/// Which of the programs a command starts, directly or with `cargo run`, and its arguments.
+fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
+    let (first, rest) = words.split_first()?;
+    if PROGRAMS.contains(&first.as_str()) {
+        return Some((first.clone(), rest.to_vec()));
+    }
+    let is_cargo_run =
+        first == "cargo" && rest.first().is_some_and(|word| word == "run") && !rest.contains(&"--example".to_owned());
+    let split = rest.iter().position(|word| word == "--").filter(|_| is_cargo_run)?;
+    let (cargo, args) = rest.split_at(split);
+    let package = cargo.iter().position(|word| word == "-p").and_then(|at| cargo.get(at + 1));
+    Some((package.map_or("wayword", String::as_str).to_owned(), args[1..].to_vec()))
+}
+
+/// Text that a shell could be given.
+struct Piece {
+    /// Line on which it begins, from 1.
+    line: usize,
+    text: String,
+    is_within_text: bool,
+}
+
+fn pieces(markdown: &str) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut fence: Option<(&str, Piece)> = None;
+    let mut paragraph = Piece { line: 1, text: String::new(), is_within_text: true };
+    for (number, line) in (1..).zip(markdown.lines()) {
+        let marks = line.trim_start();
+        match &mut fence {
+            Some((_, block)) if marks.starts_with("```") => {
+                block.text.push('\n');
+                pieces.extend(fence.take().filter(|(name, _)| SHELL.contains(name)).map(|(_, block)| block));
+            }
+            Some((name, block)) => {
+                // Of a console only what is typed is a command; the rest is what was answered.
+                let typed = if *name == "console" { marks.strip_prefix("$ ").unwrap_or("#") } else { marks };
+                block.text.push_str(typed);
+                block.text.push('\n');
+            }
+            None if marks.starts_with("```") || marks.is_empty() => {
+                let next = Piece { line: number + 1, text: String::new(), is_within_text: true };
+                pieces.extend(spans(&std::mem::replace(&mut paragraph, next)));
+                let block = Piece { line: number + 1, text: String::new(), is_within_text: false };
+                fence = marks.strip_prefix("```").map(|name| (name.trim(), block));
+            }
+            None => {
+                paragraph.text.push_str(line);
+                paragraph.text.push('\n');
+            }
+        }
+    }
+    pieces.extend(spans(&paragraph));
+    pieces
+}
+
+/// The spans of code within a paragraph; one may go on in the next line.
+fn spans(paragraph: &Piece) -> Vec<Piece> {
+    let mut line = paragraph.line;
+    let mut found = Vec::new();
+    for (number, text) in paragraph.text.split('`').enumerate() {
+        if number % 2 == 1 {
+            found.push(Piece { line, text: text.replace('\n', " ").replace("\\|", "|"), is_within_text: true });
+        }
+        line += text.matches('\n').count();
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    const DOCUMENT: &str = "\
+# A document
+
+Type `wayword check FILE`, or `wayword
+evaluate SUBMISSION` behind it.
+
+```sh
+# how to begin
+cargo run --release --features full -- generate --paths 3 \\
+    --out 'my runs'
+OFFLINE=1 wayword demo && ls
+cargo run -p wayword-live --example stand_in -- tdw
+```
+
+| what | command |
+|---|---|
+| skeletons | `cargo run --release -p wayword-measure -- variety runs/a` |
+
+```toml
+command = \"wayword demo\"
+```
+
+```console
+$ wayword doctor
+wayword is well
+```
+";
+
+    #[test]
+    fn commands_are_found_in_fences_of_shell_in_tables_and_in_text_that_wraps() {
+        let found: Vec<String> = commands_of("A.md", DOCUMENT)
+            .into_iter()
+            .map(|found| format!("{} {} {:?} {}", found.place, found.program, found.args, found.is_within_text))
+            .collect();
+        assert_eq!(
+            found,
+            [
+                "A.md:3 wayword [\"check\", \"FILE\"] true",
+                "A.md:3 wayword [\"evaluate\", \"SUBMISSION\"] true",
+                "A.md:8 wayword [\"generate\", \"--paths\", \"3\", \"--out\", \"my runs\"] false",
+                "A.md:10 wayword [\"demo\"] false",
+                "A.md:16 wayword-measure [\"variety\", \"runs/a\"] true",
+                "A.md:23 wayword [\"doctor\"] false",
+            ]
+        );
+    }
+
+    #[test]
+    fn what_is_set_for_a_command_alone_stays_with_it() {
+        let found = commands_of("A.md", DOCUMENT);
+        assert_eq!(found[3].variables, [("OFFLINE".into(), "1".into())]);
+    }
+}

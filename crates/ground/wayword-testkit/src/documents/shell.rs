@@ -1,0 +1,149 @@
+//! As much of a shell as documents use: words, quotes, continued lines, lists and pipes, variables before a command.
+
+/// One simple command: what a shell would run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Simple {
+    /// Line of the text, from 0, on which it begins.
+    pub(super) line: usize,
+    /// Variables that are set for it alone.
+    pub(super) variables: Vec<(String, String)>,
+    /// The program and its arguments, without quotes and redirections.
+    pub(super) words: Vec<String>,
+}
+
+/// The simple commands of a script, in order. Variables (`$NAME`) stay as they are written.
+pub(super) fn commands(script: &str) -> Vec<Simple> {
+    let mut reader = Reader::default();
+    let mut chars = script.chars().peekable();
+    while let Some(c) = chars.next() {
+        match (reader.quote, c) {
+            (None, '\\') => match chars.next() {
+                Some('\n') => reader.line += 1,
+                Some(other) => reader.add(other),
+                None => {}
+            },
+            (Some('"'), '\\') if matches!(chars.peek(), Some('"' | '\\' | '$')) => {
+                reader.add(chars.next().unwrap_or('\\'))
+            }
+            (None, '\'' | '"') => {
+                reader.quote = Some(c);
+                reader.word.get_or_insert_default();
+            }
+            (Some(open), c) if open == c => reader.quote = None,
+            (None, '#') if reader.word.is_none() => while chars.next_if(|c| *c != '\n').is_some() {},
+            (None, '>' | '<') => {
+                reader.redirect();
+                // `2>&1` is one redirection, and not the end of a command.
+                chars.next_if_eq(&'&');
+            }
+            (None, '\n' | ';' | '|' | '&') => {
+                reader.end_command();
+                reader.line += usize::from(c == '\n');
+            }
+            (None, c) if c.is_whitespace() => reader.end_word(),
+            (_, c) => {
+                reader.line += usize::from(c == '\n');
+                reader.add(c);
+            }
+        }
+    }
+    reader.end_command();
+    reader.done
+}
+
+#[derive(Default)]
+struct Reader {
+    line: usize,
+    quote: Option<char>,
+    word: Option<String>,
+    /// Whether the next word is a file that is read or written, and no argument.
+    is_redirected: bool,
+    now: Vec<String>,
+    begun: Option<usize>,
+    done: Vec<Simple>,
+}
+
+impl Reader {
+    fn add(&mut self, c: char) {
+        self.begun.get_or_insert(self.line);
+        self.word.get_or_insert_default().push(c);
+    }
+
+    /// `2>` and `>`: the number of a stream is no argument.
+    fn redirect(&mut self) {
+        if self.word.as_ref().is_some_and(|word| word.chars().all(|c| c.is_ascii_digit())) {
+            self.word = None;
+        }
+        self.end_word();
+        self.is_redirected = true;
+    }
+
+    fn end_word(&mut self) {
+        if let Some(word) = self.word.take()
+            && !std::mem::take(&mut self.is_redirected)
+        {
+            self.now.push(word);
+        }
+    }
+
+    fn end_command(&mut self) {
+        self.end_word();
+        self.is_redirected = false;
+        let line = self.begun.take().unwrap_or(self.line);
+        let mut words = std::mem::take(&mut self.now);
+        let set = words.iter().take_while(|word| assignment(word).is_some()).count();
+        let variables = words.drain(..set).filter_map(|word| assignment(&word)).collect();
+        if !words.is_empty() {
+            self.done.push(Simple { line, variables, words });
+        }
+    }
+}
+
+/// `NAME=value`.
+fn assignment(word: &str) -> Option<(String, String)> {
+    let (name, value) = word.split_once('=')?;
+    let is_name = !name.is_empty() && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
+    is_name.then(|| (name.to_owned(), value.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    fn words(script: &str) -> Vec<Vec<String>> {
+        commands(script).into_iter().map(|command| command.words).collect()
+    }
+
+    #[test]
+    fn words_are_split_as_a_shell_splits_them() {
+        assert_eq!(words("a 'b c' \"d \\\" e\" f\\ g h#i # j"), [["a", "b c", "d \" e", "f g", "h#i"]]);
+        assert_eq!(words("a --x '' b"), [["a", "--x", "", "b"]]);
+    }
+
+    #[test]
+    fn a_line_goes_on_behind_a_backslash_and_ends_a_command_without() {
+        let found = commands("# a comment\nfirst --one \\\n    --two\nsecond\n");
+        assert_eq!(found.iter().map(|one| one.words.join(" ")).collect::<Vec<_>>(), ["first --one --two", "second"]);
+        assert_eq!(found.iter().map(|one| one.line).collect::<Vec<_>>(), [1, 3]);
+    }
+
+    #[test]
+    fn pipes_and_lists_hold_several_commands_and_redirections_are_no_arguments() {
+        assert_eq!(
+            words("a x | b > out.txt && c 2>&1; d < in >> log"),
+            [vec!["a", "x"], vec!["b"], vec!["c"], vec!["d"]]
+        );
+    }
+
+    #[test]
+    fn variables_before_a_command_are_none_of_its_words() {
+        let found = commands("OFFLINE=1 NAME='x y' run --at=2");
+        assert_eq!(found[0].variables, [("OFFLINE".into(), "1".into()), ("NAME".into(), "x y".into())]);
+        assert_eq!(found[0].words, ["run", "--at=2"]);
+        assert_eq!(
+            commands("export KEY=..."),
+            [Simple { line: 0, variables: vec![], words: vec!["export".into(), "KEY=...".into()] }]
+        );
+    }
+}
