@@ -2,6 +2,7 @@
 
 use crate::stage::{Stage, World};
 use wayword::{
+    calls::Spent,
     error::Error,
     item::items,
     output::Output,
@@ -9,8 +10,27 @@ use wayword::{
 };
 use wayword_core::Platform;
 
+/// What came of a run with a bound.
+#[derive(Debug)]
+struct Figures {
+    frames: usize,
+    /// Items that were made.
+    done: usize,
+    spent: Spent,
+}
+
 pub(super) fn measure(world: &World, paths: usize, max_usd: f64, output: &Output) -> Result<(), Error> {
-    let stage = Stage::new(world, 0.15)?;
+    let Figures { frames, done, spent } = figures(&Stage::new(world, 0.15)?, paths, max_usd)?;
+    let lines = [
+        format!("{paths} paths, {frames} frames; {done} were made before the budget stopped the rest"),
+        format!("bound ${max_usd:.4}, spent ${:.4}, {} requests", spent.usd + spent.maybe_usd, spent.requests),
+        format!("within the bound: {}", spent.usd + spent.maybe_usd <= max_usd),
+    ];
+    output.data(&(), lines.join("\n"));
+    Ok(())
+}
+
+fn figures(stage: &Stage, paths: usize, max_usd: f64) -> Result<Figures, Error> {
     let job = stage.job(paths)?;
     let service = Service { max_usd: Some(max_usd), prices: Some(stage.prices()?), ..job.service };
     let job = Job { service, ..job };
@@ -20,12 +40,39 @@ pub(super) fn measure(world: &World, paths: usize, max_usd: f64, output: &Output
         frames += item.path(&job.settings, platform)?.frames.len();
     }
     let (made, spent) = stage.make(&job)?;
-    let done = made.iter().filter(|made| made.is_ok()).count();
-    let lines = [
-        format!("{paths} paths, {frames} frames; {done} were made before the budget stopped the rest"),
-        format!("bound ${max_usd:.4}, spent ${:.4}, {} requests", spent.usd + spent.maybe_usd, spent.requests),
-        format!("within the bound: {}", spent.usd + spent.maybe_usd <= max_usd),
-    ];
-    output.data(&(), lines.join("\n"));
-    Ok(())
+    Ok(Figures { frames, done: made.iter().filter(|made| made.is_ok()).count(), spent })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::made_up::Building;
+
+    /// What the calls in the ledger cost at 10 and 20 dollars a million tokens.
+    fn worked_out(stage: &Stage) -> f64 {
+        let usd = |row: &wayword_ledger::Row| {
+            (10.0 * row.answer.tokens_in as f64 + 20.0 * row.answer.tokens_out as f64) / 1e6
+        };
+        stage.calls().unwrap().iter().map(usd).sum()
+    }
+
+    #[test]
+    fn what_is_spent_is_the_price_of_the_tokens_and_all_is_made_where_the_bound_is_far() {
+        let building = Building::new();
+        let stage = Stage::new(&building.world(), 0.15).unwrap();
+        let Figures { frames, done, spent } = figures(&stage, 3, 1e6).unwrap();
+        assert!(frames >= 3 * 5, "paths of four to seven hops: {frames} frames");
+        assert_eq!((done, spent.requests), (3, stage.provider.log().received));
+        assert!(spent.usd > 0.0 && (spent.usd - worked_out(&stage)).abs() < 1e-9, "{spent:?}");
+    }
+
+    #[test]
+    fn a_bound_stops_the_run_before_it_is_passed() {
+        let building = Building::new();
+        let stage = Stage::new(&building.world(), 0.15).unwrap();
+        let Figures { done, spent, .. } = figures(&stage, 3, 0.02).unwrap();
+        assert!(done < 3, "{done}");
+        assert!(spent.usd <= 0.02 && (spent.usd - worked_out(&stage)).abs() < 1e-9, "{spent:?}");
+    }
 }

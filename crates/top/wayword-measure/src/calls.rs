@@ -88,18 +88,25 @@ pub(super) fn measure(calls: usize, latency_ms: u64, concurrency: usize, output:
         ));
     }
     let took = begun.elapsed();
-    let per_s = calls as f64 / took.as_secs_f64();
-    let own_ms = (resources::cpu() - cpu).as_secs_f64() * 1e3 / calls as f64;
-    if latency_ms > 0 {
-        let ideal = concurrency as f64 * 1e3 / latency_ms as f64;
-        lines.push(format!("{per_s:.1} calls/s, {:.1} % of the ideal {ideal:.1}", 100.0 * per_s / ideal));
-    } else {
-        lines.push(format!("{per_s:.1} calls/s"));
-    }
-    lines.push(format!("{own_ms:.2} ms of our own processor time per call"));
+    lines.push(throughput(calls, took, latency_ms, concurrency));
+    lines.push(format!("{} of our own processor time per call", per_call(resources::cpu() - cpu, calls)));
     provider.end()?;
     output.data(&(), lines.join("\n"));
     Ok(())
+}
+
+/// Calls per second, and what share that is of what a provider allows that takes so long for each of so many at a time.
+fn throughput(calls: usize, took: Duration, latency_ms: u64, concurrency: usize) -> String {
+    let per_s = calls as f64 / took.as_secs_f64();
+    if latency_ms == 0 {
+        return format!("{per_s:.1} calls/s");
+    }
+    let ideal = concurrency as f64 * 1e3 / latency_ms as f64;
+    format!("{per_s:.1} calls/s, {:.1} % of the ideal {ideal:.1}", 100.0 * per_s / ideal)
+}
+
+fn per_call(time: Duration, calls: usize) -> String {
+    format!("{:.2} ms", time.as_secs_f64() * 1e3 / calls as f64)
 }
 
 /// Pictures apart: each its own, and one asked about ten times.
@@ -117,8 +124,8 @@ pub(super) fn pictures(calls: usize, output: &Output) -> Result<(), Error> {
         });
         let own: Duration = resources::cpu() - cpu;
         lines.push(format!(
-            "{what} (640 x 480): {:.2} ms of our own processor time per call, {} failed",
-            own.as_secs_f64() * 1e3 / calls as f64,
+            "{what} (640 x 480): {} of our own processor time per call, {} failed",
+            per_call(own, calls),
             failed.len()
         ));
     }
@@ -130,7 +137,51 @@ pub(super) fn pictures(calls: usize, output: &Output) -> Result<(), Error> {
 /// A picture that no other is like, smooth as photographs are.
 fn noise(number: usize) -> Result<Image, wayword_core::image::WrongPixelCount> {
     let (width, height) = (640u32, 480u32);
-    let level = |x: u32, y: u32| ((x / 3 + y / 2 + number as u32 * 7) % 256) as u8;
-    let pixels = (0..height).flat_map(|y| (0..width).flat_map(move |x| [level(x, y), level(y, x), level(x, x + y)]));
+    // Two offsets, so that 65,536 pictures differ and not 256.
+    let level = |x: u32, y: u32, offset: usize| ((x / 3 + y / 2 + offset as u32) % 256) as u8;
+    let (offset, other) = (number * 7, number * 7 + number / 256);
+    let pixels = (0..height)
+        .flat_map(|y| (0..width).flat_map(move |x| [level(x, y, offset), level(y, x, offset), level(x, x + y, other)]));
     Image::new(width, height, pixels.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use std::collections::BTreeSet;
+    use wayword_testkit::provider::{
+        Behaviour, Dialect, Gallery, Provider,
+        scripts::{Cast, FlawedEye},
+    };
+
+    #[test]
+    fn throughput_is_held_against_what_the_latency_allows() {
+        // 32 at a time and 200 ms for each are 160 a second; 5,000 in 40 s are 125.
+        let told = throughput(5000, Duration::from_secs(40), 200, 32);
+        assert_eq!(told, "125.0 calls/s, 78.1 % of the ideal 160.0");
+        assert_eq!(throughput(5000, Duration::from_secs(40), 0, 32), "125.0 calls/s");
+        assert_eq!(per_call(Duration::from_millis(1650), 5000), "0.33 ms");
+    }
+
+    #[test]
+    fn every_call_is_another_and_is_made_once_and_those_that_fail_are_counted() {
+        let cast = Cast::new(FlawedEye::new(Gallery::default(), 0, 0.0), 0, 0.0);
+        let provider = Provider::start(Behaviour::of("words", cast)).unwrap();
+        let base_url = provider.base_url(Dialect::OpenAi);
+        let client = Client::new(&base_url, "server/words", Concurrency::Fixed(3), 30.0).unwrap();
+        assert_eq!(client.make(20, words), Vec::<String>::new());
+        assert_eq!((provider.log().answered, provider.log().distinct_answered()), (20, 20));
+        let nobody = Client::new(&base_url, "server/nobody", Concurrency::Fixed(3), 30.0).unwrap();
+        assert_eq!(nobody.make(5, words).len(), 5);
+        assert_eq!(provider.log().answered, 20);
+    }
+
+    /// Pictures that are alike would be one picture to a cache of encodings, and cheaper than what is measured.
+    #[test]
+    fn no_two_pictures_of_the_measurement_are_alike() {
+        let pictures: BTreeSet<Vec<u8>> =
+            (1..=600).map(|number| noise(number).unwrap().rgb()[..30_000].to_vec()).collect();
+        assert_eq!(pictures.len(), 600);
+    }
 }

@@ -34,8 +34,21 @@ pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize,
     let runs = folders.iter().map(|folder| open(folder, output)).collect::<Result<Vec<_>, _>>()?;
     let all: Vec<(&Run, &Record)> =
         runs.iter().flat_map(|run| run.records.iter().map(move |record| (run, record))).collect();
+    let (counts, missed) = counted(&all, count, seed);
+    for line in missed.iter().take(show) {
+        output.say(line);
+    }
+    output.data(&(), table(&counts));
+    Ok(())
+}
+
+/// Of each kind, how many were caught, and of how many.
+type Counts = BTreeMap<Corruption, (usize, usize)>;
+
+/// Makes as many corruptions of each kind, and checks them; those that were missed are told.
+fn counted(all: &[(&Run, &Record)], count: usize, seed: u64) -> (Counts, Vec<String>) {
     let mut rng = rng(seed, &["corruptions"]);
-    let mut counts: BTreeMap<Corruption, (usize, usize)> = BTreeMap::new();
+    let mut counts = Counts::new();
     let mut missed = Vec::new();
     for kind in Corruption::ALL {
         let mut tries = 0;
@@ -54,14 +67,10 @@ pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize,
             }
         }
     }
-    for line in missed.iter().take(show) {
-        output.say(line);
-    }
-    output.data(&(), table(&counts));
-    Ok(())
+    (counts, missed)
 }
 
-fn table(counts: &BTreeMap<Corruption, (usize, usize)>) -> String {
+fn table(counts: &Counts) -> String {
     let line = |name: &str, (caught, total): (usize, usize)| {
         format!("{name:<39} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
     };
@@ -106,5 +115,122 @@ impl Run {
     fn needed_for(&self, record: &Record) -> Option<(&Evidence, &Style, &BTreeSet<String>)> {
         let style = self.styles.iter().find(|style| style.name == record.instruction.style)?;
         Some((self.evidence.get(&record.path.id)?, style, self.names.get(&record.path.scene)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::made_up::{instruction, path, record};
+    use MentionKind::{Landmark, Room as InRoom, Turn};
+    use wayword_checks::{FrameEvidence, SeenThing, Source};
+    use wayword_core::{Constraints, MentionKind};
+
+    const TEXT: &str = "Walk past the sofa. Turn left at the lamp. Stop in the kitchen.";
+
+    fn good() -> Record {
+        let mentions = [("sofa", Landmark), ("left", Turn), ("lamp", Landmark), ("kitchen", InRoom)];
+        record("p", instruction("mine", TEXT, &mentions))
+    }
+
+    /// A run of that one record, with what is known of its path.
+    fn run(evidence: Evidence) -> Run {
+        let references = vec!["Head through the archway and wait near the tall window.".to_owned()];
+        let style = Style { name: "mine".into(), references, constraints: Constraints::default() };
+        let names = ["sofa", "lamp", "table"].map(str::to_owned).into();
+        Run {
+            styles: vec![style],
+            records: vec![good()],
+            evidence: BTreeMap::from([("p".to_owned(), evidence)]),
+            names: BTreeMap::from([(SceneId::new("flat").unwrap(), names)]),
+        }
+    }
+
+    /// The sofa stands on the left of the first frame, the lamp at the second, and the last lies in the kitchen; nothing else is there.
+    fn known() -> Evidence {
+        let frame = |room: &str, seen: Option<(&str, f64)>| FrameEvidence {
+            rooms: vec![room.to_owned()],
+            things: seen
+                .into_iter()
+                .map(|(name, turn_deg)| SeenThing {
+                    name: name.to_owned(),
+                    object: None,
+                    colour: None,
+                    turn_rad: Some(f64::to_radians(turn_deg)),
+                })
+                .collect(),
+            knows_things: true,
+            level: Some(1),
+        };
+        let frames = vec![
+            frame("hallway", Some(("sofa", -60.0))),
+            frame("hallway", Some(("lamp", -10.0))),
+            frame("kitchen", None),
+        ];
+        Evidence { frames, source: Source::Labels, ..Evidence::of_path_alone(&path("p")) }
+    }
+
+    fn counts_of(evidence: Evidence) -> Counts {
+        let run = run(evidence);
+        let all: Vec<(&Run, &Record)> = run.records.iter().map(|record| (&run, record)).collect();
+        counted(&all, 40, 0).0
+    }
+
+    /// Each corruption of this text contradicts what is known of the path, so each is to be caught. The text has no task whose object
+    /// could be exchanged.
+    #[test]
+    fn where_all_is_known_every_corruption_is_caught() {
+        let counts = counts_of(known());
+        for kind in Corruption::ALL {
+            let expected = if kind == Corruption::TaskElsewhere { (0, 0) } else { (4, 4) };
+            assert_eq!(counts[&kind], expected, "{}", kind.name());
+        }
+    }
+
+    /// Nobody knows the objects and rooms: absent ones cannot be caught, and there are none whose order, side or room could be wrong.
+    /// Turns, stairs and floors follow from the path, and a copied reference from the text.
+    #[test]
+    fn where_only_the_path_is_known_what_is_seen_along_it_cannot_be_caught() {
+        let counts = counts_of(Evidence::of_path_alone(&path("p")));
+        let expected = [
+            (Corruption::TurnFlipped, (4, 4)),
+            (Corruption::LandmarkAbsent, (0, 4)),
+            (Corruption::OrderSwapped, (0, 0)),
+            (Corruption::ReferenceCopied, (4, 4)),
+            (Corruption::TaskElsewhere, (0, 0)),
+            (Corruption::StairsAdded, (4, 4)),
+            (Corruption::FloorWrong, (4, 4)),
+            (Corruption::RoomWrong, (0, 0)),
+            (Corruption::SideWrong, (0, 0)),
+            (Corruption::TaskUnasked, (0, 4)),
+        ];
+        assert_eq!(counts, BTreeMap::from(expected));
+    }
+
+    #[test]
+    fn what_was_missed_is_told_with_what_it_was() {
+        let run = run(Evidence::of_path_alone(&path("p")));
+        let missed = counted(&[(&run, &run.records[0])], 40, 0).1;
+        assert_eq!(missed.len(), 8);
+        assert!(
+            missed.iter().all(|line| line.ends_with(&format!("\n    was: {TEXT}")) && !line.starts_with(TEXT)),
+            "{missed:?}"
+        );
+    }
+
+    #[test]
+    fn the_table_has_shares_of_each_kind_and_of_all() {
+        let counts = BTreeMap::from([
+            (Corruption::TurnFlipped, (3, 4)),
+            (Corruption::RoomWrong, (1, 1)),
+            (Corruption::FloorWrong, (0, 0)),
+        ]);
+        let table = table(&counts);
+        let shares: Vec<&str> = table.lines().map(|line| line[40..].trim()).collect();
+        assert_eq!(
+            shares,
+            ["3 of     4   75.0 %", "0 of     0    0.0 %", "1 of     1  100.0 %", "4 of     5   80.0 %"]
+        );
     }
 }

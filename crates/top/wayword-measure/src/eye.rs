@@ -94,3 +94,50 @@ impl Named {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::made_up::{Building, instruction};
+    use wayword::{item::items, world};
+    use wayword_synthesis::walk::Walk;
+
+    /// A path of the made-up building from the entryway, where a bench stands, and these outcomes.
+    fn counted(outcomes: Vec<Outcome>) -> Named {
+        let building = Building::new();
+        let stage = Stage::new(&building.world(), 0.15).unwrap();
+        let mut settings = stage.job(1).unwrap().settings;
+        settings.episodes = Some(building.data().join("reverie/REVERIE_val_seen.json"));
+        let world = world::open_named("matterport", Some(&building.data()), None).unwrap();
+        let first = items(&settings, world.as_ref()).unwrap().remove(0);
+        let path = first.path(&settings, world.as_ref()).unwrap();
+        let made = Made { walk: Walk::new(path, Vec::new()), outcomes, pictures: Vec::new() };
+        let mut named = Named::default();
+        named.count(&made, world.as_ref()).unwrap();
+        named
+    }
+
+    /// Of three objects that two texts name, a piano is nowhere in the building.
+    #[test]
+    fn an_object_that_no_label_along_the_path_agrees_with_is_a_ghost() {
+        let text = |text: &str| Outcome::Accepted(instruction("r2r", text, &[]));
+        let named = counted(vec![
+            text("Walk past the bench. Stop at the piano."),
+            text("Walk past the bench. Stop in the hallway."),
+        ]);
+        assert_eq!((named.texts, named.objects, named.ghosts, named.haunted), (2, 3, 1, 1), "{named:?}");
+        assert_eq!((named.rejected, named.finished_by_rules), (0, 0));
+    }
+
+    #[test]
+    fn texts_that_were_rejected_or_that_rules_finished_are_counted_apart() {
+        let mut finished = instruction("r2r", "Walk past the bench.", &[]);
+        finished.provenance.finished_for = Some("server/words".into());
+        let named = counted(vec![
+            Outcome::Accepted(finished),
+            Outcome::Rejected { last: None, reason: "there is no text".into() },
+        ]);
+        assert_eq!((named.texts, named.rejected, named.finished_by_rules), (1, 1, 1), "{named:?}");
+    }
+}

@@ -5,6 +5,9 @@ mod calls;
 mod corrupt;
 mod corruptions;
 mod eye;
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod made_up;
 mod provider;
 mod resources;
 mod reuse;
@@ -166,5 +169,28 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use std::path::Path;
+    use wayword_testkit::documents;
+
+    #[test]
+    fn every_measurement_that_the_documents_quote_is_read_by_the_command_line() {
+        let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..").canonicalize().unwrap();
+        let mut measured = 0;
+        for command in documents::commands(&repository).unwrap() {
+            if command.program == "wayword-measure" && !command.args.is_empty() {
+                let words = ["wayword-measure"].into_iter().chain(command.args.iter().map(String::as_str));
+                let read = Cli::try_parse_from(words).map_err(|error| error.to_string());
+                assert!(read.is_ok(), "{}: {:?}: {read:?}", command.place, command.args);
+                measured += 1;
+            }
+        }
+        assert!(measured > 5, "{measured} measurements");
     }
 }

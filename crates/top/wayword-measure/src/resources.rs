@@ -24,3 +24,29 @@ pub(super) fn resident_mib() -> f64 {
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap_or_default();
     line.split_whitespace().next().and_then(|kib| kib.parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use std::{hint::black_box, time::Instant};
+
+    /// Other tests of this process may compute at the same time, so there is a lower bound alone.
+    #[test]
+    fn processor_time_grows_with_what_is_computed() {
+        let (before, begun) = (cpu(), Instant::now());
+        let mut sum = 0u64;
+        while cpu() - before < Duration::from_millis(100) && begun.elapsed() < Duration::from_secs(60) {
+            sum = (0..1_000_000).fold(sum, |sum, one| sum.wrapping_add(black_box(one)));
+        }
+        black_box(sum);
+        assert!(cpu() - before >= Duration::from_millis(100));
+    }
+
+    #[test]
+    fn resident_memory_counts_what_is_written_to() {
+        let before = resident_mib();
+        let written = black_box(vec![1u8; 256 << 20]);
+        let more = resident_mib() - before;
+        assert!(written.len() == 256 << 20 && more > 128.0, "{more} MiB");
+    }
+}

@@ -12,10 +12,18 @@ use wayword_formats::jsonl::{self, Record};
 
 pub(super) fn show(run: &Path, count: usize, seed: u64, output: &Output) -> Result<(), Error> {
     let walks: Vec<WalkRecord> = read_lines(&run.join(file::WALKS))?;
-    let originals: BTreeMap<&str, &[String]> =
-        walks.iter().map(|walk| (walk.path.id.as_str(), walk.originals.as_slice())).collect();
+    let originals = walks.into_iter().map(|walk| (walk.path.id, walk.originals)).collect();
+    let records = jsonl::read(&run.join(file::INSTRUCTIONS))?;
+    output.data(&(), lines(records, &originals, count, seed).join("\n"));
+    Ok(())
+}
+
+/// What people said of each path, by the path's name.
+type Originals = BTreeMap<String, Vec<String>>;
+
+fn lines(records: Vec<Record>, originals: &Originals, count: usize, seed: u64) -> Vec<String> {
     let mut styles: BTreeMap<String, Vec<Record>> = BTreeMap::new();
-    for record in jsonl::read(&run.join(file::INSTRUCTIONS))? {
+    for record in records {
         styles.entry(record.instruction.style.clone()).or_default().push(record);
     }
     let mut lines = Vec::new();
@@ -23,15 +31,43 @@ pub(super) fn show(run: &Path, count: usize, seed: u64, output: &Output) -> Resu
         lines.push(format!("{style}:"));
         for record in records.choose_multiple(&mut rng(seed, &["sample", style]), count) {
             lines.push(format!("- {} | {}", record.path.id, record.instruction.text));
-            lines.extend(
-                originals
-                    .get(record.path.id.as_str())
-                    .into_iter()
-                    .flat_map(|texts| texts.first())
-                    .map(|text| format!("    human: {text}")),
-            );
+            let people = originals.get(&record.path.id).and_then(|texts| texts.first());
+            lines.extend(people.map(|text| format!("    human: {text}")));
         }
     }
-    output.data(&(), lines.join("\n"));
-    Ok(())
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::made_up::{instruction, record};
+    use std::collections::BTreeSet;
+
+    fn made(count: usize) -> Vec<Record> {
+        (0..count)
+            .map(|number| record(&format!("p{number}"), instruction("r2r", &format!("Text {number}."), &[])))
+            .collect()
+    }
+
+    #[test]
+    fn as_many_different_instructions_are_picked_as_are_asked_for_and_each_stands_with_what_people_said_first() {
+        let said = |number: usize| (format!("p{number}"), vec![format!("People {number}."), "Others.".to_owned()]);
+        let originals: Originals = (0..9).map(said).collect();
+        let picked = lines(made(9), &originals, 4, 0);
+        assert_eq!(picked[0], "r2r:");
+        assert_eq!(picked.len(), 1 + 2 * 4);
+        for pair in picked[1..].chunks(2) {
+            let number = pair[0].strip_prefix("- p").unwrap().chars().next().unwrap();
+            assert_eq!(pair, [format!("- p{number} | Text {number}."), format!("    human: People {number}.")]);
+        }
+        assert_eq!(picked[1..].iter().collect::<BTreeSet<_>>().len(), 8, "none twice: {picked:?}");
+        assert_eq!(lines(made(9), &originals, 4, 0), picked, "the same seed picks the same");
+    }
+
+    #[test]
+    fn where_there_are_fewer_all_are_shown() {
+        assert_eq!(lines(made(2), &Originals::new(), 10, 0).len(), 1 + 2);
+    }
 }

@@ -6,13 +6,21 @@ use wayword_core::{Instruction, MentionKind};
 use wayword_formats::jsonl;
 
 pub(super) fn measure(folders: &[PathBuf], show: usize, output: &Output) -> Result<(), Error> {
-    let mut styles: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
+    let mut instructions = Vec::new();
     for folder in folders {
-        for record in jsonl::read(&folder.join(file::INSTRUCTIONS))? {
-            let skeletons = styles.entry(record.instruction.style.clone()).or_default();
-            for skeleton in skeletons_of(&record.instruction) {
-                *skeletons.entry(skeleton).or_default() += 1;
-            }
+        instructions
+            .extend(jsonl::read(&folder.join(file::INSTRUCTIONS))?.into_iter().map(|record| record.instruction));
+    }
+    output.data(&(), lines(&instructions, show).join("\n"));
+    Ok(())
+}
+
+fn lines(instructions: &[Instruction], show: usize) -> Vec<String> {
+    let mut styles: BTreeMap<&str, BTreeMap<String, usize>> = BTreeMap::new();
+    for instruction in instructions {
+        let skeletons = styles.entry(&instruction.style).or_default();
+        for skeleton in skeletons_of(instruction) {
+            *skeletons.entry(skeleton).or_default() += 1;
         }
     }
     let mut lines = Vec::new();
@@ -28,8 +36,7 @@ pub(super) fn measure(folders: &[PathBuf], show: usize, output: &Output) -> Resu
                 .map(|(skeleton, count)| format!("  {:>5.2} %  {skeleton}", 100.0 * **count as f64 / total as f64)),
         );
     }
-    output.data(&(), lines.join("\n"));
-    Ok(())
+    lines
 }
 
 fn skeletons_of(instruction: &Instruction) -> Vec<String> {
@@ -50,4 +57,37 @@ fn skeletons_of(instruction: &Instruction) -> Vec<String> {
         .map(|sentence| sentence.trim().to_lowercase())
         .filter(|sentence| !sentence.is_empty())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::made_up::instruction;
+    use MentionKind::{Floor, Landmark, Room, Target, Turn};
+
+    /// Six sentences: three with one skeleton, two with another, one with a third.
+    #[test]
+    fn a_skeleton_s_share_is_that_of_all_sentences_of_its_style() {
+        let texts = [
+            instruction("r2r", "Turn left at the sofa. Stop.", &[("left", Turn), ("sofa", Landmark)]),
+            instruction(
+                "r2r",
+                "Turn right at the piano. Wait in the kitchen.",
+                &[("right", Turn), ("piano", Landmark), ("kitchen", Room)],
+            ),
+            instruction("r2r", "Turn left at the floor lamp. Stop.", &[("left", Turn), ("floor lamp", Landmark)]),
+            instruction("reverie", "Go up to level 2 and clean the sink", &[("level 2", Floor), ("sink", Target)]),
+        ];
+        assert_eq!(
+            lines(&texts, 2),
+            [
+                "r2r: 6 sentences, 3 skeletons",
+                "  50.00 %  turn turn at the landmark.",
+                "  33.33 %  stop.",
+                "reverie: 1 sentences, 1 skeletons",
+                "  100.00 %  go up to level 2 and clean the landmark",
+            ]
+        );
+    }
 }

@@ -90,6 +90,13 @@ impl Stage {
         .job()
     }
 
+    /// The calls in the ledger.
+    #[cfg(test)]
+    pub(super) fn calls(&self) -> Result<Vec<wayword_ledger::Row>, Error> {
+        let ledger = wayword_ledger::Ledger::open(&self.folder.path().join("ledger.db"))?;
+        Ok(ledger.list(&wayword_ledger::Filter::default())?)
+    }
+
     /// A list of prices that makes everything cost something.
     pub(super) fn prices(&self) -> Result<PathBuf, Error> {
         let file = self.folder.path().join("prices.toml");

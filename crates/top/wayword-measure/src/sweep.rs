@@ -174,3 +174,54 @@ fn table(name: &str, tried: &[Tried], items: usize, show: usize) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::made_up::Building;
+    use wayword_testkit::{SCAN, viewpoint_id};
+
+    #[test]
+    fn every_setting_is_tried_once() {
+        let all = walks("labels/lexical");
+        assert_eq!(all.len(), 5 * 8 * 3 * 5 * 2);
+        assert_eq!(backs(&all[0]).len(), 1 + 4 * 6 * 4);
+        assert!(all.iter().enumerate().all(|(at, one)| !all[..at].contains(one)));
+    }
+
+    /// Whoever may not move stays at the start. The goal of one episode is 1.9 m away, so that staying is a success by the shortest way;
+    /// that of the other is behind two hops of 4 m and more.
+    #[test]
+    fn figures_are_sums_over_the_episodes_and_the_best_comes_first() {
+        let building = Building::new();
+        let world = world::open_named("matterport", Some(&building.data()), None).unwrap();
+        let item = |number: usize, path: &[usize]| {
+            let path: Vec<String> = path.iter().map(|at| viewpoint_id(*at)).collect();
+            serde_json::json!({
+                "distance": 1.0, "scan": SCAN, "path_id": number, "path": path, "heading": 0.0,
+                "instructions": ["Walk to the end of the hallway."],
+            })
+        };
+        let file = building.data().join("two.json");
+        std::fs::write(&file, serde_json::json!([item(1, &[6, 7]), item(2, &[0, 1, 4])]).to_string()).unwrap();
+        let episodes = episodes::read(&file, world.as_ref()).unwrap();
+        let default = Parameters::default_of("clip-nav", "labels/lexical");
+        let stays = Parameters { max_hops: 0, back: None, ..default };
+        let tried = swept(world.as_ref(), &episodes, &Lexical::new(Sees::Views), &[stays, default]).unwrap();
+        let of_stays = tried.iter().find(|tried| tried.parameters == stays).unwrap();
+        assert_eq!(of_stays.sums, [1.0, 1.0, 1.0]);
+        assert!(tried[0].sums[2] >= tried[1].sums[2]);
+    }
+
+    #[test]
+    fn the_table_tells_shares_of_the_items() {
+        let default = Parameters::default_of("clip-nav", "labels/lexical");
+        let tried = [Tried { parameters: default, sums: [2.0, 3.0, 1.0] }];
+        let table = table("agents", &tried, 4, 8);
+        let mut lines = table.lines();
+        assert_eq!(lines.next(), Some("agents: 1 settings, 4 items"));
+        assert_eq!(lines.next(), Some("    SR   OSR   SPL"));
+        assert!(lines.next().unwrap().starts_with(" 50.00 75.00 25.00  "), "{table}");
+    }
+}

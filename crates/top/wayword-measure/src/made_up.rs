@@ -1,0 +1,76 @@
+//! For the tests of figures: instructions, paths and a building that the tests make, so that every figure can be worked out by hand.
+
+use crate::stage::World;
+use std::path::PathBuf;
+use tempfile::TempDir;
+use wayword_core::{
+    DVec3, Heading, Instruction, Mention, MentionKind, Motion, Path, Provenance, SceneId, Verdict, path::Stop,
+};
+use wayword_formats::jsonl::Record;
+
+/// An instruction that passed; each mention by its words, which are looked for from where the last one ended.
+pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKind)]) -> Instruction {
+    let mut from = 0;
+    let mentions = mentions.iter().map(|(words, kind)| {
+        let start = from + text[from..].find(words).unwrap();
+        from = start + words.len();
+        Mention { span: [start, from], kind: *kind, frame: 0 }
+    });
+    let by = |name: &str| name.to_owned();
+    Instruction {
+        text: text.to_owned(),
+        style: style.to_owned(),
+        mentions: mentions.collect(),
+        verdict: Verdict::Pass,
+        findings: Vec::new(),
+        provenance: Provenance {
+            wayword: by("test"),
+            asker: by("rules"),
+            answerer: by("labels"),
+            summariser: by("rules"),
+            writer: by("rules"),
+            checked_against: by("labels"),
+            seed: 0,
+            style_hash: String::new(),
+            prompts_hash: None,
+            repairs: 0,
+            finished_for: None,
+        },
+    }
+}
+
+/// Four metres north, then four to the west: straight ahead, and one left turn. On the lowest floor.
+pub(crate) fn path(id: &str) -> Path {
+    let stop = |x, y| Stop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
+    let stops = vec![stop(0.0, 0.0), stop(0.0, 4.0), stop(-4.0, 4.0)];
+    Path {
+        id: id.to_owned(),
+        scene: SceneId::new("flat").unwrap(),
+        frames: Path::frames_along(stops, Some(Heading::NORTH)),
+        motion: Motion::Known,
+        target: None,
+    }
+}
+
+pub(crate) fn record(id: &str, instruction: Instruction) -> Record {
+    Record::new("made up", path(id), instruction)
+}
+
+/// The test kit's building on disk.
+pub(crate) struct Building(TempDir);
+
+impl Building {
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        wayword_testkit::write_building(folder.path()).unwrap();
+        Self(folder)
+    }
+
+    pub(crate) fn data(&self) -> PathBuf {
+        self.0.path().to_owned()
+    }
+
+    pub(crate) fn world(&self) -> World {
+        World { platform: "matterport".into(), data: Some(self.data()), scan: None, seed: 0 }
+    }
+}
