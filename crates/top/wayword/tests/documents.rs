@@ -1,0 +1,155 @@
+//! The commands of README.md, docs/*.md and `--help`: each is read by the real command line, and each that needs nothing but this
+//! program is run.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use clap::{CommandFactory, Parser};
+use std::{collections::BTreeSet, path::Path};
+use wayword::cli::Cli;
+use wayword_testkit::documents::{self, Documented};
+
+/// Commands that a test cannot run, by words that give them away, and what they need. All others are run.
+const NEEDS: [(&str, &str); 13] = [
+    ("check FILE", "a file of the reader's own"),
+    ("--platform matterport", "Matterport3D's files"),
+    ("runs/val_seen", "a run over Matterport3D's files"),
+    ("runs/table", "a comparison over Matterport3D's files"),
+    ("--platform tdw", "ThreeDWorld's simulator"),
+    ("--platform virtualhome", "VirtualHome's simulator"),
+    ("--platform process", "Python and a simulator"),
+    ("--platform recording", "a recording of the reader's own"),
+    ("ollama/", "Ollama, with the model"),
+    ("openai/", "a key of OpenAI's"),
+    ("hf/", "weights from the hub"),
+    ("ledger ", "a ledger, which calls of models make"),
+    ("similarity ", "the weights of a sentence encoder"),
+];
+
+/// The most that a command is run with, where the document has more: a reader waits, a test does not.
+const AT_MOST: [(&str, u32); 3] = [("--paths", 1), ("--views", 5), ("--smooth", 1)];
+
+/// How commands may end that a reader is told to type: done, or done with loss that is told.
+const GOOD: [Option<i32>; 2] = [Some(0), Some(3)];
+
+fn documented() -> Vec<Documented> {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..").canonicalize().unwrap();
+    let mut commands = documents::commands(&repository).unwrap();
+    commands.retain(|command| command.program == "wayword");
+    assert!(commands.len() > 20, "{} commands", commands.len());
+    commands
+}
+
+/// What a command needs that no test has; none for those that are run.
+fn needs(command: &Documented) -> Option<&'static (&'static str, &'static str)> {
+    let line = format!("{} ", command.args.join(" "));
+    NEEDS.iter().find(|(word, _)| line.contains(word))
+}
+
+/// The name of a command within the text, as in "`wayword ledger export` writes": there is nothing to be typed in it.
+fn is_a_name(command: &Documented) -> bool {
+    let mut known = Cli::command();
+    for word in &command.args {
+        let Some(inner) = known.find_subcommand(word) else { return false };
+        known = inner.clone();
+    }
+    command.is_within_text && known.clone().try_get_matches_from([""]).is_err()
+}
+
+fn unreadable<'a>(words: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    use clap::error::ErrorKind::{DisplayHelp, DisplayVersion};
+    let error = Cli::try_parse_from(words).err()?;
+    (!matches!(error.kind(), DisplayHelp | DisplayVersion)).then(|| error.to_string())
+}
+
+#[test]
+fn every_command_of_the_documents_is_read_by_the_command_line() {
+    for command in documented() {
+        if is_a_name(&command) {
+            continue;
+        }
+        let words = ["wayword"].into_iter().chain(command.args.iter().map(String::as_str));
+        let problem = unreadable(words);
+        assert_eq!(problem, None, "{}: {:?}", command.place, command.args);
+    }
+}
+
+#[test]
+fn every_example_of_the_help_is_read_by_the_command_line() {
+    let mut left = vec![Cli::command()];
+    let mut examples = 0;
+    while let Some(command) = left.pop() {
+        left.extend(command.get_subcommands().cloned());
+        let help = command.get_after_long_help().map(ToString::to_string).unwrap_or_default();
+        let fenced = format!("```sh\n{}\n```\n", typed(&help));
+        for example in documents::commands_of(command.get_name(), &fenced) {
+            let words = ["wayword"].into_iter().chain(example.args.iter().map(String::as_str));
+            assert_eq!(unreadable(words), None, "help of {}: {:?}", command.get_name(), example.args);
+            examples += 1;
+        }
+    }
+    assert!(examples > 30, "{examples} examples");
+}
+
+/// The lines of a help text that are typed: those that begin with the program, and those that these go on in. A remark stands behind
+/// several blanks.
+fn typed(help: &str) -> String {
+    let mut lines = Vec::new();
+    let mut goes_on = false;
+    for line in help.lines() {
+        if goes_on || line.starts_with("  wayword ") {
+            let command = line.trim().split("      ").next().unwrap_or_default();
+            goes_on = command.ends_with('\\');
+            lines.push(command);
+        }
+    }
+    lines.join("\n")
+}
+
+#[test]
+fn every_need_that_is_listed_is_some_command_s() {
+    let used: BTreeSet<&str> = documented().iter().filter_map(needs).map(|(word, _)| *word).collect();
+    let idle: Vec<_> = NEEDS.iter().filter(|(word, _)| !used.contains(word)).collect();
+    assert!(idle.is_empty(), "no command needs {idle:?}: take it out of NEEDS");
+}
+
+/// In one folder and in the order of the documents, because a reader's later commands use what the earlier ones have made.
+#[test]
+fn every_command_that_needs_nothing_else_does_what_the_documents_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut ran: BTreeSet<Vec<String>> = BTreeSet::new();
+    for command in documented() {
+        let args = quicker(&command.args);
+        let is_film = args.iter().any(|arg| arg.ends_with(".mp4"));
+        if is_a_name(&command)
+            || needs(&command).is_some()
+            || (is_film && !cfg!(feature = "video"))
+            || !ran.insert(args.clone())
+        {
+            continue;
+        }
+        let mut process = common::command(&args);
+        process.current_dir(folder.path()).envs(command.variables.clone());
+        process.env("XDG_DATA_HOME", folder.path().join("data")).env("WAYWORD_OFFLINE", "1");
+        let ended = common::run(&mut process);
+        assert!(
+            GOOD.contains(&ended.code),
+            "{}: {args:?}: mend it, or say in NEEDS what it needs: {ended:?}",
+            command.place
+        );
+    }
+    assert!(ran.len() > 5, "{ran:?}");
+}
+
+/// The command with smaller numbers.
+fn quicker(args: &[String]) -> Vec<String> {
+    let mut quicker = args.to_vec();
+    for at in 1..quicker.len() {
+        let most = AT_MOST.iter().find(|(flag, _)| *flag == quicker[at - 1]).map(|(_, most)| *most);
+        if let Some(most) = most.filter(|most| quicker[at].parse::<u32>().is_ok_and(|asked| asked > *most)) {
+            quicker[at] = most.to_string();
+        }
+    }
+    quicker
+}
