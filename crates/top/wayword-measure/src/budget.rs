@@ -45,7 +45,6 @@ fn figures(stage: &Stage, paths: usize, max_usd: f64) -> Result<Figures, Error> 
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::made_up::Building;
 

@@ -147,7 +147,6 @@ fn noise(number: usize) -> Result<Image, wayword_core::image::WrongPixelCount> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use std::collections::BTreeSet;
     use wayword_testkit::provider::{

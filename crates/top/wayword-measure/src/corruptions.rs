@@ -120,7 +120,6 @@ impl Run {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::made_up::{instruction, path, record};
     use MentionKind::{Landmark, Room as InRoom, Turn};

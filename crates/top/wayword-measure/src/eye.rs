@@ -97,7 +97,6 @@ impl Named {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::made_up::{Building, instruction};
     use wayword::{item::items, world};

@@ -6,7 +6,6 @@ mod corrupt;
 mod corruptions;
 mod eye;
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod made_up;
 mod provider;
 mod resources;
@@ -174,7 +173,6 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use std::path::Path;
     use wayword_testkit::documents;

@@ -54,7 +54,6 @@ impl Figures {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::made_up::Building;
     use wayword::item::items;

@@ -40,7 +40,6 @@ fn lines(records: Vec<Record>, originals: &Originals, count: usize, seed: u64) -
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::made_up::{instruction, record};
     use std::collections::BTreeSet;

@@ -61,7 +61,6 @@ fn skeletons_of(instruction: &Instruction) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::made_up::instruction;
     use MentionKind::{Floor, Landmark, Room, Target, Turn};

@@ -177,7 +177,6 @@ fn table(name: &str, tried: &[Tried], items: usize, show: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::made_up::Building;
     use wayword_testkit::{SCAN, viewpoint_id};

@@ -132,7 +132,6 @@ fn spans(paragraph: &Piece) -> Vec<Piece> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     const DOCUMENT: &str = "\

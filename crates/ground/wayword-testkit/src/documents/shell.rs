@@ -108,7 +108,6 @@ fn assignment(word: &str) -> Option<(String, String)> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     fn words(script: &str) -> Vec<Vec<String>> {
