@@ -9,6 +9,7 @@
 pub mod caption;
 pub mod contain;
 pub mod encoder;
+pub mod failure;
 pub mod from_above;
 pub mod graph;
 pub mod ground;
@@ -32,6 +33,7 @@ pub mod view;
 pub use caption::{Answer, Answerer, Ask, Caption, Exchange, Sighting, Trouble, Where, Witness};
 pub use contain::contained;
 pub use encoder::{Grounder, TextEncoder};
+pub use failure::Failure;
 pub use from_above::FromAbove;
 pub use glam::DVec3;
 pub use graph::{Route, ViewpointGraph};

@@ -1,6 +1,6 @@
 //! Language models: what they are told, what they say, and how they fail.
 
-use crate::Image;
+use crate::{Failure, Image};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -100,6 +100,14 @@ pub enum ModelError {
         /// What happened.
         reason: String,
     },
+    /// The service that was asked did not answer, however often it was tried.
+    #[error("{model}: {reason}")]
+    Lost {
+        /// `provider/model`.
+        model: String,
+        /// What happened.
+        reason: String,
+    },
     /// Nothing more can be asked for now: a budget is spent, a key is refused, the user has interrupted. What was answered is
     /// kept.
     #[error("{reason}\nhint: {hint}")]
@@ -120,6 +128,16 @@ impl Message {
 }
 
 impl ModelError {
+    /// How it is dealt with, where it does not end the run.
+    #[must_use]
+    pub fn failure(&self) -> Failure {
+        match self {
+            Self::NothingToSee { .. } => Failure::Missing,
+            Self::Failed { .. } => Failure::Broken,
+            Self::Lost { .. } | Self::Stopped { .. } => Failure::Lost,
+        }
+    }
+
     /// Whether every further request would fail in the same way.
     #[must_use]
     pub fn ends_run(&self) -> bool {

@@ -1,10 +1,17 @@
 //! What a world must offer.
 
 use crate::{
-    Frame, FromAbove, Gaze, Island, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, Way, graph::GraphError,
+    Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, Way,
+    graph::GraphError,
 };
 use serde::{Deserialize, Serialize};
-use std::{collections::BTreeSet, ops::RangeInclusive, path::PathBuf, sync::Arc};
+use std::{
+    collections::BTreeSet,
+    io,
+    ops::RangeInclusive,
+    path::{Path as FilePath, PathBuf},
+    sync::Arc,
+};
 
 /// A world: scenes with a viewpoint graph, paths through them, and views along these.
 ///
@@ -100,6 +107,15 @@ pub trait Platform: Send + Sync {
     fn scene_file(&self, _scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
         Ok(None)
     }
+
+    /// The files that a scene is read from, sorted; empty where a world is made up or runs elsewhere. A run keeps their hash, so that it
+    /// is not continued with other data.
+    ///
+    /// # Errors
+    /// When there is no such scene, or a folder cannot be read.
+    fn files(&self, _scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        Ok(Vec::new())
+    }
 }
 
 impl<P: Platform + ?Sized> Platform for Box<P> {
@@ -153,6 +169,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
         (**self).scene_file(scene)
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        (**self).files(scene)
     }
 }
 
@@ -231,9 +251,59 @@ pub enum PlatformError {
         /// What to do.
         hint: &'static str,
     },
+    /// A file that is not there.
+    #[error("{}: there is no such file; {hint}", file.display())]
+    NoFile {
+        /// Which file.
+        file: PathBuf,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// A world that runs beside us, or the disk that holds it, went away while it was in use.
+    #[error("{world}: {reason}; {hint}")]
+    Lost {
+        /// Its program or address, or the file.
+        world: String,
+        /// What happened.
+        reason: String,
+        /// What to do.
+        hint: &'static str,
+    },
 }
 
 impl PlatformError {
+    /// How it is dealt with.
+    #[must_use]
+    pub fn failure(&self) -> Failure {
+        match self {
+            Self::UnknownScene { .. }
+            | Self::UnknownViewpoint { .. }
+            | Self::NotAViewpoint { .. }
+            | Self::NoSuchPath { .. }
+            | Self::NoFile { .. } => Failure::Missing,
+            Self::Graph { .. } | Self::File { .. } => Failure::Broken,
+            Self::Lost { .. } => Failure::Lost,
+        }
+    }
+
+    /// A file could not be read, for a reason that the system gives.
+    #[must_use]
+    pub fn unread(file: &FilePath, error: &io::Error, hint: &'static str) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound => Self::NoFile { file: file.to_owned(), hint },
+            // A disk of another machine, or one that fails.
+            io::ErrorKind::StaleNetworkFileHandle
+            | io::ErrorKind::TimedOut
+            | io::ErrorKind::HostUnreachable
+            | io::ErrorKind::NetworkUnreachable
+            | io::ErrorKind::NetworkDown
+            | io::ErrorKind::NotConnected => {
+                Self::Lost { world: file.display().to_string(), reason: error.to_string(), hint }
+            }
+            _ => Self::File { file: file.to_owned(), reason: error.to_string(), hint },
+        }
+    }
+
     /// There is nowhere in a scene to stand where a frame says: its viewpoint is unknown, or else its place.
     #[must_use]
     pub fn nowhere(scene: &SceneId, frame: &Frame) -> Self {

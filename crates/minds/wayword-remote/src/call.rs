@@ -55,6 +55,9 @@ pub(crate) enum Unanswered {
     /// This call came to nothing.
     #[error("{0}")]
     Failed(String),
+    /// The service did not answer, however often it was tried.
+    #[error("{0}")]
+    Lost(String),
     /// No call is answered any more.
     #[error("{}", .0.reason)]
     Closed(Closed),
@@ -121,7 +124,9 @@ impl Sending<'_> {
             let retry = self.give_up_or(fault, attempts)?;
             if attempt >= self.attempts || empty > EMPTY_AGAIN {
                 let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
-                return Err(Unanswered::Failed(format!("{} ({times})", retry.reason)));
+                let reason = format!("{} ({times})", retry.reason);
+                // A service that answers without words is there.
+                return Err(if empty > EMPTY_AGAIN { Unanswered::Failed(reason) } else { Unanswered::Lost(reason) });
             }
             // A service that asks for too little is asked less and less often all the same.
             let asked = retry.after.map_or(Duration::ZERO, |asked| after(asked, self.key, attempt));

@@ -121,6 +121,7 @@ impl RemoteModel {
     fn error(&self, error: OnceError<Unanswered>) -> ModelError {
         match error {
             OnceError::Call(Unanswered::Failed(reason)) => self.failed(reason),
+            OnceError::Call(Unanswered::Lost(reason)) => ModelError::Lost { model: self.name.clone(), reason },
             OnceError::Call(Unanswered::Closed(Closed { reason, hint })) => ModelError::Stopped { reason, hint },
             OnceError::Call(Unanswered::Refused(refused)) | OnceError::Refused(refused) => stopped(&refused),
             OnceError::Ledger(error) => stopped(&Refused::Ledger(error)),

@@ -12,8 +12,8 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
-    SceneId, View, ViewpointGraph, ViewpointId,
+    DVec3, Failure, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform,
+    PlatformError, Pose, SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
 use wayword_world::{said::Hear, seen_from};
@@ -55,8 +55,11 @@ pub(crate) trait Simulator: Send + fmt::Debug {
     /// What to do about an error.
     fn hint(error: &Self::Error) -> &'static str;
 
-    /// Whether the simulator is lost over an error, so that trying once more makes sense.
+    /// Whether the simulator is lost over an error, so that trying once more makes sense at once.
     fn is_loss(error: &Self::Error) -> bool;
+
+    /// How an error is dealt with that trying once more did not mend.
+    fn failure(error: &Self::Error) -> Failure;
 }
 
 /// Who hears what a simulator is waited for; nobody at first.
@@ -177,10 +180,12 @@ impl<S: Simulator> Live<S> {
             Err(error) if S::is_loss(&error) => attempt(),
             done => done,
         };
-        done.map_err(|error| PlatformError::File {
-            file: PathBuf::from(running.simulator.address()),
-            reason: error.to_string(),
-            hint: S::hint(&error),
+        done.map_err(|error| {
+            let (world, reason, hint) = (running.simulator.address(), error.to_string(), S::hint(&error));
+            match S::failure(&error) {
+                Failure::Lost => PlatformError::Lost { world, reason, hint },
+                Failure::Missing | Failure::Broken => PlatformError::File { file: PathBuf::from(world), reason, hint },
+            }
         })
     }
 
@@ -190,9 +195,13 @@ impl<S: Simulator> Live<S> {
             return Ok(known.clone());
         }
         self.with(scene, |_, _| Ok(()))?;
-        let hint = || "its survey was lost; ask again".to_owned();
-        let lost = || PlatformError::UnknownScene { scene: scene.to_string(), hint: hint() };
-        self.lock().scenes.get(scene).cloned().ok_or_else(lost)
+        let running = self.lock();
+        let lost = || PlatformError::Lost {
+            world: running.simulator.address(),
+            reason: format!("the survey of {scene} was lost"),
+            hint: "ask again",
+        };
+        running.scenes.get(scene).cloned().ok_or_else(lost)
     }
 
     fn camera(&self, eye: DVec3, gaze: Gaze) -> Camera {

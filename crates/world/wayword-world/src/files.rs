@@ -33,7 +33,7 @@ pub fn irregular(about: &Metadata) -> Option<&'static str> {
 /// # Errors
 /// When it cannot be read, or has more.
 pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<Vec<u8>>, PlatformError> {
-    let failed = |error: std::io::Error| wrong(file, error.to_string(), hint);
+    let failed = |error: std::io::Error| PlatformError::unread(file, &error, hint);
     let too_large = || wrong(file, format!("has more than {max_bytes} bytes, which no such file has"), hint);
     let about = match fs::metadata(file) {
         Ok(about) => about,
@@ -57,7 +57,7 @@ pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result
 /// # Errors
 /// When it cannot be opened, or is no plain file.
 pub fn open(file: &Path, hint: &'static str) -> Result<File, PlatformError> {
-    let failed = |error: std::io::Error| wrong(file, error.to_string(), hint);
+    let failed = |error: std::io::Error| PlatformError::unread(file, &error, hint);
     match irregular(&fs::metadata(file).map_err(failed)?) {
         Some(reason) => Err(wrong(file, reason, hint)),
         None => File::open(file).map_err(failed),

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::live::{Ear, Live, Pictures, Shot, Simulator, Survey};
 use std::path::PathBuf;
-use wayword_core::{DVec3, SceneId};
+use wayword_core::{DVec3, Failure, SceneId};
 use wayword_render::Camera;
 use wayword_world::said;
 
@@ -144,5 +144,14 @@ impl Simulator for Tdw {
 
     fn is_loss(error: &TdwError) -> bool {
         error.is_loss()
+    }
+
+    fn failure(error: &TdwError) -> Failure {
+        match error {
+            error if error.is_loss() => Failure::Lost,
+            TdwError::NoBuild { .. } => Failure::Lost,
+            TdwError::Bind { .. } | TdwError::Scene(_) => Failure::Missing,
+            _ => Failure::Broken,
+        }
     }
 }

@@ -14,7 +14,7 @@ use crate::{
     walk::EYE_M,
 };
 use std::{collections::BTreeMap, time::Duration};
-use wayword_core::{DVec3, SceneId};
+use wayword_core::{DVec3, Failure, SceneId};
 use wayword_render::Camera;
 
 /// Homes that VirtualHome has.
@@ -173,5 +173,12 @@ impl Simulator for VirtualHome {
 
     fn is_loss(error: &HomeError) -> bool {
         matches!(error, HomeError::Unreachable { .. } | HomeError::Status { .. } | HomeError::Failed { .. })
+    }
+
+    fn failure(error: &HomeError) -> Failure {
+        match error {
+            HomeError::Unreachable { .. } | HomeError::Status { .. } => Failure::Lost,
+            HomeError::Failed { .. } | HomeError::Malformed { .. } | HomeError::Floor(_) => Failure::Broken,
+        }
     }
 }

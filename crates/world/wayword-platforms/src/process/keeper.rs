@@ -53,7 +53,8 @@ impl Keeper {
             restarts_left: options.restarts,
             last_fault: String::new(),
         };
-        let world = state.launch(&options, &hear)?;
+        // A child that never came up has lost nothing: the user has to see to it.
+        let world = state.launch(&options, &hear).map_err(|failed| failed.into_wrong(&options))?;
         Ok(Self { options, hear, world, state: Mutex::new(state) })
     }
 
@@ -115,7 +116,8 @@ impl Keeper {
             return Err(failed(Fault::GaveUp(state.last_fault.clone())));
         }
         state.restarts_left -= 1;
-        if state.launch(&self.options, &self.hear)? != self.world {
+        let world = state.launch(&self.options, &self.hear).map_err(|failed| failed.into_error(&self.options))?;
+        if world != self.world {
             state.running = None;
             state.last_fault = Fault::Changed.to_string();
             return Err(failed(Fault::Changed));
@@ -125,19 +127,16 @@ impl Keeper {
 }
 
 impl ChildState {
-    fn launch(&mut self, options: &ProcessOptions, hear: &Hear) -> Result<World, PlatformError> {
+    fn launch(&mut self, options: &ProcessOptions, hear: &Hear) -> Result<World, Failed> {
         let started = Running::start(options, hear).map_err(|fault| {
             self.last_fault = fault.to_string();
-            Failed::without_request(fault, "hello").into_error(options)
+            Failed::without_request(fault, "hello")
         })?;
         self.running = Some(started);
         let params = json!({ "protocol": PROTOCOL, "frame": FRAME });
         let greeting = self.ask(options, "hello", &params, options.start_within);
         let world = greeting.and_then(|greeting| self.greeted(greeting).map_err(|fault| self.buried(fault, "hello")));
-        world.map_err(|failed| {
-            self.running = None;
-            failed.into_error(options)
-        })
+        world.inspect_err(|_| self.running = None)
     }
 
     fn greeted(&mut self, greeting: Value) -> Result<World, Fault> {
@@ -211,13 +210,23 @@ impl Failed {
         Self { fault, method, id: None, last_words: String::new() }
     }
 
+    /// The error of a child that was in use: it is lost where it cannot be asked any more.
     fn into_error(self, options: &ProcessOptions) -> PlatformError {
+        if self.fault.leaves_it_usable() {
+            return self.into_wrong(options);
+        }
+        let world = options.shown().display().to_string();
+        PlatformError::Lost { world, reason: self.reason(), hint: self.fault.hint() }
+    }
+
+    /// The error of a child that does not do what it should.
+    fn into_wrong(self, options: &ProcessOptions) -> PlatformError {
+        PlatformError::File { file: options.shown(), reason: self.reason(), hint: self.fault.hint() }
+    }
+
+    fn reason(&self) -> String {
         let Self { fault, method, id, last_words } = self;
         let request = id.map_or_else(|| format!("`{method}`"), |id| format!("request {id} (`{method}`)"));
-        PlatformError::File {
-            file: options.shown(),
-            reason: format!("{request}: the child {fault}{last_words}"),
-            hint: fault.hint(),
-        }
+        format!("{request}: the child {fault}{last_words}")
     }
 }

@@ -176,7 +176,7 @@ fn walk_all(
 
 /// Whether a failure is one item's, so that the others may still be walked.
 fn is_of_item(error: &WalkError) -> bool {
-    matches!(error, WalkError::Model(ModelError::Failed { .. }))
+    matches!(error, WalkError::Model(ModelError::Failed { .. } | ModelError::Lost { .. }))
 }
 
 /// The key of a walk's line.
