@@ -1,6 +1,9 @@
 //! What recordings, and the files in their folders, are called.
 
-use std::{cmp::Ordering, path::Path};
+use std::{
+    cmp::Ordering,
+    path::{Path, PathBuf},
+};
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
@@ -34,6 +37,22 @@ pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
     }
     names.sort_by(|a, b| in_order(a, b));
     Ok(names)
+}
+
+/// The files under a path, in folders that lie so deep at most, in the order of their names; the path itself where it is a file.
+pub(crate) fn files_under(path: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformError> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut files = Vec::new();
+    for entry in entries(path)?.iter().map(|name| path.join(name)) {
+        if !entry.is_dir() {
+            files.push(entry);
+        } else if depth > 0 {
+            files.extend(files_under(&entry, depth - 1)?);
+        }
+    }
+    Ok(files)
 }
 
 /// There is no such recording among those that there are.

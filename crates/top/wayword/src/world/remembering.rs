@@ -96,4 +96,8 @@ impl Platform for Remembering<'_> {
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
         self.platform.scene_file(scene)
     }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.platform.files(scene)
+    }
 }

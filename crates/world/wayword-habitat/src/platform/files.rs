@@ -92,6 +92,17 @@ impl SceneFiles {
         stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
     }
 
+    /// Every file that the scene is read from, sorted.
+    pub(super) fn all(&self, stage: &Stage) -> Vec<PathBuf> {
+        let SemanticFiles { painted, numbered } = self.semantics(stage);
+        let pairs = painted.into_iter().chain(numbered).flat_map(|(mesh, names)| [mesh, names]);
+        let mut all: Vec<PathBuf> =
+            [self.stage.clone(), stage.asset.clone()].into_iter().chain(self.navmesh(stage)).chain(pairs).collect();
+        all.sort();
+        all.dedup();
+        all
+    }
+
     /// The semantic files that lie with it.
     pub(super) fn semantics(&self, stage: &Stage) -> SemanticFiles {
         let there = |ending: &str| self.beside(&[ending]).into_iter().find(|file| file.is_file());

@@ -7,7 +7,7 @@ mod sample;
 #[cfg(test)]
 mod tests;
 
-use crate::{axes::EYE_M, navmesh::NavMesh};
+use crate::{axes::EYE_M, navmesh::NavMesh, scene::Stage};
 use files::SceneFiles;
 use home::Home;
 use std::{
@@ -162,5 +162,11 @@ impl Platform for HabitatPlatform {
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
         let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
         Ok(Some(files.stage.clone()))
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
+        let all = files.all(&Stage::of(&files.stage)?);
+        Ok(all.into_iter().chain(self.options.navmesh.clone()).collect())
     }
 }

@@ -58,11 +58,10 @@ impl Layout {
 
     /// The scenes that have a connectivity file, sorted.
     pub(crate) fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        let failed = |error: std::io::Error| read::wrong(&self.connectivity, error.to_string(), HINT);
         let mut scenes = Vec::new();
-        for entry in std::fs::read_dir(&self.connectivity).map_err(failed)? {
-            let name = entry.map_err(failed)?.file_name();
-            let scan = name.to_str().and_then(|name| name.strip_suffix("_connectivity.json"));
+        for file in files_in(&self.connectivity)? {
+            let name = file.file_name().and_then(|name| name.to_str());
+            let scan = name.and_then(|name| name.strip_suffix("_connectivity.json"));
             scenes.extend(scan.and_then(|scan| SceneId::new(scan).ok()));
         }
         scenes.sort();
@@ -93,6 +92,27 @@ impl Layout {
 
     pub(crate) fn connectivity(&self, scene: &SceneId) -> PathBuf {
         self.connectivity.join(format!("{scene}_connectivity.json"))
+    }
+
+    /// Every file of a scene that is there, sorted.
+    pub(crate) fn files<'a>(
+        &self,
+        scene: &SceneId,
+        viewpoints: impl Iterator<Item = &'a ViewpointId>,
+    ) -> Result<Vec<PathBuf>, PlatformError> {
+        let mut files = vec![self.connectivity(scene)];
+        files.extend([self.rooms(scene), self.house(scene), self.object_positions.clone()].into_iter().flatten());
+        files.extend(viewpoints.filter_map(|viewpoint| self.boxes(scene, viewpoint)).filter(|file| file.is_file()));
+        for skybox in self.folders_of(scene, "matterport_skybox_images") {
+            files.extend(files_in(&skybox)?);
+        }
+        for viewpoints in self.views.iter().map(|views| views.join(scene.as_str())).filter(|folder| folder.is_dir()) {
+            for viewpoint in files_in(&viewpoints)? {
+                files.extend(files_in(&viewpoint)?);
+            }
+        }
+        files.sort();
+        Ok(files)
     }
 
     /// The file of room letters, whether or not it is there.
@@ -127,13 +147,28 @@ impl Layout {
         folders.into_iter().find(|folder| folder.is_dir())
     }
 
-    /// A file in a scan's folder. Matterport3D's archives unpack to `SCAN/...` inside `scans/SCAN` or right there.
+    /// A file in a scan's folder.
     fn in_scan(&self, scene: &SceneId, file: &str) -> Option<PathBuf> {
-        let scan = scene.as_str();
-        let places =
-            self.scans.iter().flat_map(|scans| [scans.join(scan).join(file), scans.join(scan).join(scan).join(file)]);
-        places.into_iter().find(|file| file.is_file())
+        self.places_of(scene, file).find(|file| file.is_file())
     }
+
+    /// The folders of that name in a scan's folders.
+    fn folders_of(&self, scene: &SceneId, folder: &str) -> Vec<PathBuf> {
+        self.places_of(scene, folder).filter(|folder| folder.is_dir()).collect()
+    }
+
+    /// Where something of a scan may lie. Matterport3D's archives unpack to `SCAN/...` inside `scans/SCAN` or right there.
+    fn places_of(&self, scene: &SceneId, what: &str) -> impl Iterator<Item = PathBuf> {
+        let scan = scene.as_str();
+        self.scans.iter().flat_map(move |scans| [scans.join(scan).join(what), scans.join(scan).join(scan).join(what)])
+    }
+}
+
+/// What lies in a folder, in no order.
+fn files_in(folder: &Path) -> Result<Vec<PathBuf>, PlatformError> {
+    let failed = |error: std::io::Error| PlatformError::unread(folder, &error, HINT);
+    let entries = std::fs::read_dir(folder).map_err(failed)?;
+    entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect()
 }
 
 fn all(data: &Path, places: &[&str]) -> Vec<PathBuf> {

@@ -11,7 +11,7 @@ use super::{
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::Path as FilePath,
+    path::{Path as FilePath, PathBuf},
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
@@ -203,5 +203,9 @@ impl Platform for Matterport {
             labels::from_house(house, name, viewpoint.position).iter().any(|label| label.object == *object)
         };
         Ok(Some(scene.viewpoints.iter().filter(sees).map(|(name, _)| name.clone()).collect()))
+    }
+
+    fn files(&self, id: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.layout.files(id, self.scene(id)?.viewpoints.keys())
     }
 }
