@@ -108,7 +108,7 @@ mod tests {
         let stage = Stage::new(&building.world(), 0.15).unwrap();
         let mut settings = stage.job(1).unwrap().settings;
         settings.episodes = Some(building.data().join("reverie/REVERIE_val_seen.json"));
-        let world = world::open_named("matterport", Some(&building.data()), None).unwrap();
+        let world = world::open_named("matterport", Some(&building.data()), None, None).unwrap();
         let first = items(&settings, world.as_ref()).unwrap().remove(0);
         let path = first.path(&settings, world.as_ref()).unwrap();
         let made = Made { walk: Walk::new(path, Vec::new()), outcomes, pictures: Vec::new() };

@@ -7,7 +7,7 @@ use wayword::{
     calls::Spent,
     error::Error,
     output::Output,
-    pipeline::{Made, make},
+    pipeline::{Made, RunWorld, make},
     plan::Plan,
     run::fresh_id,
     settings::{self, Against, Asked, AskedRoles, Draw, Job, Service, Telling, Walks},
@@ -112,7 +112,8 @@ impl Stage {
         let calls = plan.models.open(|| Ok(fresh_id("measure")), &Output::new(false, true))?;
         let team = Team::new(&job.settings, calls.as_ref())?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
-        let one = |item| make(item, &job.settings, &self.world, &team, &plan.styles);
+        let world = RunWorld { platform: &self.world, data: None };
+        let one = |item| make(item, &job.settings, world, &team, &plan.styles);
         let work = || plan.items.par_iter().map(one).collect();
         let made = match threads {
             Ok(threads) => threads.install(work),

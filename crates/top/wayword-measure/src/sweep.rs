@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn figures_are_sums_over_the_episodes_and_the_best_comes_first() {
         let building = Building::new();
-        let world = world::open_named("matterport", Some(&building.data()), None).unwrap();
+        let world = world::open_named("matterport", Some(&building.data()), None, None).unwrap();
         let item = |number: usize, path: &[usize]| {
             let path: Vec<String> = path.iter().map(|at| viewpoint_id(*at)).collect();
             serde_json::json!({

@@ -1,7 +1,7 @@
 //! What can go wrong, told once, and the exit codes of the program.
 
 use std::{path::PathBuf, process::ExitCode};
-use wayword_core::{ModelError, PlatformError};
+use wayword_core::{Failure, ModelError, PlatformError};
 use wayword_formats::FormatError;
 use wayword_navigation::WalkError;
 use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::StyleError};
@@ -13,12 +13,16 @@ pub enum Exit {
     Done = 0,
     /// The input was wrong: a flag, a file, a folder. Nothing was written.
     BadInput = 1,
-    /// Done, but some items were rejected or failed their checks; each with its reason.
+    /// Done, but some items failed, or some texts failed their checks; each with its reason.
     WithLoss = 3,
     /// Another process works in the same run folder.
     Busy = 4,
-    /// Stopped before the end: a budget was spent, a key refused, the user interrupted. The same command goes on.
+    /// Stopped before the end: a budget was spent or a key refused. The same command goes on.
     Stopped = 5,
+    /// Interrupted by the user or by a scheduler (SIGINT, SIGTERM). The same command goes on.
+    Interrupted = 6,
+    /// The world, a service or the disk was lost. The same command goes on.
+    Lost = 7,
 }
 // 2 is clap's own: the command line could not be read.
 
@@ -83,6 +87,20 @@ pub enum Error {
         /// What to do.
         hint: String,
     },
+    /// A run is not continued in a world that has changed.
+    #[error(
+        "scene {scene}: its files are not those that the run was begun with ({} holds their hash)\nhint: put the old files back, or give another --out for a new run",
+        record.display()
+    )]
+    OtherWorld {
+        /// Which scene.
+        scene: String,
+        /// Where its hash is kept.
+        record: PathBuf,
+    },
+    /// The user or a scheduler has interrupted the command.
+    #[error("interrupted\nhint: give the same command again; what was finished is kept")]
+    Interrupted,
     /// Another process has the run folder.
     #[error("{}: another wayword is at work in this run folder\nhint: wait for it, or give another --out", .0.display())]
     Busy(PathBuf),
@@ -111,12 +129,26 @@ impl Error {
         Self::usage(problem, "build it with `cargo build --release --features full`")
     }
 
-    /// A model's error, where it is one: what a model did not do now it may do later, or when more money is there.
-    pub(crate) fn into_model_error(self) -> Result<ModelError, Self> {
+    /// How one item's failure is dealt with; `None` for what concerns the whole run.
+    pub(crate) fn failure(&self) -> Option<Failure> {
         match self {
-            Self::Model(error) | Self::Observe(ObserveError::Model(error)) => Ok(error),
-            other => Err(other),
+            Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
+                (!error.ends_run()).then(|| error.failure())
+            }
+            Self::Platform(error)
+            | Self::Observe(ObserveError::Platform(error))
+            | Self::Walk(WalkError::Platform(error)) => Some(error.failure()),
+            Self::Walk(_) | Self::Format(_) | Self::Style(_) | Self::Prompt(_) | Self::Usage { .. } => {
+                Some(Failure::Broken)
+            }
+            _ => None,
         }
+    }
+
+    /// Whether the disk has no room left.
+    fn is_full_disk(&self) -> bool {
+        use std::io::ErrorKind::{QuotaExceeded, StorageFull};
+        matches!(self, Self::Io { source, .. } if matches!(source.kind(), StorageFull | QuotaExceeded))
     }
 
     /// A failed file operation.
@@ -125,14 +157,28 @@ impl Error {
         move |source| Self::Io { path, doing, source }
     }
 
+    /// Whether a model's service lets nothing through any more.
+    pub(crate) fn ends_sending(&self) -> bool {
+        match self {
+            Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
+                error.ends_run()
+            }
+            _ => false,
+        }
+    }
+
     /// The exit code that it ends the program with.
     #[must_use]
     pub fn exit_code(&self) -> Exit {
         match self {
             Self::Busy(_) | Self::BusyElsewhere { .. } => Exit::Busy,
-            Self::Model(error) | Self::Observe(ObserveError::Model(error)) if error.ends_run() => Exit::Stopped,
-            Self::Walk(error) if error.ends_run() => Exit::Stopped,
-            _ => Exit::BadInput,
+            Self::Interrupted => Exit::Interrupted,
+            error if error.is_full_disk() => Exit::Lost,
+            error => match error.failure() {
+                Some(Failure::Lost) => Exit::Lost,
+                None if error.ends_sending() => Exit::Stopped,
+                _ => Exit::BadInput,
+            },
         }
     }
 }

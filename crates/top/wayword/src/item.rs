@@ -74,11 +74,24 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
     let item = |number: usize| Item::Random {
         id: format!("random-{}-{number}", settings.seed),
         scenes: Arc::clone(&scenes),
-        // Scene after scene: a world keeps the last few of them ready.
-        first: number * scenes.len() / settings.paths.max(1),
+        first: first_scene(number, settings, scenes.len()),
         seed: seed::derive(settings.seed, &["path", &number.to_string()]),
     };
     Ok((0..settings.paths).map(item).collect())
+}
+
+/// The scene in which a random path is to lie. Scene after scene, because a world keeps the last few of them ready; paths that were
+/// asked for later go through the scenes once more, so that those before them stay where they are.
+fn first_scene(number: usize, settings: &Settings, scenes: usize) -> usize {
+    let steps = settings.raised_from.iter().copied().chain([settings.paths]);
+    let mut start = 0;
+    for end in steps {
+        if number < end {
+            return (number - start) * scenes / (end - start);
+        }
+        start = end;
+    }
+    0
 }
 
 impl Item {

@@ -13,6 +13,7 @@ pub mod encoder;
 pub mod episodes;
 pub mod error;
 mod in_order;
+pub mod interrupt;
 pub mod item;
 pub mod output;
 pub mod pictures;

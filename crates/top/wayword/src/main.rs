@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use std::process::ExitCode;
-use wayword::{cli::Cli, commands, output::Output};
+use wayword::{cli::Cli, commands, error::Exit, interrupt, output::Output};
 
 fn main() -> ExitCode {
     wayword_platforms::process::stand_guard_if_asked();
@@ -15,11 +15,16 @@ fn main() -> ExitCode {
     }));
     let cli = Cli::parse();
     let output = Output::new(cli.json, cli.quiet);
+    interrupt::listen(&output);
     match commands::run(cli.command, &output) {
         Ok(code) => code.into(),
         Err(error) => {
             output.error(&error);
-            error.exit_code().into()
+            match error.exit_code() {
+                // A call that an interrupt cut off looks like one that the ledger did not let out.
+                Exit::Stopped if interrupt::is_asked() => Exit::Interrupted.into(),
+                code => code.into(),
+            }
         }
     }
 }

@@ -2,7 +2,10 @@
 
 use crate::error::Error;
 use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::jpeg::JpegEncoder};
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 use wayword_core::{Image, View};
 
 /// Quality of kept pictures, percent.
@@ -37,6 +40,12 @@ fn jpeg(image: &Image) -> Result<Vec<u8>, ImageError> {
     Ok(jpeg)
 }
 
+/// The file of a frame's picture.
+#[must_use]
+pub fn file(folder: &Path, item: &str, frame: usize) -> PathBuf {
+    folder.join(format!("{item}_{frame}.jpg"))
+}
+
 /// Writes pictures as ITEM_FRAME.jpg; `item` has been checked to be a file's name. Returns whether there were any.
 ///
 /// # Errors
@@ -47,7 +56,7 @@ pub fn keep(folder: &Path, item: &str, pictures: &[Picture]) -> Result<bool, Err
     }
     fs::create_dir_all(folder).map_err(Error::io(folder, "make"))?;
     for Picture { frame, jpeg } in pictures {
-        let path = folder.join(format!("{item}_{frame}.jpg"));
+        let path = file(folder, item, *frame);
         fs::write(&path, jpeg).map_err(Error::io(&path, "write"))?;
     }
     Ok(true)

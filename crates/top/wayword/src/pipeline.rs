@@ -4,6 +4,7 @@ use crate::{
     error::Error,
     item::Item,
     pictures::{self, Picture},
+    run::WorldData,
     settings::{Against, Settings, TargetMode},
     styles::Measured,
     team::Team,
@@ -29,19 +30,32 @@ pub struct Made {
     pub pictures: Vec<Picture>,
 }
 
+/// The world that a run is made in.
+#[derive(Clone, Copy)]
+pub struct RunWorld<'a> {
+    /// The world.
+    pub platform: &'a dyn Platform,
+    /// What its scenes have to be read from; `None` where nothing is continued.
+    pub data: Option<&'a WorldData>,
+}
+
 /// Makes an item's instructions.
 ///
 /// # Errors
-/// When its path does not fit the world, nothing can be seen along it, or a model gives nothing.
+/// When its path does not fit the world, the world is not the one that the run was begun in, nothing can be seen along it, or a model gives nothing.
 pub fn make(
     item: &Item,
     settings: &Settings,
-    platform: &dyn Platform,
+    world: RunWorld<'_>,
     team: &Team,
     styles: &[Measured],
 ) -> Result<Made, Error> {
+    let RunWorld { platform, data } = world;
     let world = Remembering::new(platform);
     let path = path(item, settings, &world)?;
+    if let Some(data) = data {
+        data.check(platform, &path.scene)?;
+    }
     let observations = observe(&world, &path, settings.frames, team.minds())?;
     let walk = Walk::new(path, observations);
     let evidence = evidence(&walk, &world, settings.evidence)?;

@@ -24,7 +24,7 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use wayword_core::{LanguageModel, ModelError};
+use wayword_core::LanguageModel;
 use wayword_ledger::{Ledger, Limits, Run};
 use wayword_remote::{Finding, Price, Services};
 use wayword_synthesis::prompts::Manner;
@@ -41,9 +41,6 @@ pub struct Calls {
     record: Option<PathBuf>,
     workers: usize,
 }
-
-/// Exit code of a process that a second interrupt ended.
-const INTERRUPTED: i32 = 130;
 
 impl Calls {
     /// Refuses what [`Calls::open`] would refuse of names, prices, providers and files, before anything is written. Gives each
@@ -165,28 +162,10 @@ impl Calls {
         self.workers
     }
 
-    /// From now on an interrupt ends the sending, not the process: what is in flight is finished and kept, and the user is told
-    /// so. A second interrupt ends the process.
-    pub fn stop_on_interrupt(&self, output: &Output) {
-        let (run, output) = (self.run.stopper(), *output);
-        // It can be set once in a process, and a command is one.
-        let _ = ctrlc::set_handler(move || {
-            if run.is_stopped() {
-                std::process::exit(INTERRUPTED);
-            }
-            run.stop();
-            output.say("finishing what is in flight; interrupt again to end at once");
-        });
-    }
-
-    /// The reason to begin nothing more, where the user has interrupted. Calls are refused anyway; this is for work that
-    /// makes none, because the ledger has all its answers.
-    #[must_use]
-    pub fn interrupted(&self) -> Option<ModelError> {
-        self.run.is_stopped().then(|| ModelError::Stopped {
-            reason: "interrupted".to_owned(),
-            hint: "what was answered is kept: go on with the same command".to_owned(),
-        })
+    /// Ends the sending: what is in flight is finished and kept.
+    pub fn ending(&self) -> impl Fn() + Send + 'static {
+        let run = self.run.stopper();
+        move || run.stop()
     }
 
     /// Writes the recording, where one was asked for.

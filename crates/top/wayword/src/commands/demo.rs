@@ -25,7 +25,11 @@ pub(super) fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
         ..Asked::default()
     };
     output.say(format_args!("drawing house-{} and walking through it ...", args.seed));
-    generate_into(&args.out, &asked.job()?, output)?;
+    let summary = generate_into(&args.out, &asked.job()?, output)?;
+    if let Some(reason) = &summary.stopped {
+        output.say(format_args!("stopped before the end: {reason}"));
+        return Ok(summary.exit);
+    }
     let report = args.out.join(file::REPORT);
     report::write(&args.out, &report, ITEMS)?;
     let shown = Shown {

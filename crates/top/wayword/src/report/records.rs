@@ -10,7 +10,7 @@ use super::{
 use crate::{
     error::Error,
     run::{
-        Rejected, WalkRecord, file,
+        FailedItem, Rejected, WalkRecord, file,
         lines::{self, Line},
         settings_of,
     },
@@ -21,7 +21,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
-use wayword_core::{Instruction, Provenance, Verdict};
+use wayword_core::{Failure, Instruction, Provenance, Verdict};
 
 /// Most bytes of lines that are held, whatever the number of items asked for.
 const MOST_BYTES: usize = 128 << 20;
@@ -39,7 +39,7 @@ pub(super) struct Records {
     /// Items that were walked and are not shown.
     pub(super) left_out: usize,
     /// The first items that failed.
-    pub(super) failed: Vec<Failed>,
+    pub(super) failed: Vec<FailedItem>,
     /// Those that are not shown.
     pub(super) failed_left_out: usize,
     /// Of all items, by style.
@@ -53,19 +53,6 @@ pub(super) struct ItemRecord {
     pub(super) walk: WalkRecord,
     pub(super) accepted: Vec<Instruction>,
     pub(super) rejected: Vec<Rejected>,
-}
-
-/// An item that failed before anything could be written: a line of `errors.jsonl`, or of `rejected.jsonl` without a style.
-#[derive(Debug, Deserialize)]
-pub(super) struct Failed {
-    pub(super) item: String,
-    #[serde(default)]
-    pub(super) style: String,
-    #[serde(default)]
-    pub(super) reason: String,
-    /// Of what kind the failure is, where the line says so: missing, broken, lost.
-    #[serde(default)]
-    pub(super) failure: Option<String>,
 }
 
 /// What became of a style's instructions.
@@ -148,8 +135,9 @@ impl Records {
     fn count_rejected(&mut self, line: &Line<'_>, most_items: usize, worst: &mut Worst) -> Result<(), Error> {
         let rejected: Rejected = line.parse()?;
         if rejected.style.is_empty() {
-            let Rejected { item, style, reason, .. } = rejected;
-            self.fail(Failed { item, style, reason, failure: None }, most_items);
+            // A whole item, as older versions wrote it.
+            let Rejected { item, reason, .. } = rejected;
+            self.fail(FailedItem { item, failure: Failure::Broken, reason }, most_items);
             return Ok(());
         }
         if let Some(counts) = self.counts_of(&rejected.style) {
@@ -159,7 +147,7 @@ impl Records {
         Ok(())
     }
 
-    fn fail(&mut self, failed: Failed, most_items: usize) {
+    fn fail(&mut self, failed: FailedItem, most_items: usize) {
         if self.failed.len() < most_items {
             self.failed.push(failed);
         } else {

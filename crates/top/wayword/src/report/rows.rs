@@ -1,9 +1,10 @@
 //! The list of all texts: what was written where, and what became of it.
 
 use super::{
-    records::{Failed, ItemRecord, Records},
+    records::{ItemRecord, Records},
     texts::{TextState, state},
 };
+use crate::run::FailedItem;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -96,18 +97,17 @@ fn several<'n>(names: impl Iterator<Item = &'n str>, most: usize) -> Vec<String>
     if (2..=most).contains(&names.len()) { names.into_iter().map(str::to_owned).collect() } else { Vec::new() }
 }
 
-fn failed(failed: &Failed) -> Row {
-    let kind = failed.failure.as_ref().map_or_else(String::new, |kind| format!("{kind}: "));
+fn failed(failed: &FailedItem) -> Row {
     Row {
         state: State::Failed,
         href: None,
         id: failed.item.clone(),
         scene: None,
-        style: failed.style.clone(),
+        style: String::new(),
         scene_at: None,
         style_at: None,
         text: String::new(),
-        reason: Some(short(&format!("{kind}{}", failed.reason))),
+        reason: Some(short(&format!("{}: {}", failed.failure.name(), failed.reason))),
     }
 }
 

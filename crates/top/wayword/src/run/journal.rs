@@ -2,12 +2,12 @@
 
 use super::lines;
 use crate::error::Error;
+use indexmap::IndexSet;
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use std::{
-    collections::BTreeSet,
-    fs::File,
-    io::{self, BufRead, BufReader, Write},
+    fs::{self, File},
+    io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
 };
 
@@ -16,7 +16,8 @@ use std::{
 pub struct Journal {
     path: PathBuf,
     file: File,
-    keys: BTreeSet<String>,
+    /// In the order of the lines.
+    keys: IndexSet<String>,
     key_of: fn(&Value) -> Option<String>,
 }
 
@@ -26,10 +27,10 @@ impl Journal {
     /// # Errors
     /// When it cannot be read or a whole line in it is not one of its kind.
     pub fn open(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, Error> {
-        let file = File::options().create(true).append(true).read(true).open(path).map_err(Error::io(path, "open"))?;
+        let file = appending(path)?;
         let whole = whole_bytes(path).map_err(Error::io(path, "read"))?;
         file.set_len(whole).map_err(Error::io(path, "cut off a torn line of"))?;
-        let mut keys = BTreeSet::new();
+        let mut keys = IndexSet::new();
         lines::each(path, |line| {
             let key = key_of(&line.parse()?).ok_or_else(|| line.broken("it lacks the fields that name it"))?;
             keys.insert(key);
@@ -86,6 +87,33 @@ impl Journal {
         self.file.write_all(&line).map_err(Error::io(&self.path, "write"))
     }
 
+    /// Puts the lines into the order of `place`, which says of a key where its line belongs, or that it is to go. The file is
+    /// there whole, in the old order or in the new one, whenever the process is killed.
+    ///
+    /// # Errors
+    /// When it cannot be read or written.
+    pub fn arrange(&mut self, place: impl Fn(&str) -> Option<usize>) -> Result<(), Error> {
+        let places: Vec<Option<usize>> = self.keys.iter().map(|key| place(key)).collect();
+        if places.iter().all(Option::is_some) && places.is_sorted() {
+            return Ok(());
+        }
+        let key_of = self.key_of;
+        let (mut spans, mut start) = (Vec::new(), 0);
+        lines::each(&self.path, |line| {
+            let key = key_of(&line.parse()?);
+            let length = line.len() as u64;
+            spans.extend(key.and_then(|key| place(&key)).map(|place| (place, start, length)));
+            start += length;
+            Ok(())
+        })?;
+        spans.sort_unstable();
+        let temporary = self.path.with_extension("new");
+        copy_spans(&self.path, &temporary, &spans).map_err(Error::io(&temporary, "write"))?;
+        fs::rename(&temporary, &self.path).map_err(Error::io(&self.path, "write"))?;
+        *self = Self::open(&self.path, self.key_of)?;
+        Ok(())
+    }
+
     /// Makes sure that it survives a crash of the machine.
     ///
     /// # Errors
@@ -93,6 +121,21 @@ impl Journal {
     pub fn sync(&mut self) -> Result<(), Error> {
         self.file.sync_data().map_err(Error::io(&self.path, "flush"))
     }
+}
+
+fn appending(path: &Path) -> Result<File, Error> {
+    File::options().create(true).append(true).read(true).open(path).map_err(Error::io(path, "open"))
+}
+
+/// Writes parts of a file, each with its start and length in bytes, to another one that survives a crash of the machine.
+fn copy_spans(from: &Path, to: &Path, spans: &[(usize, u64, u64)]) -> io::Result<()> {
+    let mut from = File::open(from)?;
+    let mut to = BufWriter::new(File::create(to)?);
+    for &(_, start, length) in spans {
+        from.seek(SeekFrom::Start(start))?;
+        io::copy(&mut Read::by_ref(&mut from).take(length), &mut to)?;
+    }
+    to.into_inner()?.sync_data()
 }
 
 /// The length of a file up to the end of its last whole line.
@@ -152,6 +195,22 @@ mod tests {
             journal.append(&json!({"id": "b"})).unwrap();
             assert_eq!(fs::read(&path).unwrap(), whole, "cut at {cut}");
         }
+    }
+
+    #[test]
+    fn lines_are_put_in_order_and_more_can_be_written_behind_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.jsonl");
+        let mut journal = Journal::open(&path, key).unwrap();
+        for id in ["c", "gone", "a"] {
+            journal.append(&json!({ "id": id })).unwrap();
+        }
+        journal.arrange(|key| "abcd".find(key)).unwrap();
+        journal.append(&json!({"id": "d"})).unwrap();
+        journal.append(&json!({"id": "a"})).unwrap();
+        let lines = ["a", "c", "d"].map(|id| format!("{{\"id\":\"{id}\"}}\n")).concat();
+        assert_eq!(fs::read_to_string(&path).unwrap(), lines);
+        assert!(!journal.has("gone") && journal.has("d"));
     }
 
     #[test]

@@ -1,19 +1,25 @@
 //! The run folder: what a run was asked to do, and what it has done so far.
 //!
 //! `config.toml` as resolved, `walks.jsonl` (paths, captions and dialogues), `instructions.jsonl` (Wayword records),
-//! `rejected.jsonl` (with reasons), `errors.jsonl` (what the next command tries again), `frames/`. A process that is killed leaves at most one torn last line in each file; the
-//! next one cuts it off and goes on where it stopped, and the files end up the same byte for byte.
+//! `rejected.jsonl` (texts that failed a check, with reasons), `errors.jsonl` (items that failed; the next command tries them
+//! again), `data.json` (hashes of the scenes' files), `frames/`. A process that is killed leaves at most one torn last line in each
+//! file; the next one cuts it off and goes on where it stopped. What was made late is put into its place, so the files end up the
+//! same byte for byte.
 
 mod held;
 mod journal;
 pub(crate) mod lines;
 mod record;
+mod world_data;
 
-use crate::{error::Error, settings::Settings, text_file};
-use serde::{Serialize, de::DeserializeOwned};
+use crate::{error::Error, item::Item, pictures, settings::Settings, text_file};
+use serde::{
+    Deserialize, Serialize,
+    de::{DeserializeOwned, IgnoredAny},
+};
 use sha2::{Digest, Sha256};
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     fs::{self, File},
     path::{Path, PathBuf},
     time::SystemTime,
@@ -23,7 +29,8 @@ use wayword_world::files;
 use held::Held;
 pub(crate) use held::hold;
 pub use journal::{Journal, read_lines};
-pub use record::{Map, Rejected, WalkRecord, extra};
+pub use record::{FailedItem, Map, Rejected, WalkRecord, extra};
+pub use world_data::WorldData;
 
 /// A run folder that this process alone works in.
 #[derive(Debug)]
@@ -33,10 +40,12 @@ pub struct RunFolder {
     pub walks: Journal,
     /// Accepted instructions, one line each.
     pub instructions: Journal,
-    /// Rejected ones, and items that nothing can be written for.
+    /// Texts that failed their checks.
     pub rejected: Journal,
-    /// Items that failed because a model gave nothing. It begins empty with each command, which tries them again.
+    /// Items that failed. It begins empty with each command, which tries them again.
     pub errors: Journal,
+    /// Items whose walk is there, but not the pictures that belong to it.
+    without_pictures: BTreeSet<String>,
     /// Held for as long as the folder is worked in.
     _held: Held,
 }
@@ -55,6 +64,8 @@ pub mod file {
     pub const ERRORS: &str = "errors.jsonl";
     /// The name under which the ledger keeps what the run has spent.
     pub const ID: &str = "run.id";
+    /// Hashes of the files that scenes are read from.
+    pub const DATA: &str = "data.json";
     /// Pictures of frames.
     pub const FRAMES: &str = "frames";
     /// The report.
@@ -73,12 +84,14 @@ impl RunFolder {
     pub fn open(folder: &Path, settings: &Settings) -> Result<Self, Error> {
         fs::create_dir_all(folder).map_err(Error::io(folder, "make the run folder"))?;
         let held = hold(folder)?;
-        keep_config(folder, settings)?;
+        keep_settings(folder, settings)?;
+        let walks = folder.join(file::WALKS);
         Ok(Self {
-            walks: Journal::open(&folder.join(file::WALKS), WalkRecord::key_of)?,
+            without_pictures: without_pictures(&walks, &folder.join(file::FRAMES))?,
+            walks: Journal::open(&walks, WalkRecord::key_of)?,
             instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
             rejected: Journal::open(&folder.join(file::REJECTED), Rejected::key_of)?,
-            errors: Journal::begin(&folder.join(file::ERRORS), Rejected::key_of)?,
+            errors: Journal::begin(&folder.join(file::ERRORS), FailedItem::key_of)?,
             folder: folder.to_owned(),
             _held: held,
         })
@@ -98,14 +111,40 @@ impl RunFolder {
         self.folder.join(file::FRAMES)
     }
 
-    /// Whether an item needs no more work: each style has its line, or the item itself was rejected.
+    /// Whether an item needs no more work: its walk is there with its pictures, and each style has its line.
     #[must_use]
     pub fn is_done(&self, item: &str, styles: &[String]) -> bool {
         let has = |style: &str| {
             let key = record::key(item, style);
             self.instructions.has(&key) || self.rejected.has(&key)
         };
-        self.rejected.has(&record::key(item, "")) || styles.iter().all(|style| has(style))
+        self.walks.has(item) && !self.without_pictures.contains(item) && styles.iter().all(|style| has(style))
+    }
+
+    /// Puts the lines of all files into the order of the items and styles: what was lost and made later stands behind what came
+    /// after it.
+    ///
+    /// # Errors
+    /// When a file cannot be read or written.
+    pub fn arrange<'a>(&mut self, items: impl Iterator<Item = &'a Item>, styles: &[String]) -> Result<(), Error> {
+        let places: BTreeMap<String, usize> = items.enumerate().map(|(place, item)| (item.id(), place)).collect();
+        let place = |key: &str| {
+            let (item, style) = record::parts(key);
+            // An item that is not among these stays, at the end.
+            let item = places.get(item).copied().unwrap_or(places.len());
+            match style {
+                None => Some(item),
+                // A whole item that an older version rejected: it has been tried again.
+                Some("") => None,
+                Some(style) => {
+                    let style = styles.iter().position(|other| other == style).unwrap_or(styles.len());
+                    Some(item * (styles.len() + 1) + style)
+                }
+            }
+        };
+        self.walks.arrange(place)?;
+        self.instructions.arrange(place)?;
+        self.rejected.arrange(place)
     }
 
     /// Makes sure that what was written survives a crash of the machine.
@@ -135,6 +174,34 @@ pub(crate) fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
     Ok(id)
 }
 
+/// The items whose walk has pictures that are not all there.
+fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, Error> {
+    let mut without = BTreeSet::new();
+    lines::each(walks, |line| {
+        let Pictured { path: PicturedPath { id, frames: of_path }, has_pictures } = line.parse()?;
+        let is_there =
+            |frame: usize| fs::metadata(pictures::file(frames, &id, frame)).is_ok_and(|metadata| metadata.len() > 0);
+        if has_pictures && !(0..of_path.len()).all(is_there) {
+            without.insert(id);
+        }
+        Ok(())
+    })?;
+    Ok(without)
+}
+
+/// What a walk's line says of its pictures.
+#[derive(Deserialize)]
+struct Pictured {
+    path: PicturedPath,
+    has_pictures: bool,
+}
+
+#[derive(Deserialize)]
+struct PicturedPath {
+    id: String,
+    frames: Vec<IgnoredAny>,
+}
+
 /// A name that no other process gives: kind, time and process.
 #[must_use]
 pub fn fresh_id(kind: &str) -> String {
@@ -149,17 +216,47 @@ where
 {
     let path = folder.join(file::CONFIG);
     if !path.exists() {
-        let text = toml::to_string_pretty(settings)
-            .map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
-        return write_whole(&path, &text);
+        return write_config(&path, settings);
     }
     let before: S = config_of(folder)?;
-    if before == *settings {
-        return Ok(());
-    }
-    let differs = differing_keys(&before, settings).into_iter().collect::<Vec<_>>().join(", ");
+    if before == *settings { Ok(()) } else { Err(other_settings(folder, &before, settings)) }
+}
+
+fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Error {
+    let differs = differing_keys(before, settings).into_iter().collect::<Vec<_>>().join(", ");
     let problem = format!("{} holds a run with other settings ({differs})", folder.display());
-    Err(Error::usage(problem, "give the same command to continue it, or another --out for a new run"))
+    Error::usage(problem, "give the same command to continue it, or another --out for a new run")
+}
+
+/// The same for a run, of which more may be asked than before.
+fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
+    let path = folder.join(file::CONFIG);
+    if !path.exists() {
+        return keep_config(folder, settings);
+    }
+    let before: Settings = config_of(folder)?;
+    if before.raised_to(settings) != *settings {
+        return Err(other_settings(folder, &before, settings));
+    }
+    if before == *settings { Ok(()) } else { write_config(&path, settings) }
+}
+
+fn write_config<S: Serialize>(path: &Path, settings: &S) -> Result<(), Error> {
+    let text = toml::to_string_pretty(settings)
+        .map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
+    write_whole(path, &text)
+}
+
+/// The settings with which a folder's run goes on: more paths and items may be asked for than before.
+///
+/// # Errors
+/// When the folder's settings cannot be read.
+pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> {
+    if !folder.join(file::CONFIG).exists() {
+        return Ok(settings.clone());
+    }
+    let raised_from = config_of::<Settings>(folder)?.raised_to(settings).raised_from;
+    Ok(Settings { raised_from, ..settings.clone() })
 }
 
 /// Writes a small file that is there whole or not at all, whenever the process is killed.

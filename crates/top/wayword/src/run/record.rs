@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map as JsonMap, Value, json};
-use wayword_core::{DVec3, Instruction, Observation, Path, Platform, PlatformError, ViewpointGraph};
+use wayword_core::{DVec3, Failure, Instruction, Observation, Path, Platform, PlatformError, ViewpointGraph};
 
 /// A path and what was seen along it: a line of `walks.jsonl`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -35,18 +35,34 @@ const MAP_MARGIN_M: f64 = 4.0;
 /// Nodes that are higher or lower than the path by more than this belong to other floors, metres.
 const MAP_HEIGHT_M: f64 = 1.6;
 
-/// An instruction, or a whole item, that was rejected: a line of `rejected.jsonl`.
+/// A text that failed its checks: a line of `rejected.jsonl`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Rejected {
     /// The item.
     pub item: String,
-    /// The style; empty where the whole item failed before anything could be written.
+    /// The style.
     pub style: String,
     /// Why.
     pub reason: String,
     /// The best text there was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<Instruction>,
+}
+
+/// An item of which nothing could be made: a line of `errors.jsonl`. The same command tries it again.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct FailedItem {
+    /// The item.
+    pub item: String,
+    /// What kind of failure it was. Older versions wrote none: they kept only what a model had not given.
+    #[serde(default = "lost")]
+    pub failure: Failure,
+    /// What happened.
+    pub reason: String,
+}
+
+fn lost() -> Failure {
+    Failure::Lost
 }
 
 /// The name of a line: an item and a style.
@@ -56,6 +72,17 @@ pub(super) fn key(item: &str, style: &str) -> String {
 
 pub(super) fn instruction_key(value: &Value) -> Option<String> {
     Some(key(value.get("path")?.get("id")?.as_str()?, value.get("style")?.as_str()?))
+}
+
+/// The item of a key, and the style where it has one.
+pub(super) fn parts(key: &str) -> (&str, Option<&str>) {
+    key.split_once('\u{1f}').map_or((key, None), |(item, style)| (item, Some(style)))
+}
+
+impl FailedItem {
+    pub(super) fn key_of(value: &Value) -> Option<String> {
+        Some(value.get("item")?.as_str()?.to_owned())
+    }
 }
 
 impl WalkRecord {

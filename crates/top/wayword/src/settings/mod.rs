@@ -42,6 +42,9 @@ pub struct Settings {
     pub episodes: Option<PathBuf>,
     /// Number of random paths; 0 where episodes are walked.
     pub paths: usize,
+    /// Numbers of random paths that were asked for earlier, ascending: those that came later lie behind them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub raised_from: Vec<usize>,
     /// Scenes to keep to; none means all.
     pub scan: Vec<String>,
     /// What random paths have to be like.
@@ -195,6 +198,7 @@ impl Asked {
             island: world.island,
             episodes: walks.episodes,
             paths,
+            raised_from: Vec::new(),
             scan: walks.scan.unwrap_or_default(),
             request,
             style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
@@ -248,6 +252,21 @@ impl Settings {
     #[must_use]
     pub fn has_dialogue(&self) -> bool {
         self.perception == Perception::Dialogue
+    }
+
+    /// These settings with as many paths and items as others ask for, if they ask for no fewer.
+    #[must_use]
+    pub fn raised_to(&self, other: &Self) -> Self {
+        let mut raised = self.clone();
+        if other.paths > self.paths && self.paths > 0 {
+            raised.paths = other.paths;
+            raised.raised_from.push(self.paths);
+        }
+        let grows = |before: usize| other.limit.is_none_or(|limit| limit > before);
+        if self.limit.is_some_and(grows) {
+            raised.limit = other.limit;
+        }
+        raised
     }
 
     /// How views are asked about.

@@ -178,7 +178,8 @@ fn indent(
     write(state, lines.clone().count().saturating_mul(width))?;
     let margin = " ".repeat(width);
     let stays = |at: usize, line: &str| if at == 0 { !first } else { line.is_empty() && !blank };
-    let indented = lines.enumerate().map(|(at, line)| if stays(at, line) { line.to_owned() } else { margin.clone() + line });
+    let indented =
+        lines.enumerate().map(|(at, line)| if stays(at, line) { line.to_owned() } else { margin.clone() + line });
     Ok(indented.collect::<Vec<_>>().join("\n"))
 }
 

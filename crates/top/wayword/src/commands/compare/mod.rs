@@ -17,6 +17,7 @@ use crate::{
     demands::Demands,
     error::{Error, Exit},
     in_order::{cores, in_order},
+    interrupt,
     output::Output,
     plan::Models,
     run::{self, Journal},
@@ -134,9 +135,7 @@ fn walk_all(
     if left.len() < items.len() {
         output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
     }
-    if let Some(calls) = calls {
-        calls.stop_on_interrupt(output);
-    }
+    let _graceful = interrupt::finish_first(calls);
     let bar = output.progress(items.len(), "items");
     bar.set_position((items.len() - left.len()) as u64);
     bar.reset_eta();
@@ -166,7 +165,7 @@ fn walk_all(
                 walks.sync()?;
                 unflushed = 0;
             }
-            calls.and_then(Calls::interrupted).map_or(Ok(true), |interrupted| Err(Error::from(interrupted)))
+            interrupt::check().map(|()| true)
         },
     )?;
     walks.sync()?;

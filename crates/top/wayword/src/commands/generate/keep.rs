@@ -4,50 +4,61 @@ use crate::{
     error::Error,
     item::Item,
     pictures,
-    pipeline::Made,
-    run::{Map, Rejected, RunFolder, WalkRecord, extra},
+    pipeline::{Made, RunWorld},
+    run::{FailedItem, Map, Rejected, RunFolder, WalkRecord, extra},
     styles::Measured,
 };
-use wayword_core::{Instruction, ModelError, Platform};
+use wayword_core::Failure;
 use wayword_formats::jsonl::Record;
 use wayword_synthesis::repair::Outcome;
 
 /// What became of an item.
 pub(super) enum Fate {
-    /// It stands in the run folder, as instructions or as an error.
-    Kept,
+    /// It stands in the run folder, as instructions and rejected texts.
+    Made,
+    /// It stands in the run folder as one that failed. The same command takes it up again.
+    Failed(Failure, String),
     /// It was given up because nothing more can be asked for, with the reason. The same command takes it up again.
-    Stopped(ModelError),
+    Stopped(Error),
 }
 
 /// Writes what became of an item: pictures and walk first, so that an instruction never stands without its evidence.
 pub(super) fn keep(
     run: &mut RunFolder,
-    platform: &dyn Platform,
+    world: RunWorld<'_>,
     item: &Item,
     made: Result<Made, Error>,
     styles: &[Measured],
 ) -> Result<Fate, Error> {
-    match made.map_err(Error::into_model_error) {
-        Ok(made) => made_item(run, platform, item, made, styles)?,
-        Err(Ok(stop)) if stop.ends_run() => return Ok(Fate::Stopped(stop)),
-        Err(Ok(failed)) => run.errors.append(&rejected(item, "", failed.to_string(), None))?,
-        Err(Err(error)) => run.rejected.append(&rejected(item, "", error.to_string(), None))?,
+    match made.and_then(|made| made_item(run, world, item, made, styles)) {
+        Ok(()) => Ok(Fate::Made),
+        Err(error) => match error.failure() {
+            Some(failure) => {
+                let reason = error.to_string();
+                run.errors.append(&FailedItem { item: item.id(), failure, reason: reason.clone() })?;
+                Ok(Fate::Failed(failure, reason))
+            }
+            None if error.ends_sending() => Ok(Fate::Stopped(error)),
+            None => Err(error),
+        },
     }
-    Ok(Fate::Kept)
 }
 
 fn made_item(
     run: &mut RunFolder,
-    platform: &dyn Platform,
+    world: RunWorld<'_>,
     item: &Item,
     made: Made,
     styles: &[Measured],
 ) -> Result<(), Error> {
+    let map = Map::around(&made.walk.path, world.platform)?;
+    if let Some(data) = world.data {
+        data.keep(&made.walk.path.scene)?;
+    }
     let has_pictures = pictures::keep(&run.frames(), &item.id(), &made.pictures)?;
     run.walks.append(&WalkRecord {
-        platform: platform.name().to_owned(),
-        map: Map::around(&made.walk.path, platform)?,
+        platform: world.platform.name().to_owned(),
+        map,
         path: made.walk.path.clone(),
         observations: made.walk.observations,
         originals: item.originals().to_vec(),
@@ -56,16 +67,14 @@ fn made_item(
     for (outcome, Measured { style, .. }) in made.outcomes.into_iter().zip(styles) {
         match outcome {
             Outcome::Accepted(instruction) => {
-                let mut record = Record::new(platform.name(), made.walk.path.clone(), instruction);
+                let mut record = Record::new(world.platform.name(), made.walk.path.clone(), instruction);
                 record.extra = extra(&item.path_id());
                 run.instructions.append(&record)?;
             }
-            Outcome::Rejected { last, reason } => run.rejected.append(&rejected(item, &style.name, reason, last))?,
+            Outcome::Rejected { last, reason } => {
+                run.rejected.append(&Rejected { item: item.id(), style: style.name.clone(), reason, last })?;
+            }
         }
     }
     Ok(())
-}
-
-fn rejected(item: &Item, style: &str, reason: String, last: Option<Instruction>) -> Rejected {
-    Rejected { item: item.id(), style: style.to_owned(), reason, last }
 }

@@ -1,6 +1,7 @@
 //! `wayword generate`.
 
 mod keep;
+mod progress;
 mod summary;
 
 use crate::{
@@ -10,22 +11,21 @@ use crate::{
     count::count,
     error::{Error, Exit},
     in_order::{cores, in_order},
+    interrupt,
     item::Item,
     output::Output,
-    pipeline::make,
+    pipeline::{RunWorld, make},
     plan::Plan,
-    run::RunFolder,
+    run::{RunFolder, WorldData, continued},
     settings::Job,
     team::Team,
     world,
 };
-use keep::{Fate, keep};
+use keep::keep;
+use progress::Progress;
 use std::path::Path;
 
 pub use summary::Summary;
-
-/// Items between two flushes to the disk: few enough to lose little when the machine fails.
-const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
@@ -41,20 +41,22 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     })?;
     let summary = generate_into(out, &job, output)?;
     output.data(&summary, &summary);
-    Ok(summary.exit())
+    Ok(summary.exit)
 }
 
 /// Makes or continues a run.
 ///
 /// # Errors
 /// When the settings, the world, the styles, the folder or the ledger are wrong. An item that fails is a line of
-/// `rejected.jsonl`, or of `errors.jsonl` where a later run may do better.
+/// `errors.jsonl`, and the next command tries it again.
 pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summary, Error> {
     Calls::ready(job, output)?;
+    let job = &Job { settings: continued(folder, &job.settings)?, ..job.clone() };
     let platform = world::open(&job.settings)?;
     let plan = Plan::writing(job, platform.as_ref())?;
     let settings = &plan.settings()?;
     let mut run = RunFolder::open(folder, settings)?;
+    let data = WorldData::of(folder)?;
     let calls = plan.models.open(|| run.id(), output)?;
     let team = Team::new(settings, calls.as_ref())?;
     let Plan { items, styles, .. } = &plan;
@@ -64,44 +66,20 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     if left.len() < items.len() {
         output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
     }
-    let bar = output.progress(items.len(), "items");
-    bar.set_position((items.len() - left.len()) as u64);
-    // What earlier commands did tells nothing of the pace.
-    bar.reset_eta();
-    if let Some(calls) = &calls {
-        calls.stop_on_interrupt(output);
-    }
-    let mut stopped = None;
-    let (mut unflushed, mut unmade) = (0, left.len());
+    let _graceful = interrupt::finish_first(calls.as_ref());
+    let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
-    let making = |item: &&Item| make(item, settings, platform.as_ref(), &team, styles);
+    let world = RunWorld { platform: platform.as_ref(), data: Some(&data) };
+    let making = |item: &&Item| make(item, settings, world, &team, styles);
     in_order(&left, workers, making, |item, made| {
-        match keep(&mut run, platform.as_ref(), item, made, styles)? {
-            Fate::Kept => bar.inc(1),
-            Fate::Stopped(reason) => {
-                stopped = Some(reason);
-                return Ok(false);
-            }
-        }
-        unflushed += 1;
-        if unflushed == FLUSH {
-            run.sync()?;
-            unflushed = 0;
-        }
-        bar.set_message(message(&run, calls.as_ref()));
-        unmade -= 1;
-        stopped = calls.as_ref().and_then(Calls::interrupted).filter(|_| unmade > 0);
-        Ok::<_, Error>(stopped.is_none())
+        let fate = keep(&mut run, world, item, made, styles)?;
+        progress.takes_note(&mut run, fate)
     })?;
+    run.arrange(items.iter(), &names)?;
     run.sync()?;
-    bar.finish_and_clear();
+    let stopped = progress.end();
     if let Some(calls) = &calls {
         calls.record()?;
     }
     summary::summary(folder, &run, items.len(), calls.as_ref().map(Calls::spent), stopped)
-}
-
-fn message(run: &RunFolder, calls: Option<&Calls>) -> String {
-    let done = format!("{} written, {} rejected", run.instructions.len(), run.rejected.len());
-    calls.map_or(done.clone(), |calls| format!("{done}; {}", calls.spent()))
 }

@@ -1,15 +1,16 @@
 //! What a run came to.
 
+use super::progress::Stop;
 use crate::{
     calls::Spent,
     count::count,
     error::{Error, Exit},
     output::tame,
-    run::{Rejected, RunFolder, file, lines},
+    run::{FailedItem, Rejected, RunFolder, file, lines},
 };
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{fmt, path::Path};
-use wayword_core::{ModelError, Provenance, Verdict};
+use wayword_core::{Provenance, Verdict};
 
 /// What a run came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,7 +27,7 @@ pub struct Summary {
     pub finished_by_rules: usize,
     /// Instructions, or whole items, that were rejected.
     pub rejected: usize,
-    /// Items that failed because a model gave nothing; the same command tries them again.
+    /// Items that failed: something is missing or broken, or the world or a service was lost. The same command tries them again.
     pub errors: usize,
     /// What became of the first item that failed, else of the first that was rejected.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -39,18 +40,9 @@ pub struct Summary {
     /// Why the run stopped before its end, where it did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
-}
-
-impl Summary {
     /// The exit code that says so.
-    #[must_use]
-    pub fn exit(&self) -> Exit {
-        match (&self.stopped, self.rejected + self.errors) {
-            (Some(_), _) => Exit::Stopped,
-            (None, 0) => Exit::Done,
-            (None, _) => Exit::WithLoss,
-        }
-    }
+    #[serde(skip)]
+    pub exit: Exit,
 }
 
 pub(super) fn summary(
@@ -58,7 +50,7 @@ pub(super) fn summary(
     run: &RunFolder,
     items: usize,
     spent: Option<Spent>,
-    stopped: Option<ModelError>,
+    stopped: Option<Stop>,
 ) -> Result<Summary, Error> {
     let (mut passed, mut unverified, mut finished, mut minds) = (0, 0, 0, None);
     lines::each(&folder.join(file::INSTRUCTIONS), |line| {
@@ -69,6 +61,11 @@ pub(super) fn summary(
         minds.get_or_insert_with(|| told(&provenance));
         Ok(())
     })?;
+    let exit = match (&stopped, run.rejected.len() + run.errors.len()) {
+        (Some(stop), _) => stop.exit,
+        (None, 0) => Exit::Done,
+        (None, _) => Exit::WithLoss,
+    };
     Ok(Summary {
         run: folder.display().to_string(),
         items,
@@ -77,24 +74,32 @@ pub(super) fn summary(
         finished_by_rules: finished,
         rejected: run.rejected.len(),
         errors: run.errors.len(),
-        first_loss: match first_loss(&folder.join(file::ERRORS))? {
-            None => first_loss(&folder.join(file::REJECTED))?,
+        first_loss: match first_failure(&folder.join(file::ERRORS))? {
+            None => first_rejection(&folder.join(file::REJECTED))?,
             failed => failed,
         },
         minds: minds.unwrap_or_default(),
         spent,
-        stopped: stopped.map(|reason| reason.to_string()),
+        stopped: stopped.map(|stop| stop.reason),
+        exit,
     })
 }
 
-/// The first line of a file of losses, in words.
-fn first_loss(losses: &Path) -> Result<Option<String>, Error> {
+fn first_failure(errors: &Path) -> Result<Option<String>, Error> {
+    let first: Option<FailedItem> = first_line(errors)?;
+    Ok(first.map(|FailedItem { item, failure, reason }| format!("{item} ({}): {reason}", failure.name())))
+}
+
+fn first_rejection(rejected: &Path) -> Result<Option<String>, Error> {
+    let first: Option<Rejected> = first_line(rejected)?;
+    Ok(first.map(|Rejected { item, style, reason, .. }| format!("{item} ({style}): {reason}")))
+}
+
+fn first_line<T: DeserializeOwned>(file: &Path) -> Result<Option<T>, Error> {
     let mut first = None;
-    lines::each(losses, |line| {
+    lines::each(file, |line| {
         if first.is_none() {
-            let Rejected { item, style, reason, .. } = line.parse()?;
-            let style = if style.is_empty() { style } else { format!(" ({style})") };
-            first = Some(format!("{item}{style}: {reason}"));
+            first = Some(line.parse()?);
         }
         Ok(())
     })?;

@@ -9,6 +9,7 @@ use crate::{
     commands::config,
     error::{Error, Exit},
     in_order::{cores, in_order},
+    interrupt,
     output::Output,
     plan::Plan,
     run::fresh_id,
@@ -98,9 +99,7 @@ pub fn perceive(
     let plan = Plan::looking(job, platform)?;
     let views = labelled_views(&plan, extent.views)?;
     let calls = plan.models.open(|| Ok(fresh_id("perceive")), output)?;
-    if let Some(calls) = &calls {
-        calls.stop_on_interrupt(output);
-    }
+    let _graceful = interrupt::finish_first(calls.as_ref());
     let mut measured = Measured {
         platform: job.settings.platform.clone(),
         views: views.len(),
@@ -152,7 +151,7 @@ fn measure(
     in_order(views, calls.map_or_else(cores, Calls::workers), make, |view, caption| {
         bar.inc(1);
         captions.push(captioned(view, caption, output)?);
-        calls.and_then(Calls::interrupted).map_or(Ok(true), |interrupted| Err(Error::from(interrupted)))
+        interrupt::check().map(|()| true)
     })?;
     bar.finish_and_clear();
     let row = Row::of(settings.perception, &captions, asked() - before);

@@ -1,0 +1,146 @@
+//! Hashes of the files that a run's scenes are read from, so that a run is not continued in another world.
+
+use super::{Sha256, file, short_hex, write_whole};
+use crate::{error::Error, text_file};
+use sha2::Digest;
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io::{self, Read, Seek, SeekFrom},
+    path::{Path, PathBuf},
+    sync::{Mutex, MutexGuard, PoisonError},
+};
+use wayword_core::{Platform, SceneId};
+
+/// A file up to this size is hashed whole, bytes; of a picture, and of a larger file, only its beginning, middle and end.
+const MOST_WHOLE: u64 = 8 << 20;
+/// How much of its beginning, middle and end, bytes.
+const SAMPLE: u64 = 64 << 10;
+
+/// The hashes of a run's scenes: those that its folder holds (`data.json`), and those of the files as they are now.
+#[derive(Debug)]
+pub struct WorldData {
+    path: PathBuf,
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    /// What stands in the folder.
+    kept: BTreeMap<String, String>,
+    /// What the files are now; `None` for a scene that is read from none.
+    now: BTreeMap<String, Option<String>>,
+    /// Of each file, since several scenes may share one.
+    files: BTreeMap<PathBuf, String>,
+}
+
+impl WorldData {
+    /// What a run folder holds.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn of(folder: &Path) -> Result<Self, Error> {
+        let path = folder.join(file::DATA);
+        let kept = if path.exists() {
+            let text = text_file::read(&path, "read the hashes of the world's data")?;
+            serde_json::from_str(&text).map_err(|error| {
+                let hint = "the file was changed by hand or by another program: make the run again";
+                Error::usage(format!("{}: {error}", path.display()), hint)
+            })?
+        } else {
+            BTreeMap::new()
+        };
+        Ok(Self { path, state: Mutex::new(State { kept, ..State::default() }) })
+    }
+
+    /// Refuses a scene whose files are not those that the run was begun with.
+    ///
+    /// # Errors
+    /// When they are others, or cannot be read.
+    pub fn check(&self, platform: &dyn Platform, scene: &SceneId) -> Result<(), Error> {
+        let mut state = self.lock();
+        if !state.now.contains_key(scene.as_str()) {
+            let files = platform.files(scene)?;
+            let now = if files.is_empty() { None } else { Some(state.hash(&files)?) };
+            state.now.insert(scene.to_string(), now);
+        }
+        let (kept, now) = (state.kept.get(scene.as_str()), state.now.get(scene.as_str()).cloned().flatten());
+        if kept.is_some() && kept != now.as_ref() {
+            return Err(Error::OtherWorld { scene: scene.to_string(), record: self.path.clone() });
+        }
+        Ok(())
+    }
+
+    /// Keeps the hash of a scene before the first thing that was made in it.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn keep(&self, scene: &SceneId) -> Result<(), Error> {
+        let mut state = self.lock();
+        let Some(now) = state.now.get(scene.as_str()).cloned().flatten() else { return Ok(()) };
+        if state.kept.insert(scene.to_string(), now).is_some() {
+            return Ok(());
+        }
+        let text = serde_json::to_string_pretty(&state.kept).unwrap_or_default();
+        write_whole(&self.path, &text)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl State {
+    fn hash(&mut self, files: &[PathBuf]) -> Result<String, Error> {
+        let mut hash = Sha256::new();
+        for file in files {
+            if !self.files.contains_key(file) {
+                let one = hash_of(file).map_err(Error::io(file, "read"))?;
+                self.files.insert(file.clone(), one);
+            }
+            hash.update(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
+            hash.update(&self.files[file]);
+        }
+        Ok(short_hex(hash))
+    }
+}
+
+/// The hash of a file, which may be large: enough of it to tell it from another.
+fn hash_of(path: &Path) -> io::Result<String> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut hash = Sha256::new();
+    hash.update(length.to_le_bytes());
+    let is_picture = path.extension().is_some_and(|ending| ["jpg", "jpeg", "png"].iter().any(|one| ending == *one));
+    if length <= SAMPLE * 3 || (length <= MOST_WHOLE && !is_picture) {
+        io::copy(&mut file, &mut hash)?;
+    } else {
+        for start in [0, (length - SAMPLE) / 2, length - SAMPLE] {
+            file.seek(SeekFrom::Start(start))?;
+            io::copy(&mut file.by_ref().take(SAMPLE), &mut hash)?;
+        }
+    }
+    Ok(short_hex(hash))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_large_file_is_told_from_one_with_another_end_or_length() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frame.png");
+        let mut bytes = vec![7; SAMPLE as usize * 5];
+        fs::write(&path, &bytes).unwrap();
+        let before = hash_of(&path).unwrap();
+        assert_eq!(hash_of(&path).unwrap(), before);
+        *bytes.last_mut().unwrap() = 8;
+        fs::write(&path, &bytes).unwrap();
+        let other_end = hash_of(&path).unwrap();
+        bytes.push(8);
+        fs::write(&path, &bytes).unwrap();
+        assert!(other_end != before && hash_of(&path).unwrap() != before);
+    }
+}
