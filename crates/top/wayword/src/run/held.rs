@@ -132,14 +132,15 @@ fn began(pid: u32) -> Option<String> {
     fields.split_whitespace().nth(19).map(str::to_owned)
 }
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
+#[cfg(target_os = "linux")]
 mod tests {
     use super::*;
 
-    fn left_behind(folder: &Path, owner: &Owner) -> PathBuf {
+    fn left_behind(folder: &Path, owner: &Owner) -> std::io::Result<PathBuf> {
         let path = folder.join(file::OWNER);
-        fs::write(&path, serde_json::to_string(owner).unwrap()).unwrap();
-        path
+        fs::write(&path, serde_json::to_string(owner)?)?;
+        Ok(path)
     }
 
     #[test]
@@ -158,7 +159,7 @@ mod tests {
     fn a_process_of_another_machine_is_never_taken_for_gone() {
         let folder = tempfile::tempdir().unwrap();
         let far = Owner { host: "node17".into(), place: "another".into(), ..Owner::this() };
-        let path = left_behind(folder.path(), &far);
+        let path = left_behind(folder.path(), &far).unwrap();
         let error = hold_on(folder.path(), Some("Lustre")).unwrap_err();
         let told = error.to_string();
         assert!(["node17", "Lustre", "run.owner", "remove"].iter().all(|part| told.contains(part)), "{told}");
@@ -171,10 +172,10 @@ mod tests {
     fn a_process_of_this_machine_that_is_gone_gives_way() {
         let folder = tempfile::tempdir().unwrap();
         let gone = Owner { began: "1".into(), ..Owner::this() };
-        left_behind(folder.path(), &gone);
+        left_behind(folder.path(), &gone).unwrap();
         assert!(hold_on(folder.path(), Some("NFS")).is_ok(), "its number is another process's now");
         let (other, we) = (std::os::unix::process::parent_id(), Owner::this());
-        left_behind(folder.path(), &Owner { pid: other, began: began(other).unwrap(), ..we });
+        left_behind(folder.path(), &Owner { pid: other, began: began(other).unwrap(), ..we }).unwrap();
         assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(Error::Busy(_))));
     }
 
