@@ -163,7 +163,7 @@ impl Walk {
     /// Whether the camera is upright in most of the poses; `None` where too few tell.
     fn stands(&self, axes: Axes) -> Option<bool> {
         let upright = self.ups(axes).filter(|up| *up >= UPRIGHT).count();
-        (!self.held.is_empty()).then(|| upright as f64 >= MOSTLY * self.held.len() as f64)
+        (!self.held.is_empty()).then_some(upright as f64 >= MOSTLY * self.held.len() as f64)
     }
 
     /// How much of the steps goes where the camera looks, metres.
