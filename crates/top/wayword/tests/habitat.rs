@@ -7,7 +7,10 @@ mod common;
 
 use common::Building;
 use serde_json::Value;
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 use wayword_core::{DVec3, Frame, Heading, Platform, Pose};
 use wayword_formats::Format;
 use wayword_habitat::{HabitatOptions, HabitatPlatform, NavMeshSettings, bake::bake, scene::Model};
@@ -64,14 +67,18 @@ fn vlnce_has_every_corner_of_the_way_and_the_distance_over_the_navmesh() {
     assert!(corners > 0, "no walk has a bend between two frames");
 }
 
-/// A navmesh over the scene alone: a sheet far above it.
-fn roof(building: &Building, stage: &std::path::Path) {
+/// Puts a navmesh beside a scene that has ground far above its rooms alone.
+fn roof(building: &Building, stage: &Path) {
+    let stage = building.path(stage.to_str().unwrap());
+    let world = HabitatPlatform::open(&stage, HabitatOptions::default(), Arc::new(|_: &str| {})).unwrap();
+    let graph = world.graph(&world.scenes().unwrap()[0]).unwrap();
+    let places = || graph.viewpoints().filter_map(|viewpoint| graph.position(viewpoint));
+    let (low, high) = (places().reduce(DVec3::min).unwrap(), places().reduce(DVec3::max).unwrap());
     let corner = |x: f64, y: f64| DVec3::new(x, y, 40.0).as_vec3();
-    let positions = vec![corner(-20.0, -20.0), corner(20.0, -20.0), corner(20.0, 20.0), corner(-20.0, 20.0)];
+    let positions = vec![corner(low.x, low.y), corner(high.x, low.y), corner(high.x, high.y), corner(low.x, high.y)];
     let sheet = Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
     let mesh = bake(&Model { meshes: vec![sheet], ..Model::default() }, &NavMeshSettings::default()).unwrap();
-    let file = building.path(stage.to_str().unwrap()).with_file_name("house-2.navmesh");
-    std::fs::write(file, mesh.to_bytes()).unwrap();
+    std::fs::write(stage.with_file_name("house-2.navmesh"), mesh.to_bytes()).unwrap();
 }
 
 #[test]
