@@ -3,6 +3,7 @@
 use crate::names::entries;
 use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
 use wayword_core::PlatformError;
+#[cfg(any(feature = "mcap", feature = "video"))]
 use wayword_world::files;
 
 /// What makes a file that is read here of any video that ffmpeg reads. It codes the pictures anew: few videos hold H.264 or AV1,
@@ -162,6 +163,7 @@ pub(crate) fn unread(path: &Path, within: &[&str]) -> Result<Option<Unread>, Pla
 }
 
 /// A file that should be a recording by its name and is none: what it is, or what its reader says of it.
+#[cfg(any(feature = "mcap", feature = "video"))]
 pub(crate) fn refusal(file: &Path, own: &str, (reason, hint): (String, &'static str)) -> PlatformError {
     match Kind::at(file).filter(|kind| kind.name != own) {
         Some(kind) if kind.hint.starts_with("rename") => {
