@@ -56,19 +56,23 @@ fn repeated() -> BTreeSet<String> {
     pairs.chain(more.map(str::to_owned)).collect()
 }
 
+/// Holds a text that repeats a part to growth in proportion: twice as many more take twice as many looks more.
+#[track_caller]
+fn grows_in_proportion(text: impl Fn(usize) -> String) {
+    let [few, more, many] = [20, 40, 80].map(|times| looks(&text(times)));
+    assert!(10 * (many - more) <= 22 * (more - few), "{:?}: {few}, {more}, {many} looks", text(1));
+}
+
 #[test]
-fn ten_times_the_text_takes_ten_times_the_looks() {
+fn twice_the_text_takes_twice_the_looks() {
     for part in repeated() {
-        let (short, long) = (looks(&part.repeat(20)), looks(&part.repeat(200)));
-        assert!(long <= 11 * short, "{part:?}: {short} looks for 20 times, {long} for 200 times");
+        grows_in_proportion(|times| part.repeat(times));
     }
 }
 
 #[test]
 fn words_between_a_turn_and_its_places_are_not_looked_at_for_each_place() {
     for part in ["sofa ", "sofa, ", "at the sofa "] {
-        let text = |times| format!("Turn left {}", part.repeat(times));
-        let (short, long) = (looks(&text(20)), looks(&text(200)));
-        assert!(long <= 11 * short, "{part:?}: {short} looks for 20 times, {long} for 200 times");
+        grows_in_proportion(|times| format!("Turn left {}", part.repeat(times)));
     }
 }

@@ -132,7 +132,7 @@ fn a_prompt_that_writes_without_bound_is_refused_with_the_bound() {
         "{{ question | indent(4000000000) }}",
         "{{ question | indent(width=4000000000, first=true) }}",
         "{% for a in range(1000) %}{{ question | indent(10000, true) }}{% endfor %}",
-        "{{ range(1000) | join('0123456789') | replace('0', range(1000) | join('-')) }}",
+        "{{ range(1000) | join('00123456789') | replace('0', range(1000) | join('-')) }}",
         "{{ [range(1000) | join('0123456789')] | map('replace', '', range(1000) | join('-')) | join }}",
     ] {
         let why = refused(source);
