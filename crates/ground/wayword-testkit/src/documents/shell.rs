@@ -23,7 +23,7 @@ pub(super) fn commands(script: &str) -> Vec<Simple> {
                 None => {}
             },
             (Some('"'), '\\') if matches!(chars.peek(), Some('"' | '\\' | '$')) => {
-                reader.add(chars.next().unwrap_or('\\'))
+                reader.add(chars.next().unwrap_or('\\'));
             }
             (None, '\'' | '"') => {
                 reader.quote = Some(c);
