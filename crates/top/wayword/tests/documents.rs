@@ -54,7 +54,7 @@ fn is_a_name(command: &Documented) -> bool {
         let Some(inner) = known.find_subcommand(word) else { return false };
         known = inner.clone();
     }
-    command.is_within_text && known.clone().try_get_matches_from([""]).is_err()
+    command.is_within_text && known.try_get_matches_from([""]).is_err()
 }
 
 fn unreadable<'a>(words: impl IntoIterator<Item = &'a str>) -> Option<String> {
