@@ -13,7 +13,7 @@ pub(super) fn turns(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
     let mut turns: Vec<Event> = Vec::new();
     let mut told_in_sentence = false;
     let mut verb_of_about = None;
-    for at in 0..tokens.len() {
+    for (at, clause) in clauses.iter().enumerate() {
         if tokens.get(at).is_some_and(Token::ends_sentence) {
             (told_in_sentence, verb_of_about) = (false, None);
         }
@@ -31,7 +31,7 @@ pub(super) fn turns(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
         }
         told_in_sentence = true;
         let span = tokens.span(at, last);
-        turns.push(Event { what: What::Turn(side), span, clause: clauses[at], denied: false });
+        turns.push(Event { what: What::Turn(side), span, clause: *clause, denied: false });
     }
     turns
 }

@@ -162,6 +162,8 @@ fn replace(state: &State<'_, '_>, value: &Value, from: &Value, to: &Value) -> Re
     Ok(text.replace(&from, &to))
 }
 
+// minijinja gives named arguments away.
+#[allow(clippy::needless_pass_by_value)]
 fn indent(
     state: &State<'_, '_>,
     value: &Value,
