@@ -194,7 +194,7 @@ fn no_crate_asks_the_standard_library_for_a_sine() {
         // glam asks the standard library too.
         let rotates =
             ["from_rotation_", "from_axis_angle", "from_euler", "from_scaled_axis", "slerp(", "angle_between("];
-        functions.iter().any(|name| called(&name)) || rotates.iter().any(|way| line.contains(way))
+        functions.iter().any(called) || rotates.iter().any(|way| line.contains(way))
     };
     let root = workspace();
     for file in sources(&root.join("crates")) {
