@@ -291,13 +291,7 @@ impl PlatformError {
     pub fn unread(file: &FilePath, error: &io::Error, hint: &'static str) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound => Self::NoFile { file: file.to_owned(), hint },
-            // A disk of another machine, or one that fails.
-            io::ErrorKind::StaleNetworkFileHandle
-            | io::ErrorKind::TimedOut
-            | io::ErrorKind::HostUnreachable
-            | io::ErrorKind::NetworkUnreachable
-            | io::ErrorKind::NetworkDown
-            | io::ErrorKind::NotConnected => {
+            _ if is_lost_disk(error) => {
                 Self::Lost { world: file.display().to_string(), reason: error.to_string(), hint }
             }
             _ => Self::File { file: file.to_owned(), reason: error.to_string(), hint },
@@ -315,4 +309,16 @@ impl PlatformError {
             |viewpoint| Self::UnknownViewpoint { scene: scene.clone(), viewpoint },
         )
     }
+}
+
+/// Whether the system says that a disk has gone away or fails: one of another machine, or a broken one.
+#[must_use]
+pub fn is_lost_disk(error: &io::Error) -> bool {
+    use io::ErrorKind::{
+        HostUnreachable, NetworkDown, NetworkUnreachable, NotConnected, StaleNetworkFileHandle, TimedOut,
+    };
+    /// Unix' number of "input/output error", for which the standard library has no name.
+    const EIO: i32 = 5;
+    let gone = [HostUnreachable, NetworkDown, NetworkUnreachable, NotConnected, StaleNetworkFileHandle, TimedOut];
+    gone.contains(&error.kind()) || (cfg!(unix) && error.raw_os_error() == Some(EIO))
 }

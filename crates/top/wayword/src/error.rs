@@ -1,7 +1,11 @@
 //! What can go wrong, told once, and the exit codes of the program.
 
-use std::{path::PathBuf, process::ExitCode};
-use wayword_core::{Failure, ModelError, PlatformError};
+use std::{
+    io::{self, ErrorKind},
+    path::PathBuf,
+    process::ExitCode,
+};
+use wayword_core::{Failure, ModelError, PlatformError, platform::is_lost_disk};
 use wayword_formats::FormatError;
 use wayword_navigation::WalkError;
 use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::StyleError};
@@ -29,6 +33,19 @@ pub enum Exit {
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         ExitCode::from(exit as u8)
+    }
+}
+
+/// What to do about an error of the file system.
+fn advice(error: &io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::NotFound => "\nhint: check how the path is written, and that its folder is there",
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "\nhint: name another place, or see to it that you may use this one"
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "\nhint: make room, and give the same command again",
+        ErrorKind::IsADirectory => "\nhint: name a file; this is a folder",
+        _ => "",
     }
 }
 
@@ -70,14 +87,14 @@ pub enum Error {
     #[error(transparent)]
     House(#[from] wayword_house::SaveError),
     /// The file system would not.
-    #[error("{}: cannot {doing}: {source}", path.display())]
+    #[error("{}: cannot {doing}: {source}{}", path.display(), advice(source))]
     Io {
         /// Which file or folder.
         path: PathBuf,
         /// What was tried.
         doing: &'static str,
         /// What the system said.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// What was asked for does not make sense.
     #[error("{problem}\nhint: {hint}")]
@@ -145,14 +162,14 @@ impl Error {
         }
     }
 
-    /// Whether the disk has no room left.
-    fn is_full_disk(&self) -> bool {
-        use std::io::ErrorKind::{QuotaExceeded, StorageFull};
-        matches!(self, Self::Io { source, .. } if matches!(source.kind(), StorageFull | QuotaExceeded))
+    /// Whether the disk has no room left, or went away.
+    fn is_of_the_disk(&self) -> bool {
+        let is_full = |error: &io::Error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);
+        matches!(self, Self::Io { source, .. } if is_full(source) || is_lost_disk(source))
     }
 
     /// A failed file operation.
-    pub fn io(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+    pub fn io(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, doing, source }
     }
@@ -173,12 +190,25 @@ impl Error {
         match self {
             Self::Busy(_) | Self::BusyElsewhere { .. } => Exit::Busy,
             Self::Interrupted => Exit::Interrupted,
-            error if error.is_full_disk() => Exit::Lost,
+            error if error.is_of_the_disk() => Exit::Lost,
             error => match error.failure() {
                 Some(Failure::Lost) => Exit::Lost,
                 None if error.ends_sending() => Exit::Stopped,
                 _ => Exit::BadInput,
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Error as IoError;
+
+    #[test]
+    fn a_full_disk_is_a_loss_and_a_refused_file_is_wrong_input() {
+        let error = |kind| Error::io("walks.jsonl", "write")(IoError::from(kind)).exit_code();
+        assert_eq!(error(ErrorKind::StorageFull), Exit::Lost);
+        assert_eq!(error(ErrorKind::PermissionDenied), Exit::BadInput);
     }
 }

@@ -5,10 +5,12 @@
 
 use crate::{calls::Calls, error::Error, output::Output};
 use std::{
+    path::{Path, PathBuf},
     sync::{
         Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
+    thread,
     time::Duration,
 };
 use wayword_platforms::process;
@@ -17,11 +19,20 @@ use wayword_platforms::process;
 static ASKED: AtomicBool = AtomicBool::new(false);
 /// What the command that is at work does to come to an end; none where it can be ended anywhere.
 static ENDING: Mutex<Option<Ending>> = Mutex::new(None);
+/// Files that say that this process is at work, to be removed however it ends.
+static MARKS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// How long a world in a child process may take over what it was asked before an interrupt.
 const GRACE: Duration = Duration::from_secs(10);
+/// How long after that a command without models may take to come to its end, before it is ended anywhere: a simulator may be waited
+/// for. One with models is not, because what is in flight is paid for.
+const LAST_GRACE: Duration = Duration::from_secs(5);
 
-type Ending = Box<dyn Fn() + Send>;
+/// Ends the sending; whether there are calls to be finished.
+struct Ending {
+    stop: Box<dyn Fn() + Send>,
+    has_calls: bool,
+}
 
 /// A command that looks for interrupts by itself, for as long as this lives.
 #[must_use]
@@ -30,11 +41,11 @@ pub struct Graceful(());
 /// From now on an interrupt ends the sending of `calls`, and the command looks at [`check`] between two pieces of its work. A second
 /// interrupt ends the process.
 pub fn finish_first(calls: Option<&Calls>) -> Graceful {
-    let ending: Ending = match calls.map(Calls::ending) {
+    let stop: Box<dyn Fn() + Send> = match calls.map(Calls::ending) {
         Some(ending) => Box::new(ending),
         None => Box::new(|| ()),
     };
-    *lock() = Some(ending);
+    *lock() = Some(Ending { stop, has_calls: calls.is_some() });
     Graceful(())
 }
 
@@ -42,6 +53,11 @@ impl Drop for Graceful {
     fn drop(&mut self) {
         *lock() = None;
     }
+}
+
+/// Has a file removed where an interrupt ends the process at once.
+pub(crate) fn removes(mark: &Path) {
+    MARKS.lock().unwrap_or_else(PoisonError::into_inner).push(mark.to_owned());
 }
 
 /// Whether anybody has interrupted.
@@ -68,21 +84,30 @@ pub fn listen(output: &Output) {
     let output = *output;
     // Where signals cannot be had, they end the process as they always did.
     let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
-    std::thread::spawn(move || {
+    thread::spawn(move || {
         for _ in signals.forever() {
             let again = ASKED.swap(true, Ordering::Relaxed);
             match lock().as_ref() {
-                Some(ending) if !again => {
-                    output.say("finishing what is in hand; interrupt again to end at once");
-                    ending();
-                    // A world that hangs would hold up the end. Its item is tried again by the next command.
-                    std::thread::spawn(|| {
-                        std::thread::sleep(GRACE);
-                        process::end_all();
-                    });
-                }
+                Some(ending) if !again => finish(ending, output),
                 _ => end_at_once(&output),
             }
+        }
+    });
+}
+
+/// Has the command come to its end, and ends it itself where that takes too long.
+#[cfg(unix)]
+fn finish(ending: &Ending, output: Output) {
+    output.say("finishing what is in hand; interrupt again to end at once");
+    (ending.stop)();
+    let has_calls = ending.has_calls;
+    thread::spawn(move || {
+        // A world that hangs would hold up the end. Its item is tried again by the next command.
+        thread::sleep(GRACE);
+        process::end_all();
+        if !has_calls {
+            thread::sleep(LAST_GRACE);
+            end_at_once(&output);
         }
     });
 }
@@ -95,6 +120,10 @@ pub fn listen(_: &Output) {}
 fn end_at_once(output: &Output) {
     output.error(&Error::Interrupted);
     process::end_all();
+    for mark in MARKS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+        // What stays is found by whoever comes next.
+        let _ = std::fs::remove_file(mark);
+    }
     std::process::exit(crate::error::Exit::Interrupted as i32);
 }
 

@@ -15,6 +15,7 @@ pub mod error;
 mod in_order;
 pub mod interrupt;
 pub mod item;
+mod losses;
 pub mod output;
 pub mod pictures;
 pub mod pipeline;

@@ -21,8 +21,8 @@ fn main() -> ExitCode {
         Err(error) => {
             output.error(&error);
             match error.exit_code() {
-                // A call that an interrupt cut off looks like one that the ledger did not let out.
-                Exit::Stopped if interrupt::is_asked() => Exit::Interrupted.into(),
+                // What an interrupt cut off looks like a call that was not let out, or a world that was lost.
+                Exit::Stopped | Exit::Lost if interrupt::is_asked() => Exit::Interrupted.into(),
                 code => code.into(),
             }
         }

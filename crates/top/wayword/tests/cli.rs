@@ -259,9 +259,9 @@ fn an_episode_that_does_not_fit_the_building_costs_that_item_alone() {
     let file = broken(&building, |item| item["path"] = json!([wayword_testkit::viewpoint_id(0), "0123456789abcdef"]));
     let ran = building.generate("run", &["--episodes", file, "--style", "r2r"]);
     assert_eq!(ran.code, Some(3), "{ran:?}");
-    let rejected = building.lines("run/rejected.jsonl");
-    assert_eq!((rejected.len(), building.records("run").len()), (1, 9));
-    assert!(rejected[0]["reason"].as_str().unwrap().contains("0123456789abcdef"), "{}", rejected[0]);
+    let errors = building.lines("run/errors.jsonl");
+    assert_eq!((errors.len(), building.lines("run/rejected.jsonl").len(), building.records("run").len()), (1, 0, 9));
+    assert!(errors[0]["reason"].as_str().unwrap().contains("0123456789abcdef"), "{}", errors[0]);
 }
 
 #[test]

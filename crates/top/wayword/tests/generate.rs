@@ -57,7 +57,7 @@ fn episodes_get_an_instruction_in_each_style_that_passes_every_check() {
     let found: Vec<String> = files(&building.path("run")).into_keys().map(|path| path.display().to_string()).collect();
     assert_eq!(
         found,
-        ["config.toml", "errors.jsonl", "instructions.jsonl", "rejected.jsonl", "run.lock", "walks.jsonl"]
+        ["config.toml", "data.json", "errors.jsonl", "instructions.jsonl", "rejected.jsonl", "run.lock", "walks.jsonl"]
     );
     assert_eq!((building.lines("run/walks.jsonl").len(), building.lines("run/rejected.jsonl").len()), (10, 0));
 }
@@ -163,13 +163,13 @@ fn random_paths_keep_to_hops_metres_and_scene() {
 }
 
 #[test]
-fn a_random_path_that_cannot_be_is_a_rejected_item_with_its_reason() {
+fn a_random_path_that_cannot_be_is_a_failed_item_with_its_reason() {
     let building = Building::new();
     let ran = building.generate("run", &["--paths", "2", "--hops", "40..50"]);
     assert_eq!(ran.code, Some(3), "{ran:?}");
-    let rejected = building.lines("run/rejected.jsonl");
-    assert_eq!(rejected.len(), 2);
-    assert!(rejected[0]["reason"].as_str().unwrap().contains("40 to 50 hops"), "{}", rejected[0]);
+    let errors = building.lines("run/errors.jsonl");
+    assert_eq!((errors.len(), building.lines("run/rejected.jsonl").len()), (2, 0));
+    assert!(errors[0]["reason"].as_str().unwrap().contains("40 to 50 hops"), "{}", errors[0]);
 }
 
 #[test]

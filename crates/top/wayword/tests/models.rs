@@ -312,8 +312,8 @@ fn an_interrupt_finishes_what_is_in_flight_and_the_same_command_goes_on() {
     std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     let output = child.wait_with_output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(5), "{told}");
-    assert!(told.contains("finishing what is in flight"), "{told}");
+    assert_eq!(output.status.code(), Some(6), "{told}");
+    assert!(told.contains("finishing what is in hand"), "{told}");
     let log = stage.provider.log();
     assert_eq!(log.received, log.answered, "nothing was broken off");
     let whole = stage.generate("run", &args);
@@ -344,7 +344,7 @@ fn an_interrupt_ends_a_run_that_the_ledger_answers() {
         std::thread::yield_now();
     }
     std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(5));
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(6));
     let whole = stage.generate("again", &args);
     assert_eq!((whole.code, stage.provider.requests()), (Some(0), asked), "{whole:?}");
     for file in ["walks.jsonl", "instructions.jsonl"] {

@@ -62,9 +62,11 @@ Exit codes:
   0  done, and every check passed
   1  the input was wrong, or a file could not be read or written
   2  the command line could not be read
-  3  done, but some instructions were rejected or failed a check; each with its reason
+  3  done, but some items failed, or some instructions failed a check; each with its reason
   4  another process works in the same run folder
-  5  stopped before the end: a budget was spent, a key was refused, or you interrupted; the same command goes on";
+  5  stopped before the end: a budget was spent or a key was refused; the same command goes on
+  6  interrupted (Ctrl-C, SIGTERM); the same command goes on
+  7  the world, a service or the disk was lost; the same command goes on";
 
 /// The commands.
 #[derive(Debug, Subcommand)]

@@ -6,7 +6,7 @@
 //! knows that it is gone has to remove the file. Which file systems are a network's is known on Linux alone.
 
 use super::file;
-use crate::error::Error;
+use crate::{error::Error, interrupt};
 use serde::{Deserialize, Serialize};
 use std::{
     fs::{self, File, TryLockError},
@@ -73,6 +73,7 @@ impl Mark {
         for _ in 0..2 {
             match File::options().create_new(true).write(true).open(&path) {
                 Ok(mut file) => {
+                    interrupt::removes(&path);
                     file.write_all(text.as_bytes()).map_err(Error::io(&path, "write"))?;
                     return Ok(Self(path));
                 }

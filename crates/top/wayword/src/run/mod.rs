@@ -21,6 +21,7 @@ use sha2::{Digest, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::{self, File},
+    io::Write,
     path::{Path, PathBuf},
     time::SystemTime,
 };
@@ -44,6 +45,8 @@ pub struct RunFolder {
     pub rejected: Journal,
     /// Items that failed. It begins empty with each command, which tries them again.
     pub errors: Journal,
+    /// Items that failed in the command before this one.
+    failed_before: BTreeSet<String>,
     /// Items whose walk is there, but not the pictures that belong to it.
     without_pictures: BTreeSet<String>,
     /// Held for as long as the folder is worked in.
@@ -87,6 +90,7 @@ impl RunFolder {
         keep_settings(folder, settings)?;
         let walks = folder.join(file::WALKS);
         Ok(Self {
+            failed_before: keys_of(&folder.join(file::ERRORS))?,
             without_pictures: without_pictures(&walks, &folder.join(file::FRAMES))?,
             walks: Journal::open(&walks, WalkRecord::key_of)?,
             instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
@@ -113,12 +117,22 @@ impl RunFolder {
 
     /// Whether an item needs no more work: its walk is there with its pictures, and each style has its line.
     #[must_use]
-    pub fn is_done(&self, item: &str, styles: &[String]) -> bool {
+    fn is_done(&self, item: &str, styles: &[String]) -> bool {
         let has = |style: &str| {
             let key = record::key(item, style);
             self.instructions.has(&key) || self.rejected.has(&key)
         };
         self.walks.has(item) && !self.without_pictures.contains(item) && styles.iter().all(|style| has(style))
+    }
+
+    /// The items that need more work. Those that failed last time come last, so that they hold up no others.
+    #[must_use]
+    pub fn left<'a>(&self, items: &'a [Item], styles: &[String]) -> Vec<&'a Item> {
+        let left = items.iter().filter(|item| !self.is_done(&item.id(), styles));
+        let (failed, mut left): (Vec<&Item>, Vec<&Item>) =
+            left.partition(|item| self.failed_before.contains(&item.id()));
+        left.extend(failed);
+        left
     }
 
     /// Puts the lines of all files into the order of the items and styles: what was lost and made later stands behind what came
@@ -174,6 +188,16 @@ pub(crate) fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
     Ok(id)
 }
 
+/// The items of which `errors.jsonl` tells.
+fn keys_of(errors: &Path) -> Result<BTreeSet<String>, Error> {
+    let mut keys = BTreeSet::new();
+    lines::each(errors, |line| {
+        keys.extend(FailedItem::key_of(&line.parse()?));
+        Ok(())
+    })?;
+    Ok(keys)
+}
+
 /// The items whose walk has pictures that are not all there.
 fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, Error> {
     let mut without = BTreeSet::new();
@@ -223,7 +247,9 @@ where
 }
 
 fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Error {
-    let differs = differing_keys(before, settings).into_iter().collect::<Vec<_>>().join(", ");
+    let differs = differing_keys(before, settings);
+    let differs: Vec<&str> = differs.iter().map(String::as_str).filter(|key| *key != "raised_from").collect();
+    let differs = differs.join(", ");
     let problem = format!("{} holds a run with other settings ({differs})", folder.display());
     Error::usage(problem, "give the same command to continue it, or another --out for a new run")
 }
@@ -235,6 +261,14 @@ fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
         return keep_config(folder, settings);
     }
     let before: Settings = config_of(folder)?;
+    if settings.paths < before.paths {
+        let problem =
+            format!("{} holds a run of {} paths, and {} are asked for", folder.display(), before.paths, settings.paths);
+        return Err(Error::usage(
+            problem,
+            "ask for as many or more to continue it, or give another --out for a new run",
+        ));
+    }
     if before.raised_to(settings) != *settings {
         return Err(other_settings(folder, &before, settings));
     }
@@ -264,7 +298,12 @@ pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".new");
     let temporary = PathBuf::from(temporary);
-    fs::write(&temporary, text).map_err(Error::io(&temporary, "write"))?;
+    let write = || {
+        let mut file = File::create(&temporary)?;
+        file.write_all(text.as_bytes())?;
+        file.sync_data()
+    };
+    write().map_err(Error::io(&temporary, "write"))?;
     fs::rename(&temporary, path).map_err(Error::io(path, "write"))
 }
 

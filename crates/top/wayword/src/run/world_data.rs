@@ -5,17 +5,21 @@ use crate::{error::Error, text_file};
 use sha2::Digest;
 use std::{
     collections::BTreeMap,
-    fs::File,
+    fs::{self, File},
     io::{self, Read, Seek, SeekFrom},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
 };
-use wayword_core::{Platform, SceneId};
+use wayword_core::{Platform, PlatformError, SceneId};
 
-/// A file up to this size is hashed whole, bytes; of a picture, and of a larger file, only its beginning, middle and end.
+/// A file up to this size is hashed whole, bytes; of a larger one only its beginning, middle and end.
 const MOST_WHOLE: u64 = 8 << 20;
-/// How much of its beginning, middle and end, bytes.
+/// How much of these, bytes.
 const SAMPLE: u64 = 64 << 10;
+/// How much of the beginning of a picture, of which a scene may have thousands, bytes. Another picture has another length, too.
+const PICTURE: u64 = 4 << 10;
+
+const HINT: &str = "see whether it may be read, or move it away";
 
 /// The hashes of a run's scenes: those that its folder holds (`data.json`), and those of the files as they are now.
 #[derive(Debug)]
@@ -91,11 +95,11 @@ impl WorldData {
 }
 
 impl State {
-    fn hash(&mut self, files: &[PathBuf]) -> Result<String, Error> {
+    fn hash(&mut self, files: &[PathBuf]) -> Result<String, PlatformError> {
         let mut hash = Sha256::new();
         for file in files {
             if !self.files.contains_key(file) {
-                let one = hash_of(file).map_err(Error::io(file, "read"))?;
+                let one = hash_of(file).map_err(|error| PlatformError::unread(file, &error, HINT))?;
                 self.files.insert(file.clone(), one);
             }
             hash.update(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
@@ -107,12 +111,18 @@ impl State {
 
 /// The hash of a file, which may be large: enough of it to tell it from another.
 fn hash_of(path: &Path) -> io::Result<String> {
+    // A pipe would be waited for.
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("it is no plain file"));
+    }
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
     let mut hash = Sha256::new();
     hash.update(length.to_le_bytes());
     let is_picture = path.extension().is_some_and(|ending| ["jpg", "jpeg", "png"].iter().any(|one| ending == *one));
-    if length <= SAMPLE * 3 || (length <= MOST_WHOLE && !is_picture) {
+    if is_picture {
+        io::copy(&mut file.take(PICTURE), &mut hash)?;
+    } else if length <= MOST_WHOLE {
         io::copy(&mut file, &mut hash)?;
     } else {
         for start in [0, (length - SAMPLE) / 2, length - SAMPLE] {
@@ -126,13 +136,12 @@ fn hash_of(path: &Path) -> io::Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs;
 
     #[test]
     fn a_large_file_is_told_from_one_with_another_end_or_length() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("frame.png");
-        let mut bytes = vec![7; SAMPLE as usize * 5];
+        let path = folder.path().join("scene.glb");
+        let mut bytes = vec![7; MOST_WHOLE as usize + 5];
         fs::write(&path, &bytes).unwrap();
         let before = hash_of(&path).unwrap();
         assert_eq!(hash_of(&path).unwrap(), before);

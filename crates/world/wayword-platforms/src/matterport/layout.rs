@@ -4,6 +4,8 @@ use super::read;
 use std::path::{Path, PathBuf};
 use wayword_core::{PlatformError, SceneId, ViewpointId};
 
+/// Views of a viewpoint in a folder of Matterport3DSimulator's.
+const VIEWS: usize = 36;
 const HINT: &str = "give the folder that holds Matterport3DSimulator's `connectivity` folder as --data";
 
 /// Where REVERIE's boxes may lie below the data folder.
@@ -82,8 +84,8 @@ impl Layout {
             None => format!("put REVERIE's boxes into {}", data.join(BOXES[0]).display()),
         };
         Some(format!(
-            "warning: {}: no boxes of REVERIE's ({}), and .house files of {houses} of {} buildings; in the others nothing is known of \
-             objects: labels name rooms alone, and objects in texts stay unverified\nhint: {hint}",
+            "warning: {}: no boxes of REVERIE's ({}), and .house files for {houses} of its buildings ({} in all); without \
+             them nothing is known of objects: labels name rooms alone, and objects in texts stay unverified\nhint: {hint}",
             data.display(),
             BOXES.join(", "),
             scenes.len()
@@ -95,24 +97,23 @@ impl Layout {
     }
 
     /// Every file of a scene that is there, sorted.
-    pub(crate) fn files<'a>(
-        &self,
-        scene: &SceneId,
-        viewpoints: impl Iterator<Item = &'a ViewpointId>,
-    ) -> Result<Vec<PathBuf>, PlatformError> {
+    pub(crate) fn files<'a>(&self, scene: &SceneId, viewpoints: impl Iterator<Item = &'a ViewpointId>) -> Vec<PathBuf> {
         let mut files = vec![self.connectivity(scene)];
         files.extend([self.rooms(scene), self.house(scene), self.object_positions.clone()].into_iter().flatten());
-        files.extend(viewpoints.filter_map(|viewpoint| self.boxes(scene, viewpoint)).filter(|file| file.is_file()));
-        for skybox in self.folders_of(scene, "matterport_skybox_images") {
-            files.extend(files_in(&skybox)?);
-        }
-        for viewpoints in self.views.iter().map(|views| views.join(scene.as_str())).filter(|folder| folder.is_dir()) {
-            for viewpoint in files_in(&viewpoints)? {
-                files.extend(files_in(&viewpoint)?);
+        for viewpoint in viewpoints {
+            files.extend(self.boxes(scene, viewpoint));
+            match self.skybox(scene, viewpoint) {
+                Some(SkyboxFiles::Strip(strip)) => files.push(strip),
+                Some(SkyboxFiles::Faces(faces)) => files.extend(faces),
+                None => {}
+            }
+            if let Some(views) = self.views(scene, viewpoint) {
+                files.extend((0..VIEWS).map(|view| views.join(format!("{view}.jpg"))));
             }
         }
+        files.retain(|file| file.is_file());
         files.sort();
-        Ok(files)
+        files
     }
 
     /// The file of room letters, whether or not it is there.
@@ -150,11 +151,6 @@ impl Layout {
     /// A file in a scan's folder.
     fn in_scan(&self, scene: &SceneId, file: &str) -> Option<PathBuf> {
         self.places_of(scene, file).find(|file| file.is_file())
-    }
-
-    /// The folders of that name in a scan's folders.
-    fn folders_of(&self, scene: &SceneId, folder: &str) -> Vec<PathBuf> {
-        self.places_of(scene, folder).filter(|folder| folder.is_dir()).collect()
     }
 
     /// Where something of a scan may lie. Matterport3D's archives unpack to `SCAN/...` inside `scans/SCAN` or right there.

@@ -206,6 +206,6 @@ impl Platform for Matterport {
     }
 
     fn files(&self, id: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.layout.files(id, self.scene(id)?.viewpoints.keys())
+        Ok(self.layout.files(id, self.scene(id)?.viewpoints.keys()))
     }
 }

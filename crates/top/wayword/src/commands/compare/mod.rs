@@ -18,6 +18,7 @@ use crate::{
     error::{Error, Exit},
     in_order::{cores, in_order},
     interrupt,
+    losses::Losses,
     output::Output,
     plan::Models,
     run::{self, Journal},
@@ -30,7 +31,7 @@ use outputs::Gathered;
 use score::Judge;
 use sets::Item;
 use std::{fs, path::Path};
-use wayword_core::ModelError;
+use wayword_core::{Failure, ModelError};
 use wayword_navigation::{
     WalkError,
     directions::{ByModel, ByRules, Splitter},
@@ -140,6 +141,7 @@ fn walk_all(
     bar.set_position((items.len() - left.len()) as u64);
     bar.reset_eta();
     let (mut walked, mut failed, mut unflushed) = (0, 0, 0);
+    let mut losses = Losses::default();
     let workers = calls.map_or_else(cores, Calls::workers);
     in_order(
         &left,
@@ -147,12 +149,15 @@ fn walk_all(
         |item| crew.walks(item),
         |item, made| {
             bar.inc(1);
+            let is_gone = losses.are_enough(made.as_ref().err().and_then(loss));
             match made {
                 Ok(made) => {
                     walked += 1;
                     made.iter().try_for_each(|walk| walks.append(walk))?;
                 }
                 // Nobody answers: the others would wait for the same.
+                // Nobody answers any more.
+                Err(error) if is_gone => return Err(error.into()),
                 Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == FRUITLESS => return Err(error.into()),
                 Err(error) if is_of_item(&error) => {
                     failed += 1;
@@ -171,6 +176,14 @@ fn walk_all(
     walks.sync()?;
     bar.finish_and_clear();
     Ok(failed)
+}
+
+/// What kind of failure it is, where a model failed.
+fn loss(error: &WalkError) -> Option<Failure> {
+    match error {
+        WalkError::Model(error) => Some(error.failure()),
+        _ => None,
+    }
 }
 
 /// Whether a failure is one item's, so that the others may still be walked.

@@ -38,7 +38,7 @@ pub(super) fn keep(
                 run.errors.append(&FailedItem { item: item.id(), failure, reason: reason.clone() })?;
                 Ok(Fate::Failed(failure, reason))
             }
-            None if error.ends_sending() => Ok(Fate::Stopped(error)),
+            None if error.ends_sending() || matches!(error, Error::Interrupted) => Ok(Fate::Stopped(error)),
             None => Err(error),
         },
     }

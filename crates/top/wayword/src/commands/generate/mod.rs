@@ -62,7 +62,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let Plan { items, styles, .. } = &plan;
 
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
-    let left: Vec<&Item> = items.iter().filter(|item| !run.is_done(&item.id(), &names)).collect();
+    let left = run.left(items, &names);
     if left.len() < items.len() {
         output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
     }
@@ -70,7 +70,10 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
     let world = RunWorld { platform: platform.as_ref(), data: Some(&data) };
-    let making = |item: &&Item| make(item, settings, world, &team, styles);
+    let making = |item: &&Item| {
+        interrupt::check()?;
+        make(item, settings, world, &team, styles)
+    };
     in_order(&left, workers, making, |item, made| {
         let fate = keep(&mut run, world, item, made, styles)?;
         progress.takes_note(&mut run, fate)

@@ -5,6 +5,7 @@ use crate::{
     calls::Calls,
     error::{Error, Exit},
     interrupt,
+    losses::{Losses, MOST_IN_A_ROW},
     output::Output,
     run::RunFolder,
 };
@@ -13,8 +14,6 @@ use wayword_core::Failure;
 
 /// Items between two flushes to the disk: few enough to lose little when the machine fails.
 const FLUSH: usize = 16;
-/// So many items in a row whose world or service was lost end the run: the others would wait for the same.
-const MOST_LOST_IN_A_ROW: usize = 5;
 
 /// Why a run stopped before its end.
 pub(super) struct Stop {
@@ -29,7 +28,9 @@ pub(super) struct Progress<'a> {
     /// Items that nobody has taken up yet in this command.
     left: usize,
     unflushed: usize,
-    lost_in_a_row: usize,
+    losses: Losses,
+    /// Why every item so far has failed, where it is the same for all, and how many these are.
+    nothing_but: Option<(String, usize)>,
     stop: Option<Stop>,
 }
 
@@ -39,21 +40,28 @@ impl<'a> Progress<'a> {
         bar.set_position((items - left) as u64);
         // What earlier commands did tells nothing of the pace.
         bar.reset_eta();
-        Self { bar, calls, left, unflushed: 0, lost_in_a_row: 0, stop: None }
+        Self {
+            bar,
+            calls,
+            left,
+            unflushed: 0,
+            losses: Losses::default(),
+            nothing_but: Some((String::new(), 0)),
+            stop: None,
+        }
     }
 
     /// Takes note of what became of an item. Returns whether the run goes on.
     pub(super) fn takes_note(&mut self, run: &mut RunFolder, fate: Fate) -> Result<bool, Error> {
-        let lost = match fate {
+        let failed = match fate {
             Fate::Stopped(error) => {
                 // A call that an interrupt cut off looks like one that the ledger did not let out.
                 self.stop = interrupted().or_else(|| Some(Stop { reason: error.to_string(), exit: Exit::Stopped }));
                 return Ok(false);
             }
-            Fate::Failed(Failure::Lost, reason) => Some(reason),
-            Fate::Failed(..) | Fate::Made => None,
+            Fate::Failed(failure, reason) => Some((failure, reason)),
+            Fate::Made => None,
         };
-        self.lost_in_a_row = lost.as_ref().map_or(0, |_| self.lost_in_a_row + 1);
         self.left -= 1;
         self.bar.inc(1);
         self.bar.set_message(self.message(run));
@@ -62,16 +70,28 @@ impl<'a> Progress<'a> {
             run.sync()?;
             self.unflushed = 0;
         }
-        self.stop = match lost {
-            Some(reason) if self.lost_in_a_row == MOST_LOST_IN_A_ROW => Some(Stop {
-                reason: format!(
-                    "{MOST_LOST_IN_A_ROW} items in a row were lost, the last with: {reason}\nhint: see to it, and give the same command again"
-                ),
-                exit: Exit::Lost,
-            }),
-            _ => interrupted().filter(|_| self.left > 0),
-        };
+        let is_lost = self.losses.are_enough(failed.as_ref().map(|(failure, _)| *failure));
+        let lacks = run.walks.is_empty() && self.lacks_for_all(failed.as_ref());
+        self.stop = interrupted().filter(|_| self.left > 0).or_else(|| {
+            let (_, reason) = failed?;
+            let (what, exit) = match (is_lost, lacks) {
+                (true, _) => ("were lost", Exit::Lost),
+                (false, true) => ("have failed alike", Exit::BadInput),
+                (false, false) => return None,
+            };
+            Some(Stop { reason: format!("{MOST_IN_A_ROW} items in a row {what}, the last with: {reason}"), exit })
+        });
         Ok(self.stop.is_none())
+    }
+
+    /// Whether the first items of a run all lack the same, so that the others will, too: a model that sees, say.
+    fn lacks_for_all(&mut self, failed: Option<&(Failure, String)>) -> bool {
+        self.nothing_but = match (self.nothing_but.take(), failed) {
+            (Some((_, 0)), Some((Failure::Missing, reason))) => Some((reason.clone(), 1)),
+            (Some((same, number)), Some((Failure::Missing, reason))) if same == *reason => Some((same, number + 1)),
+            _ => None,
+        };
+        self.nothing_but.as_ref().is_some_and(|(_, number)| *number >= MOST_IN_A_ROW)
     }
 
     /// Why the run stopped before its end, where it did.

@@ -10,6 +10,7 @@ use crate::{
     error::{Error, Exit},
     in_order::{cores, in_order},
     interrupt,
+    losses::Losses,
     output::Output,
     plan::Plan,
     run::fresh_id,
@@ -148,8 +149,15 @@ fn measure(
     let bar = output.progress(views.len(), "views");
     let mut captions = Vec::new();
     let make = |view: &Labelled| talk_about(&view.view, team.minds());
+    let mut losses = Losses::default();
     in_order(views, calls.map_or_else(cores, Calls::workers), make, |view, caption| {
         bar.inc(1);
+        if losses.are_enough(caption.as_ref().err().map(ModelError::failure))
+            && let Err(error) = caption
+        {
+            // Nobody answers any more.
+            return Err(error.into());
+        }
         captions.push(captioned(view, caption, output)?);
         interrupt::check().map(|()| true)
     })?;
