@@ -3,10 +3,14 @@
 use crate::axes::{Axes, Body, World};
 use serde::Deserialize;
 use std::path::Path;
+#[cfg(any(feature = "mcap", feature = "video"))]
+use std::path::PathBuf;
 use wayword_core::PlatformError;
 use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
+/// The description of a folder.
+pub(crate) const FILE: &str = "recording.toml";
 pub(crate) const HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";
 
 /// What a user says about a recording; everything has a default.
@@ -56,14 +60,20 @@ impl Description {
         Ok(described)
     }
 
-    /// Reads the description of a file: `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same folder.
+    /// Reads the description of a file, which lies beside it.
     ///
     /// # Errors
     /// As [`Description::read`].
     #[cfg(any(feature = "mcap", feature = "video"))]
     pub(crate) fn beside(recording: &Path) -> Result<Self, PlatformError> {
+        Self::read(&Self::file_beside(recording))
+    }
+
+    /// Where the description of a file is looked for: `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same folder.
+    #[cfg(any(feature = "mcap", feature = "video"))]
+    pub(crate) fn file_beside(recording: &Path) -> PathBuf {
         let own = recording.with_extension("toml");
-        Self::read(&if own.is_file() { own } else { recording.with_file_name("recording.toml") })
+        if own.is_file() { own } else { recording.with_file_name(FILE) }
     }
 
     /// How poses are to be read, where their format has orientations of `usual` in a world with z up.

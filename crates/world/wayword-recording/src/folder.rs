@@ -1,9 +1,9 @@
 //! A folder of pictures, with poses in a file beside them or without any.
 
 use crate::{
-    describe::{Description, HINT},
+    describe::{self, Description, HINT},
     kind::Kind,
-    names::{entries, scene_of, unknown},
+    names::{entries, plain, scene_of, unknown},
     poses,
     reel::{Recording, Reel, Source, Take},
 };
@@ -18,6 +18,8 @@ use wayword_world::files;
 pub(crate) const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
 /// What stands in the names of pictures that datasets keep beside photographs.
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
+/// What the names of pictures end in that are not read.
+const UNREAD: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff", "bmp"];
 /// TUM's list of pictures with their times.
 const LIST: &str = "rgb.txt";
 const MAX_LIST_BYTES: u64 = 64 << 20;
@@ -89,7 +91,7 @@ impl Source for Folder {
         if *scene != self.scene {
             return Err(unknown(scene, &self.scenes()));
         }
-        let described = Description::read(&self.root.join("recording.toml"))?;
+        let described = Description::read(&self.root.join(describe::FILE))?;
         let mut timed = self.timed(described.pictures_per_s.unwrap_or(1.0))?;
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (times_s, files) = timed.into_iter().unzip();
@@ -97,6 +99,17 @@ impl Source for Folder {
         let poses = poses::beside(&self.root, &described)?;
         let track = poses.map(|file| poses::track(&file, &described, &reel.times_s, &|number| reel.name(number)));
         Ok(Recording { track: track.transpose()?, reel: Box::new(reel), horizontal_fov_rad: None, described })
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        if *scene != self.scene {
+            return Err(unknown(scene, &self.scenes()));
+        }
+        let description = self.root.join(describe::FILE);
+        let described = Description::read(&description)?;
+        let pictures = self.timed(described.pictures_per_s.unwrap_or(1.0))?.into_iter().map(|(_, file)| file);
+        let beside = [description, self.root.join(LIST)].into_iter().chain(poses::beside(&self.root, &described)?);
+        Ok(plain(pictures.chain(beside)))
     }
 }
 
@@ -173,16 +186,21 @@ fn is_picture(name: &str) -> bool {
     !name.starts_with('.') && ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// Whether a file is a picture of a kind that is not read, as its name ends.
+/// Whether a file is a photograph of a kind that is not read, as its name ends.
 pub(crate) fn is_unread_picture(name: &str) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    !name.starts_with('.') && ["heic", "heif", "webp", "avif"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+    // Datasets keep depth maps as TIFF.
+    !name.starts_with('.') && !is_no_photograph(name) && UNREAD.iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+fn is_no_photograph(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    NO_PHOTOGRAPHS.iter().any(|word| name.contains(word))
 }
 
 /// Names without those of depth maps and the like, unless there is nothing else.
 fn photographs(names: Vec<String>) -> Vec<String> {
-    let is_other = |name: &&String| NO_PHOTOGRAPHS.iter().any(|word| name.to_ascii_lowercase().contains(word));
-    let photographs: Vec<String> = names.iter().filter(|name| !is_other(name)).cloned().collect();
+    let photographs: Vec<String> = names.iter().filter(|name| !is_no_photograph(name)).cloned().collect();
     if photographs.is_empty() { names } else { photographs }
 }
 

@@ -60,13 +60,21 @@ impl Kind {
             return Some(EMPTY);
         }
         let begins = |at: usize, bytes: &[u8]| head.get(at..).is_some_and(|rest| rest.starts_with(bytes));
-        if begins(0, b"G") && begins(188, b"G") {
+        if [0, 188, 376].iter().all(|at| begins(*at, b"G")) && text(head).is_none() {
             return Some(Self::recording("an MPEG transport stream", ENCODE));
         }
         if begins(0, MATROSKA) && head.windows(4).take(60).any(|four| four == b"webm") {
             return Some(Self::recording("a WebM video", ENCODE));
         }
-        let known = STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes)).map(|(.., kind)| *kind);
+        if begins(0, b"BM") && is_bitmap(head) {
+            return Some(Self::recording("a BMP picture", CONVERT));
+        }
+        let is_held = |at: usize| match at {
+            4 => is_box(head),
+            8 => begins(0, b"RIFF"),
+            _ => true,
+        };
+        let known = STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes) && is_held(*at)).map(|(.., kind)| *kind);
         known.or_else(|| of_text(head))
     }
 }
@@ -77,11 +85,12 @@ const EMPTY: Kind = Kind::other("empty", AGAIN);
 const MATROSKA: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
 const HEIC: Kind = Kind::recording("an HEIC picture", CONVERT_HEIC);
 const MP4: Kind = Kind::recording("an MP4 video", "rename it to end in .mp4");
-/// What stands where in which files; the first that fits counts.
+/// What stands where in which files; the first that fits counts. At 4 it is the kind of a box of MP4, at 8 that of a RIFF file.
 const STARTS: &[(usize, &[u8], Kind)] = &[
     (0, b"\x89PNG\r\n\x1a\n", Kind::recording("a PNG picture", "rename it to end in .png")),
     (0, &[0xff, 0xd8, 0xff], Kind::recording("a JPEG picture", "rename it to end in .jpg")),
-    (0, b"GIF8", Kind::recording("a GIF picture", CONVERT)),
+    (0, b"GIF87a", Kind::recording("a GIF picture", CONVERT)),
+    (0, b"GIF89a", Kind::recording("a GIF picture", CONVERT)),
     (0, b"II*\0", Kind::recording("a TIFF or raw picture", CONVERT)),
     (0, b"MM\0*", Kind::recording("a TIFF or raw picture", CONVERT)),
     (8, b"WEBP", Kind::recording("a WebP picture", CONVERT)),
@@ -112,19 +121,38 @@ const STARTS: &[(usize, &[u8], Kind)] = &[
     (0, b"version https://git-lfs", Kind::other("a pointer of git-lfs", POINTER)),
 ];
 
-fn of_text(head: &[u8]) -> Option<Kind> {
+/// Whether a file can begin with a box of MP4: its length stands first, 0 for "up to the end" and 1 for "told behind".
+fn is_box(head: &[u8]) -> bool {
+    let Some(first) = head.first_chunk::<4>() else { return false };
+    let is_length = matches!(u32::from_be_bytes(*first), 0 | 1 | 8..=0x8000_0000);
+    let is_printable = first.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
+    is_length && !is_printable && text(head).is_none()
+}
+
+/// Whether what begins with "BM" goes on as a bitmap: four bytes of nothing, and behind 14 bytes a header of a length that there is.
+fn is_bitmap(head: &[u8]) -> bool {
+    let four = |at: usize| head.get(at..)?.first_chunk::<4>().map(|bytes| u32::from_le_bytes(*bytes));
+    four(6) == Some(0) && matches!(four(14), Some(12 | 40 | 52 | 56 | 64 | 108 | 124))
+}
+
+/// Bytes as text, where they are some.
+fn text(head: &[u8]) -> Option<&str> {
     // The last letter may be cut.
     let text = match std::str::from_utf8(head) {
         Ok(text) => text,
         Err(error) if error.error_len().is_none() => std::str::from_utf8(&head[..error.valid_up_to()]).ok()?,
         Err(_) => return None,
     };
+    text.chars().all(|c| !c.is_control() || matches!(c, '\n' | '\r' | '\t')).then_some(text)
+}
+
+fn of_text(head: &[u8]) -> Option<Kind> {
+    let text = text(head)?;
     let start = text.trim_start().to_ascii_lowercase();
     if start.starts_with("<!doctype html") || start.starts_with("<html") {
         return Some(Kind::other("a web page", "a server sent it for the file; fetch the file again"));
     }
-    let is_text = text.chars().all(|c| !c.is_control() || matches!(c, '\n' | '\r' | '\t'));
-    is_text.then(|| Kind::other("text", AGAIN))
+    Some(Kind::other("text", AGAIN))
 }
 
 /// Recordings that are not read, in words, and what to do about the first.
@@ -203,6 +231,29 @@ mod tests {
         assert_eq!(name(b"version https://git-lfs.github.com/spec/v1\noid"), "a pointer of git-lfs");
         assert_eq!(name(b"#ROSBAG V2.0\n"), "a ROS 1 bag");
         assert_eq!(name(b"\x02\x03\x04\x05 nothing"), "?");
+    }
+
+    #[test]
+    fn text_is_not_taken_for_a_recording() {
+        for words in ["The wide hall", "Are free seats", "F\u{fc} wide hall", "The old WEBP files", "The old AVI files"]
+        {
+            assert_eq!(name(words.as_bytes()), "text", "{words}");
+        }
+        assert_eq!(name(b"The wide h\xe4ll"), "?", "Latin-1");
+        assert_eq!(name(b"\0\0\0\x02wide"), "?", "no box is two bytes long");
+        assert_eq!(name(b"BM is short for bitmap"), "text");
+        assert_eq!(name("G".repeat(400).as_bytes()), "text");
+    }
+
+    #[test]
+    fn three_packets_make_a_transport_stream() {
+        let mut packets = vec![0xff; 512];
+        for at in [0, 188] {
+            packets[at] = b'G';
+        }
+        assert_eq!(name(&packets), "?");
+        packets[376] = b'G';
+        assert_eq!(name(&packets), "an MPEG transport stream");
     }
 
     #[test]

@@ -19,6 +19,7 @@ mod platform;
 mod plausible;
 mod poses;
 mod reel;
+mod shelf;
 #[cfg(any(feature = "mcap", feature = "video"))]
 mod size;
 mod track;

@@ -39,20 +39,12 @@ pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
     Ok(names)
 }
 
-/// The files under a path, in folders that lie so deep at most, in the order of their names; the path itself where it is a file.
-pub(crate) fn files_under(path: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformError> {
-    if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
-    }
-    let mut files = Vec::new();
-    for entry in entries(path)?.iter().map(|name| path.join(name)) {
-        if !entry.is_dir() {
-            files.push(entry);
-        } else if depth > 0 {
-            files.extend(files_under(&entry, depth - 1)?);
-        }
-    }
-    Ok(files)
+/// Those of these files that are there and plain, sorted, each once.
+pub(crate) fn plain(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
+    let mut plain: Vec<PathBuf> = files.into_iter().filter(|file| file.is_file()).collect();
+    plain.sort();
+    plain.dedup();
+    plain
 }
 
 /// There is no such recording among those that there are.

@@ -5,11 +5,12 @@ use crate::describe::Description;
 use crate::{
     folder::{Folder, WITHIN, is_unread_picture},
     kind::{self, Kind, Unread},
-    names::{entries, unknown},
-    reel::{Recording, Source},
+    names::{entries, scene_of},
+    reel::Source,
+    shelf::{Shelf, Unopened},
 };
 use std::{collections::BTreeSet, path::Path};
-use wayword_core::{PlatformError, SceneId};
+use wayword_core::PlatformError;
 use wayword_world::files;
 
 const HINT: &str =
@@ -23,23 +24,37 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
     if !path.is_dir() {
         return Err(no_recording(path));
     }
-    let (mut sources, mut passed_over) = (Vec::new(), Vec::new());
+    let (mut sources, mut passed_over, mut broken) = (Vec::new(), Vec::new(), Vec::new());
     // macOS leaves "._x.mp4" beside "x.mp4" on foreign disks, and file managers leave folders of small pictures.
     for entry in entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
-        match one(&path.join(&entry))? {
-            Some(source) => sources.push(source),
-            None => passed_over.push(entry),
+        match one(&path.join(&entry)) {
+            Ok(Some(source)) => sources.push(source),
+            Ok(None) => passed_over.push(entry),
+            Err(error) => broken.push((entry, error)),
         }
     }
     if sources.is_empty() {
+        if let Some((_, error)) = broken.into_iter().next() {
+            return Err(error);
+        }
         return Err(match kind::unread(path, &WITHIN)? {
             Some(Unread { what, hint }) => files::wrong(path, format!("holds no recording that is read: {what}"), hint),
             None => files::wrong(path, "holds no pictures and no recordings", HINT),
         });
     }
     for entry in passed_over {
-        if let Some(Unread { what, hint }) = kind::unread(&path.join(&entry), &WITHIN)? {
-            hear(&format!("{entry} is passed over: it holds no recording that is read ({what}); {hint}"));
+        let file = path.join(&entry);
+        if let Some(Unread { what, hint }) = kind::unread(&file, &WITHIN)? {
+            let why = if file.is_dir() { what } else { format!("it is {what}") };
+            hear(&format!("{entry} is passed over: {why}, which cannot be read as it is; {hint}"));
+        }
+    }
+    for (entry, error) in broken {
+        let path = path.join(&entry);
+        match scene_of(&path) {
+            Ok(scene) => sources.push(Box::new(Unopened { scene, path })),
+            // Nobody can ask for it.
+            Err(_) => hear(&format!("{entry} is passed over: {error}")),
         }
     }
     let mut scenes = BTreeSet::new();
@@ -57,6 +72,14 @@ fn no_recording(path: &Path) -> PlatformError {
         None if path.exists() => files::wrong(path, "is no recording that is known here", HINT),
         None => files::wrong(path, "there is no such file or folder", HINT),
     }
+}
+
+/// The recording that a path is.
+///
+/// # Errors
+/// When it is none, or cannot be opened.
+pub(crate) fn recording(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
+    one(path)?.ok_or_else(|| no_recording(path))
 }
 
 /// The source that a path is, if it is one.
@@ -103,7 +126,7 @@ fn is_file_of_ours(name: &str) -> bool {
 
 #[cfg(feature = "lerobot")]
 fn lerobot(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    let described = Description::read(&path.join("recording.toml"))?;
+    let described = Description::read(&path.join(crate::describe::FILE))?;
     Ok(Box::new(crate::lerobot::Dataset::open(path, described)?))
 }
 
@@ -138,32 +161,10 @@ fn absent(path: &Path, what: &str) -> PlatformError {
     files::wrong(path, format!("this build reads no {what}"), hint)
 }
 
-/// Several sources in one folder.
-struct Shelf {
-    sources: Vec<Box<dyn Source>>,
-}
-
-impl Source for Shelf {
-    fn scenes(&self) -> Vec<SceneId> {
-        let mut scenes: Vec<SceneId> = self.sources.iter().flat_map(|source| source.scenes()).collect();
-        scenes.sort();
-        scenes
-    }
-
-    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
-        let source = self.sources.iter().find(|source| source.scenes().contains(scene));
-        source.map_or_else(|| Err(unknown(scene, &self.scenes())), |source| source.open(scene))
-    }
-
-    fn check(&self, scene: &SceneId) -> Result<(), PlatformError> {
-        let source = self.sources.iter().find(|source| source.scenes().contains(scene));
-        source.map_or_else(|| Err(unknown(scene, &self.scenes())), |source| source.check(scene))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wayword_core::SceneId;
 
     /// A folder of recordings, each with one picture.
     fn shelf(pictures: &[&str]) -> tempfile::TempDir {
@@ -196,6 +197,7 @@ mod tests {
     const WEBM: &[u8] = b"\x1a\x45\xdf\xa3\x9fB\x86\x81\x01B\xf7\x81\x01B\xf2\x81\x04B\xf3\x81\x08B\x82\x84webm";
     const HEIC: &[u8] = b"\0\0\0\x1cftypheic\0\0\0\0mif1heicmiaf";
     const WEBP: &[u8] = b"RIFF\x24\0\0\0WEBPVP8 ";
+    const BMP: &[u8] = b"BM\x46\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0";
 
     fn refused(files: &[(&str, &[u8])], path: &str) -> String {
         let folder = tempfile::tempdir().unwrap();
@@ -223,6 +225,13 @@ mod tests {
                 "",
                 &["holds pictures, but 2.heic is an HEIC picture", "heif-convert"],
             ),
+            (
+                &[("1.png", b""), ("2.gif", b"GIF89a"), ("3.gif", b"GIF87a")],
+                "",
+                &["holds pictures, but 2.gif is a GIF picture, as are 1 more", "ffmpeg"],
+            ),
+            (&[("1.jpg", b""), ("2.TIF", b"II*\0")], "", &["but 2.TIF is a TIFF or raw picture"]),
+            (&[("1.bmp", BMP), ("2.bmp", BMP)], "", &["1.bmp is a BMP picture, as are 1 more", "ffmpeg"]),
             (&[("walk.avi", b"RIFF\xdc\x6d\0\0AVI LIST")], "walk.avi", &["it is an AVI video", "libx264"]),
             (&[("walk.bag", b"#ROSBAG V2.0\n")], "walk.bag", &["it is a ROS 1 bag", "rosbags-convert"]),
             (&[("notes.txt", b"no video")], "", &["holds no pictures and no recordings", "PNG, JPEG"]),
@@ -243,9 +252,12 @@ mod tests {
         open(shelf.path(), &|line| heard.borrow_mut().push(line.to_owned())).unwrap();
         let heard = heard.into_inner();
         assert_eq!(heard.len(), 2, "{heard:?}");
-        assert!(heard[0].starts_with("b.webm is passed over") && heard[0].contains("a WebM video"), "{heard:?}");
         assert!(
-            heard[1].starts_with("c is passed over") && heard[1].contains("1.heic is an HEIC picture"),
+            heard[0].starts_with("b.webm is passed over: it is a WebM video, which cannot be read as it is; "),
+            "{heard:?}"
+        );
+        assert!(
+            heard[1].starts_with("c is passed over: 1.heic is an HEIC picture, which cannot be read as it is; "),
             "{heard:?}"
         );
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     choose::{Choice, choose},
-    names, open,
+    open,
     reel::{Recording, Source},
     track::Track,
 };
@@ -20,8 +20,6 @@ use wayword_core::{
 };
 use wayword_world::{files, said::Hear};
 
-/// Folders below the one that was opened: a LeRobot dataset's videos lie four below, and several may lie beside each other.
-const DEPTH: usize = 6;
 /// Recordings that are kept open.
 const OPEN: usize = 8;
 /// Pictures that are kept in memory: 1.2 MB each at most.
@@ -283,9 +281,8 @@ impl Platform for RecordingPlatform {
         Ok(None)
     }
 
-    /// All that lies under the path that was opened: which file belongs to which recording, only its reader knows.
-    fn files(&self, _: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        names::files_under(&self.path, DEPTH)
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.source.files(scene)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What every kind of recording gives: pictures in the order of their times, and where the camera was.
 
 use crate::{choose::wanted, describe::Description, track::Track};
+use std::path::PathBuf;
 use wayword_core::{Image, PlatformError, SceneId};
 
 /// A file or folder that holds recordings.
@@ -13,6 +14,12 @@ pub(crate) trait Source: Send + Sync {
     /// # Errors
     /// When its files cannot be read.
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError>;
+
+    /// The plain files that one of [`Source::scenes`] is read from, sorted: pictures, poses and what describes it.
+    ///
+    /// # Errors
+    /// When it cannot be told which these are.
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError>;
 
     /// Looks whether one of [`Source::scenes`] can be read, as far as its index and the first picture tell.
     ///

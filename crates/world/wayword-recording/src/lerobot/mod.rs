@@ -12,8 +12,8 @@ mod template;
 
 use crate::{
     axes::{Axes, Body},
-    describe::Description,
-    names::{scene_of, unknown},
+    describe::{self, Description},
+    names::{entries, plain, scene_of, unknown},
     plausible::doubt,
     reel::{Recording, Reel, Source},
     track::{Fix, Track},
@@ -24,14 +24,21 @@ use info::{Info, Layout};
 use parquet::Table;
 use pictures::{Stills, Stretch};
 use pose_feature::PoseFeature;
-use std::{ops::Range, path::Path};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
 const HINT: &str = "fetch the dataset again, or write it again with the library of LeRobot";
 
+/// Folders below `meta` in which its files lie: `meta/episodes/chunk-000`.
+const META_DEPTH: usize = 2;
+
 /// A dataset.
 pub(crate) struct Dataset {
+    root: PathBuf,
     described: Description,
     info: Info,
     camera: Camera,
@@ -61,7 +68,12 @@ impl Dataset {
         if episodes.is_empty() {
             return Err(files::wrong(&root.join("meta"), "lists no episodes", HINT));
         }
-        Ok(Self { described, info, camera, pose_feature, episodes })
+        Ok(Self { root: root.to_owned(), described, info, camera, pose_feature, episodes })
+    }
+
+    fn episode(&self, scene: &SceneId) -> Result<&Episode, PlatformError> {
+        let known = self.episodes.iter().find(|(known, _)| known == scene);
+        known.map(|(_, episode)| episode).ok_or_else(|| unknown(scene, &self.scenes()))
     }
 
     /// Where the robot was in each row.
@@ -95,8 +107,7 @@ impl Source for Dataset {
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
-        let (_, episode) =
-            self.episodes.iter().find(|(known, _)| known == scene).ok_or_else(|| unknown(scene, &self.scenes()))?;
+        let episode = self.episode(scene)?;
         let table = Table::open(&episode.data)?;
         let rows = rows_of(&table, episode, self.info.layout())?;
         let times_s = times_s(&table, rows.clone())?;
@@ -107,6 +118,28 @@ impl Source for Dataset {
         };
         Ok(Recording { reel, track, horizontal_fov_rad: None, described: self.described.clone() })
     }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        let episode = self.episode(scene)?;
+        let mut files = below(&self.root.join("meta"), META_DEPTH)?;
+        files.extend([self.root.join(describe::FILE), episode.data.clone()]);
+        files.extend(episode.clip.iter().map(|clip| clip.file.clone()));
+        Ok(plain(files))
+    }
+}
+
+/// What lies in a folder and in those below it, without what is hidden.
+fn below(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformError> {
+    let mut files = Vec::new();
+    for name in entries(folder)?.iter().filter(|name| !name.starts_with('.')) {
+        let path = folder.join(name);
+        if !path.is_dir() {
+            files.push(path);
+        } else if depth > 0 {
+            files.extend(below(&path, depth - 1)?);
+        }
+    }
+    Ok(files)
 }
 
 /// The rows of an episode in its file, which lie together.

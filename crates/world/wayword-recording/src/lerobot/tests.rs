@@ -84,6 +84,29 @@ fn episodes_of_the_genuine_library_are_scenes() {
 }
 
 #[test]
+fn an_episode_is_read_from_its_own_files_and_those_of_meta() {
+    for name in DATASETS {
+        let (_folder, root) = dataset(name);
+        for junk in ["meta/.DS_Store", "run/dialogs.jsonl", "notes.txt", "recording.toml"] {
+            let file = root.join(junk);
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, "").unwrap();
+        }
+        let dataset = open(&root).unwrap();
+        let files = dataset.files(&dataset.scenes()[0]).unwrap();
+        let episode = &dataset.episodes[0].1;
+        let clips = episode.clip.iter().map(|clip| &clip.file);
+        assert!(clips.chain([&episode.data, &Info::file(&root)]).all(|file| files.contains(file)), "{files:?}");
+        assert!(files.iter().all(|file| file.is_file()), "{files:?}");
+        let told: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+        for other in ["DS_Store", "dialogs", "notes", "episode_000001"] {
+            assert!(!told.iter().any(|file| file.contains(other)), "{other}: {told:?}");
+        }
+        assert!(files.contains(&root.join("recording.toml")), "{files:?}");
+    }
+}
+
+#[test]
 fn each_picture_is_that_of_its_episode_and_row() {
     for name in DATASETS {
         let (_folder, root) = dataset(name);

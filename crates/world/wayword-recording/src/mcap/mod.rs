@@ -189,6 +189,13 @@ impl Source for McapFile {
         }
         self.read()
     }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        if *scene != self.scene {
+            return Err(names::unknown(scene, &self.scenes()));
+        }
+        Ok(names::plain([self.path.clone(), Description::file_beside(&self.path)]))
+    }
 }
 
 /// A picture: when it was taken, and where in the file it is.

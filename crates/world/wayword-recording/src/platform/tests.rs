@@ -137,6 +137,58 @@ fn recordings_that_cannot_be_read_are_told_at_once_unless_others_are_meant() {
 }
 
 #[test]
+fn a_recording_that_cannot_be_opened_is_told_to_those_who_want_it() {
+    let shelf = with_unreadable();
+    std::fs::write(shelf.path().join("b/2.heic"), b"\0\0\0\x1cftypheic\0\0\0\0mif1heic").unwrap();
+    let (platform, ..) = open(&shelf);
+    let [a, b] = ["a", "b"].map(|name| SceneId::new(name).unwrap());
+    platform.check(&BTreeSet::from([&a])).unwrap();
+    let told = platform.check(&BTreeSet::from([&a, &b])).unwrap_err().to_string();
+    assert!(told.contains("1 of 4 recordings cannot be read"), "{told}");
+    assert!(told.contains("holds pictures, but 2.heic is an HEIC picture"), "{told}");
+    assert!(platform.graph(&b).unwrap_err().to_string().contains("2.heic"));
+}
+
+/// The names of the files that a scene is read from.
+fn files(platform: &RecordingPlatform, scene: &str) -> Vec<String> {
+    let files = platform.files(&SceneId::new(scene).unwrap()).unwrap();
+    files.iter().map(|file| file.file_name().unwrap().to_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn the_files_of_a_folder_are_its_pictures_and_what_tells_of_them() {
+    let shelf = with_unreadable();
+    let a = shelf.path().join("a");
+    std::fs::create_dir(a.join("run")).unwrap();
+    for name in ["2.png", "poses.csv", "recording.toml", ".DS_Store", "._1.png", "notes.txt", "run/dialogs.jsonl"] {
+        std::fs::write(a.join(name), "").unwrap();
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("/nowhere", a.join("gone.png")).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(a.join("pipe.png")).status().unwrap().success());
+    }
+    let (platform, ..) = open(&shelf);
+    assert_eq!(files(&platform, "a"), ["1.png", "2.png", "poses.csv", "recording.toml"]);
+    assert_eq!(files(&platform, "b"), ["1.png"]);
+    assert!(matches!(platform.files(&SceneId::new("c").unwrap()), Err(PlatformError::UnknownScene { .. })));
+}
+
+#[cfg(all(feature = "mcap", feature = "video"))]
+#[test]
+fn the_files_of_a_recording_in_one_file_are_it_and_what_lies_beside_it() {
+    let shelf = tempfile::tempdir().unwrap();
+    for name in ["walk.mp4", "walk.toml", "walk.csv", "hall.mp4", "recording.toml", "bag.mcap", "bag.csv", "notes.txt"]
+    {
+        std::fs::write(shelf.path().join(name), "").unwrap();
+    }
+    let (platform, ..) = open(&shelf);
+    assert_eq!(files(&platform, "walk"), ["walk.csv", "walk.mp4", "walk.toml"]);
+    assert_eq!(files(&platform, "hall"), ["hall.mp4", "recording.toml"]);
+    assert_eq!(files(&platform, "bag"), ["bag.mcap", "recording.toml"]);
+}
+
+#[test]
 fn what_is_not_there_is_refused() {
     let folder = walk(true);
     let (platform, scene, _) = open(&folder);

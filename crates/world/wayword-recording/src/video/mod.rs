@@ -21,7 +21,7 @@ pub(crate) use film::Film;
 
 use crate::{
     describe::Description,
-    names::{scene_of, unknown},
+    names::{plain, scene_of, unknown},
     poses,
     reel::{Recording, Reel, Source, Take},
 };
@@ -59,6 +59,14 @@ impl Source for FilmFile {
         let poses = poses::beside(&self.path, &described)?;
         let track = poses.map(|file| poses::track(&file, &described, reel.times_s(), &|number| reel.name(number)));
         Ok(Recording { track: track.transpose()?, reel: Box::new(reel), horizontal_fov_rad: None, described })
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        if *scene != self.scene {
+            return Err(unknown(scene, &self.scenes()));
+        }
+        let own = [self.path.clone(), Description::file_beside(&self.path)];
+        Ok(plain(own.into_iter().chain(poses::beside(&self.path, &self.described)?)))
     }
 }
 
