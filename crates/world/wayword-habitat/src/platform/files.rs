@@ -2,7 +2,7 @@
 
 use crate::{
     fault::FileError,
-    scene::{Stage, stem},
+    scene::{Stage, files_beside, stem},
     semantics::SemanticFiles,
 };
 use std::{
@@ -65,6 +65,10 @@ fn rank(name: &str) -> Option<u8> {
     (!name.contains(".semantic.")).then_some(rank)
 }
 
+fn is_gltf(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending == "glb" || ending == "gltf")
+}
+
 fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), FileError> {
     let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), HINT);
     let mut entries = Vec::new();
@@ -92,12 +96,14 @@ impl SceneFiles {
         stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
     }
 
-    /// Every file that the scene is read from, sorted.
+    /// Every file that the scene is read from, with those that its GLB or glTF files name, sorted.
     pub(super) fn all(&self, stage: &Stage) -> Vec<PathBuf> {
         let SemanticFiles { painted, numbered } = self.semantics(stage);
         let pairs = painted.into_iter().chain(numbered).flat_map(|(mesh, names)| [mesh, names]);
         let mut all: Vec<PathBuf> =
             [self.stage.clone(), stage.asset.clone()].into_iter().chain(self.navmesh(stage)).chain(pairs).collect();
+        let named: Vec<PathBuf> = all.iter().filter(|file| is_gltf(file)).flat_map(|file| files_beside(file)).collect();
+        all.extend(named);
         all.sort();
         all.dedup();
         all
@@ -151,6 +157,28 @@ mod tests {
         assert!(files.semantics(&stage).painted.unwrap().1.ends_with("a.semantic.txt"));
         let matterport = &scenes[&SceneId::new("b").unwrap()];
         assert!(matterport.semantics(&Stage::of(&matterport.stage).unwrap()).numbered.is_some());
+    }
+
+    #[test]
+    fn what_a_scene_names_beside_it_belongs_to_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let document = serde_json::json!({
+            "buffers": [{ "uri": "yard%20walls.bin" }, { "uri": "data:application/octet-stream;base64,AAAA" }, {}],
+            "images": [{ "uri": "./paint/a.png" }, { "uri": "../out.png" }, { "uri": "gone.png" }, { "bufferView": 0 }],
+        });
+        std::fs::create_dir_all(folder.path().join("in/paint")).unwrap();
+        for file in ["in/yard walls.bin", "in/paint/a.png", "in/other.bin", "out.png"] {
+            std::fs::write(folder.path().join(file), "").unwrap();
+        }
+        let glb = crate::scene::tests::glb(&document, b"binary");
+        let place = folder.path().join("in");
+        for (name, bytes) in [("yard.gltf", document.to_string().into_bytes()), ("yard.glb", glb)] {
+            let file = place.join(name);
+            std::fs::write(&file, bytes).unwrap();
+            let all = SceneFiles { stage: file.clone() }.all(&Stage::of(&file).unwrap());
+            assert_eq!(all, [place.join("paint/a.png"), place.join("yard walls.bin"), file]);
+            std::fs::remove_file(place.join(name)).unwrap();
+        }
     }
 
     #[test]

@@ -2,9 +2,12 @@
 
 use crate::fault::{self, FileError};
 use gltf::json::{Index, Root, buffer::View};
+use serde::Deserialize;
 use std::{
     cell::{Cell, RefCell},
     collections::BTreeMap,
+    fs::File,
+    io::Read,
     path::{Component, Path, PathBuf},
     rc::Rc,
 };
@@ -13,6 +16,8 @@ use wayword_core::contain::decoded;
 const HINT: &str = "export the scene again as GLB";
 /// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
 const MAX_BYTES: u64 = 4 << 30;
+/// Bytes of a GLB before its document.
+const GLB_HEAD_BYTES: u64 = 20;
 /// Extensions that a file may need: those that are understood, and those that change nothing in unlit pictures.
 const KNOWN: [&str; 4] = ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_"];
 
@@ -88,15 +93,7 @@ impl Beside {
             let decoded = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, text);
             return decoded.map(Rc::new).map_err(|error| error.to_string());
         }
-        let name = uri.replace("%20", " ");
-        let mut target = PathBuf::new();
-        for part in Path::new(&name).components() {
-            match part {
-                Component::Normal(part) if !name.contains(':') => target.push(part),
-                Component::CurDir => {}
-                _ => return Err(format!("{uri:.80?} is not a file beside the scene")),
-            }
-        }
+        let target = target(uri)?;
         if let Some(known) = self.read.borrow().get(&target) {
             return Ok(known.clone());
         }
@@ -106,4 +103,59 @@ impl Beside {
         self.read.borrow_mut().insert(target, bytes.clone());
         Ok(bytes)
     }
+}
+
+/// The file that a relative address names, below the folder of the file in which it stands.
+fn target(uri: &str) -> Result<PathBuf, String> {
+    let name = uri.replace("%20", " ");
+    let mut target = PathBuf::new();
+    for part in Path::new(&name).components() {
+        match part {
+            Component::Normal(part) if !name.contains(':') => target.push(part),
+            Component::CurDir => {}
+            _ => return Err(format!("{uri:.80?} is not a file beside the scene")),
+        }
+    }
+    Ok(target)
+}
+
+/// What is read of a document to know which files belong to it.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Addresses {
+    buffers: Vec<Address>,
+    images: Vec<Address>,
+}
+
+#[derive(Deserialize)]
+struct Address {
+    uri: Option<String>,
+}
+
+/// The files that a GLB or glTF file names and that are there. What is wrong with it, [`Asset::read`] tells.
+pub(crate) fn files_beside(file: &Path) -> Vec<PathBuf> {
+    let addresses: Option<Addresses> = document(file).and_then(|text| serde_json::from_slice(&text).ok());
+    let Addresses { buffers, images } = addresses.unwrap_or_default();
+    let targets = buffers.into_iter().chain(images).filter_map(|address| target(&address.uri?).ok());
+    let folder = file.parent().unwrap_or(Path::new(""));
+    targets.map(|target| folder.join(target)).filter(|file| file.is_file()).collect()
+}
+
+/// The document of a glTF file, or within a GLB.
+fn document(file: &Path) -> Option<Vec<u8>> {
+    // Whoever opens a pipe waits until somebody writes into it.
+    if !file.is_file() {
+        return None;
+    }
+    let mut opened = File::open(file).ok()?;
+    let mut text = Vec::new();
+    opened.by_ref().take(GLB_HEAD_BYTES).read_to_end(&mut text).ok()?;
+    // Behind "glTF" a GLB has its version and length, and then the length and kind of its document.
+    let length = text.strip_prefix(b"glTF").and_then(|rest| rest.get(8..)?.first_chunk::<4>());
+    let length = length.map(|bytes| u32::from_le_bytes(*bytes));
+    if length.is_some() {
+        text.clear();
+    }
+    opened.take(length.map_or(MAX_BYTES, u64::from)).read_to_end(&mut text).ok()?;
+    Some(text)
 }

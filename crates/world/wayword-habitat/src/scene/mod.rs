@@ -10,6 +10,7 @@ mod studio;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub(crate) use asset::files_beside;
 pub use stage::Stage;
 pub(crate) use stage::stem;
 
