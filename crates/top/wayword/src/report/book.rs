@@ -16,13 +16,14 @@ pub(super) const WALKS_PER_PAGE: usize = 50;
 /// What a name may hold in an address as it is.
 const IN_ADDRESS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
 
-/// By this a page that this program wrote is known, within so many bytes of its beginning.
-const MARK: &str = "<meta name=\"generator\" content=\"Wayword\">";
-const MARK_WITHIN: u64 = 1024;
+/// A page's mark stands within so many bytes of its beginning, however long the two names in it are.
+const MARK_WITHIN: u64 = 4096;
 
 /// The files of a report.
 pub(super) struct Book<'a> {
     out: &'a Path,
+    /// Which report a page of walks belongs to: the names of the overview and of the run folder, as addresses have them.
+    page_of: String,
     walks: usize,
     per_page: usize,
 }
@@ -46,9 +47,16 @@ struct Leaf {
 }
 
 impl<'a> Book<'a> {
-    /// The files for so many walks.
-    pub(super) fn new(out: &'a Path, walks: usize, per_page: usize) -> Self {
-        Self { out, walks, per_page }
+    /// The files for so many walks of a run.
+    pub(super) fn new(out: &'a Path, run: &Path, walks: usize, per_page: usize) -> Self {
+        // "." has a name, too. The folders around it are nobody else's business, for pages are passed on.
+        let run = fs::canonicalize(run).unwrap_or_else(|_| run.to_owned());
+        Self { out, page_of: format!("{} {}", address(out), address(&run)), walks, per_page }
+    }
+
+    /// What a page of walks says of itself, so that nobody else's page is taken for it.
+    pub(super) fn page_of(&self) -> &str {
+        &self.page_of
     }
 
     /// How many pages of walks there are beside the overview; none where it holds them itself.
@@ -94,28 +102,49 @@ impl<'a> Book<'a> {
         (!pages.is_empty()).then(|| Pager { overview: address(self.out), pages })
     }
 
-    /// Removes the pages that a longer report left in this place.
+    /// Refuses to replace files that are no pages of this report, which may be another run's.
+    ///
+    /// # Errors
+    /// When there is such a file.
+    pub(super) fn refuse_to_replace_others(&self) -> Result<(), Error> {
+        let is_other = |file: &PathBuf| fs::symlink_metadata(file).is_ok() && !self.is_ours(file);
+        match (1..=self.pages()).map(|page| self.file(page)).find(is_other) {
+            Some(file) => Err(Error::usage(
+                format!("{}: it is there already, and is no page of this report", file.display()),
+                "give another name with --out, or remove the file",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Removes the pages that a longer report of the same run left in this place.
     ///
     /// # Errors
     /// When one cannot be removed.
     pub(super) fn remove_older_pages(&self) -> Result<(), Error> {
-        for file in (self.pages() + 1..).map(|page| self.file(page)).take_while(|file| is_ours(file)) {
+        for file in (self.pages() + 1..).map(|page| self.file(page)).take_while(|file| self.is_ours(file)) {
             fs::remove_file(&file).map_err(Error::io(&file, "remove the older page"))?;
         }
         Ok(())
     }
+
+    /// Whether a file is a page of walks of this very report.
+    fn is_ours(&self, file: &Path) -> bool {
+        let mut beginning = Vec::new();
+        let read = File::open(file).and_then(|file| file.take(MARK_WITHIN).read_to_end(&mut beginning));
+        read.is_ok() && String::from_utf8_lossy(&beginning).contains(&mark(&self.page_of))
+    }
+}
+
+/// The mark of a page of walks, as `open.html` has it.
+fn mark(page_of: &str) -> String {
+    format!("<meta name=\"wayword-page-of\" content=\"{page_of}\">")
 }
 
 /// A file in the same folder, as a link names it.
 fn address(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     utf8_percent_encode(&name, IN_ADDRESS).to_string()
-}
-
-fn is_ours(file: &Path) -> bool {
-    let mut beginning = Vec::new();
-    let read = File::open(file).and_then(|file| file.take(MARK_WITHIN).read_to_end(&mut beginning));
-    read.is_ok() && String::from_utf8_lossy(&beginning).contains(MARK)
 }
 
 #[cfg(test)]
@@ -125,10 +154,10 @@ mod tests {
     #[test]
     fn few_walks_are_one_file_and_many_are_pages_beside_it() {
         let out = Path::new("runs/my report.html");
-        let one = Book::new(out, 50, 50);
+        let one = Book::new(out, Path::new("runs"), 50, 50);
         assert_eq!((one.pages(), one.address(49, "w50")), (0, "#w50".to_owned()));
         assert!(one.pager(None).is_none());
-        let many = Book::new(out, 101, 50);
+        let many = Book::new(out, Path::new("runs"), 101, 50);
         assert_eq!((many.pages(), many.walks(3)), (3, 100..101));
         assert_eq!(many.file(2), Path::new("runs/my report-2.html"));
         assert_eq!(many.address(50, "w51"), "my%20report-2.html#w51");
@@ -139,16 +168,24 @@ mod tests {
     }
 
     #[test]
-    fn only_pages_of_our_own_are_removed() {
+    fn only_pages_of_our_own_are_replaced_and_removed() {
         let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("report.html");
-        let book = Book::new(&out, 120, 50);
-        for page in 1..=5 {
-            fs::write(book.file(page), format!("<!doctype html>{MARK}")).unwrap();
+        let out = folder.path().join("my report.html");
+        let book = Book::new(&out, Path::new("runs/a"), 120, 50);
+        let others = Book::new(&out, Path::new("runs/b"), 120, 50);
+        let page = |book: &Book<'_>| format!("<!doctype html>{}", mark(book.page_of()));
+        for number in 1..=5 {
+            fs::write(book.file(number), page(&book)).unwrap();
         }
-        fs::write(book.file(6), "mine").unwrap();
+        fs::write(book.file(6), page(&others)).unwrap();
+        book.refuse_to_replace_others().unwrap();
         book.remove_older_pages().unwrap();
-        let left: Vec<bool> = (1..=6).map(|page| book.file(page).exists()).collect();
+        let left: Vec<bool> = (1..=6).map(|number| book.file(number).exists()).collect();
         assert_eq!(left, [true, true, true, false, false, true]);
+        for text in ["mine".to_owned(), page(&others)] {
+            fs::write(book.file(2), text).unwrap();
+            let refused = book.refuse_to_replace_others().unwrap_err().to_string();
+            assert!(refused.contains("my report-2.html") && refused.contains("--out"), "{refused}");
+        }
     }
 }

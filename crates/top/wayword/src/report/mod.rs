@@ -77,14 +77,16 @@ impl fmt::Display for Written {
 /// replaced once all is whole.
 ///
 /// # Errors
-/// When `run` is no run folder, a line of it is not of its kind, or a page cannot be written.
+/// When `run` is no run folder, a line of it is not of its kind, another report's file is where a page of walks belongs, or a page
+/// cannot be written.
 pub fn write(run: &Path, out: &Path, most_items: usize) -> Result<Written, Error> {
     write_paged(run, out, most_items, WALKS_PER_PAGE)
 }
 
 fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<Written, Error> {
     let records = Records::read(run, most_items)?;
-    let book = Book::new(out, records.items.len(), per_page);
+    let book = Book::new(out, run, records.items.len(), per_page);
+    book.refuse_to_replace_others()?;
     let mut written = Written {
         page: out.display().to_string(),
         pages: (1..=book.pages()).map(|page| book.file(page).display().to_string()).collect(),
@@ -170,7 +172,10 @@ impl Sheet<'_> {
         let (first, last, shown) = (walks.start + 1, walks.end, records.items.len());
         let around = context! { pager, first, last, shown, walks => all, platform => records.settings.platform };
         match page {
-            Some(_) => self.draw_part("leaf.html", around.clone(), take)?,
+            Some(_) => {
+                let view = context! { page_of => book.page_of(), ..around.clone() };
+                self.draw_part("leaf.html", view, take)?;
+            }
             None => {
                 let rows = Rows::of(records, |walk| book.address(walk, &anchor(walk + 1)));
                 let view = context! { ..Value::from_serialize(PageView::new(records)), ..Value::from_serialize(rows), ..around.clone() };

@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 
 /// Longest text of a row, characters; the walk shows it whole.
 const MOST_CHARS: usize = 700;
-/// Most scenes that can be chosen from.
-const MOST_SCENES: usize = 200;
+/// Most styles, and most scenes, that can be chosen from.
+const MOST_CHOICES: usize = 200;
 /// Rows that are printed.
 const PRINTED: usize = 100;
 
@@ -74,8 +74,8 @@ impl Rows {
             rows.extend(of_item(item, &href(at)));
         }
         rows.sort_by_key(|row| row.state);
-        let styles = several(rows.iter().map(|row| row.style.as_str()), usize::MAX);
-        let scenes = several(rows.iter().filter_map(|row| row.scene.as_deref()), MOST_SCENES);
+        let styles = several(rows.iter().map(|row| row.style.as_str()));
+        let scenes = several(rows.iter().filter_map(|row| row.scene.as_deref()));
         for row in &mut rows {
             row.style_at = styles.binary_search(&row.style).ok();
             row.scene_at = row.scene.as_ref().and_then(|scene| scenes.binary_search(scene).ok());
@@ -92,9 +92,9 @@ impl Rows {
 }
 
 /// Different names in their order; none where there is no choice, or too much of it.
-fn several<'n>(names: impl Iterator<Item = &'n str>, most: usize) -> Vec<String> {
+fn several<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
     let names: BTreeSet<&str> = names.filter(|name| !name.is_empty()).collect();
-    if (2..=most).contains(&names.len()) { names.into_iter().map(str::to_owned).collect() } else { Vec::new() }
+    if (2..=MOST_CHOICES).contains(&names.len()) { names.into_iter().map(str::to_owned).collect() } else { Vec::new() }
 }
 
 fn failed(failed: &FailedItem) -> Row {
@@ -143,5 +143,19 @@ fn short(text: &str) -> String {
     match text.char_indices().nth(MOST_CHARS) {
         Some((end, _)) => format!("{} …", &text[..end]),
         None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_is_no_choice_among_one_name_or_among_too_many() {
+        let choice = |number: usize| {
+            let names: Vec<String> = (0..number).map(|name| format!("style-{name:03}")).collect();
+            several(names.iter().map(String::as_str)).len()
+        };
+        assert_eq!([1, 2, MOST_CHOICES, MOST_CHOICES + 1].map(choice), [0, 2, MOST_CHOICES, 0]);
     }
 }

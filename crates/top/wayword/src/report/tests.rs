@@ -407,6 +407,23 @@ fn many_walks_are_split_into_pages_whose_links_all_lead_somewhere() {
 }
 
 #[test]
+fn pages_of_another_run_are_neither_replaced_nor_removed() {
+    let (one, other) = (long_run(7, &[], &[]), long_run(7, &[], &[]));
+    let out = one.path().join("page.html");
+    let first = one.path().join("page-1.html");
+    write_paged(one.path(), &out, 100, 3).unwrap();
+    let before = [&out, &first].map(|file| fs::read(file).unwrap());
+    let refused = write_paged(other.path(), &out, 100, 3).unwrap_err().to_string();
+    assert!(refused.contains("page-1.html") && refused.contains("--out"), "{refused}");
+    assert_eq!([&out, &first].map(|file| fs::read(file).unwrap()), before);
+    // One page of the other run needs no numbered ones, and takes none away.
+    write_paged(other.path(), &out, 2, 3).unwrap();
+    assert_eq!(fs::read(&first).unwrap(), before[1]);
+    // What the same run left is replaced.
+    write_paged(one.path(), &out, 100, 3).unwrap();
+}
+
+#[test]
 fn frames_are_counted_from_0_as_on_the_terminal() {
     let run = run_of(&walk("a"), &good());
     let (page, _) = page_of(run.path(), 100);
