@@ -199,7 +199,13 @@ fn each_text_of_a_run_is_held_to_the_style_that_it_was_written_in() {
     }
     building.write("told.jsonl", all(&lines));
     let ran = check(&building, "told.jsonl", &[]);
-    assert!(ran.out.contains("style r2r is not built in") && ran.out.contains("--style"), "{}", ran.out);
+    for (style, texts) in [("r2r", format!("{} texts", lines.len() - 1)), ("reverie", "1 text".to_owned())] {
+        let told = format!(
+            "style {style} of this file is not the built-in one (a style of your own, or of another version), so the form of \
+             {texts} was not checked: name the style with --style"
+        );
+        assert!(ran.out.contains(&told), "{told}: {}", ran.out);
+    }
 }
 
 #[test]

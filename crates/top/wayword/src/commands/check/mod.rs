@@ -5,6 +5,7 @@ mod walks;
 
 use crate::{
     cli::Check as Args,
+    count::count,
     error::{Error, Exit},
     output::Output,
     pipeline::panoramas,
@@ -38,7 +39,7 @@ pub struct CheckReport {
     pub checked_against: Vec<String>,
     /// The styles that texts were held against, with the number of texts; none of a dataset without `--style`.
     pub styles: BTreeMap<String, usize>,
-    /// The styles that texts name and that are not known here, so that those texts were held against none.
+    /// The styles that texts name and that are not the built-in ones of that name, so that those texts were held against none.
     pub unknown_styles: BTreeMap<String, usize>,
     /// Per check, the texts that passed, were unverified, or failed it.
     pub by_check: BTreeMap<&'static str, Counts>,
@@ -190,7 +191,9 @@ impl fmt::Display for Shown<'_> {
         for (name, texts) in &report.unknown_styles {
             write!(
                 f,
-                "\nstyle {name} is not built in, so {texts} of it were held against no style: name it with --style"
+                "\nstyle {name} of this file is not the built-in one (a style of your own, or of another version), so the form \
+                 of {} was not checked: name the style with --style",
+                count(*texts, "text")
             )?;
         }
         Ok(())
