@@ -67,6 +67,29 @@ fn vlnce_has_every_corner_of_the_way_and_the_distance_over_the_navmesh() {
     assert!(corners > 0, "no walk has a bend between two frames");
 }
 
+#[test]
+fn vlnce_is_exported_over_the_frames_where_the_scenes_are_gone() {
+    let building = Building::new();
+    house(&building);
+    assert_eq!(run(&building, "scenes", "run", &[]).code, Some(0));
+    std::fs::rename(building.path("scenes"), building.path("elsewhere")).unwrap();
+    let export = ["export", "--run", "run", "--style", "r2r", "--format", "vlnce", "--out", "run.json"];
+    let ran = building.wayword(&export);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let warnings: Vec<&str> = ran.err.lines().filter(|line| line.starts_with("warning: ")).collect();
+    let [warning] = warnings[..] else { panic!("{ran:?}") };
+    assert!(warning.contains("scenes") && warning.contains("corners and distances"), "{warning}");
+    let dataset: Value = serde_json::from_slice(&std::fs::read(building.path("run.json")).unwrap()).unwrap();
+    let episodes = Format::Vlnce.read(&building.path("run.json")).unwrap();
+    let records = building.records("run");
+    for ((episode, written), record) in episodes.iter().zip(dataset["episodes"].as_array().unwrap()).zip(&records) {
+        assert_eq!(written["info"]["geodesic_distance_over"], "frames");
+        assert_eq!(episode.floor_positions.len(), record.path.frames.len());
+        assert_eq!(episode.scene, record.path.scene);
+    }
+    assert_eq!(episodes.len(), records.len());
+}
+
 /// Puts a navmesh beside a scene that has ground far above its rooms alone.
 fn roof(building: &Building, stage: &Path) {
     let stage = building.path(stage.to_str().unwrap());

@@ -2,7 +2,7 @@
 
 use crate::{error::Error, run::settings_of, world};
 use std::path::{Path, PathBuf};
-use wayword_core::{DVec3, Path as Walk, Platform, SceneId};
+use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
 use wayword_formats::{Episode, InHabitat, jsonl::Record};
 
 /// Where habitat-lab keeps scenes: `scene_id` counts from there.
@@ -14,40 +14,74 @@ const SAME_M: f64 = 1e-3;
 pub(super) struct World {
     /// Habitat's own scenes, with the folder or file that they come from.
     scenes: Option<(Box<dyn Platform>, PathBuf)>,
+    /// Why a scene of Habitat's was not asked, the first time that this was so.
+    lack: Option<String>,
 }
 
 impl World {
-    /// The world of a run's records.
-    ///
-    /// # Errors
-    /// When the records are from Habitat's scenes, and these cannot be opened.
-    pub(super) fn of(run: &Path, records: &[Record]) -> Result<Self, Error> {
+    /// The world of a run's records. Where Habitat's scenes cannot be opened, it is a world without them.
+    pub(super) fn of(run: &Path, records: &[Record]) -> Self {
         if !records.iter().any(|record| record.platform == "habitat") {
-            return Ok(Self { scenes: None });
+            return Self { scenes: None, lack: None };
         }
-        let settings = settings_of(run)?;
-        let data = settings.data.clone().unwrap_or_default();
-        Ok(Self { scenes: Some((world::open(&settings)?, data)) })
+        match scenes(run) {
+            Ok(scenes) => Self { scenes: Some(scenes), lack: None },
+            Err(error) => Self { scenes: None, lack: Some(first_line(&error)) },
+        }
     }
 
     /// Tells an episode what Habitat needs of its world.
-    ///
-    /// # Errors
-    /// When the scene cannot be read.
-    pub(super) fn tell(&self, record: &Record, episode: &mut Episode) -> Result<(), Error> {
+    pub(super) fn tell(&mut self, record: &Record, episode: &mut Episode) {
         let scene = &record.path.scene;
-        match (&self.scenes, record.platform.as_str()) {
-            (Some((platform, data)), "habitat") => {
-                let file = platform.scene_file(scene)?;
-                episode.in_habitat.scene_id = file.map(|file| below_scenes(&file, data));
-                walk_around_corners(&**platform, &record.path, episode)?;
+        match (record.platform.as_str(), &self.scenes) {
+            ("habitat", Some((platform, data))) => {
+                if let Err(error) = tell_of_scene(&**platform, data, &record.path, episode) {
+                    self.lack.get_or_insert_with(|| first_line(&error));
+                    episode.in_habitat = without_scene(scene);
+                }
             }
-            (_, "matterport") => {}
-            (_, "house") => episode.in_habitat = house(scene),
-            (_, other) => episode.in_habitat = unknown(other, scene),
+            ("habitat", None) => episode.in_habitat = without_scene(scene),
+            ("matterport", _) => {}
+            ("house", _) => episode.in_habitat = house(scene),
+            (other, _) => episode.in_habitat = unknown(other, scene),
         }
-        Ok(())
     }
+
+    /// What a reader has to know where scenes of Habitat's could not be opened.
+    pub(super) fn warning(&self) -> Option<String> {
+        let told = |lack: &String| {
+            format!(
+                "warning: Habitat's scenes cannot be opened ({lack}): the corners and distances of their episodes are those of the \
+                 frames, and not of the navmesh"
+            )
+        };
+        self.lack.as_ref().map(told)
+    }
+}
+
+/// The scenes that a run was made in, and where they come from.
+fn scenes(run: &Path) -> Result<(Box<dyn Platform>, PathBuf), Error> {
+    let settings = settings_of(run)?;
+    let data = settings.data.clone().unwrap_or_default();
+    Ok((world::open(&settings)?, data))
+}
+
+/// What is wrong, without the hint: a warning is one line.
+fn first_line(error: &impl ToString) -> String {
+    error.to_string().lines().next().unwrap_or_default().to_owned()
+}
+
+/// Tells an episode of its scene; where that fails, the episode is as before.
+fn tell_of_scene(
+    platform: &dyn Platform,
+    data: &Path,
+    walk: &Walk,
+    episode: &mut Episode,
+) -> Result<(), PlatformError> {
+    let file = platform.scene_file(&walk.scene)?;
+    walk_around_corners(platform, walk, episode)?;
+    episode.in_habitat.scene_id = file.map(|file| below_scenes(&file, data));
+    Ok(())
 }
 
 /// A scene's file as `scene_id` has it: below habitat-lab's folder of scenes where it lies in one, else below the run's data.
@@ -73,6 +107,13 @@ fn house(scene: &SceneId) -> InHabitat {
     }
 }
 
+/// A scene of Habitat's whose file cannot be found.
+fn without_scene(scene: &SceneId) -> InHabitat {
+    let scene_id = format!("habitat/{scene}/{scene}.glb");
+    let needs = format!("put the scene's file at SCENES/{scene_id}, or export where the run's scenes can be opened");
+    InHabitat { scene_id: Some(scene_id), scene_needs: Some(needs), geodesic_m: None }
+}
+
 /// A world of which Habitat has no scene.
 fn unknown(platform: &str, scene: &SceneId) -> InHabitat {
     let scene_id = format!("{platform}/{scene}/{scene}.glb");
@@ -81,9 +122,9 @@ fn unknown(platform: &str, scene: &SceneId) -> InHabitat {
 }
 
 /// Puts every corner of the way between two frames into the path, so that each hop is a straight walk, and the distance from start
-/// to goal over the navmesh beside it.
-fn walk_around_corners(platform: &dyn Platform, walk: &Walk, episode: &mut Episode) -> Result<(), Error> {
-    let floors = std::mem::take(&mut episode.floor_positions);
+/// to goal over the navmesh beside it; nothing where a way cannot be asked for.
+fn walk_around_corners(platform: &dyn Platform, walk: &Walk, episode: &mut Episode) -> Result<(), PlatformError> {
+    let floors = &episode.floor_positions;
     let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
     for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {
         let way = platform.way(&walk.scene, &frames[0], &frames[1])?;
@@ -96,10 +137,12 @@ fn walk_around_corners(platform: &dyn Platform, walk: &Walk, episode: &mut Episo
         }
         path.push(*floor);
     }
+    let whole = match (walk.frames.first(), walk.frames.last()) {
+        (Some(first), Some(last)) => platform.way(&walk.scene, first, last)?,
+        _ => None,
+    };
     episode.floor_positions = path;
-    if let (Some(first), Some(last)) = (walk.frames.first(), walk.frames.last()) {
-        episode.in_habitat.geodesic_m = platform.way(&walk.scene, first, last)?.map(|way| way.length_m);
-    }
+    episode.in_habitat.geodesic_m = whole.map(|way| way.length_m);
     Ok(())
 }
 

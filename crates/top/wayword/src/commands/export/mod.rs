@@ -45,6 +45,9 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
     let format: Format =
         args.format.parse().map_err(|error| Error::usage(format!("{error}"), "see wayword export --help"))?;
     let mut records = records(&args.run, args.style.as_deref())?;
+    if args.out.exists() {
+        output.say(format_args!("{} is replaced", args.out.display()));
+    }
     let mut scene_needs = BTreeSet::new();
     let provenance = if format == Format::Wayword {
         if let Some(share) = args.val_share {
@@ -58,7 +61,7 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
     } else {
         refuse_what_only_records_bear(args)?;
         refuse_without_poses(format, &records)?;
-        let episodes = episodes(format, &args.run, &records)?;
+        let episodes = episodes(format, &args.run, &records, output);
         scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
         write_as(format, &args.out, &records, episodes)?
     };
@@ -117,15 +120,18 @@ fn bears_provenance(format: Format) -> bool {
 }
 
 /// The records as items of one of the field's formats.
-fn episodes(format: Format, runs: &[PathBuf], records: &[Record]) -> Result<Vec<Episode>, Error> {
+fn episodes(format: Format, runs: &[PathBuf], records: &[Record], output: &Output) -> Vec<Episode> {
     let mut episodes: Vec<Episode> = records.iter().map(|record| episode(record, bears_provenance(format))).collect();
     if let (Format::Vlnce, [run]) = (format, runs) {
-        let world = World::of(run, records)?;
+        let mut world = World::of(run, records);
         for (record, episode) in records.iter().zip(&mut episodes) {
-            world.tell(record, episode)?;
+            world.tell(record, episode);
+        }
+        if let Some(warning) = world.warning() {
+            output.say(warning);
         }
     }
-    Ok(if format == Format::Reverie { gathered(episodes) } else { episodes })
+    if format == Format::Reverie { gathered(episodes) } else { episodes }
 }
 
 /// Writes one of the field's formats, and provenance beside it where its items have no place for it.
