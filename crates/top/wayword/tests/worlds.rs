@@ -45,6 +45,7 @@ fn what_is_missing_is_told() {
         (&["--platform", "recording", "--data", "nowhere"], "nowhere"),
         (&["--platform", "tdw", "--at", "here"], "--at here"),
         (&["--platform", "virtualhome", "--at", "here"], "--at here"),
+        (&["--platform", "virtualhome", "--at", "http://127.0.0.1:9"], "nothing listens at http://127.0.0.1:9"),
         (&["--data", "data"], "takes no --data"),
         (&["--at", "127.0.0.1:1071"], "takes no --at"),
     ] {

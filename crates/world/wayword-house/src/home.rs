@@ -148,6 +148,7 @@ fn seed_of(scene: &SceneId) -> Option<u64> {
 pub(super) fn unknown(scene: &str) -> PlatformError {
     PlatformError::UnknownScene {
         scene: scene.to_owned(),
-        hint: "houses are named by their seed, as in house-7".to_owned(),
+        hint: "houses are named by their seed, as in house-7; a scene of another platform needs its --platform"
+            .to_owned(),
     }
 }

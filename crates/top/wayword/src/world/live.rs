@@ -1,12 +1,21 @@
 //! Simulators that run beside this program.
 
 use crate::{error::Error, output};
-use std::{path::Path, sync::Arc};
+use std::{
+    io::ErrorKind,
+    net::{SocketAddr, TcpStream, ToSocketAddrs},
+    path::Path,
+    sync::Arc,
+    time::Duration,
+};
 use wayword_core::Platform;
 use wayword_live::{
     tdw::{ControllerOptions, TdwOptions, TdwPlatform},
     virtualhome::{VirtualHomeOptions, VirtualHomePlatform},
 };
+
+/// How long a port may take to answer.
+const PORT_WAIT: Duration = Duration::from_secs(2);
 
 /// Waits for a build at an address.
 pub(super) fn tdw(package: Option<&Path>, at: Option<&str>) -> Result<Box<dyn Platform>, Error> {
@@ -31,5 +40,23 @@ pub(super) fn virtualhome(at: Option<&str>) -> Result<Box<dyn Platform>, Error> 
         }
         options.url = at.to_owned();
     }
+    refuse_closed_port(&options.url)?;
     Ok(Box::new(VirtualHomePlatform::new(options).heard_by(Arc::new(output::pass_on))))
+}
+
+/// Tells at once that nobody is there, before a run begins.
+fn refuse_closed_port(url: &str) -> Result<(), Error> {
+    let host = url.trim_start_matches("http://").split('/').next().unwrap_or_default();
+    // What cannot be taken apart is left to the client's own words.
+    let Ok(mut addresses) = host.to_socket_addrs() else { return Ok(()) };
+    let refuses = |address: SocketAddr| {
+        TcpStream::connect_timeout(&address, PORT_WAIT).is_err_and(|error| error.kind() == ErrorKind::ConnectionRefused)
+    };
+    if addresses.all(refuses) {
+        return Err(Error::usage(
+            format!("nothing listens at {url}, so VirtualHome cannot be asked"),
+            "start it with -batchmode -http-port=8080, or say where it is: --at URL",
+        ));
+    }
+    Ok(())
 }

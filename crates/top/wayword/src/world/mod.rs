@@ -42,7 +42,7 @@ pub const PLATFORMS: [Listed; 7] = [
     Listed {
         name: "matterport",
         what: "Matterport3D's buildings, from files",
-        needs: "--data DIR with connectivity/ (README.md tells what else is used)",
+        needs: "--data DIR with connectivity/ (docs/DATA.md tells what else is used)",
         offers: "rooms, floors; labels with REVERIE's boxes or .house files; pictures with photographs",
         is_here: true,
     },
