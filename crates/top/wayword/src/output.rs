@@ -189,6 +189,8 @@ mod tests {
     fn nothing_turns_the_line_round_or_hides_in_it() {
         assert_eq!(tame("turn \u{202e}tfel\u{2069} now\u{200b}!\n"), "turn \u{fffd}tfel\u{fffd} now\u{fffd}!\n");
         assert_eq!(tame("caf\u{e9} \u{4e2d}\u{6587}"), "caf\u{e9} \u{4e2d}\u{6587}");
+        let joined = "\u{c15}\u{c4d}\u{200c}\u{c37} \u{915}\u{94d}\u{200d}\u{937}";
+        assert_eq!((tame(joined), tame_json(joined)), (joined.to_owned(), joined.to_owned()));
         let json = serde_json::to_string("a\u{202e}b\u{7f}c\u{9b}d\u{e0041}\"").unwrap();
         let tamed = tame_json(&json);
         assert_eq!(tamed, r#""a\u202eb\u007fc\u009bd\udb40\udc41\"""#);

@@ -40,13 +40,13 @@ pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> Line {
 }
 
 /// Whether a character does something to a terminal, or to the text around it, that nobody sees: it moves the cursor, turns the
-/// direction of writing, or has no width.
+/// direction of writing, or has no width. The two joiners have none either, and stay: words of Hindi, Telugu or Persian need them.
 #[must_use]
 pub fn is_unseen(c: char) -> bool {
     c.is_control()
         || matches!(c,
             // Soft hyphen, and signs that only join, part or turn others (Unicode's category Cf).
-            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
+            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
             | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
             // Ends of lines and paragraphs.
             | '\u{2028}' | '\u{2029}')
@@ -67,6 +67,15 @@ mod tests {
     fn what_a_world_says_turns_nothing_round_and_hides_nothing() {
         assert_eq!(plain("a\u{202e}b\u{200b}c\u{1b}[31m\u{2066}d\u{feff}", 100), "abc[31md");
         assert_eq!(plain("Stra\u{df}e \u{4e2d} \u{627}", 100), "Stra\u{df}e \u{4e2d} \u{627}");
+    }
+
+    #[test]
+    fn joiners_stay_which_words_of_many_languages_need() {
+        // Persian "I want" and a Hindi half letter.
+        for word in ["\u{645}\u{6cc}\u{200c}\u{62e}\u{648}\u{627}\u{647}\u{645}", "\u{915}\u{94d}\u{200d}\u{937}"] {
+            assert_eq!(plain(word, 100), word);
+        }
+        assert_eq!(plain("a\u{200b}b\u{200e}c\u{200f}d", 100), "abcd");
     }
 
     #[test]
