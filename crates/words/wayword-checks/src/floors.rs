@@ -16,7 +16,7 @@ pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
             }
             _ => return None,
         };
-        let unknown = || "nothing here can tell whether the path goes up or down".to_owned();
+        let unknown = || "the program cannot check whether the path goes up or down".to_owned();
         let reason = if verdict == Verdict::Fail { wrong } else { unknown() };
         (verdict != Verdict::Pass).then(|| finding(Check::Floors, verdict, reason, Some(event.span)))
     });
@@ -79,7 +79,7 @@ fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32
         let reason = match (verdict, touched) {
             (Verdict::Fail, true) => format!("the path is on {name}, but not then"),
             (Verdict::Fail, false) => format!("the path does not touch {name}"),
-            _ => format!("nothing here can tell whether the path is on {name}"),
+            _ => format!("the program cannot check whether the path is on {name}"),
         };
         finding(Check::Floors, verdict, reason, Some(event.span))
     };

@@ -62,11 +62,11 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdic
         let verdict = absent(place, evidence);
         return Some(match verdict {
             Verdict::Fail => (verdict, format!("no frame of the path shows {:?}", place.name)),
-            _ => (verdict, format!("nothing here can tell whether there is {:?}", place.name)),
+            _ => (verdict, format!("the program cannot check whether there is {:?}", place.name)),
         });
     }
     if sides::is_unknown(place, evidence) {
-        let reason = format!("nothing here can tell on which side of the walker {:?} is", place.name);
+        let reason = format!("the program cannot check on which side of the walker {:?} is", place.name);
         return Some((Verdict::Unverified, reason));
     }
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
@@ -93,7 +93,7 @@ fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict,
         (_, true) => None,
         (true, false) if shown.frames.is_empty() => None,
         (true, false) => {
-            Some((Verdict::Unverified, format!("nothing here can tell whether {:?} is {told}", place.name)))
+            Some((Verdict::Unverified, format!("the program cannot check whether {:?} is {told}", place.name)))
         }
         (false, false) => {
             Some((wrong_unless_elsewhere(shown), format!("no {:?} along the path is {told}", place.name)))

@@ -127,7 +127,7 @@ fn no_wrong_turn(reading: &Reading, evidence: &Evidence) -> Finding {
     let first = reading.events.iter().find(|event| matches!(event.what, What::Turn(_)));
     match first.filter(|_| !evidence.motion.is_known()) {
         Some(turn) => {
-            let reason = "nothing here can tell how the path turns";
+            let reason = "the program cannot check how the path turns";
             finding(Check::Turns, Verdict::Unverified, reason, Some(turn.span))
         }
         None => pass(Check::Turns),

@@ -24,14 +24,14 @@ pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Targe
     }
     let alike: Vec<_> = evidence.final_things().iter().filter(|thing| agree(&thing.name, name)).collect();
     if alike.is_empty() && !evidence.denies_thing_at_end(name) {
-        let reason = format!("nothing here can tell whether there is {name:?}");
+        let reason = format!("the program cannot check whether there is {name:?}");
         return finding(Check::Task, Verdict::Unverified, reason, Some(span));
     }
     if alike.is_empty() {
         return fail(format!("{name:?} is not seen from the final viewpoint"), Some(span));
     }
     if sides::is_unknown(place, evidence) {
-        let reason = format!("nothing here can tell on which side of the walker {name:?} is");
+        let reason = format!("the program cannot check on which side of the walker {name:?} is");
         return finding(Check::Task, Verdict::Unverified, reason, Some(span));
     }
     // Where the very object is known, a side is told of it and of no namesake.

@@ -17,7 +17,7 @@ Examples:
       What `wayword compare` left of its agents' walks: of the items that all its sets have, and not of every one.
 
 A submission is a JSON list of {\"instr_id\": \"ID_PLACE\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
-plain or gzip; one item for every instruction, but with --partial. If anything is wrong with it, nothing is scored, all that is
+plain or gzip; one item for every instruction, except with --partial. If anything is wrong with it, nothing is scored, all that is
 wrong is told (20 problems on a screen, --json more), and the exit code is 1.")]
 pub struct Evaluate {
     /// The trajectories, as the evaluators of R2R and REVERIE take them.

@@ -91,8 +91,10 @@ impl Refusal {
                 0 if missing > 0 => {
                     format!("{without} without a trajectory: hand in all, or score the others with --partial")
                 }
-                _ if missing > 0 => format!("mend what is told; --partial overlooks {without} without a trajectory"),
-                _ => "mend what is told; --json tells more of it".to_owned(),
+                _ if missing > 0 => {
+                    format!("fix the problems listed above; --partial overlooks {without} without a trajectory")
+                }
+                _ => "fix the problems listed above; --json lists more of them".to_owned(),
             },
         )
     }
