@@ -3,54 +3,17 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod common;
+#[path = "common/submissions.rs"]
+mod submissions;
 
-use common::{Building, EPISODES, Ran};
+use common::{Building, EPISODES};
 use serde_json::{Value, json};
 use std::fs;
+use submissions::{R2R, annotated, evaluate, evaluate_file, items, problems, report};
 use wayword_formats::submission;
-
-const R2R: &str = "data/r2r/R2R_val_seen.json";
 
 /// Items of the building, each with two instructions.
 const ITEMS: usize = 10;
-
-fn items(building: &Building, episodes: &str) -> Vec<Value> {
-    serde_json::from_slice(&fs::read(building.path(episodes)).unwrap()).unwrap()
-}
-
-/// An item's name in its dataset.
-fn id(item: &Value) -> String {
-    item["id"].as_str().map_or_else(|| item["path_id"].to_string(), str::to_owned)
-}
-
-/// Both instructions of every item, walked as the items' annotated paths lead.
-fn annotated(building: &Building, episodes: &str) -> Vec<Value> {
-    let walk = |item: &Value| {
-        let pose = |viewpoint: &Value| json!([viewpoint, 0.5, 0.0]);
-        let trajectory: Vec<Value> = item["path"].as_array().unwrap().iter().map(pose).collect();
-        let object = item.get("objId").cloned();
-        let of =
-            |place| json!({"instr_id": format!("{}_{place}", id(item)), "trajectory": trajectory, "predObjId": object});
-        [of(0), of(1)]
-    };
-    items(building, episodes).iter().flat_map(walk).collect()
-}
-
-fn evaluate(building: &Building, submitted: &[Value], episodes: &str, args: &[&str]) -> Ran {
-    building.write("submission.json", Value::from(submitted.to_vec()).to_string());
-    evaluate_file(building, "submission.json", episodes, args)
-}
-
-fn evaluate_file(building: &Building, file: &str, episodes: &str, args: &[&str]) -> Ran {
-    let mut all = vec!["evaluate", file, "--episodes", episodes, "--platform", "matterport", "--data", "data"];
-    all.extend(args);
-    building.wayword(&all)
-}
-
-fn report(ran: &Ran) -> Value {
-    assert_eq!(ran.code, Some(0), "{ran:?}");
-    ran.json()
-}
 
 fn mean(figures: &Value, metric: &str) -> f64 {
     figures[metric]["mean"].as_f64().unwrap()
@@ -261,18 +224,6 @@ fn records_over_a_dataset_are_clustered_by_its_paths() {
     assert!(building.lines("scores.jsonl")[1]["path"].as_str().unwrap().ends_with("/8"));
 }
 
-/// What is told of a submission that is refused: instruction and problem.
-fn problems(ran: &Ran) -> Vec<(String, String)> {
-    assert_eq!(ran.code, Some(1), "{ran:?}");
-    assert!(ran.err.contains("nothing was scored") && ran.err.contains("hint:"), "{ran:?}");
-    let found = ran.json();
-    assert_eq!(found["scored"], 0);
-    assert!(found.get("rules").is_none(), "half scored: {found}");
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let told = |problem: &Value| (text(&problem["instr_id"]), text(&problem["problem"]));
-    found["problems"].as_array().unwrap().iter().map(told).collect()
-}
-
 #[test]
 fn every_problem_is_told_and_nothing_is_scored() {
     let building = Building::new();
@@ -432,55 +383,6 @@ fn a_limit_takes_the_first_items_alone() {
     submitted[12]["instr_id"] = json!("999_0");
     assert_eq!(problems(&evaluate(&building, &submitted, R2R, &["--limit", "3", "--json"])).len(), 1);
     assert_eq!(evaluate(&building, &submitted, R2R, &["--limit", "0"]).code, Some(2));
-}
-
-/// What `wayword compare` leaves of `original`, held against a set that lacks two items.
-fn compared(building: &Building) -> &'static str {
-    let ran = building.generate("run", &["--episodes", EPISODES, "--style", "reverie"]);
-    assert_eq!(ran.code, Some(0), "{ran:?}");
-    let text = fs::read_to_string(building.path("run/instructions.jsonl")).unwrap();
-    building.write("few.jsonl", text.lines().skip(2).map(|line| format!("{line}\n")).collect::<String>());
-    let sets = ["--instructions", "original", "--instructions", "few=few.jsonl"];
-    let world = ["--platform", "matterport", "--data", "data", "--episodes", EPISODES];
-    let agents = ["--agents", "clip-nav", "--swaps", "none", "--resamples", "100", "--out", "table"];
-    let ran = building.wayword(&[&["compare"][..], &world, &sets, &agents].concat());
-    assert_eq!(ran.code, Some(0), "{ran:?}");
-    assert!(ran.err.contains("submissions cover 8 of 10 items") && ran.err.contains("--partial"), "{ran:?}");
-    "table/submissions/clip-nav.original.json"
-}
-
-#[test]
-fn a_comparison_s_own_submission_is_scored_with_partial_and_its_extent_is_told() {
-    let building = Building::new();
-    let submission = compared(&building);
-    let refused = evaluate_file(&building, submission, EPISODES, &[]);
-    assert!(refused.code == Some(1) && refused.err.contains("score the others with --partial"), "{refused:?}");
-    let shown = evaluate_file(&building, submission, EPISODES, &["--partial"]);
-    assert_eq!(shown.code, Some(0), "{shown:?}");
-    let told = format!("partial: these are 16 of 20 instructions and 8 of 10 items of {EPISODES}");
-    assert!(shown.out.contains(&told), "{shown:?}");
-    let found = report(&evaluate_file(&building, submission, EPISODES, &["--partial", "--json"]));
-    let numbers = ["instructions", "of_instructions", "items", "of_items"].map(|name| found[name].as_u64().unwrap());
-    assert_eq!(numbers, [16, 20, 8, 10]);
-    let compared: Value = serde_json::from_slice(&fs::read(building.path("table/comparison.json")).unwrap()).unwrap();
-    assert_eq!(compared["about"]["items"], 8, "{compared}");
-}
-
-#[test]
-fn partial_overlooks_what_is_missing_and_nothing_else() {
-    let building = Building::new();
-    let mut submitted = annotated(&building, R2R);
-    submitted.truncate(6);
-    submitted[2]["trajectory"].as_array_mut().unwrap().reverse();
-    submitted[4]["instr_id"] = json!("999_0");
-    let found = problems(&evaluate(&building, &submitted, R2R, &["--partial", "--json"]));
-    assert_eq!(found.len(), 2, "{found:#?}");
-    let mixed = evaluate(&building, &submitted, R2R, &[]);
-    assert!(mixed.err.contains("--partial overlooks 15 instructions"), "{mixed:?}");
-    let none = evaluate(&building, &[], R2R, &["--partial"]);
-    assert!(none.refused().contains("no instruction has a trajectory"), "{none:?}");
-    let whole = evaluate(&building, &annotated(&building, R2R), R2R, &["--partial"]);
-    assert!(whole.code == Some(0) && !whole.out.contains("partial"), "{whole:?}");
 }
 
 #[test]
