@@ -9,6 +9,7 @@ use common::{Building, files};
 use std::{
     collections::BTreeMap,
     fs,
+    io::{BufRead, BufReader, Read},
     path::PathBuf,
     process::{Command, Output, Stdio},
     thread,
@@ -55,11 +56,16 @@ fn an_interrupt_ends_a_command_that_keeps_nothing_with_the_same_code() {
     let building = Building::new();
     let args =
         ["view", "map", "--platform", "tdw", "--at", "127.0.0.1:0", "--scan", "floorplan_1a", "--out", "map.svg"];
-    let child = building.command(&args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-    thread::sleep(Duration::from_millis(500));
+    let mut child = building.command(&args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut told = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    told.read_line(&mut line).unwrap();
+    assert!(line.contains("waiting"), "{line}");
     Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(6), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut rest = String::new();
+    told.read_to_string(&mut rest).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(6), "{rest}");
+    assert!(rest.contains("give the same command again"), "{rest}");
 }
 
 #[test]
