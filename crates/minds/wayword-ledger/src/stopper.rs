@@ -10,7 +10,7 @@ use std::sync::{
 pub struct Stopper(Arc<AtomicBool>);
 
 impl Stopper {
-    /// As [`Run::stop`].
+    /// As [`crate::Run::stop`].
     pub fn stop(&self) {
         self.0.store(true, Ordering::SeqCst);
     }
