@@ -4,6 +4,7 @@ use super::{
     answer::{Answer, MAX_LINE_BYTES, answer},
     fault::Fault,
     group::Group,
+    guard::FAREWELL,
     options::ProcessOptions,
     stderr::LastWords,
 };
@@ -17,8 +18,6 @@ use std::{
 };
 use wayword_world::said::{Hear, Line, plain, read_line};
 
-/// How long a child whose input was closed may take to end by itself.
-pub(crate) const FAREWELL: Duration = Duration::from_millis(500);
 /// How long an end is waited for that its closed output announces, and the rest of its error output after it.
 const AFTERMATH: Duration = Duration::from_millis(500);
 /// How often a child that does not answer is looked at: whatever it has started may keep its output open when it has ended.

@@ -11,8 +11,11 @@ use std::{
     io,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
+    time::Duration,
 };
 
+/// How long a child whose input was closed may take to end by itself.
+pub(crate) const FAREWELL: Duration = Duration::from_millis(500);
 /// The only argument of a guard.
 const ROLE: &str = "guard-children";
 
@@ -83,7 +86,7 @@ pub fn stand_guard_if_asked() {
 fn stand() -> ! {
     // Nobody writes: this waits for the end of the pipe.
     let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
-    std::thread::sleep(super::child::FAREWELL);
+    std::thread::sleep(FAREWELL);
     let _ = rustix::process::kill_current_process_group(rustix::process::Signal::KILL);
     // Not reached, unless the system refuses.
     std::process::exit(1);
