@@ -1,10 +1,11 @@
-//! Writes views of generated houses into a folder, to be looked at, with their labels beside them.
+//! Writes views of generated houses into a folder for a person to look at, with a list of their labels.
 //!
 //! ```text
 //! cargo run --release -p wayword-house --example house_pictures -- FOLDER FIRST_SEED HOUSES VIEWS_EACH
 //! ```
 //!
-//! Each is taken at a random viewpoint: of the four views by the compass, the one that shows the most different things. `FOLDER/labels.txt` holds what they show, one line for each.
+//! Each view is taken at a random viewpoint. Of the four compass directions there, the program keeps the one that shows
+//! the most different objects. `FOLDER/labels.txt` lists the labels, one line per view.
 
 use std::{collections::BTreeSet, error::Error, fmt::Write, path::PathBuf, time::Instant};
 use wayword_core::{Gaze, Platform, View, seed::derive};
@@ -12,7 +13,7 @@ use wayword_house::HousePlatform;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
-    let folder = PathBuf::from(arguments.next().ok_or("give a folder")?);
+    let folder = PathBuf::from(arguments.next().ok_or("name the output folder as the first argument")?);
     let mut number = |otherwise: u64| arguments.next().map_or(Ok(otherwise), |text| text.parse());
     let (first, houses, views) = (number(0)?, number(1)?, number(8)?);
     std::fs::create_dir_all(&folder)?;
@@ -48,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// How many different things a view shows.
+/// How many differently named objects a view shows.
 fn variety(view: &View) -> usize {
     let labels = view.ground_truth().map_or(&[][..], |truth| &truth.labels);
     labels.iter().map(|label| &label.name).collect::<BTreeSet<_>>().len()

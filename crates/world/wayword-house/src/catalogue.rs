@@ -1,10 +1,10 @@
-//! The things that homes hold: names, usual sizes, colours and materials.
+//! The kinds of furniture in a house: names, usual sizes, colours and materials.
 
 use super::{colour::Colour, dice::Dice};
 use Colour as C;
 use serde::{Deserialize, Serialize};
 
-/// What a kind of thing is like.
+/// The usual properties of a kind of furniture.
 pub(crate) struct Entry {
     /// Its name in plain words.
     pub(crate) name: &'static str,
@@ -20,7 +20,7 @@ pub(crate) struct Entry {
 
 macro_rules! catalogue {
     ($($kind:ident $name:literal [$w:literal $d:literal $h:literal] +- $give:literal $material:literal [$($colour:ident)+];)*) => {
-        /// A kind of thing.
+        /// A kind of furniture.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum FurnitureKind {
@@ -130,12 +130,12 @@ impl FurnitureKind {
         colours[dice.index(colours.len())]
     }
 
-    /// Whether it lies so flat that one walks over it.
+    /// Whether it is flat enough to walk over.
     pub(crate) fn is_flat(self) -> bool {
         matches!(self, Self::Rug | Self::BathMat | Self::DoorMat)
     }
 
-    /// Whether it hangs on walls or stands on other things, so that it never takes floor of its own.
+    /// Whether it is slim and hangs on a wall, so that it takes no floor.
     pub(crate) fn is_slim_on_wall(self) -> bool {
         matches!(self, Self::Painting | Self::Mirror | Self::Clock | Self::Whiteboard | Self::Towel | Self::Curtain)
     }

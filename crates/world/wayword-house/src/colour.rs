@@ -1,10 +1,10 @@
-//! The colours of things, with the words that people use for them.
+//! The colours of objects, each with its everyday word.
 
 use serde::{Deserialize, Serialize};
 
 macro_rules! palette {
     ($($name:ident $word:literal $rgb:expr;)*) => {
-        /// A colour that has a word.
+        /// A named colour.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Colour {

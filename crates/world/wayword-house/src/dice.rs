@@ -2,7 +2,7 @@
 
 use rand_chacha::{ChaCha8Rng, rand_core::RngCore};
 
-/// Draws integers only, so that neither the platform's word size nor its mathematics shows.
+/// Draws integers only, so that the result depends neither on the machine's word size nor on its mathematics library.
 #[derive(Debug)]
 pub(crate) struct Dice(ChaCha8Rng);
 
@@ -19,12 +19,12 @@ impl Dice {
         low + drawn as i32
     }
 
-    /// A multiple of `step` above `low`, at most `high`.
+    /// `low` plus a random multiple of `step`, at most `high`.
     pub(crate) fn stepped(&mut self, low: i32, high: i32, step: i32) -> i32 {
         low + step * self.between(0, (high - low).max(0) / step)
     }
 
-    /// True so many times in a hundred.
+    /// True with a probability of `percent` in a hundred.
     pub(crate) fn chance(&mut self, percent: i32) -> bool {
         self.between(1, 100) <= percent
     }
@@ -39,7 +39,7 @@ impl Dice {
         options[self.index(N)]
     }
 
-    /// Orders a list anew.
+    /// Puts a list into random order.
     pub(crate) fn shuffle<T>(&mut self, list: &mut [T]) {
         for last in (1..list.len()).rev() {
             list.swap(last, self.index(last + 1));

@@ -13,14 +13,14 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use wayword_render::{Material, Mesh, Texture};
 
-/// What a renderer, or a file, needs.
+/// Everything that a renderer or a file format needs.
 pub(super) struct Drawing {
     pub(super) meshes: Vec<Mesh>,
     pub(super) materials: Vec<Material>,
     pub(super) textures: Vec<Texture>,
 }
 
-/// Draws up everything in a house.
+/// Collects the meshes of everything in a house.
 pub(super) fn draw(house: &House) -> Drawing {
     let mut drawing = Collector::default();
     let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::of(house, index)).collect();
@@ -57,7 +57,7 @@ pub(super) fn draw(house: &House) -> Drawing {
     drawing.finish()
 }
 
-/// A piece's shape where it stands.
+/// A piece's shape, turned and moved to its place in the house.
 fn standing(piece: &Furniture) -> Shape {
     let mut shape = shape(piece.kind, &Look::of(piece));
     let area = piece.footprint;

@@ -1,4 +1,4 @@
-//! The viewpoint graph of a house: a road map over its ground.
+//! The viewpoint graph of a house, made from its walkable ground.
 
 use super::{
     ground::{Cell, Ground},
@@ -8,18 +8,18 @@ use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
 
 /// Height of the eye above the ground, metres.
 pub const EYE_M: f64 = 1.5;
-/// No viewpoint lies nearer to another than this, except in doorways and on stairs; metres.
+/// Least distance between two viewpoints, except in doorways and on stairs, metres.
 const APART_M: f64 = 1.8;
-/// Nor so near to a wall or a piece of furniture that it would fill the view: cells beyond the walker's radius.
+/// Least distance to walls and furniture, so that they do not fill the view: cells beyond the walker's radius.
 const LEAST_OPEN: u32 = 4;
-/// Longest edge, metres: far enough that two rows of viewpoints see each other.
+/// Longest edge, metres: long enough to join two rows of viewpoints.
 const REACH_M: f64 = 3.0;
 
-/// A road map: a viewpoint in every opening, on the stairs and in every room, and others between, joined where the walk
-/// between is straight and free.
+/// The graph has a viewpoint in every opening, on the stairs and in every room, and others between them. Two viewpoints
+/// are joined where one can walk straight from one to the other.
 ///
 /// # Errors
-/// Never for a house that was generated; names and positions of one that was edited are checked.
+/// Never for a generated house. In an edited house, names and positions are checked.
 pub fn viewpoint_graph(house: &House, ground: &Ground) -> Result<ViewpointGraph, GraphError> {
     let mut map = RoadMap { ground, nodes: Vec::new() };
     map.seed(house);
@@ -43,7 +43,7 @@ impl RoadMap<'_> {
         }
     }
 
-    /// Openings, and what leads up the stairs.
+    /// Adds viewpoints in openings and on the stairs.
     fn seed(&mut self, house: &House) {
         for opening in house.openings.iter().filter(|opening| opening.is_passable()) {
             let (x, y) = opening.span.middle();
@@ -63,7 +63,7 @@ impl RoadMap<'_> {
         }
     }
 
-    /// The free cell nearest to a place, within 60 cm.
+    /// Adds the free cell nearest to a place, within 60 cm.
     fn add_nearest(&mut self, place: DVec3) {
         if let Some(cell) = self.ground.cell_at(place) {
             return self.add(cell);
@@ -75,7 +75,7 @@ impl RoadMap<'_> {
         }
     }
 
-    /// The most open cell of every room.
+    /// Adds the most open cell of every room.
     fn enter_rooms(&mut self, house: &House, clearances: &[Vec<u32>]) {
         for room in &house.rooms {
             let floor = room.floor as usize;
@@ -90,7 +90,7 @@ impl RoadMap<'_> {
         }
     }
 
-    /// Cells in the open first, each as far from the others as viewpoints are to be.
+    /// Adds further cells, the most open ones first, each at least `APART_M` from the others.
     fn fill(&mut self, clearances: &[Vec<u32>]) {
         let is_open = |cell: &Cell| clearances[cell.layer][cell.index] >= LEAST_OPEN;
         let mut cells: Vec<Cell> = self.ground.cells().filter(is_open).collect();
@@ -116,7 +116,7 @@ impl RoadMap<'_> {
         edges
     }
 
-    /// Joins what is still apart by the corners of the shortest way between.
+    /// Joins parts that are still apart, with viewpoints at the corners of the shortest way between them.
     fn connect(&mut self, edges: &mut Vec<(usize, usize)>) {
         loop {
             let parts = self.parts(edges);
@@ -130,7 +130,7 @@ impl RoadMap<'_> {
                 let way = self.ground.geodesic(self.nodes[a].1, self.nodes[b].1).ok()?;
                 Some((a, b, way.corners))
             };
-            // A pair with furniture or a floor between may have no short way; the next nearest has.
+            // A pair with furniture or a ceiling between may have no short way; the next nearest pair may.
             let Some((a, b, corners)) =
                 pairs.into_iter().take(12).filter_map(places).min_by_key(|(_, _, way)| way.len())
             else {

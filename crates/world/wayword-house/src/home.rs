@@ -1,4 +1,4 @@
-//! A house of a seed, drawn up and surveyed.
+//! The house of a seed, with its scene, its ground and its viewpoint graph.
 
 use super::{
     furnish::furnish,
@@ -20,10 +20,10 @@ use wayword_core::{
 use wayword_render::Camera;
 use wayword_world::seen_from;
 
-/// Who stands no farther from the middle of a wall stands in its opening, centimetres.
+/// An eye within this distance of the middle line of a wall stands in the opening, centimetres.
 const THRESHOLD_CM: i32 = 25;
 
-/// The home of a seed: the same on every machine.
+/// The house of a seed: the same on every machine.
 #[must_use]
 pub fn generate(seed: u64) -> House {
     let layout = lay_out(seed);
@@ -32,19 +32,19 @@ pub fn generate(seed: u64) -> House {
     House { seed, storeys, rooms, openings, windows, stairs, furniture }
 }
 
-/// A house, drawn up and surveyed.
+/// A house with its scene, its ground and its viewpoint graph.
 #[derive(Debug)]
 pub(super) struct Home {
     pub(super) id: SceneId,
     pub(super) scene: HouseScene,
     pub(super) ground: Ground,
     pub(super) graph: Arc<ViewpointGraph>,
-    /// The viewpoints from which each object is seen; looked for when first asked for.
+    /// The viewpoints from which each object is seen; computed on first use.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
 }
 
 impl Home {
-    /// The home that a scene names.
+    /// Builds the house that a scene names.
     pub(super) fn build(scene: &SceneId) -> Result<Self, PlatformError> {
         let house = generate(seed_of(scene).ok_or_else(|| unknown(scene.as_str()))?);
         let ground = Ground::of(&house);
@@ -58,7 +58,7 @@ impl Home {
         Ok(Self { id: scene.clone(), scene: drawn, ground, graph: Arc::new(graph), seen_from: OnceLock::new() })
     }
 
-    /// What is seen from a pose, in a picture of a size.
+    /// The view from a pose, with a picture of this size in pixels.
     pub(super) fn view(&self, pose: Pose, gaze: Gaze, (width, height): (u32, u32)) -> Result<View, PlatformError> {
         let aspect = f64::from(height) / f64::from(width.max(1));
         let camera = Camera {
@@ -80,7 +80,7 @@ impl Home {
         Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
     }
 
-    /// The error that something of this home cannot be drawn.
+    /// The error that something in this house cannot be drawn.
     pub(super) fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
         PlatformError::UnknownScene { scene: self.id.to_string(), hint: error.to_string() }
     }
@@ -90,7 +90,7 @@ impl Home {
         Some(room.kind.word().to_owned())
     }
 
-    /// The room of an eye; of one that stands in an opening, the room into which it looks.
+    /// The room in which an eye is. If the eye stands in an opening, it is the room into which it looks.
     pub(super) fn room_seen(&self, eye: DVec3, heading: Heading) -> Option<String> {
         let house = &self.scene.house;
         let floor_cm = (eye.z - EYE_M) * 100.0;
@@ -103,7 +103,7 @@ impl Home {
         in_opening.then(|| self.room_name(eye + ahead)).flatten().or_else(|| self.room_name(eye))
     }
 
-    /// Everything visible from a pose, in small pictures: what counts there counts in large ones.
+    /// Everything visible from a pose. Small pictures are enough, because an object counts by its share of the picture.
     pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<Label>, PlatformError> {
         let mut all = Vec::new();
         for gaze in Gaze::around(pose.heading) {
@@ -131,14 +131,14 @@ impl Home {
         Err(PlatformError::nowhere(&self.id, frame))
     }
 
-    /// Ground under every viewpoint.
+    /// The place on the ground under every viewpoint.
     pub(super) fn standing_places(&self) -> Vec<DVec3> {
         let eyes = self.graph.viewpoints().filter_map(|id| self.graph.position(id));
         eyes.map(|eye| eye - DVec3::Z * EYE_M).collect()
     }
 }
 
-/// The seed in a scene's name, which must be written as [`HousePlatform::scene_of`] does.
+/// The seed in a scene's name, which must be written exactly as [`HousePlatform::scene_of`] writes it.
 fn seed_of(scene: &SceneId) -> Option<u64> {
     let digits = scene.as_str().strip_prefix("house-")?;
     let seed: u64 = digits.parse().ok()?;

@@ -1,4 +1,4 @@
-//! What is visible in a picture, told from its pixels.
+//! Labels of what is visible in a picture, found from its pixels.
 
 use super::{
     objects::{Object, Role},
@@ -7,9 +7,10 @@ use super::{
 use wayword_core::{Gaze, Heading, Label, ObjectId};
 use wayword_render::{Camera, Picture, Visible, box_corners, evident_objects};
 
-/// Labels of what is visible, largest first: furniture, doors, windows and stairs whose box's middle lies within the gaze.
+/// Labels of what is visible, largest first: furniture, doors, windows and stairs. The middle of an object's box must
+/// lie within the gaze.
 ///
-/// What is hidden behind something else does not count, nor what only a sliver is seen of.
+/// An object that is hidden behind others, or of which only a sliver shows, gets no label.
 pub(super) fn labels(scene: &HouseScene, camera: &Camera, gaze: Gaze, picture: &Picture) -> Vec<Label> {
     let seen = evident_objects(picture);
     let told = seen.iter().filter_map(|each| {

@@ -1,26 +1,26 @@
-//! Light that is baked into corners: lamps, windows, and the dimness of edges and of what lies under things.
+//! Light that is baked into mesh corners: from lamps and windows, with shadow at a room's edges and near furniture.
 //!
-//! The renderer multiplies colours as they are stored, so light is computed linearly and its square root handed over
-//! (a gamma of 2, which needs no mathematics library).
+//! The renderer multiplies colours as they are stored. So light is computed linearly, and its square root is stored (a
+//! gamma of 2, which needs no mathematics library).
 
 use super::model::{Furniture, House, Room};
 use glam::Vec3;
 
 /// Light of a room without any lamp.
 const AMBIENT: f32 = 0.42;
-/// How far the dimness of an inner edge reaches, metres.
+/// How far the shadow of an inner edge reaches, metres.
 const EDGE_M: f32 = 0.55;
-/// How far the shadow of a thing reaches, metres.
+/// How far the shadow of a piece of furniture reaches, metres.
 const CONTACT_M: f32 = 0.4;
 
-/// What lights one room.
+/// The light of one room.
 pub(super) struct RoomLight {
     low: Vec3,
     high: Vec3,
     lamps: Vec<Vec3>,
     /// Middle, direction into the room, and area in square metres.
     windows: Vec<(Vec3, Vec3, f32)>,
-    /// Boxes that stand on the floor or before walls.
+    /// Boxes of the furniture that casts shadow: lower and upper corner, metres.
     boxes: Vec<(Vec3, Vec3)>,
 }
 
@@ -94,7 +94,7 @@ impl RoomLight {
         0.9 * area * facing / (1.2 + distance_sq)
     }
 
-    /// Dimness near the shell's inner edges, except at the face on which the corner itself lies.
+    /// Shadow near the shell's inner edges, except at the face on which the corner itself lies.
     fn edges(&self, at: Vec3, normal: Vec3) -> f32 {
         let near = |distance: f32, facing: f32| {
             let own = facing > 0.5 && distance < 0.02;

@@ -1,4 +1,4 @@
-//! What a house is made of.
+//! The parts of a house.
 
 use super::{
     catalogue::FurnitureKind,
@@ -17,12 +17,12 @@ pub const HALF_WALL_CM: i32 = 6;
 /// Thickness of a door's leaf, centimetres.
 pub const LEAF_CM: i32 = 4;
 
-/// A home: rooms joined by openings, and what stands in them. World frame; the ground floor lies at z = 0.
+/// A home: rooms joined by openings, and the furniture in them. World frame; the ground floor lies at z = 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct House {
-    /// What it was made from.
+    /// The seed it was made from.
     pub seed: u64,
-    /// One or two.
+    /// How many storeys it has: one or two.
     pub storeys: u32,
     /// All rooms, those of the ground floor first.
     pub rooms: Vec<Room>,
@@ -30,9 +30,9 @@ pub struct House {
     pub openings: Vec<Opening>,
     /// Windows.
     pub windows: Vec<Window>,
-    /// The way up, in houses with two storeys.
+    /// The stairs, in houses with two storeys.
     pub stairs: Option<Stairs>,
-    /// Everything that stands, lies or hangs.
+    /// Everything that stands, lies or hangs in it.
     pub furniture: Vec<Furniture>,
 }
 
@@ -60,17 +60,17 @@ pub enum RoomKind {
 pub struct Room {
     /// What it is for.
     pub kind: RoomKind,
-    /// The floor on which it lies, 0 at the ground; a staircase belongs to the lower one.
+    /// The storey on which it lies, 0 at the ground; a staircase belongs to the lower storey.
     pub floor: u32,
     /// Middle lines of its walls.
     pub outline: RectCm,
     /// From its floor to its ceiling, centimetres.
     pub height_cm: i32,
-    /// Paint of the walls.
+    /// Colour of the walls.
     pub wall_colour: Colour,
-    /// What one walks on.
+    /// What its floor is made of.
     pub floor_finish: FloorFinish,
-    /// Its colour.
+    /// Colour of its floor.
     pub floor_colour: Colour,
 }
 
@@ -95,7 +95,7 @@ pub struct Opening {
     pub id: u32,
     /// The room it belongs to.
     pub room: usize,
-    /// The room beyond; none for the front door.
+    /// The room beyond; `None` for the front door and the garage door.
     pub beyond: Option<usize>,
     /// Where it lies on the shared middle line of the walls.
     pub span: SpanCm,
@@ -185,7 +185,7 @@ pub struct Furniture {
     pub height_cm: i32,
     /// Quarter turns counter-clockwise; at 0 its front looks south.
     pub quarter_turns: u8,
-    /// Seed of what varies in its look.
+    /// Seed of the variations in its look.
     pub variant: u32,
 }
 
@@ -242,7 +242,8 @@ impl Opening {
         }
     }
 
-    /// Footprint of a leaf that stands open: across the wall's line, `reach` long and `thick` thick, centimetres.
+    /// Footprint of a leaf that stands open at a right angle to the wall: as long as the opening is wide, and `thick`
+    /// centimetres thick. `None` where no leaf stands open.
     #[must_use]
     pub fn open_leaf(&self, rooms: &[Room], thick: i32) -> Option<RectCm> {
         let Leaf::Open { into, hinge_low } = self.leaf else {
@@ -264,7 +265,8 @@ impl Opening {
 }
 
 impl House {
-    /// The room in which a point lies, given the floor under it (metres): the staircase where both floors overlap.
+    /// The room in which a point lies, given the height of the floor under it (metres). A staircase counts on both
+    /// storeys.
     #[must_use]
     pub fn room_at(&self, x_m: f64, y_m: f64, floor_z_m: f64) -> Option<&Room> {
         let holds = |room: &&Room| {

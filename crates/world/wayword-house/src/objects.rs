@@ -1,4 +1,4 @@
-//! Everything in a house that has a number in its pictures.
+//! The objects of a house, by their numbers in its pictures.
 
 use super::{
     model::{House, Opening},
@@ -7,7 +7,7 @@ use super::{
 use std::collections::BTreeMap;
 use wayword_core::DVec3;
 
-/// What a number in a picture means.
+/// The object that a number in a picture means.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
     /// Its name in plain words.
@@ -18,18 +18,18 @@ pub struct Object {
     pub bounds_m: (DVec3, DVec3),
     /// The room it is in.
     pub room: usize,
-    /// What part it plays.
+    /// What kind of part of the house it is.
     pub role: Role,
 }
 
-/// What part an object plays in a house.
+/// What kind of part of a house an object is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// A floor, a wall, a ceiling: always there, so never worth a label.
+    /// A floor, a wall or a ceiling. Every room has them, so they get no label.
     Shell,
     /// Doors, windows, stairs.
     Fixture,
-    /// What could be carried in or out.
+    /// Things that could be carried in or out.
     Furniture,
 }
 
@@ -44,7 +44,7 @@ impl Object {
 /// The parts of a room's shell, in the order of their numbers.
 pub(super) const SHELL: [&str; 3] = ["floor", "wall", "ceiling"];
 
-/// The number of a part of a room's shell: above those of everything else.
+/// The number of a part of a room's shell: above the numbers of all other objects.
 pub(super) fn shell_id(house: &House, room: usize, part: usize) -> u32 {
     let furniture = house.furniture.iter().map(|piece| piece.id).max().unwrap_or(0);
     let last = furniture.max(house.openings.iter().map(|opening| opening.id).max().unwrap_or(0));

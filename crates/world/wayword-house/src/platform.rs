@@ -10,7 +10,7 @@ use wayword_core::{
     ViewpointGraph, ViewpointId,
 };
 
-/// Houses that are kept ready at a time; each takes about 15 MB.
+/// How many houses are kept in memory; each takes about 15 MB.
 const READY: usize = 6;
 /// Widest gaze that one flat picture can show, radians.
 const WIDEST_RAD: f64 = 2.6;
@@ -22,10 +22,10 @@ pub struct HousePlatform {
     ready: Recent<SceneId, Home>,
 }
 
-/// What can be chosen about the platform.
+/// The options of the platform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HouseOptions {
-    /// How many scenes it lists, from `house-0` on; any other seed can be asked for by its name.
+    /// How many scenes it lists, from `house-0` on. The scene of any other seed can be asked for by its name.
     pub scenes: u64,
     /// Width of pictures, pixels.
     pub width_px: u32,
@@ -42,7 +42,7 @@ impl Default for HouseOptions {
 }
 
 impl HousePlatform {
-    /// The platform with its default options.
+    /// The platform with these options.
     #[must_use]
     pub fn new(options: HouseOptions) -> Self {
         Self { options, ready: Recent::new(READY) }
@@ -51,7 +51,7 @@ impl HousePlatform {
     /// The scene of a seed.
     ///
     /// # Errors
-    /// Never: every seed has a house. The signature is that of ids.
+    /// Never: every seed has a house. There is an error type only because making an id can fail.
     pub fn scene_of(seed: u64) -> Result<SceneId, PlatformError> {
         let name = format!("house-{seed}");
         SceneId::new(name.clone()).map_err(|_| unknown(&name))

@@ -1,6 +1,6 @@
 //! Rectangles and walls on the centimetre grid.
 //!
-//! Integers keep shared walls exactly shared, and the plan the same on every machine.
+//! With integers, two rooms share a wall exactly, and the plan is the same on every machine.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +36,7 @@ pub enum Wall {
 pub struct SpanCm {
     /// Whether it runs along x (then `at` is a y).
     pub along_x: bool,
-    /// The other coordinate.
+    /// The coordinate on the other axis.
     pub at: i32,
     /// Lower end.
     pub from: i32,
@@ -48,7 +48,8 @@ impl Wall {
     /// All four, by quarter turns counter-clockwise from north.
     pub const ALL: [Self; 4] = [Self::North, Self::West, Self::South, Self::East];
 
-    /// Quarter turns, counter-clockwise, of a piece whose back stands at this wall (0: its back is north, it faces south).
+    /// Quarter turns, counter-clockwise, of a piece whose back stands at this wall (0: its back is north, and it faces
+    /// south).
     #[must_use]
     pub fn quarter_turns(self) -> u8 {
         self as u8
@@ -134,13 +135,13 @@ impl RectCm {
         ((self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2)
     }
 
-    /// Smaller by `by` on every side.
+    /// The rectangle made smaller by `by` on every side.
     #[must_use]
     pub fn inset(&self, by: i32) -> Self {
         Self::new(self.x0 + by, self.y0 + by, self.x1 - by, self.y1 - by)
     }
 
-    /// Whether the insides meet.
+    /// Whether the insides overlap.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
         self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
@@ -171,7 +172,7 @@ impl RectCm {
         SpanCm { along_x: wall.along_x(), at, from, to }
     }
 
-    /// The stretch of wall that two rectangles share, with the wall as the first one has it.
+    /// The stretch of wall that two rectangles share, and which wall of this one it lies on.
     #[must_use]
     pub fn shared_edge(&self, other: &Self) -> Option<(Wall, SpanCm)> {
         Wall::ALL.into_iter().find_map(|wall| {

@@ -1,4 +1,4 @@
-//! Random walks through a house: a shortest way between two places, with frames along it.
+//! Random paths through a house: a shortest way between two places, with frames along it.
 
 use super::{dice::Dice, graph::EYE_M, ground::Way, home::Home, objects::Role};
 use wayword_core::{
@@ -6,14 +6,14 @@ use wayword_core::{
 };
 use wayword_world::wander::{Wander, no_such_walk, wander};
 
-/// A corner so near to the frame before it gets none of its own, metres.
+/// A corner nearer than this to the frame before it gets no frame of its own, metres.
 const CROWDED_M: f64 = 0.4;
-/// A target is at most so far from the last frame, metres.
+/// Largest distance of a target from the last frame, metres.
 const TARGET_REACH_M: f64 = 4.0;
 
-/// A walk whose length keeps to `request`, with frames at most `interval_m` apart and at every corner.
+/// A path whose length fits `request`, with frames at most `interval_m` apart and at every corner.
 ///
-/// Both ends are walkable places near random viewpoints; the walk starts looking along its first hop.
+/// Both ends are the places of random viewpoints. The first frame looks along the first move.
 pub(super) fn path(
     scene: &SceneId,
     home: &Home,
@@ -26,7 +26,7 @@ pub(super) fn path(
     wander(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
 }
 
-/// Walks through a house.
+/// Chooses random paths through a house.
 struct Walker<'a> {
     home: &'a Home,
     places: Vec<DVec3>,
@@ -84,7 +84,8 @@ fn stop(place: DVec3) -> Stop {
     Stop { position: place + DVec3::Z * EYE_M, viewpoint: None, level: Some(1 + u32::from(place.z > half_storey_m)) }
 }
 
-/// One of the pieces of furniture in reach: without a namesake in sight if there is such, else one whose colour tells it.
+/// One of the pieces of furniture in reach. A piece without a namesake in sight comes first; otherwise the program
+/// takes one that its colour sets apart from its namesakes.
 fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, PlatformError> {
     let labels = home.labels_around(last)?;
     let namesakes = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() - 1;

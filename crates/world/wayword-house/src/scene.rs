@@ -1,4 +1,4 @@
-//! A house that is ready to be looked at.
+//! A house that is ready to be drawn.
 
 use super::{
     drawing,
@@ -9,21 +9,21 @@ use std::collections::BTreeMap;
 use wayword_core::{FromAbove, ViewpointGraph};
 use wayword_render::{Background, Camera, Filter, Picture, RenderError, Scene, SceneError, render, storey};
 
-/// A house with its drawing and the meaning of the numbers in its pictures.
+/// A house with its meshes and the objects behind the numbers in its pictures.
 #[derive(Debug)]
 pub struct HouseScene {
-    /// What was drawn.
+    /// The house.
     pub house: House,
-    /// Everything that has a number.
+    /// All objects by their numbers.
     pub objects: BTreeMap<u32, Object>,
     scene: Scene,
 }
 
 impl HouseScene {
-    /// Draws up a house.
+    /// Prepares a house for drawing.
     ///
     /// # Errors
-    /// When a house that was edited or read from a file holds what cannot be drawn.
+    /// When a house that was edited or read from a file has something that cannot be drawn.
     pub fn new(house: House) -> Result<Self, SceneError> {
         let drawing = drawing::draw(&house);
         let scene = Scene::new(drawing.meshes, drawing.materials, drawing.textures)?
@@ -32,7 +32,7 @@ impl HouseScene {
         Ok(Self { objects: objects::objects(&house), house, scene })
     }
 
-    /// A view of it, with the numbers of what is seen in each pixel.
+    /// A view of the house, with the number of the object in each pixel.
     ///
     /// # Errors
     /// When the camera's numbers are not usable.

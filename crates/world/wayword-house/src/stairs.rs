@@ -21,7 +21,7 @@ impl Stairs {
         if self.entry.along_x() { self.well.depth() } else { self.well.width() }
     }
 
-    /// From where to where a flight reaches along the entry, centimetres from the well's lower end.
+    /// Where a flight begins and ends along the entry, centimetres from the well's lower end.
     #[must_use]
     pub fn flight_across(&self, lower: bool) -> (i32, i32) {
         let half = self.width_cm() / 2;
@@ -40,7 +40,7 @@ impl Stairs {
         }
     }
 
-    /// Along the entry and away from it, metres, of a point in the world.
+    /// The coordinates of a world point along the entry and away from it, metres.
     fn local_m(&self, x_m: f64, y_m: f64) -> (f64, f64) {
         let well = &self.well;
         let (x0, y0) = (f64::from(well.x0) / 100.0, f64::from(well.y0) / 100.0);

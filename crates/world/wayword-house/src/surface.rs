@@ -1,8 +1,8 @@
-//! What things look like: a pattern and a colour.
+//! The surface of things: a pattern and a colour.
 
 use super::colour::Colour;
 
-/// A picture that is laid on surfaces; light grey where the colour is to come from the surface.
+/// A picture that is laid on surfaces. It is light grey where the surface gives the colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Pattern {
     Plain,
@@ -113,7 +113,7 @@ impl Surface {
     }
 
     pub(crate) fn wood(colour: Colour) -> Self {
-        // Painted white, no grain shows.
+        // White paint hides the grain.
         let pattern = if colour == Colour::White { Pattern::Plain } else { Pattern::Wood };
         Self::new(pattern, colour.rgb())
     }

@@ -8,10 +8,10 @@ use std::hint::black_box;
 use std::time::Instant;
 use wayword_render::{Camera, CubeMap, Face, Filter, Material, Mesh, Scene, Texture, render, sample_view};
 
-/// Where pictures are taken: a walk through the scan.
+/// How many poses pictures are taken from, all over the scan.
 const POSES: u32 = 100;
 
-/// How finely a scan is divided.
+/// How fine the mesh of a scan is.
 struct Grain {
     name: &'static str,
     /// Squares along a metre of wall, two triangles each.
@@ -23,8 +23,8 @@ struct Grain {
 const HALF_A_MILLION: Grain = Grain { name: "500k", per_metre: 24.0, column: [60, 30] };
 const A_MILLION: Grain = Grain { name: "1.1M", per_metre: 34.5, column: [86, 43] };
 
-/// A bumpy box of 12 x 9 x 3 m seen from inside with 40 bumpy columns in it: triangles of 3 or 4 cm, as scanners give. Each
-/// surface has its own part of the texture: a quarter of its side for a wall, an eighth for a column.
+/// A bumpy box of 12 x 9 x 3 m seen from inside, with 40 bumpy columns in it: triangles of 3 or 4 cm, as scanners give.
+/// Each surface has its own part of the texture: a quarter of its side for a wall, an eighth for a column.
 fn scan(grain: &Grain) -> Mesh {
     let mut mesh = Mesh { id: 1, ..Mesh::default() };
     let (a, b, c) = (12.0, 9.0, 3.0);
@@ -93,7 +93,7 @@ fn pose(step: u32) -> Camera {
     Camera { position, heading_rad: f64::from(step), elevation_rad: -0.2, vertical_fov_rad, width: 640, height: 480 }
 }
 
-/// One view after another: criterion's figure is that of the mean pose, the printed one that of the median pose.
+/// Draws one view after another. Criterion's figure is the mean over the poses; the printed figure is the median.
 fn views(criterion: &mut Criterion) {
     for grain in [HALF_A_MILLION, A_MILLION] {
         let mut scene = scene(&grain);

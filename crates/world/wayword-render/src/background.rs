@@ -1,11 +1,11 @@
-//! What is seen where nothing is.
+//! The background of a picture.
 
 /// Colour of the pixels that no triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
     /// One colour.
     Plain([u8; 3]),
-    /// Blends by the sine of the elevation of the pixel's ray.
+    /// Three colours, blended by the sine of the elevation of the pixel's ray.
     Sky {
         /// Straight up.
         zenith: [u8; 3],
@@ -17,7 +17,7 @@ pub enum Background {
 }
 
 impl Default for Background {
-    /// Black, as Habitat has it.
+    /// Black, as in Habitat.
     fn default() -> Self {
         Self::Plain([0; 3])
     }

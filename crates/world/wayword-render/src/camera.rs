@@ -25,8 +25,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera at `position` that looks along `forward` (any length). Poses given as quaternions (Habitat's) come
-    /// in this way: their roll is zero.
+    /// The camera at `position` that looks along `forward` (any length). Use it for poses given as quaternions
+    /// (Habitat's): their roll is zero.
     #[must_use]
     pub fn looking_along(position: DVec3, forward: DVec3, vertical_fov_rad: f64, width: u32, height: u32) -> Self {
         let level = libm::sqrt(forward.x * forward.x + forward.y * forward.y);
@@ -93,11 +93,11 @@ impl Camera {
 
 /// Refuses angles that no flat picture can have.
 pub(crate) fn check_fov(value: f64) -> Result<(), RenderError> {
-    // The bounds keep the tangent and its inverse within what single precision bears.
+    // The bounds keep the tangent and its inverse within what single precision can hold.
     if (1e-4..=3.1).contains(&value) {
         return Ok(());
     }
-    Err(RenderError::Number { field: "vertical_fov_rad", value, wanted: "within 0.0001..=3.1" })
+    Err(RenderError::Number { field: "vertical_fov_rad", value, wanted: "between 0.0001 and 3.1" })
 }
 
 #[cfg(test)]
@@ -115,7 +115,7 @@ mod tests {
         let (x, y, depth) = camera(0.0, 0.0).project(DVec3::new(2.0, 8.0, 1.5)).unwrap();
         assert!(x > 320.0 && (y - 240.0).abs() < 1e-9 && (depth - 10.0).abs() < 1e-12);
         let (_, y, _) = camera(0.0, 0.0).project(DVec3::new(1.0, 8.0, 2.5)).unwrap();
-        assert!(y < 240.0, "what is higher is further up in the picture");
+        assert!(y < 240.0, "a higher point is further up in the picture");
         assert_eq!(camera(0.0, 0.0).project(DVec3::new(1.0, -3.0, 1.5)), None);
     }
 

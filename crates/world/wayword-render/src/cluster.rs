@@ -14,7 +14,8 @@ const NOWHERE: u32 = u32::MAX;
 pub(crate) struct Triangle {
     /// Indices into the soup's vertices.
     pub(crate) corners: [u32; 3],
-    /// Number in the order the caller gave; at equal depth the lower one is seen, so that clusters do not show.
+    /// Number in the order the caller gave. At equal depth the lower number is seen, so that clusters do not change the
+    /// picture.
     pub(crate) source: u32,
 }
 
@@ -43,7 +44,7 @@ pub(crate) struct Soup {
 }
 
 impl Soup {
-    /// Adds a checked mesh; `surface` is what its clusters will name.
+    /// Adds a checked mesh; `surface` is the index that its clusters get.
     pub(crate) fn add(&mut self, mesh: &Mesh, surface: u32) {
         let first_source = self.triangles.len() as u32;
         let order = near_order(mesh);
@@ -60,7 +61,7 @@ impl Soup {
         for &index in group {
             let corners = mesh.triangles[index as usize].map(|vertex| {
                 let vertex = vertex as usize;
-                // Places before this cluster's belong to others.
+                // Places before this cluster's belong to other clusters.
                 if stored[vertex] == NOWHERE || stored[vertex] < first_vertex {
                     let position = mesh.positions[vertex];
                     (low, high) = (low.min(position), high.max(position));

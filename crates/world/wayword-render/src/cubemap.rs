@@ -30,7 +30,7 @@ pub struct CubeMap {
 pub enum CubeMapError {
     /// A face is not square, empty or too large.
     #[error(
-        "face {face}: {bytes} bytes for {side_px}x{side_px} pixels: give three per pixel, side in 1..={MAX_FACE_PX}"
+        "face {face} has {bytes} bytes for {side_px}x{side_px} pixels: give three per pixel, side 1 to {MAX_FACE_PX}"
     )]
     Face {
         /// Index of the face.
@@ -41,7 +41,7 @@ pub enum CubeMapError {
         bytes: usize,
     },
     /// The strip does not hold six squares side by side.
-    #[error("skybox strip of {width}x{height} pixels with {bytes} bytes: give six square faces side by side, RGB")]
+    #[error("skybox strip of {width}x{height} pixels with {bytes} bytes: give six square faces side by side, in RGB")]
     Strip {
         /// Pixels per row.
         width: u32,

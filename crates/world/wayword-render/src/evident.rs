@@ -1,12 +1,13 @@
-//! What shows so much of itself in a picture that somebody would name it.
+//! Which objects show so much of themselves in a picture that a person would name them.
 
 use crate::{Camera, Picture, Visible, visible_objects};
 use glam::DVec3;
 use std::cmp::Reverse;
 
-/// An id counts from this share of the picture's pixels on: at 640 x 480, a patch of 21 x 21.
+/// An id must cover at least this share of the picture's pixels: at 640 x 480, a patch of 21 x 21.
 const LEAST_SHARE: f64 = 0.0015;
-/// And if the box of its pixels covers at least this share of its own, as far as that lies within the picture.
+/// The box of its pixels must cover at least this share of the object's own box, as far as that lies within the
+/// picture.
 const LEAST_SHOWN: f64 = 0.22;
 
 /// The ids that show on enough pixels to be named, the largest first.
@@ -20,8 +21,8 @@ pub fn evident_objects(picture: &Picture) -> Vec<Visible> {
 }
 
 impl Visible {
-    /// Whether only a sliver shows of a thing whose box has these corners (metres, world frame). Of a thing that reaches behind the
-    /// eye that cannot be told, and it is none.
+    /// Whether only a sliver shows of an object whose box has these corners (metres, world frame). An object that
+    /// reaches behind the eye never counts as a sliver, because its box cannot be projected.
     #[must_use]
     pub fn is_sliver(&self, camera: &Camera, corners: &[DVec3; 8]) -> bool {
         self.shown(camera, corners).is_some_and(|share| share < LEAST_SHOWN)
@@ -53,7 +54,7 @@ pub fn box_corners(low: DVec3, high: DVec3) -> [DVec3; 8] {
 mod tests {
     use super::*;
 
-    /// A box half a metre wide, so far ahead, whose pixels fill so many of 160 columns.
+    /// Checks a box half a metre wide, `ahead_m` metres ahead, whose pixels fill `columns` of 160 columns.
     fn is_sliver(ahead_m: f64, columns: u32) -> bool {
         let camera = Camera {
             position: DVec3::ZERO,

@@ -1,7 +1,7 @@
-//! Meshes to views, cube maps to views, top-down maps: drawn on the CPU, the same picture on every machine.
+//! Draws views of meshes and of cube maps, and top-down maps, on the CPU. A picture is the same on every machine.
 //!
-//! The renderer knows meshes, materials, textures and ids, not rooms or platforms. It shades the unlit way that
-//! Habitat does: light arrives baked into vertex colours or textures. All geometry is in the world frame:
+//! The renderer knows meshes, materials, textures and ids, but not rooms or platforms. Like Habitat it draws without
+//! lights: the light is already baked into vertex colours or textures. All geometry is in the world frame:
 //! right-handed, metres, z up; headings are 0 along +y and grow clockwise seen from above.
 //!
 //! ```

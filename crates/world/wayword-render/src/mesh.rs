@@ -1,4 +1,4 @@
-//! What is drawn: triangles and the surface they are made of.
+//! Triangles and their surface.
 
 use glam::{Vec2, Vec3};
 
@@ -37,6 +37,6 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Index into the scene's materials.
     pub material: usize,
-    /// What is written to the id buffer; 0 counts as background there.
+    /// The number that is written to the id buffer; 0 counts as background there.
     pub id: u32,
 }

@@ -1,9 +1,9 @@
-//! Textures made ready for lookup: repeat wrap, bilinear or trilinear.
+//! Textures prepared for lookup: repeat wrap; nearest, bilinear or trilinear.
 
 use crate::texture::Texture;
 use glam::{Vec2, Vec3};
 
-/// Weights between texels come in this many steps (GPUs and llvmpipe have as many).
+/// Weights between texels come in this many steps, as on GPUs and in llvmpipe.
 const WEIGHTS: f32 = 256.0;
 
 /// One size of a texture.
@@ -33,7 +33,7 @@ impl Level {
         level
     }
 
-    /// The index of a texel is that of its row plus that of its place in it.
+    /// The index of a texel is `row(y) + in_row(x)`.
     fn row(&self, y: usize) -> usize {
         (y >> 2) * self.blocks_per_row * 16 + (y & 3) * 4
     }
@@ -42,8 +42,8 @@ impl Level {
         (x >> 2) * 16 + (x & 3)
     }
 
-    /// The picture at half the size: each texel the mean of the four under it (of sides of one texel: repeated). The
-    /// mean is taken of the encoded values, as GL does for such textures.
+    /// The picture at half the size. Each texel is the mean of the four under it; where a side has only one texel, that
+    /// one is repeated. The mean is taken of the encoded values, as GL does for these textures.
     fn halved(&self) -> Self {
         let texel = |x: u32, y: u32| {
             let (x, y) = (x.min(self.width - 1) as usize, y.min(self.height - 1) as usize);
@@ -93,7 +93,7 @@ impl Level {
 
 /// The texels on both sides of the coordinate `u` in an axis of `side` texels, and the weight of the latter.
 fn split(u: f32, side: u32) -> (usize, usize, u64) {
-    // The fraction first: it keeps the texel position exact for coordinates far outside [0, 1].
+    // The fraction is taken first: this keeps the texel position exact for coordinates far outside [0, 1].
     let position = (u - floor(u)) * side as f32 - 0.5;
     let position = if position < 0.0 { position + side as f32 } else { position };
     let whole = position as i32;
@@ -118,7 +118,7 @@ pub(crate) struct MipMap {
     base: Level,
     /// Each half as large as the one before, the first half as large as the base.
     smaller: Vec<Level>,
-    /// Whether texels are taken as they are.
+    /// Whether lookups take the nearest texel without blending.
     is_nearest: bool,
 }
 
@@ -130,7 +130,7 @@ impl MipMap {
         Self { base, smaller: Vec::new(), is_nearest: false }
     }
 
-    /// Whether lookups blend between texels.
+    /// Sets whether lookups blend between texels.
     pub(crate) fn blend(&mut self, blends: bool) {
         self.is_nearest = !blends;
     }
@@ -153,7 +153,7 @@ impl MipMap {
     }
 
     /// Colour at `uv`, 0..=255 per channel. `footprint` gives the change of `uv` from a pixel to the next one to the
-    /// right and below; it is asked only where there are levels to choose from.
+    /// right and below; it is called only where there are levels to choose from.
     pub(crate) fn sample(&self, uv: Vec2, footprint: impl FnOnce() -> [Vec2; 2]) -> Vec3 {
         if self.is_nearest {
             return self.base.nearest(uv);
@@ -175,7 +175,8 @@ impl MipMap {
     }
 }
 
-/// Base-2 logarithm to within 0.09, from the number's own bits: enough to choose a level, and alike on every machine.
+/// Base-2 logarithm to within 0.09, from the number's own bits: enough to choose a level, and the same on every
+/// machine.
 fn log2(value: f32) -> f32 {
     value.to_bits() as f32 / 8_388_608.0 - 127.0
 }

@@ -1,4 +1,4 @@
-//! Four level views of 90 degrees to one cylinder around the eye.
+//! Joins four level views of 90 degrees into one cylinder around the eye.
 
 use crate::bilinear::bilinear;
 use crate::picture::{MAX_SIDE_PX, RenderError, check_size};
@@ -17,7 +17,7 @@ pub struct Quarter<'a> {
     pub rgb: &'a [u8],
 }
 
-/// What is seen all around, unrolled: columns are directions at even distances, rows heights on the cylinder.
+/// The view all around, unrolled: columns are evenly spaced directions, rows are heights on the cylinder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panorama {
     /// Pixels per row: the whole circle. The first view's middle is in the middle.
@@ -31,11 +31,11 @@ pub struct Panorama {
 /// Why views do not make a panorama.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PanoramaError {
-    /// None of the four is there.
+    /// None of the four views is given.
     #[error("none of the four views has a picture")]
     Empty,
     /// A view's bytes do not fill it.
-    #[error("view {view}: {bytes} bytes for {width}x{height} pixels: give three for each")]
+    #[error("view {view} has {bytes} bytes for {width}x{height} pixels: give three per pixel")]
     Bytes {
         /// Index of the view.
         view: usize,
@@ -51,12 +51,13 @@ pub enum PanoramaError {
     Size(#[from] RenderError),
 }
 
-/// Joins the views ahead, right, behind and left to a panorama, `width` pixels wide (else as wide as keeps the detail in the
-/// middle of the views). Each of its pixels is a ray of the cylinder: its colour is that of the view which holds the ray,
-/// bilinear. It is as high as all views reach, which is where they meet. Where a view is missing it has the colour `blank`.
+/// Joins the views ahead, right, behind and left into a panorama, `width` pixels wide. Without a `width`, it is as wide
+/// as keeps the detail in the middle of the views. Each of its pixels is a ray of the cylinder; its colour comes from
+/// the view that contains the ray, bilinear. The panorama is as high as all views reach at the seams, where they reach
+/// least high. Where a view is missing, it has the colour `blank`.
 ///
 /// # Errors
-/// [`PanoramaError`] where no view is there, one is not filled by its bytes, or a size cannot be.
+/// [`PanoramaError`] where no view is given, a view's bytes do not fill it, or a size is not allowed.
 pub fn panorama(
     views: [Option<Quarter<'_>>; 4],
     width: Option<u32>,
@@ -74,7 +75,7 @@ pub fn panorama(
     let natural = (PI * f64::from(widest)).round() as u32;
     let width = width.unwrap_or(natural.min(MAX_SIDE_PX));
     let step_rad = TAU / f64::from(width.max(1));
-    // At the seams views reach least high on the cylinder.
+    // The views reach least high on the cylinder at the seams.
     let height = (2.0 * lowest * FRAC_1_SQRT_2 / step_rad).floor().max(1.0);
     check_size(width.into(), height as u64)?;
     let height = height as u32;
@@ -98,7 +99,8 @@ fn check(index: usize, view: &Quarter<'_>) -> Result<(), PanoramaError> {
     Err(PanoramaError::Bytes { view: index, width, height, bytes })
 }
 
-/// The colour along a ray: `turn_rad` to the right of the first view's middle, `up` above the horizon on a cylinder of radius 1.
+/// The colour along a ray: `turn_rad` to the right of the first view's middle, `up` above the horizon on a cylinder of
+/// radius 1.
 fn look(views: &[Option<Quarter<'_>>; 4], turn_rad: f64, up: f64) -> Option<[u8; 3]> {
     let side = ((turn_rad + FRAC_PI_4) / FRAC_PI_2).floor();
     let view = views[side.rem_euclid(4.0) as usize % 4]?;
@@ -118,7 +120,7 @@ mod tests {
     use glam::DVec3;
     use proptest::prelude::*;
 
-    /// A world without end whose colour is a smooth function of the direction.
+    /// The colours of a scene that is infinitely far away: a smooth function of the direction.
     fn colour(ray: DVec3) -> [f64; 3] {
         let wave = |a: f64, b: f64| 128.0 + 50.0 * libm::sin(3.0 * a + 0.3) + 50.0 * libm::cos(2.0 * b);
         let ray = ray.normalize();
@@ -130,7 +132,7 @@ mod tests {
         Camera { position: DVec3::ZERO, heading_rad, elevation_rad: 0.0, vertical_fov_rad, width, height }
     }
 
-    /// What a camera sees of that world, rounded to bytes.
+    /// What a camera sees of that scene, rounded to bytes.
     fn seen(camera: &Camera) -> Vec<u8> {
         let pixels = (0..camera.height).flat_map(|y| (0..camera.width).map(move |x| (x, y)));
         pixels
@@ -157,7 +159,7 @@ mod tests {
             let pictures = quarters(heading, width, height);
             let whole = panorama(views(&pictures, width, height), asked, [0; 3]).unwrap();
             prop_assert_eq!(whole.width, asked.unwrap_or((PI * f64::from(width)).round() as u32));
-            // Half a pixel is lost where a view ends; elsewhere bilinear is as good as the views are fine.
+            // Half a pixel is lost where a view ends; elsewhere bilinear lookup is as exact as the views are fine.
             let pixel_rad = 2.0 / f64::from(width);
             for y in 0..whole.height {
                 for x in 0..whole.width {

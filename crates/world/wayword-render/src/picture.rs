@@ -1,4 +1,4 @@
-//! What drawing gives back, and why it may refuse.
+//! The result of drawing, and the reasons why it may fail.
 
 /// The longest side a picture may have.
 pub const MAX_SIDE_PX: u32 = 8192;
@@ -22,7 +22,7 @@ pub struct Picture {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RenderError {
     /// A side is zero or too long.
-    #[error("picture of {width}x{height} pixels: each side must lie in 1..={MAX_SIDE_PX}")]
+    #[error("picture of {width}x{height} pixels: each side must be from 1 to {MAX_SIDE_PX}")]
     Size {
         /// Pixels per row.
         width: u64,

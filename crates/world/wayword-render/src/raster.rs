@@ -29,7 +29,8 @@ impl Band {
         Self { width, first_row, nearness: vec![f32::NEG_INFINITY; pixels], seen: vec![Seen::NOTHING; pixels] }
     }
 
-    /// Draws all batches. The outcome of a pixel depends on no other, so it is the same in whatever bands.
+    /// Draws all batches. The result for a pixel depends on no other pixel, so it is the same for any division into
+    /// bands.
     pub(crate) fn draw(&mut self, batches: &[Batch], triangles: &[Triangle]) {
         let rows = (self.nearness.len() / self.width.max(1) as usize) as u32;
         let (first, end) = (self.first_row, self.first_row + rows);
@@ -51,7 +52,7 @@ impl Band {
         }
     }
 
-    /// `precedes` tells whether this triangle comes before another one that is equally near.
+    /// `precedes` says whether this triangle comes before another one that is equally near.
     fn draw_triangle(&mut self, triangle: &ScreenTriangle, seen: Seen, end: u32, precedes: impl Fn(Seen) -> bool) {
         let Some([left, right]) = centres_between(triangle.corners.map(|c| c.x), self.width) else { return };
         let edges = edges(triangle);
@@ -131,8 +132,8 @@ fn span(edges: &[Edge; 3], at: [i64; 3], count: i64) -> Option<(i64, i64)> {
     (start < stop).then_some((start, stop))
 }
 
-/// The quotient rounded up, of positive numbers below 2^52: there the division of doubles rounds to no other
-/// integer, and it is several times faster than that of integers.
+/// The quotient of two positive numbers below 2^52, rounded up. In this range the division of doubles never rounds to
+/// another integer, and it is several times faster than the division of integers.
 fn ceil_quotient(numerator: i64, denominator: i64) -> i64 {
     let quotient = (numerator as f64 / denominator as f64) as i64;
     if quotient * denominator < numerator { quotient + 1 } else { quotient }

@@ -1,4 +1,4 @@
-//! Drawing a scene: clusters to triangles, then bands of rows, each on whatever thread is free.
+//! Drawing a scene: clusters to triangles, then bands of rows, each on any thread that is free.
 
 use crate::background::Background;
 use crate::camera::Camera;
@@ -10,7 +10,7 @@ use crate::shade::Shader;
 use crate::view::View;
 use rayon::prelude::*;
 
-/// Bands per picture: several per core, so that a crowded one does not hold up the rest.
+/// Bands per picture: several per core, so that a crowded band does not delay the rest.
 const BANDS: usize = 16;
 
 /// Draws what a camera sees. The picture is the same to the bit for any number of threads and on any machine.

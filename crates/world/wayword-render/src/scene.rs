@@ -18,9 +18,9 @@ pub enum Filter {
     /// Bilinear on the full picture, as Habitat does: exact, but fine patterns shimmer in the distance.
     #[default]
     Bilinear,
-    /// The nearest texel, unblended: for pictures whose colours are names.
+    /// The nearest texel, unblended: for pictures whose colours encode object ids.
     Nearest,
-    /// Between the two levels of a mip chain that fit the pixel's footprint: calm in the distance.
+    /// Between the two levels of a mip chain that fit the pixel's footprint: no shimmer in the distance.
     Trilinear,
 }
 
@@ -45,14 +45,16 @@ pub(crate) struct Surface {
 /// Why a scene cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
-    /// More triangles than the renderer numbers.
+    /// More triangles than the renderer can number.
     #[error("the scene has {triangles} triangles: at most {MAX_TRIANGLES} can be drawn")]
     TooManyTriangles {
         /// Triangles given, all meshes together.
         triangles: usize,
     },
     /// A triangle names a vertex that is not there.
-    #[error("mesh {mesh}, triangle {triangle}: vertex {vertex} of {vertices} does not exist")]
+    #[error(
+        "mesh {mesh}, triangle {triangle}: vertex {vertex} does not exist: the mesh has {vertices}, counted from 0"
+    )]
     Vertex {
         /// Index of the mesh.
         mesh: usize,
@@ -64,7 +66,9 @@ pub enum SceneError {
         vertices: usize,
     },
     /// A list has another length than the positions.
-    #[error("mesh {mesh}: {field} has {length} entries for {vertices} positions: give one each{or_none}")]
+    #[error(
+        "mesh {mesh}: {field} has length {length}, but positions has length {vertices}: give one per position{or_none}"
+    )]
     Length {
         /// Index of the mesh.
         mesh: usize,
@@ -74,7 +78,7 @@ pub enum SceneError {
         length: usize,
         /// Vertices of the mesh.
         vertices: usize,
-        /// Whether leaving it empty would do too.
+        /// Says that the list may also be empty, where it may.
         or_none: &'static str,
     },
     /// A value is NaN, infinite, or beyond its bounds.
@@ -90,7 +94,7 @@ pub enum SceneError {
         wanted: &'static str,
     },
     /// A mesh names a material that is not there.
-    #[error("mesh {mesh}: material {material} of {materials} does not exist")]
+    #[error("mesh {mesh}: material {material} does not exist: the scene has {materials}, counted from 0")]
     NoMaterial {
         /// Index of the mesh.
         mesh: usize,
@@ -100,7 +104,7 @@ pub enum SceneError {
         materials: usize,
     },
     /// A material names a texture that is not there.
-    #[error("material {material}: texture {texture} of {textures} does not exist")]
+    #[error("material {material}: texture {texture} does not exist: the scene has {textures}, counted from 0")]
     NoTexture {
         /// Index of the material.
         material: usize,
@@ -116,7 +120,7 @@ pub enum SceneError {
         material: usize,
     },
     /// A texture's texels do not fill it.
-    #[error("texture {texture}")]
+    #[error("texture {texture} cannot be drawn")]
     Texture {
         /// Index of the texture.
         texture: usize,
@@ -154,14 +158,14 @@ impl Scene {
         Ok(Self { soup, surfaces, materials, textures, background: Background::default() })
     }
 
-    /// The same scene before another background (black until then).
+    /// The same scene with another background (the default is black).
     #[must_use]
     pub fn with_background(mut self, background: Background) -> Self {
         self.background = background;
         self
     }
 
-    /// The same scene with another texture lookup ([`Filter::Bilinear`] until then).
+    /// The same scene with another texture lookup (the default is [`Filter::Bilinear`]).
     #[must_use]
     pub fn with_filter(mut self, filter: Filter) -> Self {
         for texture in &mut self.textures {
@@ -229,10 +233,11 @@ mod tests {
     #[test]
     fn says_what_is_wrong_and_where() {
         let vertex = refusal(Mesh { triangles: vec![[0, 1, 2], [0, 1, 3]], ..mesh() });
-        assert_eq!(vertex, "mesh 0, triangle 1: vertex 3 of 3 does not exist");
+        assert_eq!(vertex, "mesh 0, triangle 1: vertex 3 does not exist: the mesh has 3, counted from 0");
         let uvs = refusal(Mesh { uvs: vec![Vec2::ZERO; 2], ..mesh() });
-        assert_eq!(uvs, "mesh 0: uvs has 2 entries for 3 positions: give one each, or none");
-        assert_eq!(refusal(Mesh { material: 1, ..mesh() }), "mesh 0: material 1 of 1 does not exist");
+        assert_eq!(uvs, "mesh 0: uvs has length 2, but positions has length 3: give one per position, or none");
+        let material = refusal(Mesh { material: 1, ..mesh() });
+        assert_eq!(material, "mesh 0: material 1 does not exist: the scene has 1, counted from 0");
         let positions = vec![Vec3::ZERO, Vec3::new(0.0, f32::NAN, 0.0), Vec3::ZERO];
         assert!(refusal(Mesh { positions, ..mesh() }).starts_with("mesh 0: positions[1] must be finite"));
         let far = vec![Vec3::ZERO, Vec3::ZERO, Vec3::new(0.0, 0.0, 1e30)];
@@ -248,7 +253,7 @@ mod tests {
         let none = Scene::new(vec![mesh()], vec![material.clone()], vec![]).unwrap_err();
         assert_eq!(none, SceneError::NoTexture { material: 0, texture: 0, textures: 0 });
         let bare = Scene::new(vec![mesh()], vec![material.clone()], vec![texture.clone()]).unwrap_err();
-        assert_eq!(bare.to_string(), "mesh 0: uvs has 0 entries for 3 positions: give one each");
+        assert_eq!(bare.to_string(), "mesh 0: uvs has length 0, but positions has length 3: give one per position");
         let torn = Texture { width: 1, height: 1, texels: vec![] };
         assert!(matches!(Scene::new(vec![], vec![], vec![torn]), Err(SceneError::Texture { texture: 0, .. })));
         let dressed = Mesh { uvs: vec![Vec2::ZERO; 3], ..mesh() };

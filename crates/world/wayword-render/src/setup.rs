@@ -20,17 +20,17 @@ pub(crate) struct ScreenTriangle {
     pub(crate) triangle: u32,
     /// Index into its batch's cuts.
     cut: u32,
-    /// Whether the last two corners had to change places for that.
+    /// Whether the last two corners were swapped for that.
     swapped: bool,
     /// Rows of pixels it can cover, both ends included.
     pub(crate) rows: [u16; 2],
 }
 
-/// What one cluster puts on the screen.
+/// The triangles that one cluster puts on the screen.
 #[derive(Debug)]
 pub(crate) struct Batch {
     pub(crate) triangles: Vec<ScreenTriangle>,
-    /// For parts of clipped triangles: the weights that their corners give to the whole triangle's.
+    /// For parts of clipped triangles: for each of their corners, the weights of the whole triangle's corners.
     cuts: Vec<[Vec3; 3]>,
     /// Index into the scene's surfaces.
     pub(crate) surface: u32,
@@ -57,7 +57,7 @@ impl ScreenTriangle {
     }
 }
 
-/// All that a view can show of a scene, in the order of its clusters.
+/// Everything that a view can show of a scene, in the order of its clusters.
 pub(crate) fn batches(scene: &Scene, view: &View) -> Vec<Batch> {
     let (frustum, clip_planes) = (view.frustum(), view.clip_planes());
     let visible = |cluster: &&Cluster| !view.misses(&frustum, cluster.centre, cluster.half_extent);
@@ -91,7 +91,7 @@ fn batch(scene: &Scene, view: &View, clip_planes: &[Plane], cluster: &Cluster) -
     (!builder.batch.triangles.is_empty()).then_some(builder.batch)
 }
 
-/// The corner of each vertex of a cluster; `None` where only clipping can tell.
+/// The corner of each vertex of a cluster; `None` where the vertex needs clipping.
 fn usable_corners(scene: &Scene, view: &View, cluster: &Cluster) -> Vec<Option<Corner>> {
     let first = cluster.first_vertex as usize;
     let positions = &scene.soup.positions[first..first + cluster.vertices as usize];

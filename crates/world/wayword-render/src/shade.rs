@@ -7,12 +7,12 @@ use crate::setup::Batch;
 use crate::view::{STEPS, View};
 use glam::{Vec2, Vec3};
 
-/// One triangle made ready for shading its pixels.
+/// One triangle, prepared for shading its pixels.
 pub(crate) struct Shader<'a> {
     scene: &'a Scene,
     id: u32,
     material: &'a Material,
-    /// Steps of the corners.
+    /// The corners, in sub-pixel steps.
     corners: [[i64; 2]; 3],
     inverse_area: f32,
     inverse_w: Vec3,
@@ -68,7 +68,7 @@ impl<'a> Shader<'a> {
         self.uvs[0] * share.x + self.uvs[1] * share.y + self.uvs[2] * share.z
     }
 
-    /// Shares of the corners in a pixel's centre, linear on the screen: the areas opposite them.
+    /// Weights of the corners at a pixel's centre, linear on the screen: the areas opposite them.
     fn shares(&self, column: usize, row: usize) -> Vec3 {
         let [x, y] = [column, row].map(|pixel| pixel as i64 * i64::from(STEPS) + i64::from(STEPS / 2));
         let area = |from: [i64; 2], to: [i64; 2]| (to[0] - from[0]) * (y - from[1]) - (to[1] - from[1]) * (x - from[0]);

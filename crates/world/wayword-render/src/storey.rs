@@ -7,15 +7,17 @@ use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use wayword_core::{FromAbove, Image, ViewpointGraph};
 
-/// How far above the eye the storey is cut open, metres: ceilings and the tops of doors are off, what stands there is not.
+/// How far above the eye the storey is cut open, metres: this removes ceilings and the tops of doors, but keeps the
+/// furniture.
 const CUT_M: f64 = 0.3;
-/// How far the picture reaches around the viewpoints, metres: about a room's half beyond the last of them.
+/// How far the picture reaches around the viewpoints, metres: about half a room beyond the outermost ones.
 const AROUND_M: f64 = 2.0;
 /// Longest side of the picture, pixels.
 const LONGEST_PX: f64 = 1600.0;
 /// Smallest side of a pixel, metres.
 const FINEST_M: f64 = 0.005;
-/// Each pixel is the mean of so many by so many: edges are smooth, and fine patterns calm.
+/// Each pixel is the mean of this many by this many finer ones, so that edges are smooth and fine patterns do not
+/// shimmer.
 const FINER: usize = 2;
 
 /// Draws the storey on which the viewpoints of a level stand; `None` where there are none.
@@ -33,7 +35,7 @@ pub fn storey(scene: &Scene, graph: &ViewpointGraph, level: u32) -> Result<Optio
         (low, high) = (low.min(eye.truncate()), high.max(eye.truncate()));
     }
     let (low, high) = (low - AROUND_M, high + AROUND_M);
-    // The one in the middle stands on the floor, whatever stands on stairs.
+    // The viewpoint of median height is on the floor, even if some are on stairs.
     eyes.sort_by(|a, b| a.z.total_cmp(&b.z));
     let cut_m = eyes[eyes.len() / 2].z + CUT_M;
     let metres_per_px = ((high - low).max_element() / LONGEST_PX).max(FINEST_M);

@@ -18,7 +18,7 @@ pub struct Texture {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TextureError {
     /// A side is zero or too long.
-    #[error("texture of {width}x{height} texels: each side must lie in 1..={MAX_TEXTURE_SIDE}")]
+    #[error("texture of {width}x{height} texels: each side must be from 1 to {MAX_TEXTURE_SIDE}")]
     Size {
         /// Texels per row.
         width: u32,

@@ -32,7 +32,7 @@ pub fn top_down(
         return Err(RenderError::Number { field, value: metres_per_pixel, wanted });
     }
     let size = (bounds_max - bounds_min) / metres_per_pixel;
-    // Casting saturates; NaN and negative sizes become 0: all are refused next.
+    // Casting saturates, and NaN and negative sizes become 0. `check_size` refuses all of these.
     let (width, height) = (size.x.ceil() as u64, size.y.ceil() as u64);
     check_size(width, height)?;
     let half = DVec2::new(width as f64, -(height as f64)) * (0.5 * metres_per_pixel);

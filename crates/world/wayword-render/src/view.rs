@@ -10,11 +10,11 @@ pub(crate) const NEAR_M: f32 = 0.01;
 /// leave neither gaps nor double hits.
 pub(crate) const STEPS: i32 = 256;
 
-/// Corners further than this from the picture's centre are clipped: it keeps the integers of coverage small.
+/// Corners further than this from the picture's centre are clipped, to keep the integers of coverage small.
 const GUARD_PX: f32 = 16_384.0;
 
-/// No corner lies further out than this, in steps. Clipping leaves none that does but by rounding, where a triangle
-/// is a thousand kilometres long.
+/// No corner lies further out than this, in steps. After clipping, only rounding can put one there, and only for a
+/// triangle that is a thousand kilometres long.
 const LIMIT_STEPS: f32 = 2.0 * GUARD_PX * STEPS as f32;
 
 /// The half-space of view points `p` with `normal . p + offset >= 0`.
@@ -42,7 +42,7 @@ pub(crate) struct Corner {
 }
 
 /// A view frame (x right, y down, z forward) with its projection. All single precision, in a fixed order of
-/// operations: a point gives the same corner wherever it is drawn from.
+/// operations, so a point gives the same corner in every triangle.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
     pub(crate) width: u32,
@@ -96,7 +96,7 @@ impl View {
 
     /// The planes around what the picture shows, near plane first.
     pub(crate) fn frustum(&self) -> [Plane; 5] {
-        // A pixel more on each side, against rounding.
+        // One more pixel on each side, because of rounding.
         self.planes(self.centre_px.map(|half| half + 1.0))
     }
 
@@ -146,7 +146,7 @@ impl View {
         Corner { x: snap(centre_x + scale * point.x), y: snap(centre_y + scale * point.y), nearness }
     }
 
-    /// What a corner's attributes are divided by before they are linear on the screen.
+    /// The factor that makes a corner's attributes linear on the screen.
     pub(crate) fn inverse_w(&self, nearness: f32) -> f32 {
         if self.perspective { nearness } else { 1.0 }
     }

@@ -1,4 +1,4 @@
-//! What can be seen in a picture, told from its pixels: what is hidden does not count.
+//! Which objects can be seen in a picture, found from its pixels. Hidden objects do not count.
 
 use crate::picture::Picture;
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// One id that shows in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visible {
-    /// As its meshes have it; never 0.
+    /// The id of its meshes; never 0.
     pub id: u32,
     /// Pixels that show it.
     pub pixels: u32,

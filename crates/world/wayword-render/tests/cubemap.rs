@@ -1,4 +1,4 @@
-//! A cube map must come out the way round it went in.
+//! A cube map must be sampled in the orientation in which it was given.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
@@ -9,7 +9,7 @@ use wayword_render::{CubeMap, CubeMapError, Face, sample_view};
 
 const SIDE: u32 = 16;
 
-/// Faces of noise, so that none looks like another or like itself turned.
+/// Faces of noise, so that no face looks like another or like itself turned.
 fn noise() -> CubeMap {
     let mut state = 1u32;
     let mut byte = || {

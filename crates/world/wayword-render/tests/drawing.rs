@@ -1,4 +1,4 @@
-//! What a drawn picture must be like, whatever is drawn.
+//! Properties that every drawn picture must have.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 

@@ -1,4 +1,5 @@
-//! Views of the genuine Matterport3D simulator against ours. Needs the oracle data; without it the test says so.
+//! Compares our views with those of the genuine Matterport3D simulator. Needs the oracle data; without it the test says
+//! that it is skipped.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
@@ -6,10 +7,10 @@ use glam::DMat3;
 use std::path::PathBuf;
 use wayword_render::{CubeMap, sample_view};
 
-/// The first viewpoint of the oracle's connectivity file, and the rows of its pose's rotation.
+/// The scan of the oracle data.
 const SCAN: &str = "17DRP5sb8fy";
 
-#[allow(clippy::approx_constant, reason = "the very numbers that the simulator was given")]
+#[allow(clippy::approx_constant, reason = "the exact numbers that the simulator was given")]
 const VIEWS: [(f64, f64); 6] = [
     (0.0, 0.0),
     (0.5235987755982988, 0.0),
@@ -45,7 +46,7 @@ fn views_equal_the_simulators() {
     }
 }
 
-/// The id and rotation of the file's first item, without a JSON library: the file is ours to trust here.
+/// The id and rotation of the file's first item. It is read without a JSON library because this file can be trusted.
 fn first_viewpoint(graph: &str) -> (String, DMat3) {
     let after = |key: &str| graph.split_once(&format!("\"{key}\":")).unwrap().1.trim_start();
     let id = after("image_id").trim_start_matches('"').split_once('"').unwrap().0.to_owned();

@@ -1,4 +1,4 @@
-//! A picture is the same to the bit on every machine: its checksum is written down here.
+//! A picture is the same to the bit on every machine: this test compares it with recorded checksums.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
@@ -18,7 +18,7 @@ fn of_picture(picture: &Picture) -> u64 {
     checksum(picture.rgb.iter().copied().chain(depths).chain(ids))
 }
 
-/// A textured ground of 20 x 20 m in hills of half a metre, seen from a man's height.
+/// A textured ground of 20 x 20 m in hills of half a metre, seen from eye height.
 fn hills(filter: Filter) -> Scene {
     let mut ground = Mesh { id: 4, ..Mesh::default() };
     for i in 0..41u32 * 41 {

@@ -11,7 +11,7 @@ const ROW: [K; 6] = [K::Refrigerator, K::Counter, K::Stove, K::Counter, K::Kitch
 
 pub(super) fn furnish(room: &mut Furnisher<'_>) {
     let mut walls = room.quiet_walls();
-    // The row needs length before it needs quiet.
+    // For the row, a long wall matters more than a wall without openings.
     walls.sort_by_key(|wall| -room.inner.edge(*wall).length() / 80);
     let row = walls.iter().find_map(|wall| place_row(room, *wall));
     let on_counter = [K::Microwave, K::Toaster, K::Kettle];
@@ -64,7 +64,7 @@ fn place_row(room: &mut Furnisher<'_>, wall: Wall) -> Option<Vec<Piece>> {
     if room.dice.chance(50) {
         kinds.reverse();
     }
-    // Shorter rows where the long one finds no place.
+    // Tries shorter rows where the long one does not fit.
     for skip in [&[][..], &[3][..], &[3, 5][..], &[1, 3, 5][..], &[0, 1, 3, 5][..]] {
         let kept = kinds.iter().enumerate().filter(|(at, _)| !skip.contains(at));
         let sizes: Vec<_> = kept.map(|(_, kind)| (*kind, kind.entry().size_cm)).collect();
@@ -87,7 +87,7 @@ fn place_row(room: &mut Furnisher<'_>, wall: Wall) -> Option<Vec<Piece>> {
     None
 }
 
-/// Hangs what belongs above, and paints the fronts alike.
+/// Hangs the cabinet or hood above a piece, and paints all fronts in one colour.
 fn finish(room: &mut Furnisher<'_>, piece: Piece) {
     let colour = room.taste.kitchen;
     match room.piece(piece).kind {

@@ -1,4 +1,4 @@
-//! Furnishes rooms as such rooms usually are.
+//! Puts the usual furniture into each kind of room.
 
 mod bathroom;
 mod bedroom;
@@ -20,7 +20,7 @@ use super::{
 };
 use placing::Furnisher;
 
-/// Colours that a household repeats.
+/// Colours that all rooms of a house share.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Taste {
     pub(super) wood: Colour,
@@ -28,7 +28,7 @@ pub(super) struct Taste {
     pub(super) curtain: Colour,
 }
 
-/// All furniture of a house; each room has dice of its own, so that one room's luck does not change the next.
+/// All furniture of a house. Each room has its own dice, so that the choices in one room do not change the next.
 pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
     let mut dice = Dice::new(seed, &["taste"]);
     let taste = Taste {

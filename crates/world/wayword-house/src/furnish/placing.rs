@@ -1,4 +1,4 @@
-//! Puts one thing after the other into a room where it fits and nobody is shut in.
+//! Places pieces in a room one by one, where they fit and every door can still be reached.
 
 use super::super::{
     catalogue::FurnitureKind,
@@ -16,24 +16,24 @@ pub(super) struct Furnisher<'a> {
     pub(super) taste: Taste,
     pub(super) room: &'a Room,
     index: usize,
-    /// Between the walls.
+    /// The area between the walls.
     pub(super) inner: RectCm,
-    /// Floor before openings, one each.
+    /// The floor in front of each opening.
     doorsteps: Vec<RectCm>,
-    /// Openings of the room, on its walls.
+    /// Where the room's openings are on its walls.
     holes: Vec<SpanCm>,
-    /// Leaves that stand open in the room.
+    /// Door leaves that stand open in the room.
     leaves: Vec<RectCm>,
-    /// Where the house door is, if it is here.
+    /// Where the front door is, if this room has it.
     front_door: Option<SpanCm>,
-    /// Windows of the room: where, and the lower edge above the room's floor.
+    /// Windows of the room: where, and the height of the lower edge above the room's floor, centimetres.
     pub(super) windows: Vec<(SpanCm, i32)>,
-    /// Floor that someone needs in order to use a piece.
+    /// Floor that must stay free so that a piece can be used.
     reserved: Vec<RectCm>,
     pieces: Vec<Furniture>,
 }
 
-/// Where along a wall something is tried first.
+/// Which places along a wall are tried first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Along {
     Middle,
@@ -41,10 +41,10 @@ pub(super) enum Along {
     Anywhere,
 }
 
-/// What hangs keeps so far from its neighbours, centimetres.
+/// Least distance between something that hangs on a wall and its neighbours, centimetres.
 const BESIDE_CM: i32 = 14;
 
-/// A piece in the room: its place in the list.
+/// A piece in the room: its index in the list.
 pub(super) type Piece = usize;
 
 impl<'a> Furnisher<'a> {
@@ -70,7 +70,7 @@ impl<'a> Furnisher<'a> {
                 .collect(),
             front_door: openings().find(|opening| opening.leaf == Leaf::Closed).map(|opening| opening.span),
             windows: windows.map(|window| (window.span, window.sill_cm - room.base_cm())).collect(),
-            // Only a car may stand before a garage door.
+            // Only a car may stand in front of a garage door.
             reserved: openings()
                 .filter(|opening| opening.leaf == Leaf::Garage)
                 .filter_map(|opening| swing(&room.outline, &opening.span))
@@ -87,17 +87,17 @@ impl<'a> Furnisher<'a> {
         &self.pieces[piece]
     }
 
-    /// The wall at which a piece has its back.
+    /// The wall behind a piece.
     pub(super) fn wall_behind(&self, piece: Piece) -> Wall {
         Wall::ALL[usize::from(self.pieces[piece].quarter_turns) % 4]
     }
 
-    /// Sets a colour, where the drawn one does not match its companions.
+    /// Sets the colour of a piece, so that it matches the pieces around it.
     pub(super) fn paint(&mut self, piece: Piece, colour: Colour) {
         self.pieces[piece].colour = colour;
     }
 
-    /// Adds a piece without asking whether it fits.
+    /// Adds a piece without checking whether it fits.
     pub(super) fn put(
         &mut self,
         kind: FurnitureKind,
@@ -124,7 +124,7 @@ impl<'a> Furnisher<'a> {
         self.pieces.len() - 1
     }
 
-    /// Stands something with its back to one of `walls`, with `clearance` centimetres of free floor before it.
+    /// Places something with its back to one of `walls`, with `clearance` centimetres of free floor in front.
     pub(super) fn stand(&mut self, kind: FurnitureKind, walls: &[Wall], along: Along, clearance: i32) -> Option<Piece> {
         let size = kind.size_cm(&mut self.dice);
         self.stand_sized(kind, size, walls, along, clearance)
@@ -184,7 +184,7 @@ impl<'a> Furnisher<'a> {
         fits.then(|| self.put(kind, footprint, 0, height, wall))
     }
 
-    /// Stands something beside a piece, at the same wall: `gap` centimetres further along it, or back where negative.
+    /// Places something beside a piece, at the same wall: `gap` centimetres further along it, or back where negative.
     pub(super) fn beside(&mut self, anchor: Piece, kind: FurnitureKind, gap: i32) -> Option<Piece> {
         let wall = self.wall_behind(anchor);
         let size = kind.size_cm(&mut self.dice);
@@ -204,13 +204,13 @@ impl<'a> Furnisher<'a> {
         self.pieces.pop();
     }
 
-    /// Whether anything at all is within an area.
+    /// Whether a piece (other than a flat one) or the floor in front of an opening overlaps an area.
     pub(super) fn overlaps_any(&self, area: &RectCm) -> bool {
         self.pieces.iter().any(|piece| !piece.kind.is_flat() && piece.footprint.overlaps(area))
             || self.doorsteps.iter().any(|step| step.overlaps(area))
     }
 
-    /// The wall with the house door and the floor before it.
+    /// The wall with the front door, and the point 50 cm in front of the door.
     pub(super) fn front_doorstep(&self) -> Option<(Wall, (i32, i32))> {
         let span = self.front_door?;
         let wall = self.room.outline.wall_of(&span)?;
@@ -263,7 +263,7 @@ impl<'a> Furnisher<'a> {
         )
     }
 
-    /// The floor before a piece, `depth` centimetres deep.
+    /// The floor in front of a piece, `depth` centimetres deep.
     pub(super) fn in_front(&self, footprint: RectCm, wall: Wall, depth: i32) -> RectCm {
         match wall {
             Wall::North => RectCm::new(footprint.x0, footprint.y0 - depth, footprint.x1, footprint.y0),
@@ -292,7 +292,7 @@ impl<'a> Furnisher<'a> {
             || self.standing().any(|area| area.overlaps(footprint))
     }
 
-    /// Footprints of what takes floor.
+    /// Footprints of the pieces that take floor.
     fn standing(&self) -> impl Iterator<Item = RectCm> + '_ {
         let low = self.room.base_cm() + 150;
         let takes_floor =
@@ -348,7 +348,7 @@ impl<'a> Furnisher<'a> {
         self.put(kind, footprint, CEILING_CM - height, height, Wall::North)
     }
 
-    /// Whether a stretch of wall between two heights has no opening, window, or thing before it.
+    /// Whether a stretch of wall between two heights has no opening, no window and nothing in front of it.
     pub(super) fn wall_is_bare(&self, wall: Wall, area: &RectCm, base: i32, top: i32) -> bool {
         let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened(14).overlaps(area));
         let window = self

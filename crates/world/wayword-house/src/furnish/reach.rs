@@ -4,10 +4,11 @@ use super::super::rect::RectCm;
 
 /// Side of a cell, centimetres.
 const CELL_CM: i32 = 10;
-/// Half the width of a walker, with something to spare.
+/// Half the width of a walker, with a margin.
 const RADIUS_CM: i32 = 27;
 
-/// Whether, with these obstacles, every doorstep joins every other, and no large part of the floor is cut off.
+/// Whether, with these obstacles, every doorstep can be reached from every other, and no large part of the floor is cut
+/// off.
 pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[RectCm]) -> bool {
     let (columns, rows) = (inner.width() / CELL_CM, inner.depth() / CELL_CM);
     let swollen: Vec<_> = obstacles.iter().map(|area| area.inset(-RADIUS_CM)).collect();

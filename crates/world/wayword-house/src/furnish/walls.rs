@@ -1,4 +1,4 @@
-//! What hangs on walls and before windows.
+//! Things that hang on walls and beside windows.
 
 use super::super::{catalogue::FurnitureKind, rect::Wall};
 use super::placing::{Furnisher, Piece};
@@ -15,7 +15,7 @@ impl Furnisher<'_> {
         self.hang_at(kind, wall, from, base, size)
     }
 
-    /// Hangs something at `base` centimetres, on the first wall where there is room.
+    /// Hangs something at a height of `base` centimetres, on the first wall with room for it.
     pub(super) fn hang(&mut self, kind: FurnitureKind, base: i32) -> Option<Piece> {
         let walls = self.shuffled_walls();
         let size = kind.size_cm(&mut self.dice);
@@ -47,7 +47,7 @@ impl Furnisher<'_> {
         fits.then(|| self.put(kind, area, base, size[2], wall))
     }
 
-    /// Curtains to both sides of every window, where nothing stands.
+    /// Hangs curtains on both sides of every window, where nothing is in the way.
     pub(super) fn curtains(&mut self) {
         for (span, _) in self.windows.clone() {
             let Some(wall) = self.room.outline.wall_of(&span) else {

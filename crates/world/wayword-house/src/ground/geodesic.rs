@@ -21,7 +21,7 @@ impl Ground {
     /// Taut to within a cell: it hugs corners at the walker's radius. Up to 1 or 2 % longer than the exact geodesic.
     ///
     /// # Errors
-    /// When one cannot stand at one of the two, or no way leads from one to the other.
+    /// When one of the two places is not walkable, or no way leads from one to the other.
     pub fn geodesic(&self, from: DVec3, to: DVec3) -> Result<Way, NoWay> {
         let start = self.cell_at(from).ok_or(NoWay::NotWalkable(from))?;
         let goal = self.cell_at(to).ok_or(NoWay::NotWalkable(to))?;
@@ -61,7 +61,7 @@ impl Ground {
         walks.chain(layers.map(move |layer| (Cell { layer, ..cell }, 0)))
     }
 
-    /// Moves corners, as far as the walk stays open, to where the way is shorter, until none helps.
+    /// Moves corners to where the way is shorter and still free, until no move helps.
     fn pull(&self, corners: &mut Vec<Cell>) {
         for _ in 0..40 {
             let mut changed = false;

@@ -13,7 +13,7 @@ pub(in super::super) struct Cell {
     pub(in super::super) index: usize,
 }
 
-/// What a layer is cut from: one can stand where something is open and nothing blocks.
+/// The areas that make a layer: one can stand where an `open` area lies and no `blocked` one.
 pub(super) struct Layer {
     pub(super) open: Vec<RectCm>,
     pub(super) blocked: Vec<RectCm>,
@@ -29,7 +29,7 @@ pub(super) struct Grid {
     layers: usize,
     /// By cell, one bit for each layer in which one can stand there.
     free: Vec<u8>,
-    /// By cell, one bit for each floor that is linked with the stairs there.
+    /// By cell, one bit for each storey that is linked with the stairs there.
     linked: Vec<u8>,
 }
 
@@ -52,7 +52,7 @@ impl Grid {
         grid
     }
 
-    /// Changes the cells whose middle lies in a rectangle, its edge counting where `closed`.
+    /// Changes the cells whose middle lies in a rectangle; its edge counts as inside where `closed`.
     fn each_in(&mut self, area: &RectCm, closed: bool, change: impl Fn(&mut u8)) {
         // Doubled centimetres, since a cell's middle may lie between two.
         let first = |edge: i32, origin: i32| {
@@ -122,14 +122,14 @@ impl Grid {
         (middle(self.x0_cm, column), middle(self.y0_cm, row))
     }
 
-    /// The cell so many columns and rows away.
+    /// The cell that lies `dx` columns and `dy` rows away.
     pub(super) fn offset(&self, index: usize, (dx, dy): (i32, i32)) -> Option<usize> {
         let (column, row) = (index as i32 % self.columns + dx, index as i32 / self.columns + dy);
         let inside = (0..self.columns).contains(&column) && (0..self.rows).contains(&row);
         inside.then_some((row * self.columns + column) as usize)
     }
 
-    /// For each cell of a layer, steps to the next cell that is not free; 0 for those.
+    /// For each cell of a layer, the steps to the nearest cell that is not free; 0 for a cell that is not free itself.
     pub(super) fn clearance(&self, layer: usize) -> Vec<u32> {
         let mut steps = vec![u32::MAX; self.len()];
         let mut open = VecDeque::new();

@@ -1,7 +1,8 @@
-//! Where one can walk: a grid over each floor and over the stairs.
+//! Where one can walk: a grid over each storey and over the stairs.
 //!
-//! One layer for each floor and one for the stairwell; where the stairwell's layer reaches out onto a floor, the two are
-//! linked. So every place has one height in its layer, and a straight walk is a walk over cells.
+//! There is one layer for each storey and one for the stairwell. Where the stairwell's layer reaches out onto a
+//! storey's floor, the two layers are linked. So every place has one height in its layer, and a straight walk is a walk
+//! over cells.
 
 mod export;
 mod geodesic;
@@ -23,7 +24,7 @@ pub const RADIUS_CM: i32 = 20;
 pub(super) const CELL_CM: i32 = 5;
 /// How far the stairwell's layer reaches out onto the floors, centimetres.
 const APRON_CM: i32 = 40;
-/// What begins below this height above the floor is in a walker's way, centimetres.
+/// An object whose lower edge is below this height above the floor is in a walker's way, centimetres.
 const HEADROOM_CM: i32 = 175;
 
 /// The walkable ground of a house.
@@ -34,10 +35,10 @@ pub struct Ground {
     storeys: u32,
 }
 
-/// Why no way can be found.
+/// Why there is no way.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoWay {
-    /// A place where nobody can stand.
+    /// A place that is not walkable.
     #[error("{0} is not on walkable ground: choose a place at least {RADIUS_CM} cm from walls and furniture")]
     NotWalkable(DVec3),
     /// Two places in parts that do not touch.
@@ -57,7 +58,7 @@ impl Ground {
         ground
     }
 
-    /// Takes away the pockets behind furniture that no way leads to.
+    /// Removes the pockets behind furniture that cannot be reached.
     fn keep_largest_part(&mut self) {
         let size = self.grid.len();
         let number = |cell: Cell| cell.layer * size + cell.index;
@@ -89,7 +90,7 @@ impl Ground {
         }
     }
 
-    /// Links the stairwell's layer with a floor wherever both have a cell at one height.
+    /// Links the stairwell's layer with a storey's wherever both have a cell at the same height.
     fn link(&mut self) {
         let stairs = self.storeys as usize;
         if self.stairs.is_none() {
@@ -146,19 +147,19 @@ impl Ground {
         all.filter(|cell| self.grid.is_free(*cell))
     }
 
-    /// How far each free cell is from the next obstacle, in cells along the grid; by layer and index.
+    /// How far each free cell is from the nearest obstacle, in cells along the grid; by layer and index.
     pub(super) fn clearances(&self) -> Vec<Vec<u32>> {
         (0..self.grid.layers()).map(|layer| self.grid.clearance(layer)).collect()
     }
 
-    /// The storey of a cell, the lowest being 1; on stairs that of the nearer floor.
+    /// The storey of a cell, counted from 1, the lowest; on stairs, that of the nearer floor.
     pub(super) fn level(&self, cell: Cell) -> u32 {
         let half_m = f64::from(STOREY_CM) / 200.0;
         1 + u32::from(self.height_m(cell) > half_m)
     }
 }
 
-/// A floor: rooms and passages, less what stands there.
+/// The layer of a storey: its rooms and passages, without the places where furniture stands.
 fn floor_layer(house: &House, floor: u32) -> Layer {
     let base = floor as i32 * STOREY_CM;
     let is_well = |index: usize| house.stairs.as_ref().is_some_and(|stairs| stairs.room == index);
@@ -190,13 +191,13 @@ fn passage(opening: &Opening) -> RectCm {
     span.thickened(HALF_WALL_CM + RADIUS_CM)
 }
 
-/// The floor before a flight, inside and outside the well's wall.
+/// The floor in front of a flight, inside and outside the well's wall.
 fn apron(stairs: &Stairs, lower: bool) -> RectCm {
     let (from, to) = stairs.flight_across(lower);
     stairs.across(from + RADIUS_CM, to - RADIUS_CM, [-APRON_CM, 0])
 }
 
-/// Both flights, the landing, and the floor before the flights.
+/// Both flights, the landing, and the floor in front of the flights.
 fn stairs_layer(house: &House, stairs: &Stairs) -> Layer {
     let end = stairs.depth_cm() - RADIUS_CM;
     let flight = |lower: bool| {

@@ -5,7 +5,7 @@ use super::super::{
 use super::*;
 use proptest::prelude::*;
 
-/// Some cell of each room, by the room's index.
+/// The place of some walkable cell in a room.
 fn a_place_in(house: &House, ground: &Ground, room: usize) -> Option<DVec3> {
     let outline = house.rooms[room].outline;
     let base_m = f64::from(house.rooms[room].base_cm()) / 100.0;
@@ -22,7 +22,7 @@ proptest! {
         let ground = Ground::of(&house);
         let places: Vec<_> = (0..house.rooms.len()).map(|room| a_place_in(&house, &ground, room)).collect();
         for (room, place) in places.iter().enumerate() {
-            prop_assert!(place.is_some(), "nobody can stand in {:?}", house.rooms[room]);
+            prop_assert!(place.is_some(), "no walkable cell in {:?}", house.rooms[room]);
             let way = ground.geodesic(places[0].unwrap(), place.unwrap());
             prop_assert!(way.is_ok(), "{:?}: {way:?}", house.rooms[room]);
         }
@@ -68,7 +68,7 @@ fn the_way_round_a_wall_is_taut() {
     let ground = Ground::of(&two_rooms());
     let (from, to) = (DVec3::new(3.0, 1.0, 0.0), DVec3::new(5.0, 1.0, 0.0));
     let way = ground.geodesic(from, to).unwrap();
-    // By way of the passage's two southern corners, at y = 3.00 and x = 3.74 and 4.26.
+    // The way passes the passage's two southern corners, at y = 3.00 and x = 3.74 and 4.26.
     let exact_m = 2.0 * (0.74_f64 * 0.74 + 4.0).sqrt() + 0.52;
     assert!(way.length_m >= exact_m - 0.05 && way.length_m < exact_m * 1.03, "{} against {exact_m}", way.length_m);
     assert!(matches!(ground.geodesic(from, DVec3::new(4.0, 1.0, 0.0)), Err(NoWay::NotWalkable(_))));

@@ -7,7 +7,7 @@ use wayword_core::DVec3;
 const STEP_M: f64 = 0.025;
 
 impl Ground {
-    /// Floors and stairs on which a walker may be who was on `on` and is now at a cell.
+    /// The layers on which a walker may be at a cell, after being on the layers `on`: one bit for each.
     fn onto(&self, on: u8, index: usize) -> u8 {
         let (free, linked) = (self.grid.free_layers(index), self.grid.linked_floors(index));
         let stairs = 1_u8 << self.storeys;
@@ -17,8 +17,8 @@ impl Ground {
         kept | ((down | up) & free)
     }
 
-    /// The places of a straight walk between two cells, on the ground, half a cell apart; none where something is in the
-    /// way.
+    /// The places of a straight walk between two cells, on the ground, half a cell apart; `None` where something is in
+    /// the way.
     pub(super) fn straight(&self, from: Cell, to: Cell) -> Option<Vec<DVec3>> {
         let mut places = Vec::new();
         self.march(from, to, |x_m, y_m, on| {

@@ -18,7 +18,7 @@ use program::{Program, Upstairs};
 
 pub(super) use openings::swing;
 
-/// Rooms and who is joined to whom, before any wall is built.
+/// The rooms and the links between them, before walls and openings are made.
 #[derive(Debug, Default)]
 struct Plan {
     rooms: Vec<PlannedRoom>,
@@ -33,7 +33,7 @@ struct PlannedRoom {
     outline: RectCm,
 }
 
-/// Two rooms that one can walk between; `beyond` is none for the way out.
+/// Two joined rooms; `beyond` is `None` where the link leads outside.
 #[derive(Debug, Clone, Copy)]
 struct Link {
     room: usize,
@@ -49,7 +49,7 @@ enum Passage {
     },
     FrontDoor,
     GarageDoor,
-    /// One half of the stairwell's open side, on that floor.
+    /// One half of the stairwell's open side, on that storey.
     Flight {
         floor: u32,
     },
@@ -63,7 +63,7 @@ struct Well {
     lower_flight_low: bool,
 }
 
-/// The outer measures that both storeys share, centimetres.
+/// The outer dimensions that both storeys share, centimetres.
 #[derive(Debug, Clone, Copy)]
 struct Shell {
     width: i32,
@@ -86,7 +86,7 @@ pub(super) struct Layout {
     pub(super) next_id: u32,
 }
 
-/// Draws up the plan of a house.
+/// Makes the plan of a house.
 pub(super) fn lay_out(seed: u64) -> Layout {
     let mut dice = Dice::new(seed, &["layout"]);
     let storeys = if dice.chance(50) { 2 } else { 1 };

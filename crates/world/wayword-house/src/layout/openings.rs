@@ -12,14 +12,14 @@ const DOOR_CM: i32 = 90;
 const NARROWEST_CM: i32 = 75;
 const DOOR_HEIGHT_CM: i32 = 205;
 const DOORWAY_HEIGHT_CM: i32 = 220;
-/// What must remain of the wall beside an opening: half the crossing wall, and the frame.
+/// Least length of wall beside an opening, centimetres: half the crossing wall, and the frame.
 const CORNER_CM: i32 = 16;
 
 pub(super) fn cut(dice: &mut Dice, plan: &Plan, rooms: &[Room], ids: &mut Ids) -> Vec<Opening> {
     let colour = dice.pick([Colour::White, Colour::White, Colour::LightBrown, Colour::Brown]);
     let front = dice.pick([Colour::Red, Colour::Blue, Colour::Green, Colour::DarkBrown, Colour::Black]);
     let mut openings = Vec::new();
-    // Doorways first: they have one good place, while doors can give way to them.
+    // Doorways first: they have only one good place, but doors can be moved.
     let (doors, others): (Vec<Link>, Vec<Link>) = plan.links.iter().partition(|link| link.how == Passage::Door);
     for link in others.iter().chain(&doors) {
         let Some(mut opening) = place(dice, plan, rooms, link, &openings) else {
@@ -61,7 +61,7 @@ fn edge_between(plan: &Plan, link: &Link) -> Option<SpanCm> {
     let outline = plan.rooms[link.room].outline;
     match link.beyond {
         Some(beyond) => Some(outline.shared_edge(&plan.rooms[beyond].outline)?.1),
-        // At the narrow end, where house doors are, and so that a car stands square to its garage door.
+        // At the narrow end: front doors are usually there, and a car then stands square to its garage door.
         None => {
             let outer =
                 Wall::ALL.into_iter().map(|wall| outline.edge(wall)).filter(|edge| is_outer(plan, link.room, edge));
@@ -70,7 +70,7 @@ fn edge_between(plan: &Plan, link: &Link) -> Option<SpanCm> {
     }
 }
 
-/// Whether no other room of the same floor lies behind any part of an edge.
+/// Whether no other room of the same storey lies behind any part of an edge.
 fn is_outer(plan: &Plan, room: usize, edge: &SpanCm) -> bool {
     let strip = edge.thickened(5);
     let same_floor = |index: usize| index != room && plan.rooms[index].floor == plan.rooms[room].floor;
@@ -89,11 +89,11 @@ fn doorway(dice: &mut Dice, edge: &SpanCm, width: i32) -> Option<SpanCm> {
     }
     let width = width.min(room);
     let from = edge.from + CORNER_CM + dice.stepped(0, room - width, 5);
-    // A doorway as wide as a hallway stands in its middle.
+    // A doorway that is nearly as wide as its wall is centred.
     Some(if room - width < 40 { middle(edge, width) } else { SpanCm { from, to: from + width, ..*edge } })
 }
 
-/// Near one end of the shared wall, hinged there, so that the open leaf stands along the side wall.
+/// A door near one end of the shared wall, hinged there, so that the open leaf stands along the side wall.
 fn door(dice: &mut Dice, rooms: &[Room], link: &Link, edge: &SpanCm, before: &[Opening]) -> Option<(SpanCm, Leaf)> {
     let width = DOOR_CM.min(edge.length() - 2 * CORNER_CM);
     if width < NARROWEST_CM {
@@ -108,7 +108,7 @@ fn door(dice: &mut Dice, rooms: &[Room], link: &Link, edge: &SpanCm, before: &[O
     places.extend((low..=high).step_by(10).flat_map(|from| [(from, true), (from, false)]));
     let candidate =
         |(from, hinge_low): (i32, bool)| (SpanCm { from, to: from + width, ..*edge }, Leaf::Open { into, hinge_low });
-    // No leaf opens into a hallway, where doors face each other all along.
+    // Hallways are not checked: no leaf opens into them, so doors may face each other there.
     let sides =
         [Some(link.room), link.beyond].into_iter().flatten().filter(|side| rooms[*side].kind != RoomKind::Hallway);
     let sides: Vec<usize> = sides.collect();
@@ -121,7 +121,7 @@ fn door(dice: &mut Dice, rooms: &[Room], link: &Link, edge: &SpanCm, before: &[O
     places.iter().copied().map(candidate).find(is_free).or_else(|| places.first().copied().map(candidate))
 }
 
-/// Whether an opening of a room needs floor that a new one's leaf, or whoever comes through it, needs too.
+/// Whether an opening of a room needs the same floor as a new opening's leaf or somebody who walks through it.
 fn meets(rooms: &[Room], other: &Opening, room: usize, swing_area: &RectCm) -> bool {
     let touches = other.room == room || other.beyond == Some(room);
     touches && swing(&rooms[room].outline, &other.span).is_some_and(|area| area.overlaps(swing_area))
@@ -148,7 +148,7 @@ fn opens_into(rooms: &[Room], link: &Link) -> Option<usize> {
     Some(if into_here { link.room } else { beyond })
 }
 
-/// The half of the stairwell's side through which that floor's flight is entered.
+/// The half of the stairwell's side through which a storey's flight is entered.
 fn flight(well: Well, edge: &SpanCm, floor: u32) -> SpanCm {
     let half = (edge.from + edge.to) / 2;
     let is_low = well.lower_flight_low == (floor == 0);

@@ -9,7 +9,7 @@ use super::{
 };
 
 impl Plan {
-    /// Mirrors the plan along x, along y, and swaps the axes, each in every other house.
+    /// Mirrors the plan along x, mirrors it along y, and swaps the axes, each in half of the houses.
     pub(super) fn orient(&mut self, dice: &mut Dice) {
         let (mirror_x, mirror_y, swap) = (dice.chance(50), dice.chance(50), dice.chance(50));
         let x_end = self.rooms.iter().map(|room| room.outline.x1).max().unwrap_or(0);

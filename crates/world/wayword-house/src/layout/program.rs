@@ -14,18 +14,18 @@ use RoomKind as R;
 pub(super) struct Program {
     /// The larger room of the block at the hallway's end.
     pub(super) block_main: RoomKind,
-    /// The smaller one beside it.
+    /// The smaller room beside it.
     pub(super) block_side: RoomKind,
-    /// Between hallway and block.
+    /// The passage between hallway and block.
     pub(super) into_main: Passage,
-    /// Between the block's two rooms.
+    /// The passage between the block's two rooms.
     pub(super) into_side: Passage,
-    /// Rooms of the strips, from the block outwards: these for certain, then what fits.
+    /// Rooms of the strips, from the block outwards: first these in order, then some of the `more` ones that fit.
     pub(super) south_first: &'static [RoomKind],
     pub(super) south_more: &'static [RoomKind],
     pub(super) north_first: &'static [RoomKind],
     pub(super) north_more: &'static [RoomKind],
-    /// In how many houses of a hundred a garage adjoins.
+    /// In how many houses of a hundred there is a garage.
     pub(super) garage_chance: i32,
     /// Whether stairs begin here.
     pub(super) upstairs: Upstairs,
@@ -111,7 +111,7 @@ pub(super) fn join(dice: &mut Dice, kind: RoomKind, neighbour: Option<RoomKind>)
     }
 }
 
-/// What one household's taste is.
+/// The colours and finishes of one house.
 pub(super) struct Scheme {
     walls: Colour,
     hall: Colour,
@@ -135,7 +135,7 @@ impl Scheme {
         }
     }
 
-    /// Walls, floor and floor's colour of a room.
+    /// The wall colour, the floor finish and the floor colour of a room.
     pub(super) fn of(&self, dice: &mut Dice, kind: RoomKind) -> (Colour, FloorFinish, Colour) {
         let planks = (FloorFinish::Planks, self.planks);
         let ((finish, colour), walls) = match kind {

@@ -5,7 +5,8 @@ use super::{
     program::widths,
 };
 
-/// Divides `range` (centimetres) among rooms: `first` as far as they fit, then some of `more`, then width for all.
+/// Divides `range` (centimetres) among rooms: `first` as far as they fit, then some of `more`. All rooms then share the
+/// width that is left.
 pub(super) fn fill(
     dice: &mut Dice,
     range: (i32, i32),
@@ -24,7 +25,7 @@ pub(super) fn fill(
     }
     let mut rest = more.to_vec();
     dice.shuffle(&mut rest);
-    // What is left over is offered again, so that a long strip does not end in one enormous room.
+    // The list is tried twice, so that a long strip does not end in one enormous room.
     for kind in rest.iter().chain(&rest) {
         if most(&kinds) < length && least(&kinds) + widths(*kind).0 <= length {
             kinds.push(*kind);

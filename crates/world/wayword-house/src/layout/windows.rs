@@ -38,19 +38,19 @@ pub(super) fn cut(plan: &Plan, rooms: &[Room], openings: &[Opening], ids: &mut I
     windows
 }
 
-/// Whether an opening lies on another floor than a room.
+/// Whether an opening lies on another storey than a room.
 fn apart(opening: &Opening, room: &Room) -> bool {
     opening.base_cm / STOREY_CM != room.floor as i32
 }
 
-/// Evenly spaced windows in the stretches of a wall that have nothing behind them.
+/// Evenly spaced windows in the stretches of a wall that have no room behind them.
 fn spans(plan: &Plan, rooms: &[Room], index: usize, wall: Wall, width: i32) -> Vec<SpanCm> {
     let edge = rooms[index].outline.edge(wall);
     let behind = |other: &usize| {
         let shares = rooms[index].outline.shared_edge(&rooms[*other].outline);
         shares.filter(|(shared, _)| *shared == wall).map(|(_, span)| (span.from, span.to))
     };
-    // A garage has no upper storey, but a staircase has: its neighbours above count too.
+    // A staircase has an upper storey (a garage has none), so its neighbours there count too.
     let beside = |other: &usize| {
         let is_well = plan.rooms[index].kind == RoomKind::Staircase || plan.rooms[*other].kind == RoomKind::Staircase;
         *other != index && (rooms[*other].floor == rooms[index].floor || is_well)

@@ -94,8 +94,8 @@ fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-/// Whoever changes how houses come about changes these numbers, and says so in the changelog: recorded paths name places
-/// in these houses.
+/// A change in how houses are generated changes these numbers. Say so in the changelog, because recorded paths name
+/// places in these houses.
 #[test]
 fn a_house_and_its_picture_are_the_same_on_every_machine() {
     let house = generate(7);

@@ -9,18 +9,18 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use wayword_render::{Material, Mesh, Texture};
 
-/// Colours are multiplied as they are stored here, but in linear light in glTF.
+/// This program multiplies colours as they are stored; glTF multiplies them in linear light.
 fn linear(stored: f32) -> f32 {
     libm::powf(stored, 2.2)
 }
 
 /// The bytes of a `.glb` file.
 ///
-/// Nodes are named by object and number ("sofa 41"); `extras` holds the number, which is that of the id buffer. Materials
-/// are unlit (`KHR_materials_unlit`), as the light is baked.
+/// Nodes are named by object and number ("sofa 41"); `extras` holds the number, the same as in the id buffer. Materials
+/// are unlit (`KHR_materials_unlit`) because the light is baked.
 ///
 /// # Errors
-/// When a texture cannot be encoded, or all is larger than a GLB may be.
+/// When a texture cannot be encoded, or the file would be larger than a GLB may be.
 pub fn glb(house: &House) -> Result<Vec<u8>, SaveError> {
     let drawing = drawing::draw(house);
     let mut buffer = Buffer::default();

@@ -1,4 +1,5 @@
-//! Saves a house for other programs: glTF for its looks, JSON for its ground, and what AI Habitat reads beside these.
+//! Saves a house for other programs: glTF for its looks, JSON for its ground, and the further files that AI Habitat
+//! reads.
 
 mod buffer;
 mod gltf;
@@ -18,7 +19,7 @@ use wayword_core::graph::GraphError;
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
     /// A file that cannot be written.
-    #[error("{}: {source}; choose a folder that can be written to", file.display())]
+    #[error("cannot write {}: {source}; choose a folder that you can write to", file.display())]
     File {
         /// Which file.
         file: PathBuf,
@@ -26,21 +27,21 @@ pub enum SaveError {
         source: std::io::Error,
     },
     /// A texture that cannot be encoded.
-    #[error("texture {texture}: {source}")]
+    #[error("texture {texture} cannot be encoded: {source}")]
     Texture {
         /// Its index.
         texture: usize,
         /// What the encoder says.
         source: image::ImageError,
     },
-    /// What cannot be told as JSON.
+    /// A house that cannot be written as JSON.
     #[error("the house cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// A road map that does not hold together.
-    #[error("the house's road map: {0}")]
+    /// A viewpoint graph that is wrong.
+    #[error("the house's viewpoint graph is wrong: {0}")]
     Graph(#[from] GraphError),
     /// More data than one GLB can hold.
-    #[error("the house takes {bytes} bytes, and a GLB holds 4 GiB at most")]
+    #[error("the house takes {bytes} bytes, but a GLB file holds 4 GiB at most")]
     TooLarge {
         /// How many it takes.
         bytes: usize,
@@ -54,16 +55,16 @@ pub struct Saved {
     pub model: PathBuf,
     /// `house-SEED.navigation.json`: rooms, objects, ground, viewpoint graph.
     pub navigation: PathBuf,
-    /// `house-SEED.stage_config.json`: what names the rest to AI Habitat, and to the platform `habitat`.
+    /// `house-SEED.stage_config.json`: names the other files for AI Habitat and for the platform `habitat`.
     pub stage: PathBuf,
-    /// `house-SEED.semantic.glb` and `house-SEED.semantic.txt`: what is what.
+    /// `house-SEED.semantic.glb` and `house-SEED.semantic.txt`: which object each surface belongs to.
     pub semantics: [PathBuf; 2],
 }
 
 /// Writes a house's files into a folder that exists.
 ///
 /// # Errors
-/// When a file cannot be written or the house not be encoded.
+/// When a file cannot be written or the house cannot be encoded.
 pub fn save(house: &House, folder: &Path) -> Result<Saved, SaveError> {
     let ground = Ground::of(house);
     let graph = viewpoint_graph(house, &ground)?;

@@ -1,4 +1,4 @@
-//! What a house is to someone who moves in it: rooms, objects, walkable cells, viewpoint graph.
+//! The navigation data of a house: rooms, objects, walkable cells, viewpoint graph.
 
 use super::{
     super::{
@@ -14,11 +14,12 @@ use wayword_core::ViewpointGraph;
 
 /// Navigation data as JSON, in the world frame (metres, z up, headings clockwise from +y).
 ///
-/// `walkable.layers` has one entry for each floor and one for the stairs: `runs` are `[row, first column, last column]`
-/// of cells on which one can stand, columns counted along x and rows along y from `origin`; `house` is the model itself.
+/// `walkable.layers` has one entry for each storey and one for the stairs. Its `runs` are
+/// `[row, first column, last column]` of cells on which one can stand; columns count along x and rows along y, from
+/// `origin_m`. `house` is the model itself.
 ///
 /// # Errors
-/// When the model cannot be told as JSON.
+/// When the model cannot be written as JSON.
 pub fn navigation(house: &House, ground: &Ground, graph: &ViewpointGraph) -> Result<Value, SaveError> {
     let rooms = house.rooms.iter().map(|room| {
         let area = room.inner();

@@ -1,5 +1,6 @@
-//! What is what in a house, as AI Habitat reads it: a mesh whose colours are objects, and a list of what each colour means
-//! (HM3D's semantics, `*.semantic.glb` and `*.semantic.txt`), and the stage configuration that names them.
+//! The semantics of a house as AI Habitat reads them: a mesh in which each object has its own colour, a list of what
+//! each colour means (HM3D's semantics, `*.semantic.glb` and `*.semantic.txt`), and the stage configuration that names
+//! these files.
 
 use super::{
     super::{drawing, model::House, objects},
@@ -13,7 +14,7 @@ use std::fmt::Write;
 /// The bytes of a `.semantic.glb`: every vertex has the colour of its object.
 ///
 /// # Errors
-/// When all is larger than a GLB may be.
+/// When the file would be larger than a GLB may be.
 pub fn semantic_glb(house: &House) -> Result<Vec<u8>, SaveError> {
     let mut buffer = Buffer::default();
     let drawn = drawing::draw(house).meshes;
@@ -54,7 +55,7 @@ pub fn semantic_txt(house: &House) -> String {
     text
 }
 
-/// A `.stage_config.json` for files of this name: glTF's y is up, which Habitat does not take for granted.
+/// A `.stage_config.json` for files of this name. It says that y is up, as in glTF, because Habitat does not assume so.
 pub(super) fn stage_config(name: &str) -> Value {
     json!({
         "render_asset": format!("{name}.glb"),
@@ -65,7 +66,7 @@ pub(super) fn stage_config(name: &str) -> Value {
     })
 }
 
-/// The colour of an object's number. An odd factor gives each of the 2^24 numbers a colour of its own.
+/// The colour of an object's number. Multiplying by an odd factor gives each of the 2^24 numbers its own colour.
 fn colour(id: u32) -> [u8; 3] {
     let [_, red, green, blue] = id.wrapping_mul(0x9E_3779).to_be_bytes();
     [red, green, blue]

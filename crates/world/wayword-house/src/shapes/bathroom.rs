@@ -1,4 +1,4 @@
-//! What a bathroom is made of.
+//! Bathroom furniture.
 
 use super::{
     super::{
@@ -95,7 +95,7 @@ pub(super) fn shower(look: &Look) -> Shape {
     shape.block(Surface::plain(CHINA), [-hw, hw], [-hd, hd], [0.0, 0.1]);
     let wall = Surface::new(Pattern::Tiles, [170, 206, 220]);
     shape.picture(wall, Vec3::new(-hw, hd - 0.005, 0.1), Vec3::X * look.w, Vec3::Z * (look.h - 0.1));
-    // Glass cannot be looked through here, so its panes end at the height of the hips and the frame stands on.
+    // The renderer has no transparency. So the panes end at hip height, and only the frame goes up further.
     for (x, y) in [(-hw, -hd), (hw - 0.03, -hd), (-hw, hd - 0.03), (hw - 0.03, hd - 0.03)] {
         shape.block(steel, [x, x + 0.03], [y, y + 0.03], [0.08, look.h]);
     }

@@ -35,7 +35,7 @@ impl Part {
     }
 }
 
-/// Corners around something of a radius, metres: small things need few.
+/// How many corners a round part of this radius (metres) gets: a small part needs few.
 fn sides(radius: f32) -> usize {
     if radius > 0.06 { SIDES } else { SIDES / 2 }
 }
@@ -47,7 +47,7 @@ fn around(step: usize, sides: usize) -> (f32, f32) {
 }
 
 impl Shape {
-    /// The part of a surface, begun where there is none yet.
+    /// The part with this surface; a new one where there is none yet.
     pub(crate) fn part(&mut self, surface: Surface) -> &mut Part {
         let at = self.parts.iter().position(|part| part.surface == surface).unwrap_or_else(|| {
             self.parts.push(Part::new(surface));
@@ -109,7 +109,7 @@ impl Shape {
 
     fn soft_face(&mut self, surface: Surface, centre: Vec3, half: Vec3, radius: f32, axis: usize, sign: f32) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        // Small roundings are seen as one bevel; large ones get a corner more.
+        // Small roundings get one bevel; large ones get one more corner.
         let all = |h: f32| vec![-h, -h + 0.3 * radius, -h + radius, h - radius, h - 0.3 * radius, h];
         let few = |h: f32| vec![-h, -h + radius, h - radius, h];
         let ticks = |h: f32| if radius < 0.05 { few(h) } else { all(h) };

@@ -1,4 +1,4 @@
-//! What hangs on walls, lies on floors, or is there to be looked at.
+//! Decoration: things that hang on walls or lie on floors, and showpieces.
 
 use super::{
     super::{
@@ -27,13 +27,13 @@ pub(super) fn painting(look: &Look) -> Shape {
     shape
 }
 
-/// The painting whose main colour is the one that its name gives it.
+/// The painting whose main colour is the piece's colour.
 fn art_of(colour: Colour) -> u8 {
     let order = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Red, Colour::Yellow, Colour::Purple];
     order.iter().position(|each| *each == colour).unwrap_or(0) as u8 % ART_COUNT
 }
 
-/// A framed surface with the bluish sheen of glass, in which nothing definite is to be seen.
+/// A framed surface with the bluish sheen of glass. It does not reflect the room.
 pub(super) fn mirror(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let frame = Surface::wood([Colour::Gold, Colour::White, Colour::DarkBrown][look.variant as usize % 3]);
@@ -76,7 +76,7 @@ pub(super) fn rug(look: &Look) -> Shape {
     shape
 }
 
-/// A flat picture in several pieces, so that light and shadow can lie on it.
+/// A flat picture in several pieces, so that light and shadow can vary over it.
 fn tiles(shape: &mut Shape, surface: Surface, look: &Look, z: f32) {
     let (hw, hd) = look.half();
     let (columns, rows) = (((look.w / 0.4) as usize).max(1), ((look.d / 0.4) as usize).max(1));

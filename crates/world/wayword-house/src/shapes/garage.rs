@@ -1,4 +1,4 @@
-//! What stands in a garage besides the car.
+//! The furniture of a garage, without the car.
 
 use super::{
     super::{colour::Colour, surface::Surface},

@@ -1,4 +1,4 @@
-//! What a kitchen is made of.
+//! Kitchen furniture.
 
 use super::{
     super::{
@@ -163,7 +163,7 @@ pub(super) fn range_hood(look: &Look) -> Shape {
     shape
 }
 
-/// A free-standing counter with a worktop that stands over.
+/// A free-standing counter with a worktop that overhangs.
 pub(super) fn island(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let (hw, hd) = look.half();

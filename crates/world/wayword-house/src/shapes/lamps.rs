@@ -1,4 +1,4 @@
-//! Lamps: what shines, shines in the picture too.
+//! Lamps. Their shades and bulbs shine in the picture too.
 
 use super::{
     super::{colour::Colour, surface::Surface},

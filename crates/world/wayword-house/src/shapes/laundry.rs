@@ -1,4 +1,4 @@
-//! What a laundry room is made of.
+//! Laundry room furniture.
 
 use super::{
     super::{
@@ -54,7 +54,7 @@ pub(super) fn dryer(look: &Look) -> Shape {
     shape
 }
 
-/// A wicker basket with clothes that look out.
+/// A wicker basket with clothes that stick out.
 pub(super) fn basket(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let r = look.w / 2.0;

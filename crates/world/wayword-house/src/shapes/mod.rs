@@ -1,4 +1,4 @@
-//! What things look like in three dimensions.
+//! The shapes of furniture.
 
 mod bathroom;
 mod beds;
@@ -18,7 +18,7 @@ mod vehicles;
 use super::{catalogue::FurnitureKind, colour::Colour, model::Furniture, rect::Wall};
 pub(crate) use builder::{Part, Shape};
 
-/// What a shape is made for.
+/// The properties of a piece that its shape depends on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Look {
     /// Width, metres.

@@ -9,7 +9,7 @@ use super::{
 };
 use glam::Vec3;
 
-/// Directions that go round by the golden angle, so that no two leaves hide one another.
+/// Directions that turn by the golden angle, so that no leaf hides another.
 fn spiral(step: usize) -> (f32, f32) {
     let angle = 2.399_963 * step as f32;
     (libm::cosf(angle), libm::sinf(angle))

@@ -1,4 +1,4 @@
-//! What one sits on.
+//! Seats.
 
 use super::{
     super::{colour::Colour, surface::Surface},

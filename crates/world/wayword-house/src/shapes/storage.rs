@@ -1,4 +1,4 @@
-//! What one keeps things in.
+//! Storage furniture.
 
 use super::{
     super::{
@@ -42,7 +42,7 @@ fn fronts(shape: &mut Shape, look: &Look, columns: usize, rows: usize, (z0, z1):
     }
 }
 
-/// A tv stand or sideboard: a long low cabinet.
+/// A TV stand or sideboard: a long low cabinet.
 pub(super) fn low_cabinet(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));

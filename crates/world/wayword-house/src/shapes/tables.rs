@@ -1,4 +1,4 @@
-//! What one puts things on.
+//! Tables and desks.
 
 use super::{
     super::{colour::Colour, surface::Surface},

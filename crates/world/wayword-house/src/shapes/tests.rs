@@ -15,7 +15,7 @@ fn shapes_fill_their_size_and_do_not_leave_it() {
         let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
         let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
         let bound = Vec3::new(look.w / 2.0, look.d / 2.0, look.h);
-        // Handles may stand out by a hand's breadth, and taps stand on basins.
+        // Handles may stick out by 12 cm, and taps may stand 20 cm above basins.
         let tap = Vec3::Z * 0.2;
         assert!(
             high.cmple(bound + 0.12 + tap).all() && low.cmpge(Vec3::new(-bound.x, -bound.y, 0.0) - 0.12).all(),

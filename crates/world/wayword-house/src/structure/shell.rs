@@ -81,7 +81,7 @@ fn holes(house: &House, index: usize, wall: Wall) -> Vec<Hole> {
     openings.chain(windows).map(|(span, low, high)| [span.from, span.to, low, high]).collect()
 }
 
-/// A level rectangle in pieces, so that light and shadow can lie on it.
+/// A level rectangle in pieces, so that light and shadow can vary over it.
 fn level(shape: &mut Shape, surface: Surface, area: &RectCm, z: i32, up: bool, step: i32) {
     let scale = surface.pattern.repeat_m();
     let (columns, rows) = (cuts(area.x0, area.x1, [].into_iter(), step), cuts(area.y0, area.y1, [].into_iter(), step));

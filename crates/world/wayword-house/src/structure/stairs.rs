@@ -9,7 +9,7 @@ use super::super::{
 use super::metres;
 use glam::Vec3;
 
-/// Treads of one flight; the landing, or the upper floor, is one riser more.
+/// Treads of one flight; the landing, or the upper floor, is one more riser up.
 const TREADS: i32 = 7;
 
 /// Both flights and the landing, solid down to the floor.
@@ -39,7 +39,7 @@ fn slab(shape: &mut Shape, stairs: &Stairs, (tread, side): (Surface, Surface), l
     shape.block(tread, x, y, [metres(top) - 0.04, metres(top)]);
 }
 
-/// A handrail on balusters beside either flight, at the middle of the well.
+/// A handrail on balusters beside each flight, at the middle of the well.
 pub(in super::super) fn railing(stairs: &Stairs) -> Shape {
     let mut shape = Shape::default();
     let (rail, white) = (Surface::wood(Colour::DarkBrown), Surface::plain([244, 243, 240]));

@@ -1,4 +1,4 @@
-//! Windows: a frame, a cross, and what is to be seen outside.
+//! Windows: a frame, a cross, and a picture of the view outside.
 
 use super::super::{
     model::{HALF_WALL_CM, House, STOREY_CM, Window},

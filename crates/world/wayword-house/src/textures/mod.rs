@@ -1,6 +1,6 @@
-//! Pictures that are laid on surfaces, painted by arithmetic alone.
+//! Pictures that are laid on surfaces. They are computed, not read from files.
 //!
-//! Patterns whose colour comes from their surface are light grey, since a texture can only darken what it multiplies.
+//! Patterns whose colour comes from their surface are light grey, because a texture can only darken what it multiplies.
 
 mod noise;
 mod paintings;

@@ -1,6 +1,6 @@
 //! Noise that repeats with the texture.
 
-/// A number in 0..1 that only depends on its place.
+/// A number in 0..1 that depends only on its place (and on `salt`).
 pub(super) fn hash(x: i32, y: i32, salt: u32) -> f32 {
     let mut n =
         (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77) ^ salt.wrapping_mul(0xc2b2_ae3d);
@@ -12,7 +12,7 @@ pub(super) fn hash(x: i32, y: i32, salt: u32) -> f32 {
     (n >> 8) as f32 / 16_777_216.0
 }
 
-/// Smooth noise with so many cells across and down the texture, in 0..1.
+/// Smooth noise in 0..1, with `cells` cells across and down the texture.
 pub(super) fn smooth(u: f32, v: f32, cells: (i32, i32), salt: u32) -> f32 {
     let (x, y) = (u * cells.0 as f32, v * cells.1 as f32);
     let (x0, y0) = (x.floor(), y.floor());

@@ -1,11 +1,11 @@
-//! Six paintings, each with a main colour of its own.
+//! Six paintings, each with its own main colour.
 
 use super::{
     Rgb,
     noise::{away, cloudy, hash, mix, smooth},
 };
 
-/// The painting of a number.
+/// The painting with this number.
 pub(super) fn painting(which: u8, u: f32, v: f32) -> Rgb {
     let canvas = (hash((u * 128.0) as i32, (v * 128.0) as i32, 60) - 0.5) * 6.0;
     let colour = match which {

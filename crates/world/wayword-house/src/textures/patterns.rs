@@ -1,4 +1,4 @@
-//! Materials: what repeats over a surface.
+//! Patterns of materials, which repeat over a surface.
 
 use super::{
     Rgb,
@@ -12,7 +12,7 @@ pub(super) fn wood(u: f32, v: f32) -> Rgb {
     grey(255.0 - grain)
 }
 
-/// Boards along u, eight to a texture, each of its own tone, with dark joints.
+/// Boards along u, twelve rows to a texture, each board with its own tone, with dark joints.
 pub(super) fn planks(u: f32, v: f32) -> Rgb {
     let row = (v * 12.0).floor();
     let shifted = u + hash(0, row as i32, 5);

@@ -64,7 +64,7 @@ pub(super) fn garden(u: f32, v: f32) -> Rgb {
         })
 }
 
-/// The same from upstairs.
+/// The view from upstairs: treetops under the sky.
 pub(super) fn treetops(u: f32, v: f32) -> Rgb {
     [(0.16, 0.86, 0.22), (0.52, 0.98, 0.26), (0.86, 0.84, 0.2)]
         .into_iter()
