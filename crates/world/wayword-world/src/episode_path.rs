@@ -1,12 +1,13 @@
-//! An episode of a dataset as a [`Path`] through a world.
+//! An episode of a dataset as a [`Path`] through a scene.
 
 use wayword_core::{
     Frame, Gaze, Heading, Label, Motion, ObjectId, Path, Platform, PlatformError, SceneId, Target, ViewpointId,
 };
 
-/// The path that an episode walks: frames over `viewpoints`, the first looking along `heading`, and its target by `object`.
+/// The path of an episode: a frame at each of `viewpoints`, the first one looking along `heading`, with `object` as its
+/// target.
 ///
-/// The target's name is the platform's; where it knows none, the path has no target. `told_by` is left empty.
+/// The platform gives the target's name; where it has none, the path has no target. `told_by` is left empty.
 ///
 /// # Errors
 /// When the scene or a viewpoint is unknown, two viewpoints in a row have no edge, or data cannot be read.
@@ -31,7 +32,7 @@ pub fn path_of(
 /// Everything that is visible from a frame, in the order ahead, right, behind, left.
 ///
 /// # Errors
-/// When the frame cannot be looked from.
+/// When the platform cannot give a view from the frame.
 pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<Label>, PlatformError> {
     let mut labels = Vec::new();
     for gaze in Gaze::around(frame.pose.heading) {
@@ -44,7 +45,7 @@ pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) ->
 /// The object that an episode is about, with its name; `None` where the platform has no name for it.
 ///
 /// # Errors
-/// When the platform cannot be looked at.
+/// When the platform cannot give the name, or a view from the frame.
 pub fn target(
     platform: &dyn Platform,
     scene: &SceneId,

@@ -1,4 +1,4 @@
-//! Files from outside, read with a bound, and the words for what is wrong with them.
+//! Reads third-party files up to a size limit, and says in words what is wrong with them.
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::{
@@ -19,7 +19,8 @@ pub fn wrong(file: &Path, reason: impl Into<String>, hint: &'static str) -> Plat
     PlatformError::File { file: file.to_owned(), reason: reason.into(), hint }
 }
 
-/// What lies at a path that is no plain file, in words. Whoever opens a pipe waits until somebody writes into it.
+/// Says in words what lies at a path that is not a plain file; `None` for a plain file. Pipes are refused because
+/// opening one waits until another program writes to it.
 #[must_use]
 pub fn irregular(about: &Metadata) -> Option<&'static str> {
     if about.is_dir() {
@@ -31,10 +32,10 @@ pub fn irregular(about: &Metadata) -> Option<&'static str> {
 /// The bytes of a file, at most `max_bytes` of them; `None` where there is no such file.
 ///
 /// # Errors
-/// When it cannot be read, or has more.
+/// When it cannot be read, or is larger.
 pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<Vec<u8>>, PlatformError> {
     let failed = |error: std::io::Error| PlatformError::unread(file, &error, hint);
-    let too_large = || wrong(file, format!("has more than {max_bytes} bytes, which no such file has"), hint);
+    let too_large = || wrong(file, format!("has more than {max_bytes} bytes, the limit for a file of this kind"), hint);
     let about = match fs::metadata(file) {
         Ok(about) => about,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -55,7 +56,7 @@ pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result
 /// Opens a file to read parts of it.
 ///
 /// # Errors
-/// When it cannot be opened, or is no plain file.
+/// When it cannot be opened, or is not a plain file.
 pub fn open(file: &Path, hint: &'static str) -> Result<File, PlatformError> {
     let failed = |error: std::io::Error| PlatformError::unread(file, &error, hint);
     match irregular(&fs::metadata(file).map_err(failed)?) {
@@ -64,7 +65,8 @@ pub fn open(file: &Path, hint: &'static str) -> Result<File, PlatformError> {
     }
 }
 
-/// The bytes of a JSON file, as [`bytes_if_there`] reads them, without the mark that Windows' editors put before UTF-8.
+/// The bytes of a JSON file, as [`bytes_if_there`] reads them, without the byte order mark that Windows editors put
+/// before UTF-8.
 ///
 /// # Errors
 /// As [`bytes_if_there`].
@@ -72,7 +74,7 @@ pub fn json_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<
     Ok(bytes_if_there(file, max_bytes, hint)?.map(without_mark))
 }
 
-/// The mark that says that a text is in UTF-8.
+/// The byte order mark of UTF-8.
 const MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
 fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
@@ -82,10 +84,10 @@ fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Bytes as text, without a mark of UTF-8.
+/// Bytes as text, without the byte order mark of UTF-8.
 ///
 /// # Errors
-/// In words, when they are another encoding's.
+/// Says in words that the bytes are in another encoding.
 pub fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err("is text in UTF-16; save it as UTF-8");
@@ -96,7 +98,7 @@ pub fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
 /// The text of a file, at most `max_bytes` of it; `None` where there is no such file.
 ///
 /// # Errors
-/// When it cannot be read, has more, or is not UTF-8.
+/// When it cannot be read, is larger, or is not UTF-8.
 pub fn text_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<String>, PlatformError> {
     let Some(bytes) = bytes_if_there(file, max_bytes, hint)? else {
         return Ok(None);
@@ -104,12 +106,12 @@ pub fn text_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<
     text(bytes).map(Some).map_err(|reason| wrong(file, reason, hint))
 }
 
-/// Decodes a JPEG or PNG file, within bounds.
+/// Decodes a JPEG or PNG file, within limits of size and memory.
 ///
 /// # Errors
-/// In words, when it is too large, or no such picture.
+/// Says in words that it is too large, or is not a JPEG or PNG picture.
 pub fn picture(bytes: &[u8]) -> Result<Image, String> {
-    // Decoders for other formats may be there for other purposes.
+    // Decoders for other formats may be compiled in for other purposes.
     let format =
         image::guess_format(bytes).ok().filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg));
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format.ok_or("is neither PNG nor JPEG")?);
@@ -118,12 +120,12 @@ pub fn picture(bytes: &[u8]) -> Result<Image, String> {
     limits.max_image_height = Some(MAX_SIDE_PX);
     limits.max_alloc = Some(MAX_DECODED_BYTES);
     reader.limits(limits);
-    let unread = |error: ImageError| format!("is no picture that can be read: {error}");
+    let unread = |error: ImageError| format!("cannot be decoded as a picture: {error}");
     let mut decoder = reader.into_decoder().map_err(unread)?;
     if decoder.total_bytes() > MAX_DECODED_BYTES {
-        return Err(format!("has more than {MAX_DECODED_BYTES} bytes once it is unpacked"));
+        return Err(format!("has more than {MAX_DECODED_BYTES} bytes when it is decoded"));
     }
-    // A telephone that was held upright writes down that its picture lies on its side.
+    // A phone that was held upright stores its picture lying on its side, and notes that in the orientation.
     let orientation = decoder.orientation().map_err(unread)?;
     let mut picture = DynamicImage::from_decoder(decoder).map_err(unread)?;
     picture.apply_orientation(orientation);
@@ -159,7 +161,7 @@ mod tests {
         }
     }
 
-    /// A text as it is read from a file.
+    /// Writes bytes to a file and reads them back as text.
     fn read(bytes: &[u8]) -> Result<Option<String>, String> {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("poses.csv");
@@ -192,6 +194,6 @@ mod tests {
     #[test]
     fn what_is_no_picture_is_refused() {
         assert!(picture(b"GIF89a").unwrap_err().contains("neither PNG nor JPEG"));
-        assert!(picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("no picture that can be read"));
+        assert!(picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("cannot be decoded as a picture"));
     }
 }

@@ -1,4 +1,4 @@
-//! Random paths through a building.
+//! Random paths along a viewpoint graph.
 
 use crate::object_names;
 use rand::{Rng, seq::SliceRandom};
@@ -7,14 +7,14 @@ use wayword_core::{
     Heading, Label, Motion, Path, PathRequest, PlatformError, Route, SceneId, Target, ViewpointGraph, ViewpointId, rng,
 };
 
-/// So many ends without anything visible are passed over before a path without a target is accepted.
+/// How many ends with nothing visible are skipped before a path without a target is accepted.
 const MAX_BARE_ENDS: usize = 64;
 
-/// A shortest path between two random nodes that keeps to `request`, with a random start heading (as REVERIE's) and, where
-/// something is visible at an end, a target there.
+/// A shortest path between two random viewpoints that fits `request`, with a random start heading (as in REVERIE).
+/// It ends where something is visible, if it can, and has a target there.
 ///
 /// # Errors
-/// When no two nodes lie as far apart as asked, or `labels_at` fails.
+/// When no two viewpoints are as far apart as `request` asks, or `labels_at` fails.
 pub fn path(
     scene: &SceneId,
     graph: &ViewpointGraph,
@@ -70,8 +70,8 @@ fn walked(
     Ok(Path { id: format!("{scene}_{start}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target })
 }
 
-/// One of the visible objects: furnishings before parts of the building, and among these one without a namesake where
-/// there is one.
+/// One of the visible objects. Furnishings come before parts of the building, and then objects without a namesake
+/// before others.
 pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     let has_namesake = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() > 1;
     let rank = |label: &Label| (!object_names::is_furnishing(&label.name), has_namesake(label));
@@ -86,7 +86,7 @@ pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     })
 }
 
-/// What was asked of a path, in words.
+/// A request for a path, in words.
 #[must_use]
 pub fn in_words(request: &PathRequest) -> String {
     let (hops, length_m) = (&request.hops, &request.length_m);

@@ -1,7 +1,8 @@
-//! Shortest ways over the cells of a grid: A* over whole numbers, then every place left out that a straight walk can skip.
+//! Shortest ways over the cells of a grid: A* with whole numbers, then without the places that a straight walk can
+//! skip.
 //!
-//! What the cells are, how they are numbered and where one can stand is the caller's; so floors in layers are searched like flat
-//! ones, and the same grid gives the same way on every machine.
+//! The caller decides what the cells are, how they are numbered and where one can stand. So storeys in layers are
+//! searched like a flat floor. The same grid gives the same way on every machine.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
@@ -12,8 +13,8 @@ pub const STEPS: [(i32, i32); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-
 const STRAIGHT: u64 = 1000;
 const DIAGONAL: u64 = 1414;
 
-/// The cells around one, with the length of the step to each. `free` gives the cell so many columns and rows away, if one can
-/// stand there. No corner is cut: a diagonal step needs both cells beside it.
+/// The cells around one, with the length of the step to each. `free` gets a number of columns and rows and gives the
+/// cell that lies so far away, if one can stand there. No corner is cut: a diagonal step needs both cells beside it.
 pub fn around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item = (C, u64)> {
     STEPS.into_iter().filter_map(move |(dx, dy)| {
         if dx == 0 || dy == 0 {
@@ -24,14 +25,15 @@ pub fn around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item =
     })
 }
 
-/// The length of a way over free ground between cells so many columns and rows apart: no way is shorter.
+/// The least length of a way between cells this many columns and rows apart: its length over free ground.
 #[must_use]
 pub fn at_least(columns: u64, rows: u64) -> u64 {
     STRAIGHT * columns.max(rows) + (DIAGONAL - STRAIGHT) * columns.min(rows)
 }
 
-/// A shortest way between two of `count` cells, both among it; `None` where there is none. `left` says how far it is to the goal
-/// from a cell at least, and `steps` which cells can be reached from one. Of ways of one length always the same is found.
+/// A shortest way between two of `count` cells, with both ends; `None` where there is none. `left` gives a lower bound
+/// of the length from a cell to the goal. `steps` gives the cells that can be reached from one, with the length of each
+/// step. If several ways have the same length, the result is always the same one.
 pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
     count: usize,
     start: usize,
@@ -51,7 +53,7 @@ pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
             return Some(way);
         }
         let length = best[cell];
-        // A shorter way to it was found meanwhile.
+        // A shorter way to this cell was found in the meantime.
         if estimate > length + left(cell) {
             continue;
         }

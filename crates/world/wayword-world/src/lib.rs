@@ -1,11 +1,12 @@
-//! What all platforms share.
+//! Code that all platforms share.
 //!
-//! [`files`] reads other people's files with a bound. [`said`] reads what a child or a socket says, likewise. [`wander`] walks at
-//! random over open ground, [`graph_walk`] along a viewpoint graph; [`grid_search`] finds shortest ways over a grid, and
-//! [`episode_path`] turns an episode of a dataset into a path.
-//! [`seen_from`](mod@seen_from) tells which viewpoints show an object. [`object_names`] and [`region`] put into plain words what Matterport3D's annotators wrote, which other scenes carry too.
+//! [`files`] reads third-party files up to a size limit. [`said`] does the same for the output of a child process or a
+//! socket. [`wander`] makes random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
+//! finds shortest ways over a grid, and [`episode_path`] turns an episode of a dataset into a path.
+//! [`seen_from`](mod@seen_from) finds the viewpoints that show an object. [`object_names`] and [`region`] put the names
+//! and letters of Matterport3D's annotators, which other scenes have too, into everyday words.
 //!
-//! Architecture invariant: nothing here knows one platform.
+//! Architecture invariant: nothing here depends on a single platform.
 
 pub mod episode_path;
 pub mod files;

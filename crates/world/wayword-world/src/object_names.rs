@@ -1,6 +1,6 @@
-//! Annotators' names of objects in plain words.
+//! Turns annotators' names of objects into everyday words.
 
-/// Annotators' slips, with what they meant: only such as leave no doubt.
+/// Spelling mistakes of the annotators, and what they meant. Only mistakes that leave no doubt are listed.
 const SLIPS: &[(&str, &str)] = &[
     ("baracade", "barricade"),
     ("bathtab", "bathtub"),
@@ -42,7 +42,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("windowframe", "window frame"),
 ];
 
-/// Words for parts of the building, and for what the annotators could not name: nobody is sent to do something with these.
+/// Words for parts of the building, and for objects that the annotators could not name. A task cannot be about these.
 const NO_ERRAND: &[&str] = &[
     "arch",
     "archway",
@@ -90,10 +90,10 @@ const NO_ERRAND: &[&str] = &[
 /// Longest name that is kept, in characters.
 const MAX_CHARS: usize = 60;
 
-/// A name as people would write it: `#` is a space; remarks on where the thing really is ("/ other room"), stray marks and
-/// slips are gone. `None` where nothing is left.
+/// A name as people would write it. `#` becomes a space. Remarks on where the object really is ("/ other room") and
+/// stray marks are removed, and spelling mistakes are corrected. `None` where nothing is left.
 ///
-/// Of two names joined by a slash with spaces round it the first stands; without spaces ("stand/table") the second.
+/// Of two names joined by a slash with spaces around it, the first is kept; without spaces ("stand/table"), the second.
 #[must_use]
 pub fn plain(raw: &str) -> Option<String> {
     let spaced: String = raw.chars().take(4 * MAX_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
@@ -126,7 +126,7 @@ fn mended(word: &str) -> &str {
     SLIPS.iter().find(|(slip, _)| *slip == word).map_or(word, |(_, meant)| meant)
 }
 
-/// Whether a plain name is of something that one can be sent to do something with.
+/// Whether a task can be about an object with this plain name.
 #[must_use]
 pub fn is_furnishing(name: &str) -> bool {
     !name.split(' ').any(|word| NO_ERRAND.contains(&word))

@@ -1,6 +1,7 @@
-//! The letters by which Matterport3D labels regions, as rooms (`house_segmentations`, data organisation, "region labels").
+//! The letters by which Matterport3D labels regions, as rooms (`house_segmentations`, data organisation, "region
+//! labels").
 
-/// The everyday word for a region's letter; `None` for what is no room that a person would name.
+/// The everyday word for a region's letter; `None` where it is not a room that a person would name.
 #[must_use]
 pub fn room(letter: char) -> Option<&'static str> {
     Some(match letter {

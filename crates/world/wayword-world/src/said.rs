@@ -1,11 +1,12 @@
-//! What a child or a socket says: read with a bound, and made harmless before a person is shown it.
+//! Reads the output of a child process or a socket up to a size limit, and makes it safe to show to a person.
 
 use std::{
     io::{BufRead, Read},
     sync::Arc,
 };
 
-/// Who is told what a world says beside its answers, line by line, without control characters.
+/// Called with each line that a platform reports beside its answers, such as what a world program prints, without
+/// control characters.
 pub type Hear = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// What came out of a pipe.
@@ -15,13 +16,13 @@ pub enum Line {
     Whole(Vec<u8>),
     /// Bytes, and then the pipe's end.
     Half(Vec<u8>),
-    /// A line without an end in sight.
+    /// A line that is longer than the limit.
     TooLong,
     /// The pipe's end.
     End,
 }
 
-/// The next line. No more than `max_bytes` of it are ever held.
+/// The next line. It is given up when it has more than `max_bytes`.
 #[must_use]
 pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> Line {
     let mut line = Vec::new();
@@ -39,20 +40,21 @@ pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> Line {
     }
 }
 
-/// Whether a character does something to a terminal, or to the text around it, that nobody sees: it moves the cursor, turns the
-/// direction of writing, or has no width. The two joiners have none either, and stay: words of Hindi, Telugu or Persian need them.
+/// Whether a character changes a terminal or the text around it without being seen: it moves the cursor, changes the
+/// direction of writing, or has no width. The two joiners have no width either, but they are kept, because words of
+/// Hindi, Telugu or Persian need them.
 #[must_use]
 pub fn is_unseen(c: char) -> bool {
     c.is_control()
         || matches!(c,
-            // Soft hyphen, and signs that only join, part or turn others (Unicode's category Cf).
+            // Soft hyphen, and characters that only join, separate or reverse others (Unicode's category Cf).
             '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
             | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
             // Ends of lines and paragraphs.
             | '\u{2028}' | '\u{2029}')
 }
 
-/// A text without what could move a cursor, break a line or turn it round, and not too long.
+/// A text without characters that could move a cursor, break a line or reverse it, cut to `max_chars` characters.
 #[must_use]
 pub fn plain(text: &str, max_chars: usize) -> String {
     text.chars().filter(|c| !is_unseen(*c)).take(max_chars).collect()

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DVec3, Label, ObjectId, PlatformError, ViewpointGraph, ViewpointId};
 
-/// The viewpoints from which each object is seen; `labels_around` tells what is visible around an eye.
+/// The viewpoints from which each object is seen. `labels_around` gives what is visible around an eye.
 ///
 /// # Errors
-/// When the world cannot be looked at.
+/// When `labels_around` fails.
 pub fn seen_from(
     graph: &ViewpointGraph,
     mut labels_around: impl FnMut(DVec3) -> Result<Vec<Label>, PlatformError>,

@@ -1,13 +1,13 @@
-//! Random walks through worlds with open ground, where paths have a length but no hops.
+//! Random paths through scenes with open ground, where paths have a length but no hops.
 
 use wayword_core::{DVec3, Frame, Motion, Path, PathRequest, PlatformError, SceneId, Target, path::Stop};
 
-/// So many pairs of places are tried.
+/// How many pairs of places are tried.
 const TRIES: usize = 400;
-/// Ends at which nothing fit to be a target is visible that are passed over before one is accepted.
+/// How many ends without a visible target are skipped before one is accepted.
 const MAX_BARE_ENDS: usize = 12;
 
-/// A world to walk through, with the dice that choose the walk.
+/// A scene with open ground, and the random choices of a path through it.
 pub trait Wander {
     /// Two random places; `None` where there is no ground.
     fn ends(&mut self) -> Option<(DVec3, DVec3)>;
@@ -15,25 +15,25 @@ pub trait Wander {
     /// Where frames are taken along the shortest way from one to the other; `None` where there is none.
     ///
     /// # Errors
-    /// When the world cannot be asked.
+    /// When the platform cannot answer.
     fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError>;
 
-    /// What a walk that ends here can be about.
+    /// A target for a path that ends at `last`.
     ///
     /// # Errors
-    /// When the world cannot be looked at.
+    /// When the platform cannot give a view.
     fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError>;
 
-    /// Whether it knows objects at all: a walk in search of a target ends nowhere in a world that has none.
+    /// Whether the scene has known objects at all. Without them, looking for a target is useless.
     fn knows_objects(&self) -> bool {
         true
     }
 }
 
-/// A walk whose length keeps to `request`, with a target where one is found; `None` where the world holds no such walk.
+/// A path whose length fits `request`, with a target where one is found; `None` where the program finds no such path.
 ///
 /// # Errors
-/// When the world cannot be asked.
+/// When the platform cannot answer.
 pub fn wander(
     world: &mut dyn Wander,
     scene: &SceneId,
@@ -67,7 +67,7 @@ pub fn wander(
     Ok(bare)
 }
 
-/// There is no walk of the length that was asked for.
+/// The error that no path of the requested length was found.
 #[must_use]
 pub fn no_such_walk(scene: &SceneId, request: &PathRequest) -> PlatformError {
     let request = format!("{} to {} metres", request.length_m.start(), request.length_m.end());
@@ -79,7 +79,8 @@ mod tests {
     use super::*;
     use wayword_core::ObjectId;
 
-    /// A line on which each pair of ends is one metre longer than the one before; something stands where `seen` says so.
+    /// A scene on a line: each pair of ends lies one metre farther apart than the one before, and an object stands
+    /// where `seen` says so.
     struct Line {
         tried: usize,
         seen: fn(usize) -> bool,
@@ -118,14 +119,14 @@ mod tests {
     fn the_first_walk_of_that_length_with_something_at_its_end_is_taken() {
         assert_eq!(walked(|_| true, true, 2.0..=9.0), Some((2.0, true)));
         assert_eq!(walked(|at| at > 4, true, 2.0..=9.0), Some((5.0, true)));
-        assert_eq!(walked(|_| true, true, 3.0..=9.0), Some((4.0, true)), "there is no way of three metres");
+        assert_eq!(walked(|_| true, true, 3.0..=9.0), Some((4.0, true)), "no way is three metres long");
     }
 
     #[test]
     fn where_nothing_is_to_be_seen_the_first_walk_is_taken_without_a_target() {
         assert_eq!(walked(|_| false, true, 2.0..=90.0), Some((2.0, false)));
-        assert_eq!(walked(|at| at > 60, true, 2.0..=90.0), Some((2.0, false)), "it does not look for ever");
-        assert_eq!(walked(|at| at > 4, false, 2.0..=9.0), Some((2.0, false)), "nobody knows what is there");
+        assert_eq!(walked(|at| at > 60, true, 2.0..=90.0), Some((2.0, false)), "the search must end");
+        assert_eq!(walked(|at| at > 4, false, 2.0..=9.0), Some((2.0, false)), "the objects are not known");
     }
 
     #[test]
