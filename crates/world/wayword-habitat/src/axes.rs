@@ -1,26 +1,26 @@
-//! Between Habitat's frame and Wayword's.
+//! Converts between Habitat's frame and Wayword's.
 //!
-//! Habitat: right-handed, metres, y up, an agent looks along -z. Wayword: z up, heading 0 along +y and clockwise. So north is
-//! Habitat's -z.
+//! Habitat: right-handed, metres, y up, an agent looks along -z. Wayword: z up, heading 0 along +y and clockwise. So
+//! north is Habitat's -z.
 
 use wayword_core::DVec3;
 
-/// Height of the eye over the ground, metres (Habitat's sensors of the VLN tasks).
+/// Height of the eye above the ground, metres (as for the sensors in Habitat's VLN tasks).
 pub const EYE_M: f64 = 1.5;
 
-/// A place or direction of Habitat in Wayword's frame.
+/// Converts a position or direction from Habitat's frame to Wayword's.
 #[must_use]
 pub fn wayword_from_habitat(place: DVec3) -> DVec3 {
     DVec3::new(place.x, -place.z, place.y)
 }
 
-/// A place or direction of Wayword in Habitat's frame.
+/// Converts a position or direction from Wayword's frame to Habitat's.
 #[must_use]
 pub fn habitat_from_wayword(place: DVec3) -> DVec3 {
     DVec3::new(place.x, place.z, -place.y)
 }
 
-/// The quaternion (w, x, y, z) of an agent of Habitat that looks along a level heading.
+/// The quaternion (w, x, y, z) of a Habitat agent that looks along a heading, with elevation 0.
 #[must_use]
 pub fn habitat_rotation_from_heading(heading_rad: f64) -> [f64; 4] {
     // Yaw is counter-clockwise about +y, and 0 looks along -z, which is north.
@@ -28,8 +28,8 @@ pub fn habitat_rotation_from_heading(heading_rad: f64) -> [f64; 4] {
     [cos, 0.0, sin, 0.0]
 }
 
-/// The way that an agent of Habitat looks, in Wayword's frame: its rotation (w, x, y, z) applied to -z. The rotation need not
-/// have length 1; of a rotation of length 0, or one that is not finite, nothing comes that has a direction.
+/// The direction in which a Habitat agent looks, in Wayword's frame: its rotation (w, x, y, z) applied to -z. The
+/// rotation need not have length 1. If its length is 0 or it is not finite, the result has no direction.
 #[must_use]
 pub fn forward_from_habitat_rotation([w, x, y, z]: [f64; 4]) -> DVec3 {
     let rotation = glam::DQuat::from_xyzw(x, y, z, w).normalize();

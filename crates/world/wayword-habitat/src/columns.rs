@@ -1,20 +1,21 @@
-//! What lies straight above and below a place of a scene.
+//! What lies straight above and below a position in a scene.
 
 use glam::Vec3;
 use wayword_core::DVec3;
 
 /// Smallest side of a cell, metres.
 const FINEST_M: f32 = 0.25;
-/// A triangle counts in so many cells on average, at most; the grid is made coarser where it would be more.
+/// Most cells per triangle, on average. If a grid would need more, it is made coarser.
 const CELLS_PER_TRIANGLE: u64 = 8;
+/// Cells that any scene may use in addition.
 const FREE_CELLS: u64 = 1 << 20;
-/// What lies nearer to the feet than this is the ground itself, metres: a navmesh lies up to a voxel beside the floor, and runs straight
-/// over the treads of stairs.
+/// A surface nearer to the feet than this is the ground itself, metres: a navmesh lies up to one voxel above or below
+/// the floor, and runs straight over the treads of stairs.
 const FEET_M: f64 = 0.5;
-/// Somebody who stands needs so much room, metres.
+/// Room that a standing person needs, metres.
 const HEADROOM_M: f64 = 1.8;
 
-/// The triangles of a scene by the cells that they touch, seen from above. In Wayword's frame.
+/// The triangles of a scene, sorted into the cells that they touch as seen from above. In Wayword's frame.
 #[derive(Debug)]
 pub(crate) struct Columns {
     triangles: Vec<[Vec3; 3]>,
@@ -22,25 +23,25 @@ pub(crate) struct Columns {
     side_m: f32,
     /// Cells along x and along y.
     size: [usize; 2],
-    /// Where the triangles of each cell begin in `members`; one more than there are cells.
+    /// Where the triangles of each cell begin in `members`; the length is the number of cells and 1.
     starts: Vec<u32>,
     members: Vec<u32>,
 }
 
-/// What is over a place on the ground, or under it.
+/// What is above a position on the ground, and below it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Over {
-    /// A ceiling so many metres above the ground.
+    /// A ceiling; its height above the ground, metres.
     Ceiling(f64),
-    /// The sky, and solid ground below.
+    /// The sky above, and solid ground below.
     Sky,
-    /// The sky, and a space below in which somebody could stand: a roof.
+    /// The sky above, and below the ground a space in which a person could stand: the ground is a roof.
     SkyOnRoof,
 }
 
 impl Columns {
     pub(crate) fn new(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
-        // What stands upright has no place seen from above.
+        // An upright triangle has no area seen from above.
         let lies = |[a, b, c]: &[Vec3; 3]| {
             let doubled = (*b - *a).truncate().perp_dot((*c - *a).truncate());
             a.is_finite() && b.is_finite() && c.is_finite() && doubled.abs() > 1e-9
@@ -53,7 +54,7 @@ impl Columns {
             Self { triangles, corner: low, side_m: FINEST_M, size: [1, 1], starts: Vec::new(), members: Vec::new() };
         let extent = high - low;
         loop {
-            // Casts saturate; a cell more holds what lies on the far edge.
+            // Casts saturate; one more cell holds what lies on the far edge.
             columns.size = [extent.x, extent.y].map(|side| (side / columns.side_m) as usize + 1);
             let cells = columns.size[0] as u64 * columns.size[1] as u64;
             let touched: u64 = columns.triangles.iter().map(|triangle| columns.touched(triangle)).sum();
@@ -105,7 +106,8 @@ impl Columns {
         (near..=far).flat_map(move |y| (left..=right).map(move |x| y * wide + x))
     }
 
-    /// The surfaces that a vertical line through a place meets, from the lowest: height in metres, and whether they face up.
+    /// The surfaces that a vertical line through a position meets, from the lowest: height in metres, and whether it
+    /// faces up.
     fn surfaces(&self, place: DVec3) -> Vec<(f64, bool)> {
         let at = (place.truncate().as_vec2() - self.corner) / self.side_m;
         let inside = at.min_element() >= 0.0 && (at.x as usize) < self.size[0] && (at.y as usize) < self.size[1];
@@ -120,26 +122,26 @@ impl Columns {
         surfaces
     }
 
-    /// What is over a place on the ground.
+    /// What is above a position on the ground.
     pub(crate) fn over(&self, ground: DVec3) -> Over {
         let surfaces = self.surfaces(ground);
         if let Some((height_m, _)) = surfaces.iter().find(|(height_m, _)| *height_m > ground.z + FEET_M) {
             return Over::Ceiling(height_m - ground.z);
         }
-        // Whatever lies below faces up where somebody could stand on it, with room above it.
+        // A person could stand on a surface below if it faces up and has enough room above it.
         let is_room = |pair: &[(f64, bool)]| pair[0].1 && pair[1].0 - pair[0].0 >= HEADROOM_M;
         if surfaces.windows(2).any(is_room) { Over::SkyOnRoof } else { Over::Sky }
     }
 }
 
 impl Over {
-    /// Whether somebody can stand upright there.
+    /// Whether a person can stand upright there.
     pub(crate) fn is_headroom(&self) -> bool {
         !matches!(self, Self::Ceiling(height_m) if *height_m < HEADROOM_M)
     }
 }
 
-/// Where a vertical line through a place meets a triangle, and whether that faces up.
+/// The height at which a vertical line through a position meets a triangle, and whether the triangle faces up.
 fn met([a, b, c]: &[Vec3; 3], place: DVec3) -> Option<(f64, bool)> {
     let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
     let side = |a: DVec3, b: DVec3| (b - a).truncate().perp_dot((place - a).truncate());
@@ -177,7 +179,7 @@ mod tests {
     fn firm_ground_is_no_roof_however_thick() {
         let block = columns(&[sheet(4.0, -3.0, false), sheet(4.0, 0.0, true)]);
         assert_eq!(block.over(DVec3::new(1.0, 0.5, 0.0)), Over::Sky);
-        // A crawl space is no room.
+        // A crawl space does not count as a room.
         let raised = columns(&[sheet(4.0, -1.0, true), sheet(4.0, -0.2, false), sheet(4.0, 0.0, true)]);
         assert_eq!(raised.over(DVec3::new(1.0, 0.5, 0.0)), Over::Sky);
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with a file.
+//! Reading files, and what can be wrong with them.
 
 use std::path::{Path, PathBuf};
 use wayword_core::PlatformError;
@@ -27,7 +27,7 @@ impl From<FileError> for PlatformError {
     }
 }
 
-/// A file's bytes; `None` where there is none.
+/// A file's bytes; `None` if there is no such file.
 pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<Vec<u8>>, FileError> {
     let wrong = |error: std::io::Error| FileError::new(file, error.to_string(), hint);
     let about = match std::fs::metadata(file) {
@@ -40,7 +40,7 @@ pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Resu
     }
     let opened = std::fs::File::open(file).map_err(wrong)?;
     let mut bytes = Vec::new();
-    // One more than allowed tells that there is more, whatever the file system says of its length.
+    // Reading one byte more than allowed shows that the file is too long, whatever length the file system reports.
     std::io::Read::read_to_end(&mut std::io::Read::take(opened, most + 1), &mut bytes).map_err(wrong)?;
     if bytes.len() as u64 > most {
         return Err(FileError::new(file, format!("is larger than {most} bytes"), hint));
@@ -53,7 +53,7 @@ pub(crate) fn bytes(file: &Path, most: u64, hint: &'static str) -> Result<Vec<u8
     bytes_if_there(file, most, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
 }
 
-/// A file's text; `None` where there is none.
+/// A file's text; `None` if there is no such file.
 pub(crate) fn text_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<String>, FileError> {
     let Some(bytes) = bytes_if_there(file, most, hint)? else { return Ok(None) };
     wayword_world::files::text(bytes).map(Some).map_err(|reason| FileError::new(file, reason, hint))

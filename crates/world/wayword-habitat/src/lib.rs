@@ -1,6 +1,6 @@
-//! Habitat's scenes and navmeshes without Habitat: read, walked on, drawn.
+//! Reads Habitat's scenes and navmeshes, plans paths on them and draws them, without Habitat.
 //!
-//! Everything that leaves this crate is in Wayword's frame (metres, z up, north is +y); files are in Habitat's.
+//! Everything that this crate returns is in Wayword's frame (metres, z up, north is +y); files are in Habitat's.
 
 pub mod axes;
 pub mod bake;

@@ -1,4 +1,5 @@
-//! Frames that habitat-sim itself has drawn, against ours. Needs the oracle data; without it the test says so.
+//! Compares our frames with frames that habitat-sim drew. Needs the oracle data; without it the tests print that they
+//! are skipped.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
@@ -13,7 +14,7 @@ use wayword_habitat::{
 };
 use wayword_render::{Camera, Picture, Scene, render};
 
-/// Shares of a frame's pixels.
+/// Pixels of a frame.
 const PIXELS: f64 = 640.0 * 480.0;
 
 #[test]
@@ -22,7 +23,8 @@ fn every_frame_of_habitat_is_drawn_the_same() {
     let folder = folder.join("habitat_frames");
     for (name, stage) in [("traj_flat_a", "flat.glb"), ("traj_simple_room", "simple_room.stage_config.json")] {
         let mut model = Model::of(&Stage::of(&folder.join(stage)).unwrap()).unwrap();
-        // What has no material is lit by Habitat's studio, of which little is known: it is counted apart.
+        // Habitat lights surfaces without a material with the image of a studio, which is not available: they are
+        // counted apart.
         for mesh in model.meshes.iter_mut().filter(|mesh| !mesh.colours.is_empty()) {
             mesh.id = 1;
         }
@@ -66,7 +68,8 @@ fn draw(scene: &Scene, frame: &serde_json::Value) -> Picture {
     render(scene, &Camera::looking_along(eye, forward, vertical_fov_rad, 640, 480)).unwrap()
 }
 
-/// The median difference in millimetres, and how many pixels are off by more than two; a pixel that shows nothing has depth 0.
+/// The median difference in millimetres, and the number of pixels with a difference of more than 2 mm. A pixel that
+/// shows nothing has depth 0.
 fn depths(ours_m: &[f32], theirs_mm: &[u16]) -> (f64, usize) {
     let ours_mm = ours_m.iter().map(|metres| if metres.is_finite() { f64::from(*metres) * 1000.0 } else { 0.0 });
     let mut apart: Vec<f64> = ours_mm.zip(theirs_mm).map(|(ours, theirs)| (ours - f64::from(*theirs)).abs()).collect();

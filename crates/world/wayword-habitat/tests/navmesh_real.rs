@@ -1,4 +1,4 @@
-//! Navmeshes that Habitat itself has written. Needs the oracle data; without it the tests say so.
+//! Tests with navmeshes that Habitat wrote. They need the oracle data; without it they print that they are skipped.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
@@ -21,11 +21,11 @@ fn every_navmesh_of_habitat_is_written_back_byte_for_byte() {
         let mesh = NavMesh::from_bytes(&bytes).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         assert_eq!(mesh.version(), 2);
         assert!(mesh.polygons() > 0);
-        assert!(mesh.to_bytes() == bytes, "{} is written back otherwise", file.display());
+        assert!(mesh.to_bytes() == bytes, "{} is written back differently", file.display());
     }
 }
 
-/// The way as Habitat tells it, in Wayword's frame.
+/// The corners of Habitat's way, in Wayword's frame.
 fn corners(points: &serde_json::Value) -> Vec<DVec3> {
     points.as_array().unwrap().iter().map(oracles::place).collect()
 }
@@ -59,9 +59,9 @@ fn frames_stand_where_those_of_the_trajectories_do() {
         let expected = corners(&trajectory["path_points"]);
         let way = ground.geodesic(expected[0], *expected.last().unwrap()).unwrap();
         let frames = trajectory["frames"].as_array().unwrap();
-        // Theirs are about a metre apart: as many as they have are asked for.
+        // Habitat's frames are about a metre apart: ours are to be as many.
         let stops = stops_along(&ground, &way, way.length_m / (frames.len() - 1) as f64);
-        // Before the first bend, Habitat's agent looks the way that ours does.
+        // Before the first bend, Habitat's agent looks in the same direction as ours.
         let ours = Path::frames_along(stops.clone(), None)[0].pose.heading.direction();
         let rotation = std::array::from_fn(|at| frames[0]["rotation_wxyz"][at].as_f64().unwrap());
         assert!((ours - forward_from_habitat_rotation(rotation)).length() < 1e-3);
@@ -89,7 +89,7 @@ fn geodesics_and_area_agree_with_habitats_path_finder() {
     }
 }
 
-/// A box, its faces outwards, in Wayword's frame.
+/// A box whose faces point outwards, in Wayword's frame.
 fn solid(ends: [[f32; 3]; 2]) -> Mesh {
     let (corners, triangles) = oracles::solid(ends);
     let place = |corner: [f32; 3]| wayword_from_habitat(glam::Vec3::from(corner).as_dvec3()).as_vec3();

@@ -1,4 +1,4 @@
-//! Scenes by others, from file to path and view. Needs the data; without it the test says so.
+//! Third-party scenes, from file to path and view. Needs the data; without it the test prints that it is skipped.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may fail and tell as tests do")]
 
@@ -7,7 +7,7 @@ mod oracles;
 use wayword_core::{DVec3, Gaze, PathRequest, Platform, rng};
 use wayword_habitat::{Ground, HabitatOptions, HabitatPlatform};
 
-/// A scene, and how many metres its units are.
+/// A scene, and the length of its unit in metres.
 const SCENES: [(&str, f64); 3] =
     [("house.glb", 40.0), ("three_pathfinding_level.glb", 1.0), ("cube-room/cube-room.gltf", 1.0)];
 
@@ -47,8 +47,8 @@ fn scenes_without_navmesh_are_baked_walked_and_seen() {
     }
 }
 
-/// Between any two places of an island there is a way, not shorter than the straight line, as long backwards, and hardly ever longer
-/// than over a third place.
+/// Checks that there is a way between any two places of an island, that it is not shorter than the straight line, has
+/// the same length backwards, and is almost never longer than the way over a third place.
 fn walk_all_over(ground: &Ground) {
     let mut rng = rng(3, &["all over"]);
     let mut longer = 0;

@@ -1,5 +1,5 @@
-//! Where random walks lead in the scenes of the genuine Habitat, over its own navmeshes. Needs the oracle data; without it the tests
-//! say so.
+//! Where random paths lead in the scenes of the genuine Habitat, over its own navmeshes. Needs the oracle data; without
+//! it the tests print that they are skipped.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may fail and tell as tests do")]
 
@@ -24,7 +24,8 @@ struct Oracle {
     area_m2: f64,
 }
 
-/// The scenes of which there is a navmesh by Habitat, and those navmeshes; the scene of `rooms.navmesh` is written anew.
+/// The scenes for which there is a navmesh by Habitat, and those navmeshes. The scene of `rooms.navmesh` is written
+/// here.
 fn scenes(folder: &Path, written: &Path) -> Vec<Oracle> {
     let frames = folder.join("habitat_frames");
     let navmesh = |name: &str| Some(frames.join(name).join("scene.navmesh"));
@@ -54,7 +55,7 @@ fn open(oracle: &Oracle, island: Option<usize>) -> HabitatPlatform {
     HabitatPlatform::open(&oracle.stage, options, Arc::new(|line: &str| println!("{line}"))).unwrap()
 }
 
-/// Walks that are drawn in each scene.
+/// Random paths in each scene.
 const WALKS: u64 = 200;
 
 #[test]
@@ -81,7 +82,7 @@ fn every_frame_of_a_walk_stands_on_a_storey_with_headroom() {
                 off += usize::from(!geometry.is_on_storey(frame));
             }
         }
-        println!("{name}: {WALKS} walks, {frames} frames, {low} without headroom, {off} off every storey");
+        println!("{name}: {WALKS} paths, {frames} frames, {low} without headroom, {off} off every storey");
         assert_eq!((low, off), (0, 0), "{name}");
         let walked = islands.iter().find(|island| island.is_walked).unwrap();
         assert!((walked.area_m2 - oracle.area_m2).abs() < 0.1, "{name}: {walked}");
@@ -148,7 +149,7 @@ fn standing(feet: DVec3) -> Frame {
     Frame { pose: Pose::level(feet + DVec3::Z * EYE_M, Heading::NORTH), viewpoint: None, level: None }
 }
 
-/// The triangles of a scene, looked through one by one: nothing of what the platform does is used.
+/// The triangles of a scene, searched one by one without any code of the platform.
 struct Geometry {
     triangles: Vec<[DVec3; 3]>,
     storeys_m: Vec<f64>,
@@ -166,7 +167,7 @@ impl Geometry {
         geometry
     }
 
-    /// Heights at which much of the scene lies level and faces up, with room above it or the sky where nothing is above anything.
+    /// Heights at which a large part of the scene is level and faces up, except roofs.
     fn storeys(&self) -> Vec<f64> {
         let mut levels: Vec<(f64, f64)> = Vec::new();
         for [a, b, c] in &self.triangles {
@@ -187,7 +188,7 @@ impl Geometry {
         large.filter(|height_m| !self.is_roof(*height_m)).collect()
     }
 
-    /// Whether nothing of the scene lies more than a slab above a height, and much of it a storey below.
+    /// Whether nothing of the scene lies more than 0.5 m above a height, and something more than 1.8 m below it.
     fn is_roof(&self, height_m: f64) -> bool {
         let heights = || self.triangles.iter().flatten().map(|corner| corner.z);
         !heights().any(|z| z > height_m + 0.5) && heights().any(|z| z < height_m - 1.8)
@@ -205,7 +206,7 @@ impl Geometry {
 
     fn has_headroom(&self, frame: &Frame) -> bool {
         let feet = feet(frame);
-        // The ground of a navmesh lies up to a voxel off the floor.
+        // The ground of a navmesh lies up to one voxel off the floor.
         !self.heights(feet).any(|z| z > feet.z + 0.3 && z < feet.z + 1.8)
     }
 

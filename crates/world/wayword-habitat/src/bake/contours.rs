@@ -1,14 +1,15 @@
-//! From regions to polygons, mending what cannot be cut into triangles.
+//! Turns regions into polygons, and repairs contours that cannot be cut into triangles.
 
 use super::Voxels;
 use rerecast::{BuildContoursFlags, CompactHeightfield, Contour, ContourSet, PolygonNavmesh};
 
-/// Shares of the error that borders are simplified with, for contours that the whole of it has spoilt.
+/// Fractions of the allowed error of simplified borders, tried in turn for contours that the full error makes unusable.
 const FINER: [f32; 3] = [0.5, 0.25, 0.0];
 
-/// The polygons of all regions. Simplifying a border can make it cross itself. Recast then warns and keeps the triangles that it
-/// has cut until then (`rcBuildPolyMesh`); rerecast gives up. Here such a contour is simplified less, which changes nothing at
-/// the edges to other regions, as those are never simplified; and only what cannot be mended so is left out.
+/// The polygons of all regions. Simplifying a border can make it cross itself. Recast then warns and keeps the
+/// triangles that it has cut so far (`rcBuildPolyMesh`); rerecast gives up. This function simplifies such a contour
+/// less. That changes nothing at the edges to other regions, because those are never simplified. It drops a contour
+/// only if this does not help.
 pub(super) fn polygons(
     open: &CompactHeightfield,
     voxels: &Voxels,
@@ -38,7 +39,7 @@ pub(super) fn polygons(
     Ok(set.into_polygon_mesh(corners)?)
 }
 
-/// A set of one contour.
+/// A contour set with only this contour.
 fn alone(set: &ContourSet, contour: &Contour) -> ContourSet {
     ContourSet { contours: vec![contour.clone()], ..set.clone() }
 }

@@ -1,4 +1,4 @@
-//! Navmeshes for scenes that have none, baked as Habitat does (`PathFinder::Impl::build`, habitat-sim 0.3.3).
+//! Bakes navmeshes for scenes that have none, as Habitat does (`PathFinder::Impl::build`, habitat-sim 0.3.3).
 
 mod contours;
 
@@ -14,18 +14,18 @@ use glam::{UVec3, Vec3};
 use rerecast::{Aabb3d, AreaType, DetailNavmesh, HeightfieldBuilder, PolygonNavmesh, SubMesh, TriMesh};
 use wayword_core::contain::decoded;
 
-/// Columns of voxels, at most: 250 m x 250 m at Habitat's 5 cm.
+/// Most columns of voxels: 250 m x 250 m at Habitat's 5 cm.
 const MAX_COLUMNS: f32 = 25e6;
-/// Voxels above one another, at most (Recast's spans have 13 bits).
+/// Most voxels in one column (Recast's spans have 13 bits).
 const MAX_LAYERS: f32 = 8191.0;
 
 /// Why no navmesh can be baked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BakeError {
-    /// A scene without a triangle.
+    /// The scene has no triangle.
     #[error("the scene has no triangles: there is nothing to walk on")]
     Empty,
-    /// A scene of which there would be too many voxels.
+    /// The scene would need too many voxels.
     #[error(
         "the scene is {width_m:.0} x {depth_m:.0} m wide and {height_m:.0} m high: too large to bake; give it a .navmesh"
     )]
@@ -44,21 +44,21 @@ pub enum BakeError {
         field: &'static str,
         /// Its value.
         value: f32,
-        /// What would do.
+        /// What is allowed.
         wanted: &'static str,
     },
-    /// Recast has given up.
+    /// Recast failed.
     #[error("the navmesh cannot be baked: {reason}; give the scene a .navmesh")]
     Recast {
-        /// What it says.
+        /// Its error message.
         reason: String,
     },
 }
 
-/// The navmesh of a scene.
+/// Bakes the navmesh of a scene.
 ///
 /// # Errors
-/// [`BakeError`] where the scene is empty, too large, or more than Recast can do.
+/// [`BakeError`] if the scene is empty or too large, a setting is out of range, or Recast fails.
 pub fn bake(model: &Model, settings: &NavMeshSettings) -> Result<NavMesh, BakeError> {
     let voxels = Voxels::of(settings)?;
     let mesh = trimesh(model);
@@ -155,11 +155,11 @@ fn check_size(bounds: &Aabb3d, settings: &NavMeshSettings) -> Result<(), BakeErr
     let fits = across * along <= MAX_COLUMNS
         && across.max(along) < f32::from(u16::MAX)
         && size.y / settings.cell_height_m <= MAX_LAYERS;
-    // Not a number is no size that fits.
+    // A size that is not a number does not fit.
     if fits { Ok(()) } else { Err(BakeError::TooLarge { width_m: size.x, depth_m: size.z, height_m: size.y }) }
 }
 
-/// Recast's polygons as Detour takes them.
+/// Recast's polygons in Detour's form.
 fn surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> Surface {
     let low = polygons.aabb.min;
     let place = |vertex: &glam::U16Vec3| {
@@ -187,7 +187,8 @@ fn surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> Surface {
     }
 }
 
-/// The detail mesh of a polygon: vertices beyond its own corners, which come first there, and triangles with their flags.
+/// The detail mesh of a polygon: its vertices after the polygon's own corners, which come first, and triangles with
+/// their flags.
 fn detail_of(detail: &DetailNavmesh, mesh: &SubMesh, corners: usize) -> (Vec<[f32; 3]>, Vec<[u8; 4]>) {
     let first = mesh.base_vertex_index as usize + corners;
     let end = mesh.base_vertex_index as usize + mesh.vertex_count as usize;
@@ -205,7 +206,7 @@ mod tests {
     use wayword_core::DVec3;
     use wayword_render::Mesh;
 
-    /// A floor of 6 x 4 m with a block of 2 x 1 m in its middle, as high as a table or as a step.
+    /// A floor of 6 x 4 m with a block of 2 x 1 m in its middle; `block_m` is the height of the block.
     fn room(block_m: f32) -> Model {
         let mut mesh = Mesh::default();
         let mut quad = |corners: [[f32; 3]; 4]| {
@@ -230,7 +231,8 @@ mod tests {
         assert_eq!(NavMesh::from_bytes(&mesh.to_bytes()).unwrap(), mesh);
         let ground = Ground::new(&mesh);
         let islands: Vec<f64> = ground.islands_m2().collect();
-        // The floor less a border of a voxel's ledge and two of the agent's radius, and the same around the block.
+        // The floor without a border of one voxel for the ledge and two for the agent's radius, and the same around the
+        // block.
         let floor_m2 = 5.7 * 3.7 - 2.3 * 1.3;
         assert!((islands[0] / floor_m2 - 1.0).abs() < 0.03, "{islands:?}");
         let way = ground.geodesic(DVec3::new(1.0, 2.0, 0.0), DVec3::new(5.0, 2.1, 0.0)).unwrap();

@@ -1,4 +1,4 @@
-//! The search against a slow one that cannot be wrong: squares with holes, and straight lines between all their corners.
+//! Compares the search with a slow but exact one, on squares with holes: it tries straight lines between all corners.
 
 use super::{Ground, tests::paved};
 use glam::DVec2;
@@ -19,8 +19,8 @@ fn ground(squares: &Squares) -> Ground {
     Ground::new(&paved(&squares.iter().map(slab).collect::<Vec<_>>()))
 }
 
-/// Whether one can walk straight from a place to another: every stretch between two lines of the grid lies in a square of ground
-/// or, along a line, beside one. A corner in which two squares touch is slipped through.
+/// Whether one can walk straight from one place to another: every stretch between two grid lines lies in a square of
+/// ground or, if it runs along a grid line, beside one. A line may pass through a corner in which two squares touch.
 fn is_open(squares: &Squares, a: DVec2, b: DVec2) -> bool {
     let mut shares = vec![0.0, 1.0];
     for line in 0..=SIDE {
@@ -40,7 +40,7 @@ fn is_open(squares: &Squares, a: DVec2, b: DVec2) -> bool {
     shares.windows(2).all(|pair| is_ground(a.lerp(b, (pair[0] + pair[1]) / 2.0)))
 }
 
-/// The length of the shortest way over corners that see each other.
+/// The length of the shortest way over corners with a free straight line between them.
 fn shortest(squares: &Squares, from: DVec2, to: DVec2) -> Option<f64> {
     let mut places = vec![from, to];
     let corners: BTreeSet<(i64, i64)> =
@@ -86,7 +86,7 @@ proptest! {
     }
 }
 
-/// Whether two squares touch in a corner alone: there the slow search slips through and the other must not.
+/// Whether two squares touch only in a corner: there the slow search passes through, but the other one must not.
 fn pinched(squares: &Squares) -> bool {
     let has = |x: i64, y: i64| squares.contains(&(x, y));
     (0..SIDE - 1).any(|x| {

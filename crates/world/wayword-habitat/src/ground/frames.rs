@@ -1,21 +1,21 @@
-//! Where frames are taken along a way.
+//! Where the frames of a way are.
 
 use super::Ground;
 use crate::axes::EYE_M;
 use wayword_core::{DVec3, Way, path::Stop};
 
-/// Frames of one way, at most.
+/// Most frames of one way.
 const MAX_STOPS: f64 = 10_000.0;
 
-/// Stops for the eye at equal distances of at most `interval_m` along a way, both ends included. Each stands on the ground there,
-/// and knows its storey.
+/// Positions of the eye at equal distances of at most `interval_m` along a way, both ends included. Each is [`EYE_M`]
+/// above the ground there, and has its storey.
 #[must_use]
 pub fn stops_along(ground: &Ground, way: &Way, interval_m: f64) -> Vec<Stop> {
     let interval_m = if interval_m.is_finite() { interval_m.max(0.05) } else { 1.0 };
     let count = (way.length_m / interval_m - 1e-9).ceil().clamp(1.0, MAX_STOPS) as usize;
     let stop = |step: usize| {
         let on_way = place_at(way, way.length_m * step as f64 / count as f64);
-        // The way runs straight from corner to corner, over the treads of stairs.
+        // The way runs straight from corner to corner, so on stairs it can lie above or below the treads.
         let under = ground.nearest(on_way).map(|foothold| foothold.place);
         let near =
             under.filter(|place| (*place - on_way).truncate().length() < 0.05 && (place.z - on_way.z).abs() < 1.0);
@@ -25,7 +25,7 @@ pub fn stops_along(ground: &Ground, way: &Way, interval_m: f64) -> Vec<Stop> {
     (0..=count).map(stop).collect()
 }
 
-/// The place after so many metres.
+/// The place after `left_m` metres.
 fn place_at(way: &Way, mut left_m: f64) -> DVec3 {
     for pair in way.corners.windows(2) {
         let length_m = pair[0].distance(pair[1]);

@@ -6,20 +6,21 @@ use wayword_core::{DVec3, Way};
 /// Why there is no way.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoWay {
-    /// A place without ground near it.
+    /// There is no ground near this place.
     #[error("there is no walkable ground within 2 m of ({:.2}, {:.2}, {:.2})", .0.x, .0.y, .0.z)]
     OffGround(DVec3),
-    /// Two places between which nobody can walk.
-    #[error("the two places lie on islands that are not joined")]
+    /// One cannot walk between the two places.
+    #[error("the two places lie on islands that are not connected")]
     Apart,
 }
 
 impl Ground {
-    /// The shortest way between two places, as Habitat has it: each is taken to the nearest polygon, and the way begins and ends
-    /// where it was asked to where that lies over the polygon, else on the polygon's border.
+    /// The shortest way between two places, as Habitat computes it: each place is assigned to the nearest polygon. The
+    /// way begins or ends at the place itself if it lies over that polygon, else at the nearest point of the polygon's
+    /// border.
     ///
     /// # Errors
-    /// [`NoWay`] where a place lies off the ground, or the two on different islands.
+    /// [`NoWay`] if a place lies off the ground, or the two lie on different islands.
     pub fn geodesic(&self, from: DVec3, to: DVec3) -> Result<Way, NoWay> {
         let start = self.nearest(from).ok_or(NoWay::OffGround(from))?;
         let end = self.nearest(to).ok_or(NoWay::OffGround(to))?;
@@ -35,7 +36,7 @@ impl Ground {
         Ok(Way { corners, length_m })
     }
 
-    /// Where the shortest way bends; `None` where there is none.
+    /// Where the shortest way bends; `None` if there is no way.
     fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         if start.island != end.island {
             return None;

@@ -1,9 +1,9 @@
-//! Which ground hangs together.
+//! Finds the connected parts of the ground.
 
 use super::{Island, polygon::Polygon};
 use std::sync::OnceLock;
 
-/// The islands, the largest first; tells every polygon its own.
+/// The islands, the largest first; sets the island of every polygon.
 pub(super) fn find(polygons: &mut [Polygon]) -> Vec<Island> {
     let mut islands: Vec<Island> = Vec::new();
     let mut seen = vec![false; polygons.len()];

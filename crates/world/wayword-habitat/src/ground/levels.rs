@@ -1,19 +1,20 @@
-//! Storeys, told from the heights at which ground lies.
+//! Finds the storeys from the heights at which the ground lies.
 
 use super::Ground;
 use wayword_core::DVec3;
 
 /// Height of a slice, metres.
 const SLICE_M: f64 = 0.25;
-/// No two floors lie nearer above one another, metres.
+/// Least height between two storeys, metres.
 const STOREY_M: f64 = 2.0;
-/// A floor has at least this share of the area of the largest one: a landing has not.
+/// A storey has at least this share of the area of the largest one; a landing has less.
 const LEAST_SHARE: f64 = 0.15;
-/// Who stands no farther below a floor stands on it: it is nearer than the one below, metres.
+/// A place at most this far below a storey's floor belongs to that storey, because it is nearer than the storey below;
+/// metres.
 const BELOW_M: f64 = 1.0;
 
-/// Heights of the floors of the island that walks keep to, from the lowest. Slices with the most ground are floors, one after the other, as
-/// long as they lie apart from those found before.
+/// Heights of the storeys of the island that paths stay on, from the lowest. The slice with the most ground is a
+/// storey, then the slice with the next most, and so on, if it is far enough from the storeys found before.
 pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
     let Some(island) = ground.islands.get(ground.main) else { return Vec::new() };
     let mut slices: std::collections::BTreeMap<i64, f64> = std::collections::BTreeMap::new();
@@ -22,7 +23,7 @@ pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
         let slice = ((a.z + b.z + c.z) / 3.0 / SLICE_M).floor() as i64;
         *slices.entry(slice).or_default() += 0.5 * (*b - *a).cross(*c - *a).length();
     }
-    // A floor that lies on the line between two slices counts in both.
+    // A floor that lies on the border between two slices counts in both.
     let around = |slice: i64| -> f64 { (slice - 1..=slice + 1).filter_map(|slice| slices.get(&slice)).sum() };
     let mut by_area: Vec<(i64, f64)> = slices.keys().map(|slice| (*slice, around(*slice))).collect();
     by_area.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
@@ -39,7 +40,7 @@ pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
 }
 
 impl Ground {
-    /// The storey of a place on the ground, the lowest being 1.
+    /// The storey of a place on the ground; the lowest is 1.
     #[must_use]
     pub fn level(&self, place: DVec3) -> u32 {
         let under = self.storeys_m.iter().filter(|floor_m| **floor_m <= place.z + BELOW_M).count();

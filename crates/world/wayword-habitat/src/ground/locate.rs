@@ -1,4 +1,4 @@
-//! Where somebody stands who is not quite on the ground: Detour's `findNearestPoly` as Habitat asks it.
+//! Finds the ground nearest to a place that need not lie on it: Detour's `findNearestPoly`, as Habitat calls it.
 
 use super::{
     Ground,
@@ -6,22 +6,22 @@ use super::{
 };
 use wayword_core::DVec3;
 
-/// How far from a place ground is looked for: half the box, metres (`PathFinder::Impl`, `polyPickExt`).
+/// Half the size of the box in which ground is searched around a place, metres (`PathFinder::Impl`, `polyPickExt`).
 const REACH_M: DVec3 = DVec3::new(2.0, 2.0, 4.0);
 
 /// A place on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foothold {
-    /// On the surface.
+    /// The position on the surface.
     pub place: DVec3,
     pub(super) polygon: usize,
-    /// Number of the island, the largest being 0.
+    /// Number of the island; the largest is 0.
     pub island: usize,
 }
 
 impl Ground {
-    /// The ground nearest to a place, within 2 m to all sides and 4 m up and down. Straight under or over a place, what is within
-    /// a step counts as no distance.
+    /// The ground nearest to a place, within 2 m to all sides and 4 m up and down. Straight below or above a place,
+    /// ground within the height of a step counts as distance 0.
     #[must_use]
     pub fn nearest(&self, place: DVec3) -> Option<Foothold> {
         self.nearest_of(place, |_| true)
@@ -52,7 +52,7 @@ impl Ground {
         best.map(|(_, foothold)| foothold)
     }
 
-    /// The nearest place of a polygon, and the square of how far it counts as being off.
+    /// The nearest place of a polygon, and the square of its distance, as [`Self::nearest`] counts it.
     fn nearest_in(&self, polygon: &Polygon, place: DVec3) -> (DVec3, f64) {
         if let Some(height_m) = polygon.holds(place).then(|| polygon.height_m(place)).flatten() {
             let off_m = ((place.z - height_m).abs() - self.climb_m).max(0.0);

@@ -1,9 +1,9 @@
-//! One island as the search for shortest ways needs it.
+//! One island in the form that the search for shortest ways needs.
 //!
-//! The search (polyanya: Cui, Harabor, Grastien, "Compromise-free Pathfinding on a Navigation Mesh", IJCAI 2017) knows the plane
-//! alone. It goes from polygon to polygon over shared edges, so floors that lie above one another do not disturb it; but it
-//! remembers places at which ways bend by their coordinates, so two of them must not coincide, and start and end must be
-//! known by their polygon.
+//! The search (polyanya: Cui, Harabor, Grastien, "Compromise-free Pathfinding on a Navigation Mesh", IJCAI 2017) works
+//! in the plane only. It goes from polygon to polygon over shared edges, so storeys that lie above one another do not
+//! disturb it. But it identifies the places at which ways bend by their coordinates, so no two of them may coincide,
+//! and the start and the end must be given by their polygon.
 
 use super::{Foothold, polygon::Polygon};
 use glam::{DVec2, Vec2};
@@ -11,24 +11,24 @@ use polyanya::{Mesh, Vertex};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DVec3, contain::decoded};
 
-/// Two vertices on doors between tiles are one when they lie this near, metres.
+/// Two vertices on doors between tiles are merged if they are nearer than this seen from above, metres.
 const WELD_M: f64 = 1e-3;
-/// And when their heights differ by less than this, metres.
+/// They are merged only if their heights also differ by less than this, metres.
 const SAME_STOREY_M: f64 = 0.5;
-/// A bend lies this near to its vertex, metres: mostly within millimetres, but rounding adds up.
+/// A bend lies at most this far from its vertex, metres: mostly within millimetres, but rounding errors add up.
 const BEND_M: f32 = 0.1;
-/// Two bends that lie apart by no more than this may be one, metres (`lands_on` in the search's `instance.rs`).
+/// Two bends at most this far apart may be the same one, metres (`lands_on` in the search's `instance.rs`).
 const NOISE_M: f32 = 3e-3;
 
-/// An island made ready for the search.
+/// An island, prepared for the search.
 #[derive(Debug)]
 pub(super) struct Maze {
     mesh: Mesh,
-    /// The coordinates there are counted from here, so that they are small.
+    /// The mesh's coordinates are relative to this point, so that they are small.
     origin: DVec2,
-    /// Where each vertex of the search lies.
+    /// The position of each vertex of the search.
     places: Vec<DVec3>,
-    /// The search's number of each polygon.
+    /// The number that the search gives to each polygon.
     numbers: BTreeMap<usize, u32>,
 }
 
@@ -57,8 +57,9 @@ impl Maze {
         Some(Self { mesh, origin, places: outlines.places, numbers })
     }
 
-    /// Where the shortest way between two places of the island bends. The search rounds, and in a narrow place can miss a way that it
-    /// finds from the other end: so it is asked from both, and the shorter one is taken.
+    /// Where the shortest way between two places of the island bends. Because the search rounds, it can miss a way
+    /// through a narrow place that it finds from the other end. So it runs from both ends, and the shorter way is
+    /// taken.
     pub(super) fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         let there = self.searched(start, end);
         let mut back = self.searched(end, start);
@@ -87,7 +88,8 @@ impl Maze {
         for bend in path.path.split_last().map_or(&[][..], |(_, before)| before) {
             let later = bend_of(layer, &rings, reached, *bend, BEND_M);
             let (at, vertex) = later.or_else(|| bend_of(layer, &rings, 0, *bend, f32::MAX))?;
-            // The way leaves a bend through the last of the polygons around it, so the next bend lies in none before.
+            // The way leaves a bend through the last polygon around it, so the next bend lies in none of the polygons
+            // before.
             let around = rings.iter().skip(at + 1).take_while(|ring| ring.contains(&vertex)).count();
             reached = at + around;
             let place = self.places.get(vertex as usize)?;
@@ -98,8 +100,8 @@ impl Maze {
         Some(bends)
     }
 
-    /// A place as the search knows it. It finds polygons by coordinates and mean height, which can name another storey's under
-    /// a slope: a place a little further inside is then tried.
+    /// A place in the search's coordinates. The search finds polygons by coordinates and mean height, and under a slope
+    /// it can find a polygon of another storey: then a place a little further inside is tried.
     fn coords(&self, foothold: &Foothold) -> Option<polyanya::Coords> {
         let number = *self.numbers.get(&foothold.polygon)?;
         let layer = self.mesh.layers.first()?;
@@ -118,7 +120,7 @@ impl Maze {
         })
     }
 
-    /// Whether two polygons share an edge: a place on it belongs to both.
+    /// Whether two polygons share an edge. A place on that edge belongs to both.
     fn touch(&self, a: u32, b: u32) -> bool {
         let layer = self.mesh.layers.first();
         let ring = |number: u32| layer.and_then(|layer| layer.polygons.get(number as usize)).map(|p| &p.vertices);
@@ -127,8 +129,9 @@ impl Maze {
     }
 }
 
-/// The vertex at which a way bends, at most so many metres off, and the polygon there: of the polygons that the way goes through
-/// from `first` on, the first that has it. A vertex of another storey may lie as near, but not in a polygon that comes as early.
+/// The vertex at which a way bends, at most `most_m` metres away, and its polygon: the first, from `first` on, of the
+/// polygons that the way goes through that has the vertex. A vertex of another storey may be as near, but only in a
+/// later polygon.
 fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2, most_m: f32) -> Option<(usize, u32)> {
     let off = |vertex: u32| layer.vertices.get(vertex as usize).map_or(f32::MAX, |vertex| vertex.coords.distance(bend));
     let nearest = |ring: &&[u32]| ring.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)));
@@ -138,7 +141,7 @@ fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2, 
     near().find(|(_, vertex)| off(*vertex) <= least + NOISE_M && off(*vertex) <= most_m)
 }
 
-/// The polygons' outlines over common vertices, with a vertex at both ends of every door.
+/// The polygons' outlines with shared vertices, and a vertex at both ends of every door.
 struct Outlines {
     places: Vec<DVec3>,
     /// For each polygon, counter-clockwise.
@@ -185,8 +188,8 @@ impl Outlines {
     }
 }
 
-/// Vertices by their place. What lies at the same place seen from above is one unless it is a storey apart: tiles that meet in
-/// a door may differ in height by a climb.
+/// Vertices by position. Vertices at the same position seen from above are merged, unless they are a storey apart.
+/// Tiles that meet in a door may differ in height by one step (`agent_max_climb_m`).
 #[derive(Default)]
 struct Welds {
     places: Vec<DVec3>,
@@ -212,7 +215,7 @@ impl Welds {
     }
 }
 
-/// The places seen from above, counted from the origin: where two coincide, one moves by a hair.
+/// The places seen from above, relative to the origin. If two coincide, one is moved by the smallest possible amount.
 fn distinct(places: &[DVec3], origin: DVec2) -> Vec<Vec2> {
     let mut taken = BTreeSet::new();
     let flat = |place: &DVec3| {

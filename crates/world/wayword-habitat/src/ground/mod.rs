@@ -1,7 +1,8 @@
-//! Walkable ground: the polygons of a navmesh with who borders on whom, to stand on and to walk over.
+//! Walkable ground: the polygons of a navmesh and their neighbours.
 //!
-//! All in Wayword's frame. What counts as ground is what Habitat's `PathFinder` takes for it (habitat-sim 0.3.3,
-//! `PathFinder.cpp`): polygons without area are left out, islands are what can be reached over shared edges.
+//! All in Wayword's frame. Ground is what Habitat's `PathFinder` counts as ground (habitat-sim 0.3.3,
+//! `PathFinder.cpp`): polygons without area are left out, and the polygons of an island can be reached from one another
+//! over shared edges.
 
 #[cfg(test)]
 mod exact;
@@ -29,16 +30,16 @@ use polygon::Polygon;
 use std::sync::OnceLock;
 use wayword_core::DVec3;
 
-/// Polygons with less area are no ground (`PathFinder::removeZeroAreaPolys`), square metres.
+/// Polygons with less area do not count as ground (`PathFinder::removeZeroAreaPolys`), square metres.
 const LEAST_AREA_M2: f64 = 1e-5;
 
 /// The walkable ground of a scene.
 #[derive(Debug)]
 pub struct Ground {
     polygons: Vec<Polygon>,
-    /// By falling area.
+    /// The largest first.
     islands: Vec<Island>,
-    /// The island that walks keep to, the largest unless told otherwise.
+    /// The island that paths stay on: the largest, unless another is chosen.
     main: usize,
     /// Heights of the storeys of that island, from the lowest.
     storeys_m: Vec<f64>,
@@ -46,13 +47,13 @@ pub struct Ground {
     climb_m: f64,
 }
 
-/// Ground that hangs together.
+/// A connected part of the ground.
 #[derive(Debug)]
 struct Island {
     /// Sorted.
     polygons: Vec<usize>,
     area_m2: f64,
-    /// Made ready for shortest ways when the first is asked for.
+    /// Prepared for shortest ways when the first one is needed.
     maze: OnceLock<Option<Maze>>,
 }
 
@@ -73,7 +74,8 @@ impl Ground {
         }
         let climb_m = mesh.tiles.first().map_or(0.0, |tile| f64::from(tile.header.agent_m[2]));
         portals::open(mesh, &mut polygons, climb_m);
-        // The others keep their places, as they are known by them, but nobody stands on them or crosses them.
+        // Smaller polygons stay in the list, because polygons are referred to by index, but one cannot stand on them or
+        // cross them.
         for polygon in &mut polygons {
             polygon.is_walkable &= polygon.area_m2 >= LEAST_AREA_M2;
         }
@@ -81,7 +83,7 @@ impl Ground {
         Self { polygons, islands, main: 0, storeys_m: Vec::new(), climb_m }.keeping_to(0)
     }
 
-    /// The same ground, with walks that keep to an island; storeys are counted on it.
+    /// The same ground, with paths that stay on this island; storeys are counted on it.
     #[must_use]
     pub fn keeping_to(mut self, island: usize) -> Self {
         self.main = island;
@@ -89,13 +91,13 @@ impl Ground {
         self
     }
 
-    /// The island that walks keep to.
+    /// The island that paths stay on.
     #[must_use]
     pub fn main(&self) -> usize {
         self.main
     }
 
-    /// Area of all ground, square metres, as the surface lies.
+    /// Area of all ground, square metres, measured along the surface and not seen from above.
     #[must_use]
     pub fn area_m2(&self) -> f64 {
         self.islands.iter().map(|island| island.area_m2).sum()
@@ -106,7 +108,7 @@ impl Ground {
         self.islands.iter().map(|island| island.area_m2)
     }
 
-    /// The lowest and the highest corner of the ground; `None` where there is none.
+    /// The lowest and the highest corner of the ground; `None` if there is no ground.
     #[must_use]
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let walkable = self.polygons.iter().filter(|polygon| polygon.is_walkable);

@@ -3,17 +3,17 @@
 use crate::{axes::wayword_from_habitat, navmesh::Tile};
 use wayword_core::DVec3;
 
-/// A convex piece of ground with the surface over it.
+/// A convex piece of ground with its surface.
 #[derive(Debug)]
 pub(super) struct Polygon {
-    /// Counter-clockwise from above, at least three unless it is no ground.
+    /// Counter-clockwise seen from above; at least three, unless the polygon is not ground.
     pub(super) corners: Vec<Corner>,
     pub(super) triangles: Vec<[DVec3; 3]>,
     pub(super) area_m2: f64,
     pub(super) low: DVec3,
     pub(super) high: DVec3,
     pub(super) is_walkable: bool,
-    /// Number of its island, the largest being 0.
+    /// Number of its island; the largest is 0.
     pub(super) island: usize,
 }
 
@@ -21,17 +21,17 @@ pub(super) struct Polygon {
 #[derive(Clone, Debug)]
 pub(super) struct Corner {
     pub(super) place: DVec3,
-    /// Who borders there, within the tile.
+    /// The polygon of the same tile behind the edge.
     pub(super) neighbour: Option<usize>,
-    /// Who borders there in other tiles, with the ends of what is shared.
+    /// The polygons of other tiles behind the edge, with the ends of the shared part.
     pub(super) portals: Vec<Portal>,
 }
 
-/// A part of an edge behind which lies another tile's polygon.
+/// A part of an edge behind which there is a polygon of another tile.
 #[derive(Clone, Debug)]
 pub(super) struct Portal {
     pub(super) polygon: usize,
-    /// Shares of the edge's length, the smaller first.
+    /// Fractions of the edge's length, the smaller first.
     pub(super) from: f64,
     pub(super) to: f64,
 }
@@ -41,14 +41,14 @@ pub(super) fn world(place: [f32; 3]) -> DVec3 {
 }
 
 impl Polygon {
-    /// A polygon of a tile; `neighbour` tells who lies behind each of the tile's edges.
+    /// A polygon of a tile; `neighbour` returns the polygon behind each of its edges.
     pub(super) fn new(tile: &Tile, index: usize, neighbour: impl Fn(usize) -> Option<usize>) -> Self {
         let poly = &tile.polys[index];
         let places: Vec<DVec3> = poly.corners().iter().map(|vert| world(tile.verts[usize::from(*vert)])).collect();
         let corner = |edge: usize| Corner { place: places[edge], neighbour: neighbour(edge), portals: Vec::new() };
         let mut corners: Vec<Corner> = (0..places.len()).map(corner).collect();
         if doubled_area(&places) < 0.0 {
-            // The edge of a corner is the one to the next: turned round, it belongs to the other end.
+            // The edge of a corner leads to the next corner: after the reversal it belongs to its other end.
             corners.reverse();
             let first = corners.first().map(|corner| corner.neighbour);
             for at in 0..corners.len() {
@@ -71,28 +71,28 @@ impl Polygon {
         }
     }
 
-    /// The edges, each with its corner first.
+    /// The edges, each as its corner and the next one.
     pub(super) fn edges(&self) -> impl Iterator<Item = (&Corner, &Corner)> {
         self.corners.iter().zip(self.corners.iter().cycle().skip(1))
     }
 
-    /// Everybody who borders on it.
+    /// All polygons that border on it.
     pub(super) fn neighbours(&self) -> impl Iterator<Item = usize> {
         let portals = self.corners.iter().flat_map(|corner| &corner.portals).map(|portal| portal.polygon);
         self.corners.iter().filter_map(|corner| corner.neighbour).chain(portals)
     }
 
-    /// Whether a place lies over it, its edges included.
+    /// Whether a place lies in it seen from above, its edges included.
     pub(super) fn holds(&self, place: DVec3) -> bool {
         self.edges().all(|(a, b)| side(a.place, b.place, place) >= 0.0)
     }
 
-    /// The height of its surface under or over a place that it holds.
+    /// The height of its surface below or above a place that lies in it seen from above.
     pub(super) fn height_m(&self, place: DVec3) -> Option<f64> {
         let over = |triangle: &&[DVec3; 3]| {
             let [a, b, c] = **triangle;
             let sides = [side(a, b, place), side(b, c, place), side(c, a, place)];
-            // Either way round, and with a hair's breadth of room, so that no place falls between two triangles.
+            // Both windings count, and a small tolerance keeps a place from falling between two triangles.
             sides.iter().all(|side| *side >= -1e-9) || sides.iter().all(|side| *side <= 1e-9)
         };
         let [a, b, c] = *self.triangles.iter().find(over)?;
@@ -104,7 +104,7 @@ impl Polygon {
         Some(a.z + (b.z - a.z) * to_b + (c.z - a.z) * to_c)
     }
 
-    /// The place on its border that lies nearest to one outside, seen from above.
+    /// The place on its border that is nearest to a place outside, seen from above.
     pub(super) fn nearest_on_border(&self, place: DVec3) -> DVec3 {
         let edges = self.edges().map(|(a, b)| nearest_on_edge(a.place, b.place, place));
         let off = |on: &DVec3| (*on - place).truncate().length_squared();
@@ -112,7 +112,7 @@ impl Polygon {
     }
 }
 
-/// Twice the area of a triangle seen from above; positive where c lies left of the way from a to b.
+/// Twice the area of a triangle seen from above; positive if c lies to the left of the line from a to b.
 pub(super) fn side(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 }
@@ -122,7 +122,7 @@ fn doubled_area(places: &[DVec3]) -> f64 {
     places.windows(2).map(|pair| side(first, pair[0], pair[1])).sum()
 }
 
-/// The place on an edge nearest to another seen from above, with the edge's height there.
+/// The place on an edge that is nearest to another place seen from above, with the edge's height there.
 pub(super) fn nearest_on_edge(a: DVec3, b: DVec3, place: DVec3) -> DVec3 {
     let along = (b - a).truncate();
     let length_squared = along.length_squared();

@@ -1,15 +1,17 @@
-//! Doors between tiles: edges on a tile's side that lie along those of the tile beside it (`dtNavMesh::connectExtLinks`).
+//! Doors between tiles: edges on a tile's side that lie along edges of the neighbouring tile
+//! (`dtNavMesh::connectExtLinks`).
 
 use super::polygon::{Polygon, Portal, world};
 use crate::navmesh::{Behind, NavMesh};
 use std::collections::BTreeMap;
 use wayword_core::DVec3;
 
-/// What two edges must share to be a door, metres.
+/// Least length that two edges share at a door, metres.
 const LEAST_M: f64 = 0.02;
 /// How far the sides of two tiles may lie apart, metres.
 const APART_M: f64 = 0.01;
-/// Doors in one edge, at most. Detour has four; edges that lie on top of one another would all be joined with all.
+/// Most doors in one edge. Detour allows four. Without a limit, edges that lie on top of one another would all be
+/// joined with all.
 const MAX_DOORS: usize = 32;
 
 /// An edge on a side of a tile.
@@ -18,7 +20,7 @@ struct Opening {
     polygon: usize,
     corner: usize,
     ends: [DVec3; 2],
-    /// 0 where the side is crossed along Habitat's x, 1 along its z.
+    /// 0 if one crosses the side along Habitat's x, 1 along its z.
     axis: usize,
 }
 
@@ -47,7 +49,7 @@ pub(super) fn open(mesh: &NavMesh, polygons: &mut [Polygon], climb_m: f64) {
         let (beside, opposite) = match side {
             0 => (place[0].checked_add(1).map(|x| [x, place[1]]), 4),
             2 => (place[1].checked_add(1).map(|z| [place[0], z]), 6),
-            // The other two sides have been met from there.
+            // The other two sides are handled from the neighbouring tile.
             _ => continue,
         };
         let Some(others) = beside.and_then(|beside| sides.get(&(beside, opposite))) else { continue };
@@ -59,13 +61,13 @@ pub(super) fn open(mesh: &NavMesh, polygons: &mut [Polygon], climb_m: f64) {
     }
 }
 
-/// The corner from which the edge with these ends runs, whichever way round.
+/// The corner whose edge has these ends, in either order.
 fn edge_of(polygon: &Polygon, ends: [DVec3; 2]) -> Option<usize> {
     polygon.edges().position(|(a, b)| ends == [a.place, b.place] || ends == [b.place, a.place])
 }
 
 fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) {
-    // World x is Habitat's x, world y its -z: what runs along the side is the other one.
+    // World x is Habitat's x and world y is its -z. The side runs along the axis that does not cross it.
     let across = |place: DVec3| if one.axis == 0 { place.x } else { place.y };
     let along = |place: DVec3| if one.axis == 0 { place.y } else { place.x };
     if (across(one.ends[0]) - across(other.ends[0])).abs() > APART_M {
@@ -85,7 +87,7 @@ fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) 
         let length = along(to) - along(from);
         from.z + (to.z - from.z) * ((at - along(from)) / length)
     };
-    // Within a climb of one another at an end, or crossing between (`overlapSlabs`).
+    // Within twice the climb of one another at an end, or crossing in between (`overlapSlabs`).
     let gap = |at: f64| height(one, at) - height(other, at);
     let (at_low, at_high) = (gap(low), gap(high));
     let near = at_low.abs() <= 2.0 * climb_m || at_high.abs() <= 2.0 * climb_m || at_low * at_high < 0.0;

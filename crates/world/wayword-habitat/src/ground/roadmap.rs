@@ -1,30 +1,32 @@
-//! The viewpoint graph of an island: places well inside the ground, joined where the walk between is short and nearly straight.
+//! The viewpoint graph of an island: places well inside the ground, joined if the way between them is short and nearly
+//! straight.
 
 use super::{Ground, polygon::nearest_on_edge};
 use crate::axes::EYE_M;
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId, Way, graph::GraphError, rng};
 
-/// No viewpoint lies nearer to another than this on the same floor, metres.
+/// Least distance between two viewpoints of the same storey, metres.
 const APART_M: f64 = 1.8;
 /// Longest edge, metres.
 const REACH_M: f64 = 4.0;
-/// A walk may be longer than the straight line by this factor and still be an edge.
+/// The way along an edge may be longer than the straight line by this factor.
 const DETOUR: f64 = 1.1;
-/// Two edges of one viewpoint that leave within this angle: the longer one is dropped, as it leads past the other's end.
+/// If two edges leave a viewpoint within this angle, the longer one is dropped, because it leads past the other's end.
 const CLOSE_RAD: f64 = 0.35;
-/// Tries for each square metre of ground, and at most.
+/// Random places that are tried, for each square metre of ground.
 const TRIES_PER_M2: f64 = 12.0;
+/// Most random places that are tried.
 const MAX_TRIES: usize = 40_000;
-/// Viewpoints, at most, before those at bends: what is joined is looked for among all pairs of them. The tries find fewer where they
-/// lie as dense as on 3,000 square metres or less.
+/// Most viewpoints, without those at bends: all pairs of them are examined for edges. On 3,000 square metres or less,
+/// where [`MAX_TRIES`] does not thin out the tries, fewer are found.
 const MAX_PLACED: usize = 2000;
-/// Ways between parts that are looked for in vain, at most: each is a search.
+/// Most failed searches for a way between two parts.
 const MAX_IN_VAIN: usize = 4000;
-/// More open than this is no better, metres.
+/// A distance to the border beyond this makes a place no better, metres.
 const OPEN_ENOUGH_M: f64 = 1.0;
 
-/// A road map over an island (0 is the largest). The same ground gives the same graph. Every viewpoint can be reached from every
-/// other; names count from `v0000`.
+/// A road map over an island (0 is the largest). The same ground gives the same graph. Every viewpoint can be reached
+/// from every other; names count from `v0000`.
 ///
 /// # Errors
 /// Never for ground whose coordinates are finite; the graph checks names and positions itself.
@@ -45,7 +47,7 @@ struct RoadMap<'a> {
 }
 
 impl RoadMap<'_> {
-    /// Open places first, then what lies nearer to walls, as long as there is nothing near.
+    /// Places viewpoints: open places first, then places nearer to walls, if no other viewpoint is near.
     fn place(&mut self) {
         let area_m2 = self.ground.islands.get(self.island).map_or(0.0, |island| island.area_m2);
         let tries = ((area_m2 * TRIES_PER_M2).ceil() as usize).clamp(1, MAX_TRIES);
@@ -65,7 +67,7 @@ impl RoadMap<'_> {
                 self.nodes.push(place);
             }
         }
-        // By height and place, so that names say something about where they lie.
+        // By height and position, so that names give a hint of the position.
         self.nodes.sort_by(|a, b| {
             let key = |place: &DVec3| [(place.z / 0.5).floor(), (place.y / 2.0).floor(), place.x];
             let (a, b) = (key(a), key(b));
@@ -73,7 +75,7 @@ impl RoadMap<'_> {
         });
     }
 
-    /// The edges behind which there is no ground.
+    /// The polygons' edges behind which there is no ground.
     fn border(&self) -> Vec<(DVec3, DVec3)> {
         let members = self.ground.islands.get(self.island).map_or(&[][..], |island| &island.polygons);
         let edges = members.iter().flat_map(|polygon| self.ground.polygons[*polygon].edges());
@@ -120,7 +122,8 @@ impl RoadMap<'_> {
         self.ground.geodesic(self.nodes[a], self.nodes[b]).ok()
     }
 
-    /// Joins what is still apart, the nearest parts first: with a viewpoint at every bend of the way between.
+    /// Joins parts that are still unconnected, the nearest first, with a viewpoint at every bend of the way between
+    /// them.
     fn connect(&mut self) {
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         let parts = self.parts();
@@ -158,7 +161,7 @@ impl RoadMap<'_> {
         }
     }
 
-    /// For each node the smallest node that it can be reached from.
+    /// For each node, the smallest node of its connected part.
     fn parts(&self) -> Vec<usize> {
         let mut parts: Vec<usize> = (0..self.nodes.len()).collect();
         for (a, b) in &self.edges {
@@ -183,13 +186,13 @@ impl RoadMap<'_> {
     }
 }
 
-/// Whether two places may both be viewpoints.
+/// Whether two places are far enough apart to be viewpoints both.
 fn far(a: DVec3, b: DVec3) -> bool {
     let off = a - b;
     off.truncate().length() >= APART_M || off.z.abs() > 1.2
 }
 
-/// How far a place lies from the border on its floor, as far as that matters.
+/// Distance of a place from the border on its storey, at most [`OPEN_ENOUGH_M`].
 fn clearance(border: &[(DVec3, DVec3)], place: DVec3) -> f64 {
     let on_floor = |(a, b): &&(DVec3, DVec3)| a.z.min(b.z) < place.z + 1.0 && a.z.max(b.z) > place.z - 1.0;
     let off = |(a, b): &(DVec3, DVec3)| (nearest_on_edge(*a, *b, place) - place).truncate().length();

@@ -1,17 +1,17 @@
-//! Places at random, all ground alike.
+//! Random places, uniform over the ground.
 
 use super::{Foothold, Ground};
 use rand::Rng;
 
 impl Ground {
-    /// A place on an island (0 is the largest), every square metre as likely as another; `None` where there is no such island.
+    /// A random place on an island (0 is the largest), uniform over its area; `None` if there is no such island.
     #[must_use]
     pub fn random_place(&self, island: usize, rng: &mut impl Rng) -> Option<Foothold> {
         let members = &self.islands.get(island)?.polygons;
         let area = |[a, b, c]: &[wayword_core::DVec3; 3]| 0.5 * (*b - *a).cross(*c - *a).length();
         let all = || members.iter().flat_map(|at| self.polygons[*at].triangles.iter().map(move |each| (*at, each)));
         let mut left = rng.random::<f64>() * self.islands.get(island)?.area_m2;
-        // Rounding can leave a hair over: then it is the last one.
+        // Rounding can leave a rest after the last triangle: then the last one is chosen.
         let mut chosen = None;
         for (polygon, triangle) in all() {
             chosen = Some((polygon, triangle));

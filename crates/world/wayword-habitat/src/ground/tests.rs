@@ -1,4 +1,4 @@
-//! Ground that the tests pave themselves.
+//! Tests on navmeshes that they build themselves.
 
 use super::*;
 use crate::navmesh::{
@@ -9,8 +9,8 @@ use proptest::prelude::*;
 use std::collections::BTreeMap;
 use wayword_core::rng;
 
-/// A navmesh of polygons given by their corners in Wayword's frame, counter-clockwise; those that share two corners border on
-/// one another.
+/// A navmesh of polygons given by their corners in Wayword's frame, counter-clockwise. Polygons that share two corners
+/// are neighbours.
 pub(crate) fn paved(polygons: &[Vec<[f32; 3]>]) -> NavMesh {
     let mut surface = Surface { low_m: [-50.0; 3], high_m: [50.0; 3], ..Surface::default() };
     let mut edges: BTreeMap<(u16, u16), (usize, usize)> = BTreeMap::new();
@@ -42,14 +42,14 @@ fn slab(x: [f32; 2], y: [f32; 2], z: f32) -> Vec<[f32; 3]> {
     vec![[x[0], y[0], z], [x[1], y[0], z], [x[1], y[1], z], [x[0], y[1], z]]
 }
 
-/// A floor of 3 x 3 squares of a metre without the middle one.
+/// A floor of 3 x 3 squares of 1 m, without the middle one.
 fn ring() -> Vec<Vec<[f32; 3]>> {
     let squares = (0..9).filter(|n| *n != 4).map(|n| ((n % 3) as f32, (n / 3) as f32));
     squares.map(|(x, y)| slab([x, x + 1.0], [y, y + 1.0], 0.0)).collect()
 }
 
-/// Two floors of 4 x 4 m above one another, of strips, and a ramp beside them from the lower's far end to the upper's near end:
-/// who goes up walks along the floor, back up the ramp, and stands above where she was.
+/// Two floors of 4 x 4 m above one another, made of strips, and a ramp beside them from the far end of the lower one to
+/// the near end of the upper one. The way up leads along the floor and back up the ramp, to a place above its start.
 fn two_storeys() -> Vec<Vec<[f32; 3]>> {
     let strip = |n: u8, z: f32| slab([0.0, 4.0], [f32::from(n), f32::from(n) + 1.0], z);
     let mut polygons: Vec<_> = (0..4).map(|n| strip(n, 0.0)).collect();
@@ -80,20 +80,21 @@ fn a_place_under_another_floor_is_reached_by_the_ramp() {
     assert_eq!(ground.islands_m2().count(), 1);
     let (below, above) = (at(2.0, 0.5, 0.0), at(2.0, 0.5, 3.0));
     let way = ground.geodesic(below, above).unwrap();
-    // Along the lower floor, up between (4, 3) and (4, 1) where it is steep, and back.
+    // Along the lower floor, up between (4, 3) and (4, 1), where the ramp is steep, and back.
     assert_eq!(way.corners.len(), 4, "{way:?}");
     let ramp = at(4.0, 3.0, 0.0).distance(at(4.0, 1.0, 3.0));
     let expected = below.distance(at(4.0, 3.0, 0.0)) + ramp + at(4.0, 1.0, 3.0).distance(above);
     assert!((way.length_m - expected).abs() < 1e-6, "{way:?}");
     assert_eq!((ground.level(below), ground.level(above)), (1, 2));
-    // What is asked for a little below or above the floor is on that floor.
+    // A place a little below or above a floor is assigned to that floor.
     assert_eq!(ground.nearest(at(2.0, 0.5, 2.2)).unwrap().place, above);
     assert_eq!(ground.nearest(at(2.0, 0.5, 0.9)).unwrap().place, below);
 }
 
 #[test]
 fn a_way_bends_twice_at_places_above_one_another() {
-    // Two rings, and stairs beside them that turn back: who goes from one to the place above goes around both holes alike.
+    // Two rings, and stairs beside them that turn back: the way from a place to the one above it bends around both
+    // holes alike.
     let mut polygons = ring();
     polygons.extend(ring().into_iter().map(|polygon| polygon.into_iter().map(|[x, y, _]| [x, y, 3.0]).collect()));
     let ramp =
@@ -138,7 +139,7 @@ fn polygons_wound_the_other_way_keep_their_neighbours() {
         let ground = Ground::new(&paved(&polygons));
         for polygon in &ground.polygons {
             for (corner, next) in polygon.edges() {
-                // Of every edge inside the ring, the middle lies on two polygons.
+                // The middle of every edge inside the ring lies on two polygons.
                 let middle = (corner.place + next.place) / 2.0;
                 let on = ground.polygons.iter().filter(|other| other.holds(middle)).count();
                 assert_eq!(corner.neighbour.is_some(), on == 2, "{middle}");
@@ -157,7 +158,8 @@ fn slivers_are_no_ground() {
 
 #[test]
 fn tiles_are_joined_where_their_edges_overlap() {
-    // Two tiles beside each other; the door between is the half of the first one's edge that the second one's covers.
+    // Two neighbouring tiles. The door between them is the half of the first one's edge that the second one's edge
+    // covers.
     let mut mesh = paved(&[slab([0.0, 2.0], [0.0, 2.0], 0.0)]);
     let mut beside = paved(&[slab([2.0, 4.0], [1.0, 3.0], 0.1)]);
     mesh.tiles[0].polys[0].open(1, 0);
@@ -232,13 +234,13 @@ proptest! {
         let places: Vec<DVec3> = (0..3).map(|_| ground.random_place(0, &mut rng).unwrap().place).collect();
         let length = |a: usize, b: usize| ground.geodesic(places[a], places[b]).unwrap().length_m;
         prop_assert!(length(0, 1) >= places[0].distance(places[1]) - 1e-6);
-        // The search is exact in the plane; on the ramp the surface is longer than it.
+        // The search is exact in the plane; on the ramp the surface is longer than its projection.
         prop_assert!((length(0, 1) - length(1, 0)).abs() < 1e-3);
         prop_assert!(length(0, 2) <= (length(0, 1) + length(1, 2)) * 1.3);
     }
 }
 
-/// A file of one triangle whose sides are kilometres long.
+/// The file has one triangle, whose sides are kilometres long.
 #[test]
 fn a_country_has_no_more_viewpoints_than_can_be_joined() {
     let far = 5e4;
@@ -247,7 +249,7 @@ fn a_country_has_no_more_viewpoints_than_can_be_joined() {
     assert_eq!((graph.len(), graph.components()), (2000, 1));
 }
 
-/// Squares on top of one another on both sides of a border between two tiles.
+/// The squares lie on top of one another, on both sides of a border between two tiles.
 #[test]
 fn edges_on_top_of_one_another_are_not_all_joined_with_all() {
     let mut mesh = paved(&vec![slab([0.0, 1.0], [0.0, 1.0], 0.0); 200]);

@@ -1,4 +1,4 @@
-//! Making a tile out of polygons, as `dtCreateNavMeshData` does (Detour, `DetourNavMeshBuilder.cpp`).
+//! Makes a tile from polygons, as `dtCreateNavMeshData` does (Detour, `DetourNavMeshBuilder.cpp`).
 
 use super::{BvNode, DetailMesh, Grid, Header, MAX_CORNERS, NavMesh, NavMeshSettings, Poly, Tile};
 
@@ -8,7 +8,7 @@ const NO_LINK: u32 = u32::MAX;
 const GROUND_AREA: u8 = 0;
 const WALK_FLAG: u16 = 1;
 
-/// Polygons before they are a tile.
+/// The polygons of a tile that is to be made.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surface {
     /// Metres, y up.
@@ -18,24 +18,25 @@ pub(crate) struct Surface {
     pub(crate) high_m: [f32; 3],
 }
 
-/// One polygon with the surface over it.
+/// One polygon with its surface.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Piece {
-    /// Three to six vertices, and what lies behind the edge that begins at each: 0, or the number of a piece and 1.
+    /// Three to six vertices.
     pub(crate) corners: Vec<u16>,
+    /// For each corner, what lies behind the edge that begins there: 0 for nothing, or the index of a piece plus 1.
     pub(crate) neighbours: Vec<u16>,
-    /// Vertices of the detail mesh beyond the corners.
+    /// Vertices of the detail mesh, without the corners.
     pub(crate) detail_verts: Vec<[f32; 3]>,
     pub(crate) detail_tris: Vec<[u8; 4]>,
 }
 
-/// A navmesh of one tile, as Habitat bakes them. Counts above 65,535 are not Detour's: the caller keeps below.
+/// A navmesh of one tile, as Habitat bakes them. Detour's counts go up to 65,535: the caller must not exceed that.
 pub(crate) fn single_tile(surface: &Surface, settings: NavMeshSettings) -> NavMesh {
     let (low_m, high_m) = (surface.low_m, surface.high_m);
     let polys = surface.pieces.len() as u32;
     let poly_bits = polys.max(1).next_power_of_two().ilog2();
     let mut tile = tile(surface, &settings);
-    // Salt 1, tile 0: the reference that `dtNavMesh::init` gives to an only tile.
+    // Salt 1, tile 0: the reference that `dtNavMesh::init` gives to a single tile.
     tile.reference = 1_u32.checked_shl(poly_bits).unwrap_or(0);
     let grid = Grid {
         origin_m: low_m,
@@ -46,7 +47,7 @@ pub(crate) fn single_tile(surface: &Surface, settings: NavMeshSettings) -> NavMe
     NavMesh::new(grid, Some(settings), vec![tile])
 }
 
-/// A tile without a place in any grid.
+/// A tile at place 0 of the grid.
 pub(crate) fn tile(surface: &Surface, settings: &NavMeshSettings) -> Tile {
     let mut tile = Tile { verts: surface.verts.clone(), ..Tile::default() };
     for piece in &surface.pieces {
@@ -95,8 +96,8 @@ pub(crate) fn tile(surface: &Surface, settings: &NavMeshSettings) -> Tile {
     tile
 }
 
-/// Boxes around the pieces, halved along the longest side until each holds one (`createBVTree`): twice as many nodes as
-/// pieces, the last of them empty.
+/// Boxes around the pieces, split in halves along the longest side until each holds one piece (`createBVTree`). There
+/// are twice as many nodes as pieces; the last node is empty.
 fn tree(surface: &Surface, cell_size_m: f32) -> Vec<BvNode> {
     let steps = |metres: f32, low: f32| ((metres - low) / cell_size_m).clamp(0.0, f32::from(u16::MAX)) as u16;
     let mut boxes: Vec<BvNode> = Vec::with_capacity(surface.pieces.len());
@@ -130,7 +131,7 @@ fn divide(boxes: &mut [BvNode], nodes: &mut Vec<BvNode>) {
         high = std::array::from_fn(|axis: usize| high[axis].max(each.high[axis]));
     }
     let side = |axis: usize| high[axis].saturating_sub(low[axis]);
-    // The first of the longest, as `longestAxis` has it.
+    // Of equally long sides the first, as in `longestAxis`.
     let longest = (1..3).fold(0, |best, axis| if side(axis) > side(best) { axis } else { best });
     boxes.sort_by_key(|each| each.low[longest]);
     let here = nodes.len();

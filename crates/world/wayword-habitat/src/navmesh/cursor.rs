@@ -1,8 +1,8 @@
-//! Little-endian numbers from bytes that may end anywhere.
+//! Reads little-endian numbers from bytes that may end anywhere.
 
 use super::error::NavMeshError;
 
-/// A place in a file, which only moves forward.
+/// A position in a file, which only moves forward.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -14,7 +14,7 @@ impl<'a> Cursor<'a> {
         Self { bytes, at: 0 }
     }
 
-    /// Bytes from the file's beginning.
+    /// Offset from the file's beginning, bytes.
     pub(crate) fn at(&self) -> usize {
         self.at
     }
@@ -27,7 +27,7 @@ impl<'a> Cursor<'a> {
         &self.bytes[self.at..]
     }
 
-    /// The next `needed` bytes. The count is 64 bits wide, so that no product of a file's counts runs over.
+    /// The next `needed` bytes. The count is 64 bits wide, so that no product of a file's counts overflows.
     pub(crate) fn take(&mut self, needed: u64, what: &'static str) -> Result<&'a [u8], NavMeshError> {
         let short = NavMeshError::Short { offset: self.at, what, needed, left: self.left() };
         let count = usize::try_from(needed).ok().filter(|count| *count <= self.left()).ok_or(short)?;
@@ -58,19 +58,19 @@ impl<'a> Cursor<'a> {
         Ok(i32::from_le_bytes(self.array(what)?))
     }
 
-    /// Any 32 bits: what has to be finite is checked by who reads it.
+    /// Any 32-bit float: the caller checks whether it is finite.
     pub(crate) fn f32(&mut self, what: &'static str) -> Result<f32, NavMeshError> {
         Ok(f32::from_le_bytes(self.array(what)?))
     }
 
-    /// A number of things; negative ones are refused.
+    /// A count; a negative one is an error.
     pub(crate) fn count(&mut self, what: &'static str) -> Result<u32, NavMeshError> {
         let offset = self.at;
         let count = self.i32(what)?;
         u32::try_from(count).map_err(|_| NavMeshError::value(offset, what, count, "a count of 0 or more"))
     }
 
-    /// A number that must be this one.
+    /// A number that must equal `expected`.
     pub(crate) fn magic(&mut self, what: &'static str, expected: i32, hint: &str) -> Result<(), NavMeshError> {
         let offset = self.at;
         let found = self.i32(what)?;
@@ -80,7 +80,7 @@ impl<'a> Cursor<'a> {
         Err(NavMeshError::value(offset, what, format!("{found:#x}"), format!("{expected:#x}: {hint}")))
     }
 
-    /// `N` finite numbers within 1000 km.
+    /// `N` finite numbers of at most 1000 km.
     pub(crate) fn place<const N: usize>(&mut self, what: &'static str) -> Result<[f32; N], NavMeshError> {
         let mut place = [0.0; N];
         for number in &mut place {

@@ -1,4 +1,4 @@
-//! Why a file is not a navmesh.
+//! Errors of reading a navmesh file.
 
 /// What is wrong with a `.navmesh` file, and at which byte.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -8,25 +8,25 @@ pub enum NavMeshError {
         "byte {offset}: {what} needs {needed} bytes, and {left} are left: the file is cut off; copy or bake it again"
     )]
     Short {
-        /// Where the missing thing begins.
+        /// Where the incomplete item begins.
         offset: usize,
-        /// What was to be read.
+        /// What the reader expected there.
         what: &'static str,
-        /// Bytes that it takes.
+        /// Bytes that it needs.
         needed: u64,
         /// Bytes that the file still has.
         left: usize,
     },
-    /// A value that cannot be.
+    /// A value that is not allowed.
     #[error("byte {offset}: {what} is {found}, expected {expected}")]
     Value {
-        /// Where the value stands.
+        /// Where the value is.
         offset: usize,
-        /// What it is.
+        /// What the value means.
         what: &'static str,
         /// The value.
         found: String,
-        /// What would do, and what to do where that is known.
+        /// What is allowed, and what to do if that is known.
         expected: String,
     },
 }

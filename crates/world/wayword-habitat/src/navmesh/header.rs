@@ -8,7 +8,7 @@ const VERSION: i32 = 7;
 /// Bytes of the header itself.
 pub(super) const HEADER_BYTES: u64 = 100;
 
-/// Where a tile lies, what it was made for, and how many things it holds.
+/// Where a tile lies, for which agent it was made, and how many items of each kind it has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Header {
     /// Column, row and layer in the grid of tiles.
@@ -27,7 +27,7 @@ pub(crate) struct Header {
     pub(crate) agent_m: [f32; 3],
     pub(crate) low_m: [f32; 3],
     pub(crate) high_m: [f32; 3],
-    /// Steps per metre of the boxes in the tree.
+    /// Steps per metre in which the boxes of the tree are given.
     pub(crate) bv_quant_factor: f32,
 }
 
@@ -58,7 +58,7 @@ impl Header {
         })
     }
 
-    /// Bytes of the whole tile by these counts. They are 31 bits wide each: the sum cannot run over.
+    /// Bytes of the whole tile according to these counts. Each count has 31 bits, so the sum cannot overflow.
     pub(super) fn tile_bytes(&self) -> u64 {
         let parts = [
             (12, self.verts),

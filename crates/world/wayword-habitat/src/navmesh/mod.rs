@@ -1,8 +1,8 @@
 //! Habitat's `.navmesh` files, byte for byte.
 //!
-//! Layout: `PathFinder::loadNavMesh` and `saveNavMesh` of habitat-sim 0.3.3 (version 2), and RecastDemo's `Sample::saveAll`
-//! (version 1, which has no settings); the tiles are Detour's, version 7, with 32 bit references. Everything is kept as it
-//! was, so that what was read is written back the same.
+//! Layout: `PathFinder::loadNavMesh` and `saveNavMesh` of habitat-sim 0.3.3 (version 2), and RecastDemo's
+//! `Sample::saveAll` (version 1, which has no settings); the tiles are Detour's, version 7, with 32 bit references. The
+//! reader keeps every byte, so that a file is written back unchanged.
 
 pub(crate) mod build;
 mod cursor;
@@ -26,15 +26,15 @@ use header::HEADER_BYTES;
 /// "MSET", read as a little-endian number.
 const MAGIC: i32 = 0x4D53_4554;
 
-/// A navmesh as its file has it.
+/// A navmesh, as in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NavMesh {
     /// The grid of tiles (`dtNavMeshParams`).
     pub(crate) grid: Grid,
-    /// How it was baked; version 1 files do not say.
+    /// How it was baked; a version 1 file does not contain this.
     pub(crate) settings: Option<NavMeshSettings>,
     pub(crate) tiles: Vec<Tile>,
-    /// What follows the last tile; Habitat does not look at it.
+    /// The bytes after the last tile; Habitat ignores them.
     rest: Vec<u8>,
 }
 
@@ -49,15 +49,15 @@ pub(crate) struct Grid {
 }
 
 impl NavMesh {
-    /// A navmesh of one's own.
+    /// A navmesh that was not read from a file.
     pub(crate) fn new(grid: Grid, settings: Option<NavMeshSettings>, tiles: Vec<Tile>) -> Self {
         Self { grid, settings, tiles, rest: Vec::new() }
     }
 
-    /// Reads a file's bytes. Memory is bounded by their number: every list lies within them.
+    /// Reads a file's bytes. The memory it needs is bounded by their number, because every list must fit into them.
     ///
     /// # Errors
-    /// [`NavMeshError`] names the byte, what stands there, and what was expected.
+    /// [`NavMeshError`] names the byte, the value there, and what was expected.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, NavMeshError> {
         let mut cursor = Cursor::new(bytes);
         cursor.magic("the file's magic number", MAGIC, "not a navmesh of Habitat or Recast")?;
@@ -72,14 +72,14 @@ impl NavMesh {
         let settings = if version == 2 { Some(NavMeshSettings::read(&mut cursor)?) } else { None };
         let room = cursor.left() as u64 / (8 + HEADER_BYTES);
         if u64::from(count) > room {
-            let expected = format!("at most {room}, for which the file has room");
+            let expected = format!("at most {room}, because the file has no room for more");
             return Err(NavMeshError::value(tiles_at, "the number of tiles", count, expected));
         }
         let tiles = (0..count).map(|_| read_tile(&mut cursor)).collect::<Result<_, _>>()?;
         Ok(Self { grid, settings, tiles, rest: cursor.rest().to_vec() })
     }
 
-    /// The file's bytes; the same ones where it was read from a file.
+    /// The file's bytes; if the navmesh was read from a file, the same bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
@@ -95,13 +95,13 @@ impl NavMesh {
         out
     }
 
-    /// 1 for Recast's own files, 2 for Habitat's, which say how they were baked.
+    /// 1 for Recast's own files, 2 for Habitat's, which contain the settings that they were baked with.
     #[must_use]
     pub fn version(&self) -> u8 {
         if self.settings.is_some() { 2 } else { 1 }
     }
 
-    /// How it was baked, where the file says so.
+    /// The settings that it was baked with, if the file contains them.
     #[must_use]
     pub fn settings(&self) -> Option<&NavMeshSettings> {
         self.settings.as_ref()
@@ -119,7 +119,7 @@ fn read_tile(cursor: &mut Cursor<'_>) -> Result<Tile, NavMeshError> {
     let size_at = cursor.at();
     let bytes = u64::from(cursor.count("a tile's size")?);
     if bytes < HEADER_BYTES || bytes > cursor.left() as u64 {
-        let expected = format!("{HEADER_BYTES} to {}, which the file still has", cursor.left());
+        let expected = format!("{HEADER_BYTES} to {}, the bytes that are left", cursor.left());
         return Err(NavMeshError::value(size_at, "a tile's size", bytes, expected));
     }
     Tile::read(cursor, reference, bytes)

@@ -2,28 +2,28 @@
 
 use super::{cursor::Cursor, error::NavMeshError, header::Header};
 
-/// Corners that a polygon has room for.
+/// Most corners of a polygon.
 pub(crate) const MAX_CORNERS: usize = 6;
-/// Set where an edge leads into another tile.
+/// This bit is set if an edge leads into another tile.
 const PORTAL: u16 = 0x8000;
 
 /// What lies behind an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Behind {
-    /// Nothing: the edge of the walkable ground.
+    /// Nothing: the walkable ground ends here.
     Border,
     /// Another polygon of the tile, by its index.
     Polygon(usize),
-    /// Whatever lies in the tile on this side: 0 is +x, 2 +z, 4 -x, 6 -z.
+    /// The tile on this side: 0 is +x, 2 +z, 4 -x, 6 -z.
     Portal(u8),
 }
 
-/// A convex piece of ground, or a connection off it.
+/// A convex piece of ground, or an off-mesh connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Poly {
     pub(crate) first_link: u32,
     pub(crate) verts: [u16; MAX_CORNERS],
-    /// Behind the edge from corner i to the next.
+    /// What lies behind the edge from corner i to the next.
     pub(crate) neis: [u16; MAX_CORNERS],
     pub(crate) flags: u16,
     pub(crate) vert_count: u8,
@@ -69,12 +69,12 @@ impl Poly {
         Ok(())
     }
 
-    /// Whether it is ground, and no off-mesh connection.
+    /// Whether it is ground and not an off-mesh connection.
     pub(crate) fn is_ground(&self) -> bool {
         self.area_and_type >> 6 == 0
     }
 
-    /// Its vertices in the tile.
+    /// The indices of its vertices in the tile.
     pub(crate) fn corners(&self) -> &[u16] {
         &self.verts[..usize::from(self.vert_count).min(MAX_CORNERS)]
     }
@@ -88,7 +88,7 @@ impl Poly {
         }
     }
 
-    /// Makes an edge a portal into the next tile on a side.
+    /// Makes an edge a portal into the neighbouring tile on a side.
     #[cfg(test)]
     pub(crate) fn open(&mut self, edge: usize, side: u8) {
         self.neis[edge] = PORTAL | u16::from(side);

@@ -1,15 +1,15 @@
-//! How a navmesh was baked: 56 bytes of a version 2 file.
+//! The settings that a navmesh was baked with: 56 bytes of a version 2 file.
 
 use super::{cursor::Cursor, error::NavMeshError};
 
 /// Habitat's `NavMeshSettings` (habitat-sim 0.3.3, `PathFinder.h`), in the order of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NavMeshSettings {
-    /// Side of a voxel across the ground, metres.
+    /// Horizontal side of a voxel, metres.
     pub cell_size_m: f32,
     /// Height of a voxel, metres.
     pub cell_height_m: f32,
-    /// Room that an agent needs above the ground, metres.
+    /// Height that an agent needs above the ground, metres.
     pub agent_height_m: f32,
     /// Distance that it keeps from walls, metres.
     pub agent_radius_m: f32,
@@ -25,14 +25,14 @@ pub struct NavMeshSettings {
     pub edge_max_len: f32,
     /// How far a simplified border may lie off the true one, cells.
     pub edge_max_error: f32,
-    /// Corners of a polygon, at most.
+    /// Most corners of a polygon.
     pub verts_per_poly: f32,
     /// Distance between samples of the height, in cells.
     pub detail_sample_dist: f32,
-    /// How far the surface may lie off those heights, in heights of a cell.
+    /// How far the surface may lie off those heights, in units of the cell height.
     pub detail_sample_max_error: f32,
-    /// Four switches: low hanging obstacles, ledges, low ceilings are filtered; static objects are included. Older writers
-    /// left the last byte as it was.
+    /// Four switches: filter low hanging obstacles, ledges and low ceilings; include static objects. Older writers
+    /// leave the last byte unset.
     pub switches: [u8; 4],
 }
 

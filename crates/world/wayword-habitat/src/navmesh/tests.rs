@@ -2,7 +2,7 @@ use super::build::{Piece, Surface, single_tile};
 use super::*;
 use proptest::prelude::*;
 
-/// Two squares side by side, of one metre each, with a vertex in the middle of the second that lies higher.
+/// Two squares of 1 m side by side, with a higher vertex in the middle of the second.
 fn two_squares() -> NavMesh {
     let verts =
         vec![[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [2.0, 0.0, 0.0]];
@@ -20,7 +20,7 @@ fn two_squares() -> NavMesh {
     };
     let surface = Surface { verts, pieces: vec![flat, raised], low_m: [0.0; 3], high_m: [2.0, 0.1, 1.0] };
     let mut mesh = single_tile(&surface, NavMeshSettings::default());
-    // What a writer's memory happened to hold.
+    // Arbitrary bytes: a writer leaves here what was in its memory.
     mesh.tiles[0].links = (0..12 * 8).map(|byte| byte as u8 ^ 0xa5).collect();
     mesh.tiles[0].detail_meshes[1].padding = [7, 9];
     mesh
@@ -69,12 +69,12 @@ fn errors_say_which_byte_and_what_was_expected() {
         (broken(4, &[3, 0, 0, 0]), "byte 4: the file's version is 3, expected 1 (Recast) or 2 (Habitat)"),
         (
             broken(8, &[255, 255, 255, 127]),
-            "byte 8: the number of tiles is 2147483647, expected at most 4, for which the file has room",
+            "byte 8: the number of tiles is 2147483647, expected at most 4, because the file has no room for more",
         ),
         (broken(8, &[255, 255, 255, 255]), "byte 8: the number of tiles is -1, expected a count of 0 or more"),
         (
             broken(100, &[255, 255, 255, 127]),
-            "byte 100: a tile's size is 2147483647, expected 100 to 456, which the file still has",
+            "byte 100: a tile's size is 2147483647, expected 100 to 456, the bytes that are left",
         ),
     ]);
     // The tile begins at 104; its polygons after 100 bytes of header and 6 vertices of 12.

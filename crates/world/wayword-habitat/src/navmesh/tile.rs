@@ -1,4 +1,4 @@
-//! A tile of Detour: polygons with their neighbours, and the surface over them.
+//! A tile of Detour: polygons with their neighbours and their surfaces.
 
 use super::{cursor::Cursor, error::NavMeshError, header::Header, poly::Poly};
 
@@ -9,41 +9,42 @@ pub(crate) struct DetailMesh {
     pub(crate) tri_base: u32,
     pub(crate) verts: u8,
     pub(crate) tris: u8,
-    /// Bytes that mean nothing and are kept.
+    /// Bytes without a meaning; they are kept.
     pub(crate) padding: [u8; 2],
 }
 
-/// A box of the tree (`dtBVNode`): polygons are found by it in Detour, and here by none; it is kept, and made, for Detour.
+/// A box of the tree (`dtBVNode`). Detour uses it to find polygons; this program only keeps it, and makes it, for
+/// Detour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BvNode {
     pub(crate) low: [u16; 3],
     pub(crate) high: [u16; 3],
-    /// The polygon, or how many nodes to leap, negative.
+    /// The polygon, or minus the number of nodes to skip.
     pub(crate) index: i32,
 }
 
-/// All that a tile's bytes say.
+/// All contents of a tile.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Tile {
-    /// As the file has it; Detour's own number for the tile.
+    /// Detour's own number for the tile, as in the file.
     pub(crate) reference: u32,
     pub(crate) header: Header,
     /// Metres, y up.
     pub(crate) verts: Vec<[f32; 3]>,
     pub(crate) polys: Vec<Poly>,
-    /// 12 bytes each. Detour fills them when it loads a tile: on disk they are what memory held.
+    /// 12 bytes each. Detour fills them when it loads a tile; on disk they are arbitrary.
     pub(crate) links: Vec<u8>,
     pub(crate) detail_meshes: Vec<DetailMesh>,
     pub(crate) detail_verts: Vec<[f32; 3]>,
-    /// Three corners and flags: a corner counts the polygon's own vertices first, then the detail mesh's.
+    /// Three corners and flags. The index of a corner counts the polygon's own vertices first, then the detail mesh's.
     pub(crate) detail_tris: Vec<[u8; 4]>,
     pub(crate) bv_nodes: Vec<BvNode>,
-    /// 36 bytes each; Habitat makes none, and nobody walks over them here.
+    /// 36 bytes each. Habitat makes none, and this program does not use them.
     pub(crate) off_mesh: Vec<u8>,
 }
 
 impl Tile {
-    /// Reads a tile of `bytes` bytes, which the cursor is known to have.
+    /// Reads a tile of `bytes` bytes. The caller has checked that the cursor has them.
     pub(super) fn read(cursor: &mut Cursor<'_>, reference: u32, bytes: u64) -> Result<Self, NavMeshError> {
         let start = cursor.at();
         let header = Header::read(cursor)?;
@@ -94,7 +95,7 @@ impl Tile {
         self.check_detail(meshes_at, tris_at)
     }
 
-    /// Every detail mesh within the lists, every corner of a triangle there.
+    /// Checks that every detail mesh lies within the lists, and that every corner of a triangle exists.
     fn check_detail(&self, meshes_at: usize, tris_at: usize) -> Result<(), NavMeshError> {
         for (index, (mesh, poly)) in self.detail_meshes.iter().zip(&self.polys).enumerate() {
             let end = |base: u32, count: u8| u64::from(base) + u64::from(count);
@@ -128,7 +129,7 @@ impl Tile {
         Ok(())
     }
 
-    /// The triangles over a polygon; where there is no detail mesh, a fan.
+    /// The triangles of a polygon's surface; a fan if there is no detail mesh.
     pub(crate) fn triangles(&self, poly: usize) -> Vec<[[f32; 3]; 3]> {
         let Some(polygon) = self.polys.get(poly) else { return Vec::new() };
         let corners = polygon.corners();

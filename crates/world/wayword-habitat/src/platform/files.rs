@@ -1,4 +1,4 @@
-//! Which scenes a folder holds, and which of its files belong to each.
+//! Finds the scenes in a folder and the files that belong to each.
 
 use crate::{
     fault::FileError,
@@ -11,11 +11,11 @@ use std::{
 };
 use wayword_core::SceneId;
 
-/// Folders below one another that are looked through.
+/// Depth of nested folders that is searched.
 const DEPTH: usize = 4;
-/// Files and folders that are looked at, at most.
+/// Most files and folders that are examined.
 const MAX_ENTRIES: usize = 200_000;
-const HINT: &str = "name a scene's .glb, or a folder of scenes as Habitat's datasets have them";
+const HINT: &str = "give a scene's .glb file, or a folder of scenes laid out as in Habitat's datasets";
 
 /// The files of one scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,8 +24,8 @@ pub(super) struct SceneFiles {
     pub(super) stage: PathBuf,
 }
 
-/// Every scene at a place, which is a file or a folder: the id is the file's name without what says its format, behind its
-/// folder's name where two have the same.
+/// Every scene at a path, which is a file or a folder. The id is the file's name without the ending for its format; if
+/// two are equal, the folder's name is put before it.
 pub(super) fn scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, FileError> {
     let mut files = Vec::new();
     if place.is_dir() {
@@ -53,12 +53,12 @@ pub(super) fn scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, File
         }
     }
     if scenes.is_empty() {
-        return Err(FileError::new(place, "holds no scene", HINT));
+        return Err(FileError::new(place, "contains no scene", HINT));
     }
     Ok(scenes)
 }
 
-/// How good a file is as a stage, the best being 0; `None` for what is none.
+/// How well a file serves as a stage; 0 is the best, and `None` means that it is not a stage.
 fn rank(name: &str) -> Option<u8> {
     let endings = [".stage_config.json", ".basis.glb", ".glb", ".gltf"];
     let rank = endings.iter().position(|ending| name.ends_with(ending))? as u8;
@@ -90,13 +90,13 @@ fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), 
 }
 
 impl SceneFiles {
-    /// The navmesh that lies with the scene.
+    /// The navmesh beside the scene.
     pub(super) fn navmesh(&self, stage: &Stage) -> Option<PathBuf> {
         let own = self.beside(&[".basis.navmesh", ".navmesh"]);
         stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
     }
 
-    /// Every file that the scene is read from, with those that its GLB or glTF files name, sorted.
+    /// Every file that the scene is read from, including those that its GLB or glTF files name, sorted.
     pub(super) fn all(&self, stage: &Stage) -> Vec<PathBuf> {
         let SemanticFiles { painted, numbered } = self.semantics(stage);
         let pairs = painted.into_iter().chain(numbered).flat_map(|(mesh, names)| [mesh, names]);
@@ -109,7 +109,7 @@ impl SceneFiles {
         all
     }
 
-    /// The semantic files that lie with it.
+    /// The semantic files beside the scene.
     pub(super) fn semantics(&self, stage: &Stage) -> SemanticFiles {
         let there = |ending: &str| self.beside(&[ending]).into_iter().find(|file| file.is_file());
         let mesh = stage.semantics.clone().filter(|file| file.is_file()).or_else(|| there(".semantic.glb"));
@@ -184,6 +184,6 @@ mod tests {
     #[test]
     fn a_folder_without_scenes_is_refused() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(scenes(folder.path()).unwrap_err().to_string().contains("holds no scene"));
+        assert!(scenes(folder.path()).unwrap_err().to_string().contains("contains no scene"));
     }
 }

@@ -1,4 +1,4 @@
-//! One scene, read and made ready.
+//! One scene, read and prepared.
 
 use super::{
     HabitatOptions,
@@ -27,8 +27,8 @@ use wayword_render::{Camera, RenderError, Scene, render, storey};
 use wayword_world::seen_from;
 
 const MAX_NAVMESH: u64 = 1 << 30;
-const NAVMESH_HINT: &str = "remove it, and the scene's ground is baked instead";
-const ISLAND_HINT: &str = "name one that is there with --island, or give the scene a .navmesh of its rooms";
+const NAVMESH_HINT: &str = "remove the file, and a navmesh is baked from the scene instead";
+const ISLAND_HINT: &str = "choose an existing island with --island, or give the scene a .navmesh of its rooms";
 const DRAW_HINT: &str = "export the scene again as GLB";
 
 /// A scene with its ground.
@@ -39,11 +39,11 @@ pub(super) struct Home {
     pub(super) ground: Ground,
     columns: Columns,
     surveys: Vec<Survey>,
-    /// What is to be said where another island than the chosen one might be meant.
+    /// The warning to print if the user may mean another island than the chosen one.
     pub(super) doubt: Option<String>,
     pub(super) graph: Arc<ViewpointGraph>,
     pub(super) semantics: Option<Semantics>,
-    /// The viewpoints from which each object is seen; looked for when first asked for.
+    /// The viewpoints from which each object is seen; computed when first needed.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
 }
 
@@ -66,7 +66,7 @@ impl Home {
         let doubt = choice.is_doubtful.then(|| {
             let listed = islands::listed(&surveys);
             format!(
-                "scene {id}: walks keep to island {} of its ground; --island names another ({listed})",
+                "scene {id}: paths stay on island {} of its navmesh; to choose another, use --island ({listed})",
                 choice.number
             )
         });
@@ -81,17 +81,17 @@ impl Home {
         Ok(Self { id, scene, navmesh, ground, columns, surveys, doubt, graph, semantics, seen_from })
     }
 
-    /// The islands of its ground, the largest first.
+    /// The islands of its navmesh, the largest first.
     pub(super) fn islands(&self) -> Vec<Island> {
         self.surveys.iter().map(|survey| survey.told(Some(self.ground.main()))).collect()
     }
 
-    /// Whether somebody can stand upright at a place on the ground.
+    /// Whether a person can stand upright at a place on the ground.
     pub(super) fn is_headroom(&self, ground: DVec3) -> bool {
         self.columns.over(ground).is_headroom()
     }
 
-    /// What is seen from an eye; the picture where one is wanted, labels where the scene has semantics.
+    /// What is seen from an eye: a picture if `pictured`, and labels if the scene has semantics.
     pub(super) fn view(&self, eye: DVec3, gaze: Gaze, size: [u32; 2], pictured: bool) -> Result<View, PlatformError> {
         let camera = camera(eye, gaze, size);
         let image = pictured.then(|| self.image(&camera)).transpose()?;
@@ -121,7 +121,7 @@ impl Home {
         PlatformError::UnknownScene { scene: self.id.to_string(), hint: error.to_string() }
     }
 
-    /// Everything visible around a place, in small pictures.
+    /// All objects that are visible around a place, found in small pictures.
     pub(super) fn labels_around(&self, eye: DVec3) -> Result<Vec<Label>, PlatformError> {
         let Some(semantics) = &self.semantics else { return Ok(Vec::new()) };
         let quarters = Gaze::around(Heading::NORTH).into_iter();
@@ -139,7 +139,7 @@ impl Home {
         Ok(self.seen_from.get_or_init(|| seen))
     }
 
-    /// Refuses frames that do not stand on the ground.
+    /// Returns an error for a frame that is not above the ground.
     pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
         if self.ground.nearest(eye - DVec3::Z * EYE_M).is_some() {
@@ -149,7 +149,7 @@ impl Home {
     }
 }
 
-/// The island that walks keep to: the one that is asked for, else the one on which people would walk.
+/// The island that paths stay on: the one that the user chose, else the one on which people would walk.
 fn island(
     ground: &Ground,
     surveys: &[Survey],
@@ -159,10 +159,10 @@ fn island(
     let refused = |reason: String| FileError::new(&stage.asset, reason, ISLAND_HINT).into();
     match options.island {
         Some(number) if number < ground.islands_m2().count() => Ok(Choice { number, is_doubtful: false }),
-        Some(number) => Err(refused(format!("its ground has no island {number}: {}", islands::listed(surveys)))),
+        Some(number) => Err(refused(format!("its navmesh has no island {number}: {}", islands::listed(surveys)))),
         None => islands::choose(surveys).ok_or_else(|| {
             let listed = islands::listed(surveys);
-            refused(format!("nobody would walk on any island of its ground, indoors or under the open sky: {listed}"))
+            refused(format!("no island of its navmesh is a place to walk on, indoors or under the open sky: {listed}"))
         }),
     }
 }

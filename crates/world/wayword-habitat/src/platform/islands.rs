@@ -1,7 +1,8 @@
-//! Which of a navmesh's islands walks keep to.
+//! Chooses the island of a navmesh that paths stay on.
 //!
-//! Recast finds ground wherever there is room above it, so the top of a ceiling is ground too, and without walls and furniture
-//! it is often the largest. What tells it apart: nothing is above it, and there are rooms below.
+//! Recast finds ground wherever there is room above it, so the top of a ceiling is ground too. Because no walls or
+//! furniture stand on it, it is often the largest island. It is recognised by two things: nothing is above it, and
+//! there are rooms below.
 
 use crate::{
     columns::{Columns, Over},
@@ -9,23 +10,25 @@ use crate::{
 };
 use wayword_core::{Cover, Island, rng};
 
-/// Places that are looked at on each island.
+/// Random places that are examined on each island.
 const PLACES: usize = 400;
-/// Islands that are looked at, the largest first, and the least area of one, square metres.
+/// Most islands that are examined, the largest first.
 const MOST: usize = 64;
+/// Least area of an island that is examined, square metres.
 const LEAST_M2: f64 = 1.0;
-/// Walks keep to an island if this share of it is under a ceiling, or under the sky on firm ground.
+/// Paths can stay on an island if this share of it is under a ceiling, or under the sky on firm ground.
 const FIT: f64 = 1.0 / 3.0;
 /// An island is indoors if this share of it is under a ceiling.
 const INDOORS: f64 = 0.25;
-/// Rooms count from this share of the open ground on: a shelter in a field does not make the field outdoors of a house.
+/// Indoor islands come first only if their rooms have at least this share of the open ground's area: a shelter in a
+/// field is not preferred to the field.
 const ROOMS: f64 = 0.1;
-/// Another island that has this share of the chosen one's area might have been meant.
+/// If another island has this share of the chosen one's area, the user may have meant that one.
 const RIVAL: f64 = 0.5;
-/// Islands that an error or warning names.
+/// Most islands that an error or warning lists.
 const NAMED: usize = 6;
 
-/// What there is over the places of an island, as shares of it.
+/// What is above the places of an island, as shares of its area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Survey {
     pub(super) number: usize,
@@ -41,11 +44,11 @@ pub(super) struct Survey {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Choice {
     pub(super) number: usize,
-    /// Whether another might have been meant.
+    /// Whether the user may have meant another one.
     pub(super) is_doubtful: bool,
 }
 
-/// Looks at the islands, the largest first.
+/// Examines the islands, the largest first.
 pub(super) fn survey(ground: &Ground, columns: &Columns) -> Vec<Survey> {
     let worth = ground.islands_m2().enumerate().take(MOST).take_while(|(_, area_m2)| *area_m2 >= LEAST_M2);
     worth.map(|(number, area_m2)| of(ground, columns, number, area_m2)).collect()
@@ -70,8 +73,8 @@ fn of(ground: &Ground, columns: &Columns, number: usize, area_m2: f64) -> Survey
     }
 }
 
-/// The island that walks keep to: of those under a ceiling the one with the most room there; under the open sky only where the
-/// scene has next to no rooms. `None` where nobody would walk on any.
+/// The island that paths stay on: of the indoor islands, the one with the most area under a ceiling; an island under
+/// the open sky only if the scene has almost no rooms. `None` if no island is a place to walk on.
 pub(super) fn choose(surveys: &[Survey]) -> Option<Choice> {
     let fit = || surveys.iter().filter(|survey| survey.ceiling + survey.sky >= FIT);
     let best = |most: fn(&Survey) -> f64, of: Vec<&Survey>| {
@@ -100,7 +103,7 @@ impl Survey {
         self.area_m2 * self.sky
     }
 
-    /// The island as people are told of it; `walked` is the one that walks keep to.
+    /// The island for display; `walked` is the number of the one that paths stay on.
     pub(super) fn told(&self, walked: Option<usize>) -> Island {
         let covers = [
             (self.ceiling, Cover::Ceiling),
@@ -108,7 +111,7 @@ impl Survey {
             (self.roof, Cover::OnRoof),
             (self.low, Cover::Low),
         ];
-        // Of equal shares the first.
+        // If two shares are equal, the first counts.
         let most = covers.into_iter().reduce(|best, other| if other.0 > best.0 { other } else { best });
         Island {
             number: self.number,
@@ -120,10 +123,10 @@ impl Survey {
     }
 }
 
-/// The islands in words, the largest first.
+/// The islands as text, the largest first.
 pub(super) fn listed(surveys: &[Survey]) -> String {
     if surveys.is_empty() {
-        return format!("it has none of at least {LEAST_M2} m2");
+        return format!("it has no island of at least {LEAST_M2} m2");
     }
     let named: Vec<String> = surveys.iter().take(NAMED).map(|survey| survey.told(None).to_string()).collect();
     let more = surveys.len().saturating_sub(NAMED);

@@ -21,9 +21,9 @@ use wayword_core::{
 };
 use wayword_world::said::Hear;
 
-/// Scenes that are kept ready at a time: one of HM3D takes some hundred MB.
+/// Scenes that are kept in memory at a time: one of HM3D takes a few hundred MB.
 const READY: usize = 2;
-/// Widest gaze that one flat picture can show, radians.
+/// Widest field of view of one flat picture, radians.
 const WIDEST_RAD: f64 = 2.6;
 
 /// Scenes as Habitat reads them.
@@ -32,22 +32,22 @@ pub struct HabitatPlatform {
     hear: Hear,
     scenes: BTreeMap<SceneId, SceneFiles>,
     ready: Recent<SceneId, Home>,
-    /// Scenes that something was said of: once is enough.
+    /// Scenes for which a warning was already given, so that each is given once.
     told: Mutex<BTreeSet<SceneId>>,
 }
 
-/// What can be chosen about the platform.
+/// Options of the platform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HabitatOptions {
     /// Width of pictures, pixels.
     pub width_px: u32,
     /// Height of pictures, pixels.
     pub height_px: u32,
-    /// Distance between two frames of a random path at most, metres.
+    /// Largest distance between two frames of a random path, metres.
     pub interval_m: f64,
-    /// A navmesh for the scene, where it does not lie beside it.
+    /// A navmesh to use instead of the one beside the scene.
     pub navmesh: Option<PathBuf>,
-    /// The island that walks keep to, 0 being the largest; chosen for each scene where none is named.
+    /// The island that paths stay on; 0 is the largest. If `None`, the program chooses one for each scene.
     pub island: Option<usize>,
 }
 
@@ -58,21 +58,21 @@ impl Default for HabitatOptions {
 }
 
 impl HabitatPlatform {
-    /// The scenes at a place: one file (`.glb`, `.gltf`, `.stage_config.json`), or a folder of them, such as HM3D's, Matterport3D's
-    /// or Gibson's. With each belong the navmesh and the semantic files beside it; a scene without a navmesh has one baked. `hear` is
-    /// told where it is doubtful on which of a scene's islands people walk.
+    /// Opens the scenes at a path: one file (`.glb`, `.gltf`, `.stage_config.json`), or a folder of them, such as
+    /// HM3D's, Matterport3D's or Gibson's. The navmesh and the semantic files beside a scene belong to it; if there is
+    /// no navmesh, one is baked. `hear` receives a warning if it is doubtful on which of a scene's islands people walk.
     ///
     /// # Errors
-    /// When there is no scene, or the folder cannot be read.
+    /// If there is no scene, or the folder cannot be read.
     pub fn open(place: &FilePath, options: HabitatOptions, hear: Hear) -> Result<Self, PlatformError> {
         let (scenes, ready) = (files::scenes(place)?, Recent::one_at_a_time(READY));
         Ok(Self { options, hear, scenes, ready, told: Mutex::default() })
     }
 
-    /// The navmesh of a scene, as its file has it or as it was baked: [`NavMesh::to_bytes`] gives a file that Habitat reads.
+    /// The navmesh of a scene, from its file or baked. [`NavMesh::to_bytes`] returns a file that Habitat can read.
     ///
     /// # Errors
-    /// When there is no such scene or its files cannot be read.
+    /// If there is no such scene, or its files cannot be read.
     pub fn navmesh(&self, scene: &SceneId) -> Result<NavMesh, PlatformError> {
         Ok(self.home(scene)?.navmesh.clone())
     }
@@ -149,7 +149,7 @@ impl Platform for HabitatPlatform {
         Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
     }
 
-    /// Over the navmesh, as Habitat measures it.
+    /// The way over the navmesh, as Habitat measures it.
     fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
         let feet = |frame: &Frame| frame.pose.position - DVec3::Z * EYE_M;
         Ok(self.home(scene)?.ground.geodesic(feet(from), feet(to)).ok())

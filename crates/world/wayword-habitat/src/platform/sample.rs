@@ -1,4 +1,4 @@
-//! Random walks: the shortest way between two random places of the island that walks keep to, with frames along it.
+//! Random paths: the shortest way between two random places of the island that paths stay on, with frames along it.
 
 use super::home::Home;
 use crate::{axes::EYE_M, ground::stops_along};
@@ -9,7 +9,7 @@ use wayword_world::{
     wander::{Wander, wander},
 };
 
-/// A walk whose length keeps to `request`.
+/// A random path whose length is within `request`.
 pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f64) -> Result<Path, PlatformError> {
     let dice = rng(seed, &["habitat path", home.id.as_str()]);
     let found = wander(&mut Walker { home, dice, interval_m }, &home.id, request, seed)?;
@@ -33,7 +33,7 @@ impl<R: Rng> Wander for Walker<'_, R> {
         let ground = &self.home.ground;
         let Ok(way) = ground.geodesic(from, to) else { return Ok(None) };
         let stops = stops_along(ground, &way, self.interval_m);
-        // An agent of Habitat is 1.5 m high, and its ground reaches under what nobody could stand under.
+        // Habitat's agent is 1.5 m high, so its ground includes places where a person cannot stand upright.
         let upright = |stop: &Stop| self.home.is_headroom(stop.position - DVec3::Z * EYE_M);
         Ok(stops.iter().all(upright).then_some(stops))
     }
@@ -47,13 +47,14 @@ impl<R: Rng> Wander for Walker<'_, R> {
     }
 }
 
-/// What was asked for, beside the ground that there is: a scene in other units, or one that lies on its side, has next to none.
+/// The request in words, with the area of the ground: a scene in other units, or one that lies on its side, has almost
+/// none.
 fn refused(home: &Home, request: &PathRequest) -> String {
     let length_m = &request.length_m;
     let ground_m2 = home.ground.islands_m2().nth(home.ground.main()).unwrap_or_default();
     format!(
-        "{} to {} metres on its {ground_m2:.1} m2 of ground (a scene is read as metres with z up; where that is wrong, a \
-         stage_config.json beside it says units_to_meters, up and front)",
+        "{} to {} metres on its {ground_m2:.1} m2 of ground (a scene is read as metres with z up; if that is wrong, a \
+         stage_config.json beside it must give units_to_meters, up and front)",
         length_m.start(),
         length_m.end()
     )

@@ -1,4 +1,5 @@
-//! The platform on a scene that the tests write themselves: a floor of 8 x 8 m with a red box on it, without a navmesh.
+//! Tests of the platform on a scene that they write themselves: a floor of 8 x 8 m with a red box on it, without a
+//! navmesh.
 
 use super::*;
 use crate::scene::tests::glb;
@@ -27,7 +28,7 @@ fn file(colours: [[u8; 4]; 2]) -> Vec<u8> {
     painted(&boxed(), &colours)
 }
 
-/// Corners of triangles as a GLB, each mesh in its colour.
+/// A GLB of meshes, given as the corners of their triangles, each mesh in its colour.
 fn painted(meshes: &[Vec<[f32; 3]>], colours: &[[u8; 4]]) -> Vec<u8> {
     let (mut bytes, mut views, mut accessors, mut primitives) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (positions, colour) in meshes.iter().zip(colours) {
@@ -80,7 +81,7 @@ fn platform(has_labels: bool) -> (HabitatPlatform, SceneId) {
     )
     .unwrap();
     let scene = platform.scenes().unwrap().remove(0);
-    // Read while the folder is there; what is ready stays so.
+    // Read the scene while the folder exists; the platform keeps it in memory.
     platform.graph(&scene).unwrap();
     (platform, scene)
 }
@@ -142,12 +143,12 @@ fn a_walk_that_finds_no_room_is_told_how_much_ground_there_is() {
     let request = PathRequest { length_m: 40.0..=50.0, ..PathRequest::default() };
     let message = platform.sample_path(&scene, &request, 1).unwrap_err().to_string();
     let area = message.split_once("40 to 50 metres on its ").unwrap().1.split_once(" m2 of ground").unwrap().0;
-    // 8 x 8 m without the box, and an agent's radius from every edge.
+    // 8 x 8 m without the box, and less the agent's radius at every edge.
     assert!((50.0..60.0).contains(&area.parse::<f64>().unwrap()), "{message}");
     assert!(message.contains("units_to_meters, up and front"), "{message}");
 }
 
-/// A floor of 8 x 8 m, and a ceiling over it whose top is larger: what Recast finds most ground on.
+/// A floor of 8 x 8 m, and a ceiling over it with a larger top, so that Recast finds the most ground there.
 fn flat() -> [Vec<[f32; 3]>; 2] {
     let (mut floor, mut slab) = (Vec::new(), Vec::new());
     quad(&mut floor, [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0], [0.0, 8.0, 0.0]]);
@@ -182,7 +183,7 @@ fn walks_keep_to_the_floor_under_the_ceiling_and_not_to_its_larger_top() {
     assert!(graph.viewpoints().all(|viewpoint| graph.position(viewpoint).unwrap().z < 1.8));
     let heard = heard.lock().unwrap();
     assert_eq!(heard.len(), 1, "{heard:?}");
-    assert!(heard[0].contains("walks keep to island 1") && heard[0].contains("--island names another"), "{heard:?}");
+    assert!(heard[0].contains("paths stay on island 1") && heard[0].contains("use --island"), "{heard:?}");
 }
 
 #[test]
@@ -208,7 +209,7 @@ fn a_navmesh_of_roofs_alone_is_refused_with_its_islands() {
     let (platform, scene, _heard, _folder) =
         open_flat(HabitatOptions { navmesh: Some(navmesh), ..HabitatOptions::default() });
     let error = platform.graph(&scene).unwrap_err().to_string();
-    assert!(error.contains("flat.glb: nobody would walk on any island"), "{error}");
+    assert!(error.contains("flat.glb: no island of its navmesh is a place to walk on"), "{error}");
     assert!(
         error.contains("island 0: ") && error.contains("on top of a roof") && error.contains("--island"),
         "{error}"

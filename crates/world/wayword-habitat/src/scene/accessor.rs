@@ -1,4 +1,4 @@
-//! Numbers of a glTF file: accessors (glTF 2.0, section 3.6.2).
+//! Reads the numbers of a glTF file: accessors (glTF 2.0, section 3.6.2).
 
 use super::asset::Asset;
 use gltf::json::{
@@ -11,9 +11,9 @@ use gltf::json::{
 pub(super) fn floats<const N: usize>(asset: &Asset, index: Index<Accessor>) -> Result<Vec<[f32; N]>, String> {
     let entries = Entries::of(asset, index)?;
     let given = entries.components;
-    // Colours come with or without alpha: what is there first is taken.
+    // Colours come with or without alpha: only the first `N` numbers are used.
     if given < N {
-        return Err(format!("accessor {} has {given} numbers an entry, expected {N}", index.value()));
+        return Err(format!("accessor {} has entries of length {given}, expected {N}", index.value()));
     }
     let mut all = Vec::with_capacity(entries.count);
     for entry in 0..entries.count {
@@ -27,12 +27,12 @@ pub(super) fn indices(asset: &Asset, index: Index<Accessor>) -> Result<Vec<u32>,
     let entries = Entries::of(asset, index)?;
     let whole = matches!(entries.kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
     if !whole || entries.components != 1 {
-        return Err(format!("accessor {} holds no indices", index.value()));
+        return Err(format!("accessor {} does not hold indices", index.value()));
     }
     Ok((0..entries.count).map(|entry| entries.whole(entry)).collect())
 }
 
-/// Where the entries of an accessor lie: all of them within the bytes.
+/// The entries of an accessor; all of them lie within `bytes`.
 struct Entries<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -73,7 +73,7 @@ impl<'a> Entries<'a> {
             Some((bytes.get(start..end)?, count))
         };
         let (bytes, count) = lies().ok_or_else(|| wrong("lies outside its view"))?;
-        // Entries on top of one another would be many more than bytes.
+        // Without this check a file with overlapping entries could have far more entries than bytes.
         if stride < component.0.size() || count > bytes.len() {
             return Err(wrong("has entries that overlap"));
         }

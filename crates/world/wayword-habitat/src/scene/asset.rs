@@ -1,4 +1,4 @@
-//! A glTF file's document with its buffers, every reference checked when it is followed.
+//! A glTF file's document with its buffers. Every reference is checked when it is followed.
 
 use crate::fault::{self, FileError};
 use gltf::json::{Index, Root, buffer::View};
@@ -16,9 +16,9 @@ use wayword_core::contain::decoded;
 const HINT: &str = "export the scene again as GLB";
 /// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
 const MAX_BYTES: u64 = 4 << 30;
-/// Bytes of a GLB before its document.
+/// Number of bytes before the document in a GLB.
 const GLB_HEAD_BYTES: u64 = 20;
-/// Extensions that a file may need: those that are understood, and those that change nothing in unlit pictures.
+/// Extensions that a file may require: those that the reader supports, and those that change nothing in unlit pictures.
 const KNOWN: [&str; 4] = ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_"];
 
 /// A document and its bytes.
@@ -31,14 +31,14 @@ pub(super) struct Asset {
 impl Asset {
     pub(super) fn read(file: &Path) -> Result<Self, FileError> {
         let wrong = |reason: String| FileError::new(file, reason, HINT);
-        let bytes = fault::bytes(file, MAX_BYTES, "take a GLB or glTF file")?;
-        // Validation refuses GOOGLE_texture_basis; what it would have checked is checked here, where it is used.
+        let bytes = fault::bytes(file, MAX_BYTES, "use a GLB or glTF file")?;
+        // The library's validation rejects GOOGLE_texture_basis, so values are checked here where they are used.
         let gltf = decoded(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
             .map_err(&wrong)?;
         let (root, mut blob) = (gltf.document.into_json(), gltf.blob);
         let foreign = |name: &&String| !KNOWN.iter().any(|known| name.starts_with(known));
         if let Some(name) = root.extensions_required.iter().find(foreign) {
-            let hint = "export it without compression of its geometry";
+            let hint = "export it without geometry compression";
             return Err(FileError::new(file, format!("needs the extension {name:.60}, which cannot be read"), hint));
         }
         let folder = file.parent().unwrap_or(Path::new("")).to_owned();
@@ -54,12 +54,13 @@ impl Asset {
         Ok(Self { root, buffers, beside })
     }
 
-    /// The bytes that an address names.
+    /// The bytes that a URI refers to.
     pub(super) fn beside(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
         self.beside.bytes(uri)
     }
 
-    /// Length of the file and of all that has been read beside it so far: what may be made of it is measured by that.
+    /// Length of the file and of all files that have been read beside it so far, bytes. Limits for what is made from
+    /// them depend on it.
     pub(super) fn length(&self) -> u64 {
         self.beside.bytes.get()
     }
@@ -78,7 +79,7 @@ impl Asset {
     }
 }
 
-/// What lies beside a file: each once, however often and in whatever spelling it is named.
+/// The files beside a file. Each is read once, however often and in whatever spelling it is named.
 struct Beside {
     folder: PathBuf,
     read: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
@@ -86,10 +87,10 @@ struct Beside {
 }
 
 impl Beside {
-    /// The bytes that a relative address names: a file beside, or those within the address itself.
+    /// The bytes that a relative URI refers to: a file beside, or data within the URI itself.
     fn bytes(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
         if let Some(data) = uri.strip_prefix("data:") {
-            let (_, text) = data.split_once(";base64,").ok_or("a data address without base64")?;
+            let (_, text) = data.split_once(";base64,").ok_or("a data URI without base64")?;
             let decoded = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, text);
             return decoded.map(Rc::new).map_err(|error| error.to_string());
         }
@@ -105,7 +106,7 @@ impl Beside {
     }
 }
 
-/// The file that a relative address names, below the folder of the file in which it stands.
+/// The file that a relative URI names, relative to the folder of the file that contains the URI.
 fn target(uri: &str) -> Result<PathBuf, String> {
     let name = uri.replace("%20", " ");
     let mut target = PathBuf::new();
@@ -119,7 +120,7 @@ fn target(uri: &str) -> Result<PathBuf, String> {
     Ok(target)
 }
 
-/// What is read of a document to know which files belong to it.
+/// The parts of a document that name other files.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Addresses {
@@ -132,7 +133,8 @@ struct Address {
     uri: Option<String>,
 }
 
-/// The files that a GLB or glTF file names and that are there. What is wrong with it, [`Asset::read`] tells.
+/// The existing files that a GLB or glTF file names. Errors in the file are ignored here, because [`Asset::read`]
+/// reports them.
 pub(crate) fn files_beside(file: &Path) -> Vec<PathBuf> {
     let addresses: Option<Addresses> = document(file).and_then(|text| serde_json::from_slice(&text).ok());
     let Addresses { buffers, images } = addresses.unwrap_or_default();
@@ -141,16 +143,16 @@ pub(crate) fn files_beside(file: &Path) -> Vec<PathBuf> {
     targets.map(|target| folder.join(target)).filter(|file| file.is_file()).collect()
 }
 
-/// The document of a glTF file, or within a GLB.
+/// The document of a glTF or GLB file.
 fn document(file: &Path) -> Option<Vec<u8>> {
-    // Whoever opens a pipe waits until somebody writes into it.
+    // Opening a pipe would block until another process writes into it.
     if !file.is_file() {
         return None;
     }
     let mut opened = File::open(file).ok()?;
     let mut text = Vec::new();
     opened.by_ref().take(GLB_HEAD_BYTES).read_to_end(&mut text).ok()?;
-    // Behind "glTF" a GLB has its version and length, and then the length and kind of its document.
+    // After "glTF" a GLB has its version and length, and then the length and kind of its document.
     let length = text.strip_prefix(b"glTF").and_then(|rest| rest.get(8..)?.first_chunk::<4>());
     let length = length.map(|bytes| u32::from_le_bytes(*bytes));
     if length.is_some() {

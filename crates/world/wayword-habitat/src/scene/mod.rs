@@ -1,4 +1,4 @@
-//! Scenes as Habitat reads them: GLB and glTF with their textures, turned as the stage says.
+//! Reads scenes as Habitat does: GLB and glTF with their textures, rotated as the stage configuration says.
 
 mod accessor;
 mod asset;
@@ -21,18 +21,19 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_render::{Material, Mesh, Texture};
 
 const HINT: &str = "export the scene again as GLB";
-/// Corners of triangles that any file may have, and so many more for each of its bytes: a mesh may stand in a thousand places.
+/// Triangle corners that any file may have. There is a limit because a file can place one mesh many times.
 const FREE_CORNERS: u64 = 1 << 22;
+/// Further triangle corners that a file may have for each of its bytes.
 const CORNERS_PER_BYTE: u64 = 64;
 
-/// What a scene is drawn of, in Wayword's frame.
+/// The geometry and textures of a scene, in Wayword's frame.
 #[derive(Debug, Default)]
 pub struct Model {
-    /// Triangles by the surface they are made of.
+    /// Triangles, grouped by material.
     pub meshes: Vec<Mesh>,
-    /// The surfaces.
+    /// The materials.
     pub materials: Vec<Material>,
-    /// The pictures on them.
+    /// The materials' textures.
     pub textures: Vec<Texture>,
 }
 
@@ -40,7 +41,7 @@ impl Model {
     /// Reads a stage's file.
     ///
     /// # Errors
-    /// When it cannot be read; the message says which item of the file is wrong.
+    /// If it cannot be read; the message says which item of the file is wrong.
     pub fn of(stage: &Stage) -> Result<Self, FileError> {
         Self::read(&stage.asset, stage.habitat_from_asset)
     }
@@ -59,7 +60,7 @@ impl Model {
                 corners += mesh.positions.len() as u64 + 3 * mesh.triangles.len() as u64;
                 if corners > most_corners {
                     let reason =
-                        format!("its meshes stand in so many places that they have over {most_corners} corners");
+                        format!("its meshes are placed so often that they have more than {most_corners} corners");
                     return Err(FileError::new(file, reason, HINT));
                 }
                 mesh.material = match primitive.material.map(|material| material.value()) {
@@ -89,7 +90,7 @@ impl Model {
     }
 }
 
-/// Lights a mesh without a material face by face.
+/// Lights a mesh without a material, face by face.
 fn light(mesh: &mut Mesh) {
     let corner = |vertex: u32| mesh.positions.get(vertex as usize).copied().unwrap_or_default();
     let faces: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect();
@@ -102,15 +103,15 @@ fn light(mesh: &mut Mesh) {
 struct Reading<'a> {
     asset: &'a Asset,
     model: Model,
-    /// Where each texture of the file has gone.
+    /// Index in the model of each texture of the file.
     textures: BTreeMap<usize, usize>,
-    /// The material of what has none.
+    /// The material for meshes without one.
     plain: Option<usize>,
 }
 
 impl Reading<'_> {
-    /// The file's materials with their textures. Factors are used as they stand: Habitat's unlit shader multiplies stored colours
-    /// by them (Magnum's `FlatGL`).
+    /// Reads the file's materials with their textures. Factors are used without conversion, because Habitat's unlit
+    /// shader multiplies stored colours by them (Magnum's `FlatGL`).
     fn surfaces(&mut self, file: &Path) -> Result<(), FileError> {
         for (number, material) in self.asset.root.materials.iter().enumerate() {
             let surface = &material.pbr_metallic_roughness;
@@ -137,7 +138,7 @@ impl Reading<'_> {
             (self.model.textures.len() - 1, self.model.textures.iter().map(|texture| texture.texels.len() as u64));
         let most = pictures::most_texels(self.asset.length());
         if texels.sum::<u64>() > most {
-            return Err(format!("texture {number}: the pictures have over {most} texels together"));
+            return Err(format!("texture {number}: the pictures have more than {most} texels together"));
         }
         self.textures.insert(number, index);
         Ok(index)
@@ -150,7 +151,8 @@ impl Reading<'_> {
         })
     }
 
-    /// Moves texture coordinates as the material says; a textured mesh without any shows the texture's corner.
+    /// Transforms texture coordinates as the material says. A textured mesh without coordinates shows the texture's
+    /// corner.
     fn finish(&self, mesh: &mut Mesh, primitive: &gltf::json::mesh::Primitive) {
         if self.model.materials.get(mesh.material).is_none_or(|material| material.texture.is_none()) {
             mesh.uvs = Vec::new();

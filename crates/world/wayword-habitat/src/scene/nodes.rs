@@ -1,16 +1,16 @@
-//! The tree of a glTF scene, flattened: which mesh lies where.
+//! Flattens the node tree of a glTF scene into a list of meshes with their transforms.
 
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::{Root, scene::Node};
 
-/// Every mesh of the scene with its place in the file's frame. A node that is met again (glTF has none) is passed over, so a
-/// circle ends.
+/// Every mesh of the scene with its transform into the file's frame. A node that is reached twice (glTF does not allow
+/// this) is skipped, so a cycle ends.
 pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
     let mut seen = vec![false; root.nodes.len()];
     let first = root.scene.map_or(0, |scene| scene.value());
     let mut open: Vec<(usize, DMat4)> = match root.scenes.get(first) {
         Some(scene) => scene.nodes.iter().rev().map(|node| (node.value(), DMat4::IDENTITY)).collect(),
-        // A file without scenes shows all that hangs on nothing.
+        // If a file has no scenes, all nodes without a parent are shown.
         None => roots(root).into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect(),
     };
     let mut placed = Vec::new();

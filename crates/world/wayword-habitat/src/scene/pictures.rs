@@ -1,4 +1,4 @@
-//! Textures: PNG and JPEG, and Basis as HM3D has it (`GOOGLE_texture_basis`).
+//! Reads textures: PNG and JPEG, and Basis as HM3D uses it (`GOOGLE_texture_basis`).
 
 use super::asset::Asset;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
@@ -8,7 +8,8 @@ use wayword_render::{MAX_TEXTURE_SIDE, Texture};
 
 /// Texels that any picture may have.
 const FREE_TEXELS: u64 = 1 << 20;
-/// Texels beyond, for each byte of the file: flat pictures shrink to a 300th, and nobody paints flat ones of a gigabyte.
+/// Further texels for each byte of the file: compression shrinks pictures of one colour to a 300th, and real files are
+/// less uniform.
 const TEXELS_PER_BYTE: u64 = 512;
 
 /// The texture of this number.
@@ -31,13 +32,14 @@ pub(super) fn texture(asset: &Asset, number: usize) -> Result<Texture, String> {
     decode(bytes).map_err(wrong)
 }
 
-/// A picture by what its first bytes say it is.
+/// Decodes a picture; its first bytes say which format it has.
 fn decode(bytes: &[u8]) -> Result<Texture, String> {
     // "sB", the signature of a .basis file.
     if bytes.starts_with(b"sB") { basis(bytes) } else { common(bytes) }
 }
 
-/// Texels that all pictures of a file of so many bytes may have together: many may name the same bytes.
+/// Most texels of all pictures together in a file of this many bytes. There is a limit because many pictures may refer
+/// to the same bytes.
 pub(super) fn most_texels(bytes: u64) -> u64 {
     4 * FREE_TEXELS + TEXELS_PER_BYTE.saturating_mul(bytes)
 }
@@ -77,8 +79,8 @@ fn basis(bytes: &[u8]) -> Result<Texture, String> {
 pub(crate) mod tests {
     use super::*;
 
-    /// 16 x 16 texels in ETC1S: the left half red, the right half green above blue. Made with the reference encoder
-    /// (basis_universal 1.16) of a picture of our own, in base64.
+    /// 16 x 16 texels in ETC1S, in base64: the left half red, the right half green above blue. Made with the reference
+    /// encoder (basis_universal 1.16) from a picture of our own.
     const ETC1S: &str = "c0ITAE0AvwSIAAAAIxABAAABAAAAEQAAAAAAAAAAAAAAAAAAAAAAAwBkAAAALwAAAwCTAAAADQAAoAAAAC8AAABNAAAAAAAAAAAAAAAAAAAA\
     ABAAEAAEAAQAzwAAAAYAAADe6CBA3AABAAAASF6Q3QUwJQAAAAAAgGQHPAATAgQAAAAAyAEZACYABAAAAACQYjwDBAAAAKiqqqpSVVVVBRTA\
     hAABAAAAALJBBoAJAAAAAAAQZCXA1IABAABhABaonNwJEABMAAAAAAAAIIAA43s0aJ4G";

@@ -1,4 +1,4 @@
-//! One primitive of a glTF mesh: its triangles.
+//! Reads the triangles of one primitive of a glTF mesh.
 
 use super::{accessor, asset::Asset};
 use glam::{Vec2, Vec3};
@@ -32,7 +32,7 @@ pub(super) fn read(asset: &Asset, primitive: &Primitive) -> Result<Option<Mesh>,
     Ok(Some(Mesh { positions, uvs, colours, triangles: triangles(mode, &order), ..Mesh::default() }))
 }
 
-/// Which set of coordinates the base colour is laid by.
+/// Number of the coordinate set that the base colour's texture uses.
 fn texture_set(asset: &Asset, primitive: &Primitive) -> u32 {
     let material = primitive.material.and_then(|material| asset.root.materials.get(material.value()));
     let info = material.and_then(|material| material.pbr_metallic_roughness.base_color_texture.as_ref());

@@ -1,4 +1,4 @@
-//! Stage configurations: which file is drawn, and which way is up in it.
+//! Stage configurations: which file is drawn, and which direction is up in it.
 
 use crate::fault::{self, FileError};
 use glam::{DMat3, DVec3};
@@ -18,7 +18,7 @@ pub struct Stage {
     pub semantics: Option<PathBuf>,
 }
 
-/// What is read of a `*.stage_config.json` (Habitat's `StageAttributes`).
+/// The fields of a `*.stage_config.json` that are used (Habitat's `StageAttributes`).
 #[derive(Deserialize)]
 struct Config {
     render_asset: Option<String>,
@@ -29,16 +29,17 @@ struct Config {
     semantic_asset: Option<String>,
 }
 
-const HINT: &str = "see Habitat's stage_config.json";
+const HINT: &str = "see Habitat's documentation of stage_config.json";
 const MAX_BYTES: u64 = 1 << 20;
 const ENDING: &str = ".stage_config.json";
 
 impl Stage {
-    /// The stage of a file: a configuration, or a GLB or glTF file, whose configuration is looked for beside it. A stage without
-    /// one has z up and y in front (`StageAttributesManager.cpp`, `setDefaultAssetNameBasedAttributes`).
+    /// The stage of a file: a configuration, or a GLB or glTF file, whose configuration is looked for beside it. A
+    /// stage without a configuration has z up and y in front (`StageAttributesManager.cpp`,
+    /// `setDefaultAssetNameBasedAttributes`).
     ///
     /// # Errors
-    /// When there is a configuration and it cannot be read.
+    /// If there is a configuration and it cannot be read, or if the given configuration does not exist.
     pub fn of(file: &Path) -> Result<Self, FileError> {
         let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let config = if name.ends_with(ENDING) {
@@ -65,11 +66,11 @@ impl Stage {
             let axis = given.map_or(default, DVec3::from);
             let length = axis.length();
             let usable = length.is_finite() && length > 1e-6;
-            usable.then(|| axis / length).ok_or_else(|| wrong(format!("{field} is no direction: {axis}")))
+            usable.then(|| axis / length).ok_or_else(|| wrong(format!("{field} is not a direction: {axis}")))
         };
         let (up, front) = (axis("up", read.up, DVec3::Z)?, axis("front", read.front, DVec3::Y)?);
         if front.cross(up).length() < 1e-6 {
-            return Err(wrong(format!("front {front} runs along up {up}")));
+            return Err(wrong(format!("front {front} is parallel to up {up}")));
         }
         let scale = read.units_to_meters.unwrap_or(1.0);
         if !(scale.is_finite() && (1e-6..=1e6).contains(&scale)) {
@@ -79,7 +80,7 @@ impl Stage {
         let asset = match &read.render_asset {
             Some(name) => beside(name),
             None if file != config => file.to_owned(),
-            None => return Err(wrong("names no render_asset".to_owned())),
+            None => return Err(wrong("has no render_asset".to_owned())),
         };
         Ok(Self {
             asset,
@@ -90,14 +91,14 @@ impl Stage {
     }
 }
 
-/// A file's name up to what says its format; `x.basis.glb` and `x.glb` both are `x`.
+/// A file's name without the ending for its format; `x.basis.glb` and `x.glb` both give `x`.
 pub(crate) fn stem(name: &str) -> &str {
     let name =
         [".glb", ".gltf", ".navmesh", ENDING].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(name);
     name.strip_suffix(".basis").unwrap_or(name)
 }
 
-/// The turn that takes `up` to +y and `front` to -z.
+/// The rotation that takes `up` to +y and `front` to -z.
 fn turned(up: DVec3, front: DVec3) -> DMat3 {
     let right = front.cross(up).normalize();
     let front = up.cross(right);
@@ -125,8 +126,8 @@ mod tests {
 
     #[test]
     fn axes_that_are_none_are_refused() {
-        assert!(stage(r#"{"up": [0, 0, 0]}"#).unwrap_err().contains("up is no direction"));
-        assert!(stage(r#"{"up": [0, 1, 0]}"#).unwrap_err().contains("runs along up"));
+        assert!(stage(r#"{"up": [0, 0, 0]}"#).unwrap_err().contains("up is not a direction"));
+        assert!(stage(r#"{"up": [0, 1, 0]}"#).unwrap_err().contains("is parallel to up"));
         assert!(stage(r#"{"units_to_meters": 0}"#).unwrap_err().contains("units_to_meters is 0"));
         assert!(stage("{").unwrap_err().starts_with("a/x.stage_config.json: "));
     }

@@ -1,15 +1,16 @@
-//! What has no material.
+//! The light on surfaces that have no material.
 //!
-//! Habitat gives it a white one of metalness 0.3 and roughness 0.3 (`ResourceManager.cpp`, `buildDefaultMaterial`) and lights it by
-//! the image of a photo studio, `brown_photostudio_02_1k.hdr` (`PbrIBLHelper.cpp`, `pbrLighting.glsl`), while everything else in a
-//! scene without lights is drawn as it is stored. So a third of what such a surface shows is the studio's mirror image, hardly
-//! blurred. That image is not at hand. Of the light only what frames of Habitat show is known: its mean colour on surfaces that look
-//! up, east and south. The mirror image changes it by up to 13 of 255, which is left out here.
+//! Habitat gives them a white material of metalness 0.3 and roughness 0.3 (`ResourceManager.cpp`,
+//! `buildDefaultMaterial`) and lights it with the image of a photo studio, `brown_photostudio_02_1k.hdr`
+//! (`PbrIBLHelper.cpp`, `pbrLighting.glsl`). Everything else in a scene without lights is drawn with its stored
+//! colours. So a third of such a surface's colour is the mirror image of the studio, only slightly blurred. That image
+//! is not available here. Frames that Habitat drew show only the mean colour of the light on surfaces that look up,
+//! east and south. The mirror image changes it by up to 13 of 255, which is left out here.
 
 use glam::Vec3;
 
-/// Colour of the light on surfaces that look east, west, north, south, up and down, 0..=255. West and north are taken to be like
-/// what lies across, down like the sides.
+/// Colour of the light on surfaces that look east, west, north, south, up and down, 0..=255. Only east, south and up
+/// were measured: west and down are assumed to equal south, and north to equal east.
 const LIGHT: [[f32; 3]; 6] = [
     [142.0, 132.0, 104.0],
     [109.0, 95.0, 79.0],
@@ -19,7 +20,8 @@ const LIGHT: [[f32; 3]; 6] = [
     [109.0, 95.0, 79.0],
 ];
 
-/// The light on a surface with this normal, as factors: shares of the axes by the squares of the normal's parts.
+/// The light on a surface with this normal, as factors: the mean of the axes' colours, weighted with the squares of the
+/// normal's components.
 pub(super) fn light(normal: Vec3) -> [f32; 3] {
     let normal = normal.normalize_or(Vec3::Z);
     let mut light = [0.0; 3];

@@ -1,4 +1,4 @@
-//! Files that the tests write themselves.
+//! Tests with files that they write themselves.
 
 use super::*;
 use proptest::prelude::*;
@@ -20,7 +20,7 @@ pub(crate) fn glb(document: &serde_json::Value, binary: &[u8]) -> Vec<u8> {
     file
 }
 
-/// One triangle at (0 0 0), (1 0 0), (0 1 0), textured, on a node that lies 10 m along x.
+/// One textured triangle at (0 0 0), (1 0 0), (0 1 0), on a node that is moved 10 m along x.
 pub(crate) fn triangle() -> (serde_json::Value, Vec<u8>) {
     let mut bytes: Vec<u8> =
         [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();

@@ -1,6 +1,7 @@
-//! `*.semantic.txt` of HM3D: which colour of the semantic mesh is which object.
+//! `*.semantic.txt` of HM3D: which colour of the semantic mesh stands for which object.
 //!
-//! A header, then `id,RRGGBB,"category",region` on each line; a category may hold commas (HM3D's semantics, version 0.2).
+//! A header, then `id,RRGGBB,"category",region` on each line; a category may contain commas (HM3D's semantics, version
+//! 0.2).
 
 use super::Thing;
 use std::collections::BTreeMap;
@@ -8,11 +9,11 @@ use wayword_core::ObjectId;
 
 const HEADER: &str = "HM3D Semantic Annotations";
 
-/// What the file tells.
+/// The contents of the file.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Annotations {
     pub(super) things: Vec<Thing>,
-    /// Number of the thing of each colour.
+    /// Index of the thing of each colour.
     pub(super) by_colour: BTreeMap<[u8; 3], usize>,
 }
 
@@ -26,7 +27,7 @@ pub(super) fn parse(text: &str) -> Result<Annotations, String> {
     for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
         let (colour, thing) = entry(line.trim()).map_err(|reason| format!("line {}: {reason}", number + 1))?;
         if annotations.by_colour.insert(colour, annotations.things.len()).is_some() {
-            return Err(format!("line {}: its colour has been given before", number + 1));
+            return Err(format!("line {}: an earlier line has the same colour", number + 1));
         }
         annotations.things.push(thing);
     }
@@ -41,12 +42,12 @@ fn entry(line: &str) -> Result<([u8; 3], Thing), String> {
         Some((id, colour, category, region))
     };
     let (id, colour, category, region) = columns().ok_or("does not have four columns: id, colour, category, region")?;
-    let number: u32 = id.trim().parse().map_err(|_| format!("{id:.20?} is no id"))?;
-    let _: i64 = region.trim().parse().map_err(|_| format!("{region:.20?} is no region"))?;
+    let number: u32 = id.trim().parse().map_err(|_| format!("{id:.20?} is not an id"))?;
+    let _: i64 = region.trim().parse().map_err(|_| format!("{region:.20?} is not a region"))?;
     let colour = colour.trim();
     let is_hex = colour.len() == 6 && colour.bytes().all(|byte| byte.is_ascii_hexdigit());
     let bits = u32::from_str_radix(colour, 16).ok().filter(|_| is_hex);
-    let [_, red, green, blue] = bits.ok_or_else(|| format!("{colour:.20?} is no colour of six digits"))?.to_be_bytes();
+    let [_, red, green, blue] = bits.ok_or_else(|| format!("{colour:.20?} is not a 6-digit hex colour"))?.to_be_bytes();
     let id = ObjectId::new(number.to_string()).map_err(|error| error.to_string())?;
     Ok(([red, green, blue], Thing::new(id, category.trim().trim_matches('"'))))
 }
@@ -62,7 +63,7 @@ mod tests {
         let annotations = parse(text).unwrap();
         assert_eq!(annotations.by_colour, [([0xbc, 0x0f, 0xf7], 0), ([0, 0xff, 0x10], 1)].into());
         assert_eq!(annotations.things[0].name.as_deref(), Some("table round"));
-        // Nobody is sent to a wall.
+        // A wall is a part of the building, so it has no name.
         assert_eq!(annotations.things[1].name, None);
     }
 
@@ -71,9 +72,9 @@ mod tests {
         let refusal = |lines: &str| parse(&format!("{HEADER}\n{lines}")).unwrap_err();
         assert!(parse("ply").unwrap_err().starts_with("line 1: is \"ply\""));
         assert_eq!(refusal("1,BC0FF7"), "line 2: does not have four columns: id, colour, category, region");
-        assert_eq!(refusal("\n1,BC0FF,\"a\",0"), "line 3: \"BC0FF\" is no colour of six digits");
-        assert_eq!(refusal("x,BC0FF7,\"a\",0"), "line 2: \"x\" is no id");
-        assert_eq!(refusal("1,BC0FF7,\"a\",0\n2,bc0ff7,\"b\",0"), "line 3: its colour has been given before");
+        assert_eq!(refusal("\n1,BC0FF,\"a\",0"), "line 3: \"BC0FF\" is not a 6-digit hex colour");
+        assert_eq!(refusal("x,BC0FF7,\"a\",0"), "line 2: \"x\" is not an id");
+        assert_eq!(refusal("1,BC0FF7,\"a\",0\n2,bc0ff7,\"b\",0"), "line 3: an earlier line has the same colour");
     }
 
     proptest! {

@@ -1,4 +1,5 @@
-//! `.house` files of Matterport3D as Habitat uses them: the names of the objects of a semantic mesh, and where rooms are.
+//! `.house` files of Matterport3D as Habitat uses them: the names of the objects of a semantic mesh, and the boxes of
+//! the rooms.
 //!
 //! Format: Matterport3D's `data_organization.md`. Read here: `R` regions with their boxes, `O` objects, `C` categories.
 
@@ -6,11 +7,11 @@ use super::{Region, Thing};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, ObjectId};
 
-/// What the file tells.
+/// The contents of the file.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct House {
     pub(super) things: Vec<Thing>,
-    /// Place of the thing of each number, by which the mesh names it.
+    /// Index in `things` of the thing of each number; the mesh refers to things by these numbers.
     pub(super) by_number: BTreeMap<u32, usize>,
     pub(super) regions: Vec<Region>,
 }
@@ -62,12 +63,12 @@ impl<'a> Record<'a, '_> {
 
     fn number<T: std::str::FromStr>(&self, column: usize) -> Result<T, String> {
         let word = self.word(column)?;
-        word.parse().map_err(|_| format!("column {}: {word:.20?} is no number", column + 1))
+        word.parse().map_err(|_| format!("column {}: {word:.20?} is not a valid number", column + 1))
     }
 
     fn place(&self, column: usize) -> Result<DVec3, String> {
         let place = DVec3::new(self.number(column)?, self.number(column + 1)?, self.number(column + 2)?);
-        if place.is_finite() { Ok(place) } else { Err(format!("column {}: is no place", column + 1)) }
+        if place.is_finite() { Ok(place) } else { Err(format!("column {}: is not a position", column + 1)) }
     }
 
     /// `R index level 0 0 label px py pz xlo ylo zlo xhi yhi zhi height ...`
@@ -101,6 +102,9 @@ mod tests {
     fn errors_name_the_line_and_the_column() {
         assert_eq!(parse("ply").unwrap_err(), "line 1: does not begin with ASCII");
         assert_eq!(parse("ASCII\nO 0 0").unwrap_err(), "line 2: has 3 columns; column 4 is missing");
-        assert_eq!(parse("ASCII\nO 9999999999 0 0").unwrap_err(), "line 2: column 2: \"9999999999\" is no number");
+        assert_eq!(
+            parse("ASCII\nO 9999999999 0 0").unwrap_err(),
+            "line 2: column 2: \"9999999999\" is not a valid number"
+        );
     }
 }

@@ -1,12 +1,12 @@
-//! What is visible, told from the pixels of the semantic picture.
+//! Finds what is visible from the pixels of the semantic picture.
 
 use super::{Semantics, Thing};
 use wayword_core::{Gaze, Heading, Label};
 use wayword_render::{Camera, RenderError, Visible, box_corners, evident_objects};
 
 impl Semantics {
-    /// Labels of what is visible, the largest first: what has a name and its box's middle within the gaze. What is hidden does not
-    /// count, nor what only a sliver is seen of.
+    /// Labels of the visible objects, the largest first. An object counts if it has a name and the middle of its box is
+    /// within the gaze. Hidden objects do not count, nor do objects of which only a sliver is visible.
     pub(crate) fn labels(&self, camera: &Camera, gaze: Gaze) -> Result<Vec<Label>, RenderError> {
         let picture = self.picture(camera)?;
         let seen = evident_objects(&picture);

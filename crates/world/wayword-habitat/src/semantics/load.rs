@@ -1,4 +1,4 @@
-//! Reading what a scene has of semantic files.
+//! Reads the semantic files of a scene.
 
 use super::{Semantics, Thing, hm3d, house, ply};
 use crate::{
@@ -15,22 +15,22 @@ use wayword_render::{Filter, Material, Mesh, Scene, Texture};
 
 const MAX_TEXT: u64 = 64 << 20;
 const MAX_MESH: u64 = 4 << 30;
-const HM3D_HINT: &str = "take it again from HM3D's semantic annotations";
-const MATTERPORT_HINT: &str = "take it again from Matterport3D for Habitat";
+const HM3D_HINT: &str = "download it again from HM3D's semantic annotations";
+const MATTERPORT_HINT: &str = "download it again from Matterport3D for Habitat";
 
-/// The id of triangles whose colour in the picture says what they are.
+/// The id of triangles whose object is found from their colour in the picture.
 pub(super) const PAINTED: u32 = u32::MAX;
 
-/// Where a scene's semantic files would be.
+/// The semantic files of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SemanticFiles {
-    /// HM3D's painted mesh, and what the colours mean.
+    /// HM3D's painted mesh, and the file of the colours' meanings.
     pub(crate) painted: Option<(PathBuf, PathBuf)>,
-    /// Matterport3D's mesh with numbered faces, and what the numbers mean.
+    /// Matterport3D's mesh with numbered faces, and the file of the numbers' meanings.
     pub(crate) numbered: Option<(PathBuf, PathBuf)>,
 }
 
-/// Reads them; `None` where a scene has none.
+/// Reads the files; `None` if a scene has none.
 pub(crate) fn load(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<Option<Semantics>, FileError> {
     if let Some((mesh, text)) = &files.painted {
         return painted(mesh, text, habitat_from_asset).map(Some);
@@ -55,7 +55,7 @@ fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result
         let texture = texture.and_then(|texture| model.textures.get(texture));
         let colour = |corners: [u32; 3]| match texture {
             Some(texture) => Some(texel(texture, middle(&each.uvs, corners))),
-            // Vertices are painted: a triangle is what its first corner is.
+            // The vertices are painted: a triangle belongs to the object of its first corner.
             None => each.colours.get(corners[0] as usize).map(|all| all.map(|factor| (factor * 255.0 + 0.5) as u8)),
         };
         let thing = |corners: [u32; 3]| colour(corners).and_then(|colour| by_colour.get(&colour)).copied();
@@ -66,7 +66,7 @@ fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result
             None => meshes.extend(by_thing(&each.positions, &told)),
         }
     }
-    // Colours stand in the picture as they are in the file.
+    // The picture must have the colours of the file, so no material may change them.
     let bare = |material: Material| Material { base_colour: [1.0; 4], ..material };
     let mut materials: Vec<Material> = model.materials.into_iter().map(bare).collect();
     materials.push(Material::default());
@@ -90,7 +90,7 @@ fn numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<Sema
     let told: Vec<Told> = faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
     measure(&positions, &told, &mut things);
     let meshes = by_thing(&positions, &told);
-    // Scans are seen from inside alone, and their faces' winding is not to be relied on.
+    // Scans are seen only from inside, and the winding of their faces is not reliable.
     let material = Material { double_sided: true, ..Material::default() };
     let scene = Scene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
     Ok(Semantics { scene, by_colour: BTreeMap::new(), things, regions })
@@ -99,7 +99,7 @@ fn numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<Sema
 /// A triangle and the thing that it belongs to.
 type Told = ([u32; 3], Option<usize>);
 
-/// Widens the boxes of things by their triangles.
+/// Extends the boxes of things to contain their triangles.
 fn measure(positions: &[Vec3], told: &[Told], things: &mut [Thing]) {
     for (corners, thing) in told {
         if let Some(thing) = thing.and_then(|thing| things.get_mut(thing)) {
@@ -109,7 +109,7 @@ fn measure(positions: &[Vec3], told: &[Told], things: &mut [Thing]) {
     }
 }
 
-/// A mesh for each thing, its id the thing's number and one more; triangles of none get 0.
+/// One mesh for each thing. Its id is the thing's index plus 1; for triangles without a thing it is 0.
 fn by_thing(positions: &[Vec3], told: &[Told]) -> Vec<Mesh> {
     let mut parts: BTreeMap<u32, Mesh> = BTreeMap::new();
     for (corners, thing) in told {
@@ -126,7 +126,7 @@ fn middle(uvs: &[Vec2], corners: [u32; 3]) -> Vec2 {
     corners.iter().filter_map(|corner| uvs.get(*corner as usize)).copied().sum::<Vec2>() / 3.0
 }
 
-/// The texel that holds a place.
+/// The texel at texture coordinates.
 fn texel(texture: &Texture, uv: Vec2) -> [u8; 3] {
     let at = |u: f32, side: u32| ((u - u.floor()) * side as f32) as u32;
     let (x, y) = (at(uv.x, texture.width).min(texture.width - 1), at(uv.y, texture.height).min(texture.height - 1));

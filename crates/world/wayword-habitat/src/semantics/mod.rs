@@ -1,4 +1,4 @@
-//! What is what in a scene: semantic meshes, told by what the pixels show.
+//! Which object is where in a scene, from its semantic mesh: the mesh is drawn, and the pixels show the objects.
 
 mod hm3d;
 mod house;
@@ -19,9 +19,9 @@ use wayword_world::{object_names, region};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Thing {
     pub(crate) id: ObjectId,
-    /// In plain words; `None` for parts of the building and what the annotators could not name.
+    /// In plain words; `None` for parts of the building and for objects that the annotators could not name.
     pub(crate) name: Option<String>,
-    /// The box around its triangles, metres; `None` where it has none.
+    /// The box around its triangles, metres; `None` if it has no triangles.
     bounds: Option<(DVec3, DVec3)>,
 }
 
@@ -37,7 +37,7 @@ impl Thing {
     }
 }
 
-/// A room: a box with the letter of its kind.
+/// A room: a box, and the letter of its kind.
 #[derive(Clone, Debug, PartialEq)]
 struct Region {
     low: DVec3,
@@ -45,18 +45,18 @@ struct Region {
     letter: char,
 }
 
-/// A scene whose surfaces are names.
+/// A scene whose surfaces refer to objects.
 #[derive(Debug)]
 pub(crate) struct Semantics {
     scene: Scene,
-    /// Number of the thing of each colour, where surfaces are painted.
+    /// Index of the thing of each colour, if surfaces are painted.
     by_colour: BTreeMap<[u8; 3], usize>,
     things: Vec<Thing>,
     regions: Vec<Region>,
 }
 
 impl Semantics {
-    /// The picture whose ids are the numbers of things, and one more: 0 is nothing.
+    /// The picture whose ids are the indices of things plus 1; 0 means no thing.
     fn picture(&self, camera: &Camera) -> Result<Picture, RenderError> {
         let mut picture = render(&self.scene, camera)?;
         let painted = picture.rgb.as_chunks::<3>().0;
@@ -70,12 +70,12 @@ impl Semantics {
         self.things.get((id as usize).checked_sub(1)?)
     }
 
-    /// An object by its id.
+    /// The object with this id.
     pub(crate) fn named(&self, object: &ObjectId) -> Option<&Thing> {
         self.things.iter().find(|thing| thing.id == *object)
     }
 
-    /// The word for the room in which a place lies: the smallest box that holds it.
+    /// The word for the room in which a place lies; of several boxes around the place, the smallest counts.
     pub(crate) fn room(&self, place: DVec3) -> Option<&'static str> {
         let holds = |region: &&Region| region.low.cmple(place).all() && region.high.cmpge(place).all();
         let size = |region: &Region| (region.high - region.low).element_product();

@@ -1,7 +1,7 @@
-//! `*_semantic.ply` of Matterport3D: a mesh whose faces name objects. Binary, little-endian, as Habitat's files are.
+//! `*_semantic.ply` of Matterport3D: a mesh whose faces name objects. Binary and little-endian, like Habitat's files.
 //!
-//! `ply-rs-bw` reads the header and one entry after the other. How many entries there are is held against the bytes that are
-//! left, so that a file cannot ask for more memory than a multiple of its own length.
+//! `ply-rs-bw` reads the header and one entry after the other. The number of entries is checked against the bytes that
+//! are left, so that a file cannot use more memory than a multiple of its own length.
 
 use glam::Vec3;
 use ply_rs_bw::{
@@ -21,7 +21,7 @@ pub(super) struct Faces {
     pub(super) triangles: Vec<([u32; 3], u32)>,
 }
 
-/// What a vertex or a face says.
+/// The contents of a vertex or a face.
 struct Entry {
     position: Vec3,
     corners: Vec<u32>,
@@ -34,7 +34,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Faces, String> {
         let vertices = faces.positions.len();
         let mut corners = faces.triangles.iter().flat_map(|(corners, _)| corners);
         match corners.find(|corner| **corner as usize >= vertices) {
-            Some(corner) => Err(format!("a face names vertex {corner} of {vertices}")),
+            Some(corner) => Err(format!("a face has the vertex {corner}, expected below {vertices}")),
             None => Ok(faces),
         }
     })
@@ -45,9 +45,12 @@ fn read(bytes: &[u8]) -> Result<Faces, String> {
     let parser = Parser::<Entry>::new();
     let mut faces = Faces::default();
     for element in header.elements.values() {
-        // Every entry takes at least a byte: more of them than bytes cannot be.
+        // Every entry takes at least one byte, so there cannot be more entries than bytes.
         if element.properties.is_empty() || element.count > rest.len() {
-            return Err(format!("{} entries of {:.40} do not fit into the file", element.count, element.name));
+            return Err(format!(
+                "element {:.40}: the file is too short for a count of {}",
+                element.name, element.count
+            ));
         }
         for _ in 0..element.count {
             let at = bytes.len() - rest.len();
@@ -69,26 +72,26 @@ fn read(bytes: &[u8]) -> Result<Faces, String> {
     Ok(faces)
 }
 
-/// The header, and what stands behind it.
+/// The header, and the bytes after it.
 fn header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
     let within = &bytes[..bytes.len().min(MAX_HEADER)];
     let mut reader = Reader::new(within);
     let header = Parser::<Entry>::new().read_header(&mut reader);
     let header = header.map_err(|error| format!("has no header of a PLY file: {}", brief(&error)))?;
     if header.encoding != Encoding::BinaryLittleEndian {
-        return Err("is no binary little-endian PLY file".to_owned());
+        return Err("is not a binary little-endian PLY file".to_owned());
     }
     let (text, rest) = bytes.split_at(within.len() - reader.into_inner().len());
-    // Of two with one name the reader keeps the last alone, and would take every later byte for another one.
+    // If two have the same name, the reader keeps only the last and would misread all later bytes.
     let lines = |word: &[u8]| text.split(|byte| *byte == b'\n').filter(|line| line.starts_with(word)).count();
     let properties: usize = header.elements.values().map(|element| element.properties.len()).sum();
     if lines(b"element") != header.elements.len() || lines(b"property") != properties {
-        return Err("its header gives a name twice".to_owned());
+        return Err("its header uses a name twice".to_owned());
     }
     Ok((header, rest))
 }
 
-/// The reader's words without the line that they are about, which may be as long as the header.
+/// The reader's message without the line that it quotes, which may be as long as the header.
 fn brief(error: &ParseError) -> String {
     error.to_string().lines().next().unwrap_or_default().chars().take(200).collect()
 }
@@ -104,7 +107,7 @@ impl PropertyAccess for Entry {
             "y" => value.to_f32_lossy().map(|y| self.position.y = y),
             "z" => value.to_f32_lossy().map(|z| self.position.z = z),
             "vertex_indices" | "vertex_index" => value.to_u32_list().map(|corners| self.corners = corners),
-            // Casts saturate; -1, which is no object, becomes one that nobody has.
+            // Casts saturate; -1, which means no object, becomes a number that no object has.
             "object_id" => number(&value).map(|id| self.object = if id >= 0.0 { id as u32 } else { u32::MAX }),
             _ => return PropertyAccessResult::Ignored,
         };
@@ -160,7 +163,7 @@ mod tests {
         assert!(parse(&cut[..cut.len() - 1]).unwrap_err().contains("the file is cut off"));
         let many = String::from_utf8_lossy(&square()[..60]).replace("vertex 4", "vertex 999999999");
         assert!(parse(many.as_bytes()).unwrap_err().contains("no header"));
-        assert!(parse(b"ply\nformat ascii 1.0\nend_header\n").unwrap_err().contains("no binary"));
+        assert!(parse(b"ply\nformat ascii 1.0\nend_header\n").unwrap_err().contains("not a binary"));
     }
 
     proptest! {

@@ -1,4 +1,5 @@
-//! A semantic mesh that the tests write themselves: two panels north of the eye, the left one before a third.
+//! Tests with semantic meshes that they write themselves: two panels north of the eye, the left one in front of a
+//! third.
 
 use super::*;
 use crate::scene::{Stage, tests::glb};
@@ -9,13 +10,13 @@ use wayword_core::{Gaze, Heading};
 const ANNOTATIONS: &str =
     "HM3D Semantic Annotations\n1,FF0000,\"sofa\",0\n2,00FF00,\"lamp\",0\n3,0000FF,\"wall\",0\n4,00FFFF,\"bed\",0\n";
 
-/// A panel that faces south: x from, to; y; z from 0.5 to 2.5.
+/// A panel that faces south: `x` is its left and right end, `y` its position; z is from 0.5 to 2.5.
 fn panel(x: [f32; 2], y: f32) -> [[f32; 3]; 6] {
     let corners = [[x[0], y, 0.5], [x[1], y, 0.5], [x[1], y, 2.5], [x[0], y, 2.5]];
     [0, 1, 2, 0, 2, 3].map(|corner: usize| corners[corner])
 }
 
-/// A sofa on the left, a lamp on the right, a wall over both, and a bed hidden behind the sofa.
+/// A sofa on the left, a lamp on the right, a wall behind both, and a bed hidden behind the sofa.
 fn panels() -> Vec<([[f32; 3]; 6], [u8; 3])> {
     vec![
         (panel([-1.5, -0.2], 3.0), [255, 0, 0]),
@@ -25,7 +26,7 @@ fn panels() -> Vec<([[f32; 3]; 6], [u8; 3])> {
     ]
 }
 
-/// Painted at the vertices.
+/// The panels, painted at the vertices.
 fn by_vertices() -> Vec<u8> {
     let (mut positions, mut colours) = (Vec::new(), Vec::new());
     for (corners, colour) in panels() {
@@ -48,7 +49,7 @@ fn by_vertices() -> Vec<u8> {
     glb(&document, &[positions, colours].concat())
 }
 
-/// Painted by a texture of four texels, one for each panel.
+/// The panels, painted with a texture of four texels, one for each panel.
 fn by_texture() -> Vec<u8> {
     let (mut positions, mut uvs, mut texels) = (Vec::new(), Vec::new(), Vec::new());
     for (number, (corners, colour)) in panels().into_iter().enumerate() {
@@ -83,7 +84,7 @@ fn by_texture() -> Vec<u8> {
     glb(&document, &[positions, uvs, png].concat())
 }
 
-/// Matterport3D's way: numbered faces.
+/// The panels with numbered faces, as in Matterport3D.
 fn by_numbers() -> Vec<u8> {
     let mut file = b"ply\nformat binary_little_endian 1.0\nelement vertex 24\nproperty float x\nproperty float y\nproperty float z\n\
         element face 8\nproperty list uchar int vertex_indices\nproperty int object_id\nend_header\n"
@@ -171,7 +172,7 @@ fn real_house_files_are_read() {
         let regions = text.lines().filter(|line| line.starts_with("R ")).count();
         assert_eq!((house.things.len(), house.regions.len()), (objects, regions));
         let named = house.things.iter().filter(|thing| thing.name.is_some()).count();
-        // One of the two lists none.
+        // One of the two files lists no objects.
         assert!(objects == 0 || (objects / 10..objects).contains(&named), "{named} of {objects} have names");
         assert!(house.regions.iter().all(|region| region.low.cmple(region.high).all()));
     }

@@ -1,4 +1,4 @@
-//! Where the answers of the genuine Habitat lie.
+//! Finds the oracle data: results of the genuine Habitat.
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test that is skipped says so")]
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use wayword_core::DVec3;
 use wayword_habitat::axes::wayword_from_habitat;
 
-/// The folder of the oracles, or nothing, said loudly.
+/// The folder of the oracles; `None`, with a line on standard error, if there is none.
 pub(crate) fn folder() -> Option<PathBuf> {
     let data = std::env::var_os("WAYWORD_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data"), PathBuf::from);
@@ -34,17 +34,17 @@ pub(crate) fn json(file: &Path) -> serde_json::Value {
     serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
 }
 
-/// A place of Habitat, in Wayword's frame.
+/// A position given in Habitat's frame, converted to Wayword's.
 pub(crate) fn place(point: &serde_json::Value) -> DVec3 {
     let number = |at: usize| point[at].as_f64().unwrap();
     wayword_from_habitat(DVec3::new(number(0), number(1), number(2)))
 }
 
-/// The boxes of the scene of `rooms.navmesh`, as the oracles' README gives them: low and high corner in Habitat's frame.
+/// The boxes of the scene of `rooms.navmesh`, from the oracles' README: low and high corner in Habitat's frame.
 pub(crate) const ROOMS: [[[f32; 3]; 2]; 3] =
     [[[-5.0, -0.1, -4.0], [5.0, 0.0, 4.0]], [[-0.1, 0.0, -4.0], [0.1, 2.5, 2.8]], [[2.0, 0.0, -1.0], [3.0, 1.0, 1.0]]];
 
-/// The corners of a box in Habitat's frame, and its triangles, which face outwards.
+/// The corners of a box in Habitat's frame, and its triangles, whose faces point outwards.
 pub(crate) fn solid([low, high]: [[f32; 3]; 2]) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let corner = |n: usize| std::array::from_fn(|axis| [low, high][n >> axis & 1][axis]);
     let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
