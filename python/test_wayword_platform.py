@@ -1,4 +1,4 @@
-"""Tests of the kit: `python3 -m unittest` in this folder, or cargo's test `process_python`."""
+"""Tests of the kit: run `python3 -m unittest` in this folder, or cargo's test `process_python`."""
 
 import base64
 import contextlib
@@ -19,7 +19,7 @@ LOOK = dict(scene="room", position=[1, 2, 1.5], heading_rad=0.5, horizontal_fov_
 
 
 class Room(kit.OpenWorld):
-    """Four by four metres with a pillar in the middle."""
+    """A room of 4 x 4 m with a pillar in the middle."""
 
     name, has_labels = "room", True
 
@@ -97,7 +97,7 @@ class Frames(unittest.TestCase):
                     self.assertAlmostEqual(turned, original)
 
     def test_a_heading_points_where_the_converted_direction_does(self):
-        """In each frame: the direction of an angle, converted, has the heading of the converted angle."""
+        """Checks for each frame that the converted direction of an angle has the heading of the converted angle."""
         for degrees in range(0, 360, 30):
             angle = math.radians(degrees)
             cos, sin = math.cos(angle), math.sin(angle)

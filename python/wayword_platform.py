@@ -1,13 +1,13 @@
-"""Makes a simulator a world for Wayword: write a subclass of `World`, and `serve` it.
+"""Connects a simulator to Wayword: write a subclass of `World`, and `serve` it.
 
-One file, no dependencies, Python 3.9 or later. Copy it beside your own script. The protocol that it speaks is in
-docs/PROCESS.md; examples are in python/examples/.
+One file, no dependencies, Python 3.9 or later. Copy it beside your own script. docs/PROCESS.md describes the protocol;
+examples are in python/examples/.
 
     from wayword_platform import Label, Look, View, World, serve
 
     class MyWorld(World):
         name = "my world"
-        has_labels = True                                 # each View lists all objects that are seen
+        has_labels = True                                 # each View lists all visible objects
 
         def scenes(self):
             return ["kitchen"]
@@ -24,11 +24,11 @@ docs/PROCESS.md; examples are in python/examples/.
     if __name__ == "__main__":
         serve(MyWorld)
 
-A method that a world does not have is not offered: leave it out. While the world is served, everything that is printed
-goes to standard error, also by libraries in C: standard output carries the protocol.
+Leave out the methods that your world does not have: they are not offered. While the world is served, everything that it
+prints goes to standard error, even from libraries in C, because standard output carries the protocol.
 
 Wayword's frame: right-handed, z up, metres; a heading is in radians, 0 along +y, clockwise seen from above. The
-functions `wayword_from_...` and `..._from_wayword` convert; the two spaces cancel in their names.
+functions `wayword_from_...` convert to this frame, and `..._from_wayword` from it.
 """
 
 import base64
@@ -48,20 +48,20 @@ FRAME = "z-up, metres, radians clockwise from +y"
 
 
 class Refused(Exception):
-    """Raise it for a request that cannot be fulfilled; the world goes on."""
+    """Raise this for a request that cannot be fulfilled. The world continues to serve."""
 
     code: Optional[str] = None
 
 
 class UnknownScene(Refused):
-    """There is no such scene."""
+    """Raise this if there is no such scene."""
 
     code = "unknown_scene"
 
 
 @dataclass
 class Look:
-    """What is to be seen: from where, whither, and how wide. The elevation is 0; pixels are square."""
+    """The view to return: position, direction and field of view. The elevation is 0; pixels are square."""
 
     position: tuple  # the eye, metres
     heading_rad: float
@@ -69,13 +69,13 @@ class Look:
     vertical_fov_rad: float
     width_px: int
     height_px: int
-    viewpoint: Optional[str] = None  # the id of the point, where the eye is at one
-    picture: bool = True  # False: nobody looks at the picture, so none has to be drawn
+    viewpoint: Optional[str] = None  # the id of the point, if the eye is at one
+    picture: bool = True  # False: the picture is not used, so it need not be drawn
 
 
 @dataclass
 class Label:
-    """An object that is seen. Give the centre of its box as `position`, or else a direction."""
+    """A visible object. Give the centre of its box as `position`, or else a direction."""
 
     object: str  # its id, unique in the scene
     name: str  # in plain words: "coffee table"
@@ -89,42 +89,42 @@ class Label:
 
 @dataclass
 class View:
-    """What is seen. `image` is a PNG or JPEG file as bytes, a path below the world's folder `images`, or pixels: rows
+    """A view. `image` is a PNG or JPEG file as bytes, a path below the world's folder `images`, or pixels: rows
     from the top, RGB, as a numpy array (height, width, 3) of bytes or as plain bytes of that length."""
 
     image: Any = None
-    labels: Optional[Sequence[Label]] = None  # all objects whose centre is in the view; more do no harm
-    room: Optional[str] = None  # the room in which the eye is: "living room"
+    labels: Optional[Sequence[Label]] = None  # all objects whose centre is in the view; further ones are ignored
+    room: Optional[str] = None  # the room in which the eye is, such as "living room"
 
 
 @dataclass
 class Walk:
-    """A path of your own: stops are ids of viewpoints, or places (x, y, z) of the eye."""
+    """A path that your world chooses: stops are ids of viewpoints, or positions (x, y, z) of the eye."""
 
     stops: Sequence[Any]
     heading_rad: Optional[float] = None  # at the start; None: towards the second stop
-    target: Optional[str] = None  # the object that the walk is for
+    target: Optional[str] = None  # the id of the object that the path leads to
 
 
 class World:
-    """A simulator. `scenes` and `observe` are needed, and `graph`, or `points` with `neighbours` or `walkable`.
+    """A simulator. It needs `scenes` and `observe`, and `graph`, or `points` with `neighbours` or `walkable`.
 
-    The other methods that may be written, and what they return:
+    The methods besides `scenes` and `observe`, and what they return:
 
-    graph(scene)                             ({id: (x, y, z)}, [(id, id), ...]): viewpoints, and ways between them
+    graph(scene)                             ({id: (x, y, z)}, [(id, id), ...]): viewpoints, and edges between them
     points(scene, count, seed)               {id: (x, y, z)}, or [(x, y, z), ...] without ids: about `count` of them
     neighbours(scene, viewpoint)             [id, ...]
-    walkable(scene, a, b)                    bool, for two places
-    sample_path(scene, hops, length_m, seed) a Walk, or None where there is none; hops and length_m are (least, most)
+    walkable(scene, a, b)                    bool: whether one can walk straight from position a to position b
+    sample_path(scene, hops, length_m, seed) a Walk, or None if there is none; hops and length_m are (least, most)
     object_name(scene, object)               its name, or None
-    visible_from(scene, object)              [id, ...] of viewpoints, or None where objects are not known
+    visible_from(scene, object)              [id, ...] of viewpoints, or None if objects are not known
     """
 
     name = "a world"
-    has_pictures = True  # each View has an image, if one is asked for
-    has_labels = False  # each View has labels: an empty list says that nothing is there
+    has_pictures = True  # each View has an image, if `look.picture` is True
+    has_labels = False  # each View has labels; an empty list means that no object is visible
     has_rooms = False  # a View may name the room
-    images: Optional[str] = None  # folder of pictures that are sent as files, absolute
+    images: Optional[str] = None  # folder of the pictures that are sent as files
 
     def scenes(self):
         raise NotImplementedError
@@ -134,14 +134,14 @@ class World:
 
 
 class OpenWorld(World):
-    """A world that knows whether a place is free: its points and its ways follow from that."""
+    """A world that knows whether a place is free. `points` and `walkable` are computed from that."""
 
     def bounds(self, scene):
-        """The least and the greatest (x, y, z) at which the eye may be."""
+        """The lowest and the highest (x, y, z) at which the eye may be."""
         raise NotImplementedError
 
     def is_free(self, scene, place):
-        """Whether one can stand with the eye at a place."""
+        """Whether one can stand so that the eye is at this place."""
         raise NotImplementedError
 
     def points(self, scene, count, seed):
@@ -160,9 +160,10 @@ OPTIONAL = ("graph", "points", "neighbours", "walkable", "sample_path", "object_
 
 
 def serve(make_world):
-    """Makes the world (a subclass of World, or a function that returns one); answers until Wayword closes the pipe."""
+    """Makes the world (from a subclass of World, or a function that returns one) and answers requests until Wayword
+    closes the pipe."""
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    # From here on whatever is printed, also by C, goes to standard error, and nobody else reads requests.
+    # From here on everything that is printed, even by C, goes to standard error, and no other code reads requests.
     os.dup2(2, 1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     sys.stdout = sys.stderr
@@ -190,7 +191,7 @@ def answer(world, request):
 
 def _hello(world, params):
     if params["protocol"] != PROTOCOL:
-        raise Refused(f"Wayword speaks version {params['protocol']}, and this kit version {PROTOCOL}")
+        raise Refused(f"Wayword speaks version {params['protocol']}, but this kit speaks version {PROTOCOL}")
     offers = [name for name in OPTIONAL if hasattr(world, name)]
     offers += [name for name in ("pictures", "labels", "rooms") if getattr(world, "has_" + name)]
     greeting = {"protocol": PROTOCOL, "frame": FRAME, "name": world.name, "offers": offers}
@@ -263,7 +264,8 @@ def _image(image, width_px, height_px):
     shape = getattr(image, "shape", None)
     if shape is not None:
         if tuple(shape) != (height_px, width_px, 3) or image.dtype.itemsize != 1:
-            raise ValueError(f"{tuple(shape)} of {image.dtype} is no picture: ({height_px}, {width_px}, 3) of uint8 is")
+            expected = f"({height_px}, {width_px}, 3) of uint8"
+            raise ValueError(f"the image is {tuple(shape)} of {image.dtype}, expected {expected}")
         image = image.tobytes()
     image = bytes(image)
     if not image.startswith((b"\x89PNG", b"\xff\xd8\xff")) or len(image) == width_px * height_px * 3:
@@ -299,10 +301,10 @@ def _numbers(values):
 
 
 def png(rgb, width_px, height_px):
-    """A PNG file of pixels: rows from the top, RGB."""
+    """A PNG file made from pixels: rows from the top, RGB."""
     stride = width_px * 3
     if len(rgb) != stride * height_px:
-        raise ValueError(f"{width_px} x {height_px} pixels have {stride * height_px} bytes, not {len(rgb)}")
+        raise ValueError(f"{width_px} x {height_px} pixels need {stride * height_px} bytes, not {len(rgb)}")
     rows = b"".join(b"\0" + rgb[start : start + stride] for start in range(0, len(rgb), stride))
 
     def chunk(kind, body):
@@ -359,12 +361,12 @@ def unreal_from_wayword(position, metres_per_unit=0.01):
     return (y / metres_per_unit, x / metres_per_unit, z / metres_per_unit)
 
 
-# Unreal's x, ahead at yaw 0, is Wayword's y, ahead at heading 0, and both turn clockwise.
+# Unreal's x (ahead at yaw 0) is Wayword's y (ahead at heading 0), and both angles turn clockwise.
 wayword_from_unreal_yaw = wayword_from_unity_yaw
 unreal_yaw_from_wayword = unity_yaw_from_wayword
 
 
-# Angles counter-clockwise: from +x (mathematics, MuJoCo, ROS, MiniWorld), and from -z (yaw about y up: Habitat).
+# Counter-clockwise angles: from +x (mathematics, MuJoCo, ROS, MiniWorld), and from -z (Habitat: yaw about y, up).
 
 
 def wayword_from_angle(angle_rad):

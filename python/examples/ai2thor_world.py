@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""AI2-THOR as a world for Wayword. NOT RUN by us: written against the documented API of ai2thor 5.
+"""AI2-THOR as a world for Wayword. NOT RUN by us: written from the documentation of the API of ai2thor 5.
 
-`ai2thor_world.py FloorPlan1 FloorPlan201`. Without a screen: CloudRendering."""
+`ai2thor_world.py FloorPlan1 FloorPlan201`. Without a screen it uses CloudRendering."""
 import os, re, sys  # noqa: E401
 import numpy as np
 import ai2thor.controller, ai2thor.platform  # noqa: E401

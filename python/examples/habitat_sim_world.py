@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""habitat-sim as a world for Wayword. NOT RUN by us: written against the documented API of habitat-sim 0.3.
+"""habitat-sim as a world for Wayword. NOT RUN by us: written from the documentation of the API of habitat-sim 0.3.
 
-`habitat_sim_world.py apartment_1.glb skokloster-castle.glb`; each scene with its .navmesh, and perhaps its semantics,
-beside it. Wayword's own platform `habitat` reads the same files without habitat-sim."""
+`habitat_sim_world.py apartment_1.glb skokloster-castle.glb`; each scene needs its .navmesh beside it, and may have
+semantic files there. Wayword's own platform `habitat` reads the same files without habitat-sim."""
 import pathlib, sys  # noqa: E401
 import habitat_sim, numpy as np  # noqa: E401
 from habitat_sim.utils.common import quat_from_angle_axis
@@ -15,7 +15,7 @@ FILES = {pathlib.Path(name).stem: name for name in sys.argv[1:]}
 class Habitat(kit.World):
     name, opened = "habitat-sim", (None, None)
 
-    def __init__(self):  # without semantic files nothing is known about things, which is not to know of none
+    def __init__(self):  # without semantic files the objects are unknown; an empty list would say that there are none
         self.has_labels = all(len(self.sim(scene).semantic_scene.objects) > 0 for scene in FILES)
 
     def scenes(self):
@@ -43,7 +43,7 @@ class Habitat(kit.World):
     def walkable(self, scene, a, b):
         way = habitat_sim.ShortestPath()
         way.requested_start, way.requested_end = (np.subtract(kit.y_up_from_wayword(p), (0, EYE_M, 0)) for p in (a, b))
-        self.sim(scene).pathfinder.find_path(way)  # infinitely far where there is no way
+        self.sim(scene).pathfinder.find_path(way)  # the distance is infinite if there is no way
         return way.geodesic_distance < 1.02 * np.linalg.norm(np.subtract(a, b))
 
     def observe(self, scene, look):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""MiniWorld (pip install miniworld; tried with 2.1.0) as a world for Wayword.
+"""MiniWorld (pip install miniworld; tested with 2.1.0) as a world for Wayword.
 
-Scenes are environments with a seed, as in `miniworld_world.py ThreeRooms-1 FourRooms-7`. Without a screen: EGL.
+A scene is an environment and a seed, as in `miniworld_world.py ThreeRooms-1 FourRooms-7`. Without a screen: EGL.
 """
 import functools
 import math
@@ -14,7 +14,7 @@ pyglet.options["headless"] = "DISPLAY" not in os.environ  # before miniworld is 
 from miniworld.objmesh import ObjMesh  # noqa: E402
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import wayword_platform as kit  # noqa: E402
-EYE_M, REACH_M = 1.5, 0.4  # the height of the eye, and how near to a wall or a thing one may stand
+EYE_M, REACH_M = 1.5, 0.4  # the height of the eye, and the least distance to walls and objects
 
 
 class MiniWorld(kit.OpenWorld):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""MuJoCo (pip install mujoco; tried with 4.0.0) as a world for Wayword. Without a screen: EGL.
+"""MuJoCo (pip install mujoco; tested with 4.0.0) as a world for Wayword. Without a screen it uses EGL.
 
-`mujoco_world.py MODEL.xml` serves your own models: things are bodies with a name, and one walks on the geom named
-`floor`. Without an argument it serves flat.xml, which lies beside this file.
+`mujoco_world.py MODEL.xml` serves your own models: objects are bodies with a name, and one walks on the geom named
+`floor`. Without an argument it serves flat.xml, which is beside this file.
 """
 import functools, math, os, pathlib, sys  # noqa: E401
 if "DISPLAY" not in os.environ:
@@ -11,7 +11,7 @@ import mujoco  # noqa: E402
 import numpy as np  # noqa: E402
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import wayword_platform as kit  # noqa: E402
-EYE_M, REACH_M = 1.5, 0.3  # the height of the eye, and how near to anything one may stand
+EYE_M, REACH_M = 1.5, 0.3  # the height of the eye, and the least distance to anything
 FILES = {name.stem: name for name in map(pathlib.Path, sys.argv[1:] or [pathlib.Path(__file__).with_name("flat.xml")])}
 
 
@@ -35,7 +35,7 @@ class MuJoCo(kit.OpenWorld):
         return [(*(floor.pos + side * floor.size)[:2], floor.pos[2] + EYE_M) for side in (-1, 1)]
 
     def is_free(self, scene, place):
-        def ray(start, towards):  # how far it goes, and the geom that it meets: -1 for nothing
+        def ray(start, towards):  # the distance to the geom that it meets, and that geom; both are -1 if it meets none
             met, (model, data, _, _) = np.full((1, 1), -1, np.int32), self.load(scene)
             return mujoco.mj_ray(model, data, np.array(start), np.array(towards), None, 1, -1, met), met[0, 0]
         knee, turns = np.subtract(place, (0, 0, EYE_M - 0.3)), np.linspace(0, math.tau, 8, endpoint=False)
@@ -44,7 +44,7 @@ class MuJoCo(kit.OpenWorld):
         return above_floor and not any(0 <= far_m < REACH_M for far_m in around)
 
     def observe(self, scene, look):
-        (model, data, renderer, _), eye = self.load(scene), mujoco.MjvCamera()  # a free one, which looks at a point
+        (model, data, renderer, _), eye = self.load(scene), mujoco.MjvCamera()  # a free camera, which looks at a point
         eye.lookat = np.add(look.position, (math.sin(look.heading_rad), math.cos(look.heading_rad), 0))
         eye.distance, eye.elevation, eye.azimuth = 1, 0, math.degrees(kit.angle_from_wayword(look.heading_rad))
         model.vis.global_.fovy = math.degrees(look.vertical_fov_rad)

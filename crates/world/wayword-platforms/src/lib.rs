@@ -1,7 +1,7 @@
 //! Where paths and views come from: Matterport3D, and any simulator as a child process.
 //!
-//! [`matterport`] reads Matterport3D's buildings as their dataset, simulator and REVERIE ship them. [`process`] asks another
-//! program.
+//! [`matterport`] reads Matterport3D's buildings as the dataset, its simulator and REVERIE provide them. [`process`]
+//! asks another program.
 
 pub mod matterport;
 pub mod process;

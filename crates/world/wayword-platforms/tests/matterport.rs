@@ -55,7 +55,7 @@ fn without_a_house_file_levels_come_from_the_floors() {
 #[test]
 fn a_look_tells_what_is_there_and_in_which_room() {
     let (_folder, platform) = building();
-    // In the living room: the television hangs on its north wall.
+    // Viewpoint 3 is in the living room, whose north wall has a television.
     let view = platform.look(&scene(), &frame(&platform, 3), Gaze::quarter(Heading::NORTH)).unwrap();
     assert!(view.image.is_none());
     let truth = view.ground_truth().unwrap();
@@ -132,14 +132,15 @@ fn an_episode_names_its_target_and_says_whether_it_has_a_namesake() {
     let target = path.target.unwrap();
     assert_eq!((target.name.as_str(), target.has_namesake), ("pillow", true));
     assert_eq!(path.frames[0].pose.heading, heading(0.0));
-    // From here the desk is neither seen nor listed; elsewhere it is.
+    // The desk is neither seen nor listed at this viewpoint, but at others.
     let desk = ObjectId::new("38").unwrap();
     assert_eq!(platform.object_name(&scene(), &path.frames[0], &desk).unwrap().as_deref(), Some("desk"));
     let nothing = ObjectId::new("999").unwrap();
     assert_eq!(platform.object_name(&scene(), &path.frames[0], &nothing).unwrap(), None);
 }
 
-/// By the boxes, and without them by the `.house` file: an object is visible from where a look around shows it.
+/// With the boxes, and without them with the `.house` file: an object is visible from the viewpoints where its label is
+/// in a view.
 #[test]
 fn an_object_is_visible_from_where_it_is_seen() {
     let (folder, platform) = building();
@@ -208,7 +209,7 @@ fn a_skybox_is_seen_the_right_way_round() {
         let close = shown.iter().zip(wall_colour(quarter)).all(|(a, b)| a.abs_diff(b) <= 6);
         assert!(close, "quarter {quarter}: {shown:?}");
     }
-    // Wider than any flat picture: labels only.
+    // The gaze is wider than any flat picture, so the view has only labels.
     let all_round = Gaze { heading: Heading::NORTH, horizontal_fov_rad: TAU };
     assert!(platform.look(&scene(), &frame(&platform, 0), all_round).unwrap().image.is_none());
 }
@@ -219,7 +220,7 @@ fn a_folder_of_36_views_serves_where_there_is_no_skybox() {
     let views = folder.path().join("views").join(SCAN).join(viewpoint_id(0));
     std::fs::create_dir_all(&views).unwrap();
     for index in 0..36u8 {
-        // Red tells the column, green the row.
+        // Red encodes the column, green the row.
         let colour = image::Rgb([20 * (index % 12), 100 * (index / 12), 0]);
         image::RgbImage::from_pixel(64, 48, colour).save(views.join(format!("{index}.jpg"))).unwrap();
     }

@@ -1,4 +1,5 @@
-//! A thousand seeded mutations of every file that Matterport3D's reader takes: a clear error or a sane answer each time.
+//! A thousand seeded mutations of every file that the Matterport3D reader reads: each gives a clear error or a
+//! plausible result.
 
 #![allow(
     clippy::unwrap_used,
@@ -16,7 +17,7 @@ use wayword_world::labels_around;
 
 const ROUNDS: u64 = 1000;
 
-/// What hostile or broken files hold in place of a value.
+/// What hostile or broken files may contain instead of a value.
 const ODDITIES: &[&str] = &[
     "NaN",
     "nan",
@@ -64,7 +65,7 @@ fn mutated(original: &[u8], rng: &mut ChaCha8Rng) -> Vec<u8> {
     bytes
 }
 
-/// Puts a text in place of the number or word around a position.
+/// Replaces the number or word around a position with a text.
 fn replace_token(bytes: &mut Vec<u8>, at: usize, with: &str) {
     let inside = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'-' | b'_' | b'#');
     let start = (0..at).rev().take_while(|index| inside(bytes[*index])).last().unwrap_or(at);
@@ -72,7 +73,7 @@ fn replace_token(bytes: &mut Vec<u8>, at: usize, with: &str) {
     drop(bytes.splice(start..end, with.bytes()));
 }
 
-/// Everything that a run asks of a platform.
+/// Makes all the requests that a run makes to a platform.
 fn use_it_all(data: &Path) -> Result<(), PlatformError> {
     let platform = Matterport::open(data)?;
     let scene = SceneId::new(SCAN).unwrap();
@@ -149,10 +150,10 @@ fn a_file_without_end_is_not_read_to_its_end() {
     let folder = tempfile::tempdir().unwrap();
     write_building(folder.path()).unwrap();
     let path = folder.path().join(format!("matterport/connectivity/{SCAN}_connectivity.json"));
-    // Sparse: takes no room on the disk.
+    // The file is sparse: it takes no room on the disk.
     fs::File::create(&path).unwrap().set_len(1 << 36).unwrap();
     let error = use_it_all(folder.path()).unwrap_err().to_string();
-    assert!(error.contains("which no such file has"), "{error}");
+    assert!(error.contains("the limit for a file of this kind"), "{error}");
 }
 
 #[test]

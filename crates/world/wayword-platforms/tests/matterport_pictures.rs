@@ -1,4 +1,4 @@
-//! Pictures, held against what the genuine simulator drew, where its answers are at hand (`WAYWORD_DATA`).
+//! Compares pictures with those that the genuine simulator drew, if they are available (`WAYWORD_DATA`).
 
 #![allow(
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ fn oracle() -> Option<PathBuf> {
     let folder = std::env::var_os("WAYWORD_DATA").map_or_else(beside, PathBuf::from).join("oracles/matterport_views");
     let there = folder.join("graph").is_dir();
     if !there {
-        println!("SKIPPED: no answers of the simulator in {}; set WAYWORD_DATA", folder.display());
+        println!("SKIPPED: no pictures of the simulator in {}; set WAYWORD_DATA", folder.display());
     }
     there.then_some(folder)
 }

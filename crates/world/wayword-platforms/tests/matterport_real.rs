@@ -1,5 +1,5 @@
-//! The real buildings, where they are at hand: `WAYWORD_DATA` names their folder, `../shared/data` beside the repository
-//! is tried without it.
+//! Tests with the real buildings, if they are available: `WAYWORD_DATA` names their folder; without it,
+//! `../shared/data` beside the repository is tried.
 
 #![allow(
     clippy::unwrap_used,
@@ -104,7 +104,7 @@ fn levels_agree_with_what_people_wrote() {
     assert!(agreeing * 100 >= said * 94, "{agreeing} of {said}");
 }
 
-/// The one level that a text names ("level 2", "second floor"); `None` where it names none, or several.
+/// The one storey that a text names ("level 2", "second floor"); `None` if it names none or several.
 fn written_level(text: &str) -> Option<u32> {
     let number = |word: &str| match word {
         "1" | "one" | "first" | "1st" | "ground" => Some(1),
@@ -160,7 +160,7 @@ fn random_paths_end_at_a_visible_target() {
     for (seed, scene) in scenes.iter().enumerate() {
         let path = match platform.sample_path(scene, &PathRequest::default(), seed as u64) {
             Ok(path) => path,
-            // A few buildings are too small for four hops.
+            // Some buildings are too small for four hops.
             Err(error) => {
                 println!("{error}");
                 continue;

@@ -1,7 +1,7 @@
-//! Worlds that are other programs: what they give when they behave, and what remains when they do not.
+//! Tests of world programs: what they provide if they behave, and what happens if they do not.
 //!
-//! The child is this very test binary: `the_child` plays it when its environment says so. A shell gives it its standard
-//! output as descriptor 3, because the test harness writes to descriptor 1.
+//! The child is this test binary itself: `the_child` plays it if the environment says so. A shell passes its standard
+//! output on as descriptor 3, because the test harness writes to descriptor 1.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking, and its child speaks")]
@@ -22,7 +22,7 @@ use std::{path::Path, sync::Arc, time::Duration};
 use wayword_core::{Frame, Gaze, Heading, Platform, PlatformError, Pose, SceneId, View, ViewpointId};
 use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
 
-/// Plays a child where the environment names a role, and is an empty test otherwise.
+/// Plays a child if the environment names a role, and is an empty test otherwise.
 #[test]
 fn the_child() {
     if let Ok(role) = std::env::var("WAYWORD_TEST_ROLE") {
@@ -30,7 +30,7 @@ fn the_child() {
     }
 }
 
-/// How a child with a role is started; `folder` is where it may leave pictures.
+/// The options that start a child with a role; it may put pictures into `folder`.
 pub(crate) fn options(role: &str, folder: &Path) -> ProcessOptions {
     let script = "WAYWORD_TEST_ROLE=$1 WAYWORD_TEST_FOLDER=$2 exec \"$0\" --exact the_child --nocapture 3>&1 1>&2";
     let this = std::env::current_exe().unwrap();
@@ -61,7 +61,7 @@ pub(crate) fn look(platform: &ProcessPlatform, name: &str) -> Result<View, Platf
     platform.look(&scene(name), &frame, Gaze::quarter(Heading::NORTH))
 }
 
-/// The number of the process that answered a look: the actor says it as the name of the room.
+/// The process id of the child that answered a look: the actor sends it as the name of the room.
 pub(crate) fn pid(view: &View) -> u32 {
     view.ground_truth().unwrap().room.as_ref().unwrap().parse().unwrap()
 }

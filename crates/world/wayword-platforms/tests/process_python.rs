@@ -1,8 +1,9 @@
-//! The Python kit, and the simulators that its examples serve.
+//! Tests of the Python kit and of the simulators that its examples serve.
 //!
-//! The kit's own tests need some `python3`. MiniWorld and MuJoCo need a Python that has them, which `WAYWORD_PYTHON` names:
-//! `python3 -m venv V && V/bin/pip install miniworld mujoco`, and `WAYWORD_PYTHON=V/bin/python`. With `WAYWORD_PICTURES` set to a
-//! folder, panoramas from these worlds are left there to be looked at.
+//! The kit's own tests need any `python3`. The tests with MiniWorld and MuJoCo need a Python that has them;
+//! `WAYWORD_PYTHON` names it: `python3 -m venv V && V/bin/pip install miniworld mujoco`, and
+//! `WAYWORD_PYTHON=V/bin/python`. If `WAYWORD_PICTURES` names a folder, the tests write panoramas from these simulators
+//! there, for a person to look at.
 
 #![cfg(unix)]
 #![allow(
@@ -107,14 +108,15 @@ fn walk(platform: &ProcessPlatform, scene: &SceneId) -> wayword_core::Path {
     path
 }
 
-/// Walks a real simulator, looks around at every stop, and finds all its things from somewhere.
+/// Follows a path in a real simulator, looks around at every stop, and checks that every object is seen from some
+/// viewpoint.
 fn explore(platform: &ProcessPlatform, name: &str, things: &[&str]) {
     let scene = SceneId::new(name).unwrap();
     assert!(platform.scenes().unwrap().contains(&scene));
     let path = walk(platform, &scene);
     let graph = platform.graph(&scene).unwrap();
     println!(
-        "{name}: {} viewpoints, {} ways; a walk of {:.1} m",
+        "{name}: {} viewpoints, {} edges; a path of {:.1} m",
         graph.len(),
         graph.edges().count(),
         path.length_m().unwrap()
@@ -125,7 +127,8 @@ fn explore(platform: &ProcessPlatform, name: &str, things: &[&str]) {
         keep(name, number, &images);
         assert!(images.iter().all(|image| (image.width_px(), image.height_px()) == (640, 480)));
         assert!(images.windows(2).any(|pair| pair[0] != pair[1]), "every direction looks the same");
-        // The right edge of a view and the left edge of the next one lie along the same ray: a mirrored or turned world has seams.
+        // The right edge of a view and the left edge of the next one show the same direction. If the pictures were
+        // mirrored or the heading wrong, there would be seams.
         let seams: Vec<f64> = (0..4).map(|side| seam(&images[side], &images[(side + 1) % 4])).collect();
         assert!(seams.iter().all(|off| *off < 12.0), "stop {number}: neighbouring views do not meet: {seams:?}");
     }
@@ -137,7 +140,7 @@ fn explore(platform: &ProcessPlatform, name: &str, things: &[&str]) {
     assert_eq!(seen.iter().map(String::as_str).collect::<Vec<_>>(), things);
 }
 
-/// Mean difference, of 255, between the last column of a picture and the first of another.
+/// Mean difference, from 0 to 255, between the last column of a picture and the first of another.
 fn seam(left: &Image, right: &Image) -> f64 {
     let (width, height) = (left.width_px() as usize, left.height_px() as usize);
     let row = |image: &Image, y: usize, x: usize| image.rgb()[(y * width + x) * 3..][..3].to_vec();
@@ -145,7 +148,7 @@ fn seam(left: &Image, right: &Image) -> f64 {
     off.map(|(a, b)| f64::from(a.abs_diff(b))).sum::<f64>() / (height * 3) as f64
 }
 
-/// Leaves a panorama where `WAYWORD_PICTURES` says: ahead, right, behind, left.
+/// Writes a panorama to the folder that `WAYWORD_PICTURES` names: ahead, right, behind, left.
 fn keep(name: &str, number: usize, images: &[Arc<Image>; 4]) {
     let Some(folder) = std::env::var_os("WAYWORD_PICTURES") else { return };
     let mut all = image::RgbImage::new(4 * 640, 480);

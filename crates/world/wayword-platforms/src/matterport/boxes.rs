@@ -1,8 +1,8 @@
 //! REVERIE's `BBox/SCAN_VIEWPOINT.json`: the objects near a viewpoint, with their boxes in the simulator's 36 views.
 //!
-//! Format (REVERIE, `tasks/REVERIE/data/BBox`): `{viewpoint: {objId: {name, visible_pos: [view 0..35], bbox2d: [[x, y, w,
-//! h], ...]}}}`. View `i` looks along `(i mod 12) * 30` degrees with elevation `(i / 12 - 1) * 30` degrees; boxes are in
-//! pixels of its 640x480 picture, whose vertical field of view is 60 degrees.
+//! Format (REVERIE, `tasks/REVERIE/data/BBox`): `{viewpoint: {objId: {name, visible_pos: [view 0..35], bbox2d: [[x, y,
+//! w, h], ...]}}}`. View `i` looks along `(i mod 12) * 30` degrees with elevation `(i / 12 - 1) * 30` degrees; boxes
+//! are in pixels of its 640x480 picture, whose vertical field of view is 60 degrees.
 
 use super::read;
 use serde_json::{Map, Value};
@@ -10,35 +10,35 @@ use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Heading, ObjectId, PlatformError, ViewpointId};
 use wayword_world::object_names;
 
-/// Number of views of a panorama.
+/// Number of the simulator's views at a viewpoint.
 pub(crate) const VIEWS: usize = 36;
 pub(crate) const WIDTH_PX: f64 = 640.0;
 pub(crate) const HEIGHT_PX: f64 = 480.0;
 /// Pixels per unit of the image plane: 240 / tan(30 degrees).
 pub(crate) const FOCAL_PX: f64 = 415.692_193_816_530_5;
 
-/// More objects than stand within sight anywhere.
+/// Most objects of a file; no real viewpoint has this many.
 const MAX_OBJECTS: usize = 10_000;
-/// The largest real file has 40 kB.
+/// Largest file, bytes; the largest real one has 40 kB.
 const MAX_BYTES: u64 = 1 << 20;
-const HINT: &str = "take the file again from REVERIE's BBox.zip";
+const HINT: &str = "extract the file again from REVERIE's BBox.zip";
 
 /// An object that REVERIE lists at a viewpoint.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Listed {
     pub(crate) object: ObjectId,
-    /// In plain words; `None` where the annotators' name has none.
+    /// In plain words; `None` if the annotators' name has no plain words.
     pub(crate) name: Option<String>,
-    /// Where it is seen; empty where it is listed but hidden.
+    /// Where it is seen; empty if it is listed but hidden.
     pub(crate) boxes: Vec<SeenBox>,
 }
 
 /// An object's box in one of the 36 views.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SeenBox {
-    /// Index of the view, below [`VIEWS`].
+    /// Index of the view, less than [`VIEWS`].
     pub(crate) view: u8,
-    /// x, y of the upper left corner, width, height, pixels.
+    /// x and y of the upper left corner, width and height, pixels.
     pub(crate) box_px: [f64; 4],
 }
 
@@ -51,7 +51,8 @@ pub(crate) struct Ray {
 }
 
 impl Listed {
-    /// The most central of its boxes, those that no picture's edge cuts first: a cut box's centre is not the object's.
+    /// The most central of its boxes. Boxes that the edge of a picture cuts come last, because the centre of such a box
+    /// is not the centre of the object.
     pub(crate) fn best_box(&self) -> Option<&SeenBox> {
         self.boxes.iter().min_by(|a, b| {
             (a.is_cut(), a.off_centre_px2())
@@ -72,7 +73,7 @@ impl SeenBox {
         (x - WIDTH_PX / 2.0).powi(2) + (y - HEIGHT_PX / 2.0).powi(2)
     }
 
-    /// Whether an edge of the picture cuts the box, so that the object goes on outside.
+    /// Whether an edge of the picture cuts the box, so that a part of the object lies outside the picture.
     pub(crate) fn is_cut(&self) -> bool {
         let [x, y, width, height] = self.box_px;
         x <= 0.0 || y <= 0.0 || x + width >= WIDTH_PX || y + height >= HEIGHT_PX
@@ -85,7 +86,7 @@ impl SeenBox {
     }
 }
 
-/// The ray through a pixel of a view; `None` straight up or down, where there is no heading.
+/// The ray through a pixel of a view; `None` straight up or down, because there is no heading.
 pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<Ray> {
     let (right, up) = ((x_px - WIDTH_PX / 2.0) / FOCAL_PX, (HEIGHT_PX / 2.0 - y_px) / FOCAL_PX);
     let tilt = FRAC_PI_6 * (f64::from(view / 12) - 1.0);
@@ -99,10 +100,10 @@ pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<Ray> {
     Some(Ray { heading, elevation_rad: libm::atan2(above, flat) })
 }
 
-/// Reads what is listed at a viewpoint; `None` where there is no such file.
+/// Reads the objects that are listed at a viewpoint; `None` if there is no such file.
 ///
 /// # Errors
-/// When it is not such a file; the message names the object and the field.
+/// If the file does not have this format; the message names the object and the field.
 pub(crate) fn read(file: &Path, viewpoint: &ViewpointId) -> Result<Option<Vec<Listed>>, PlatformError> {
     let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);
@@ -114,9 +115,9 @@ fn parse(bytes: &[u8], viewpoint: &ViewpointId) -> Result<Vec<Listed>, String> {
     let all: Map<String, Value> =
         serde_json::from_slice(bytes).map_err(|error| format!("is not a JSON object of viewpoints: {error}"))?;
     let objects = all.get(viewpoint.as_str()).ok_or_else(|| format!("viewpoint {viewpoint} is missing"))?;
-    let objects = objects.as_object().ok_or_else(|| format!("viewpoint {viewpoint} is not an object of objects"))?;
+    let objects = objects.as_object().ok_or_else(|| format!("viewpoint {viewpoint} does not hold a JSON object"))?;
     if objects.len() > MAX_OBJECTS {
-        return Err(format!("lists {} objects; {MAX_OBJECTS} at most are read", objects.len()));
+        return Err(format!("lists {} objects, expected at most {MAX_OBJECTS}", objects.len()));
     }
     objects
         .iter()
@@ -130,7 +131,7 @@ fn listed(object: &str, entry: &Value) -> Result<Listed, String> {
     if views.len() != boxes.len() || views.len() > VIEWS {
         let (views, boxes) = (views.len(), boxes.len());
         return Err(format!(
-            "fields `visible_pos` and `bbox2d` have {views} and {boxes} entries; they go together, {VIEWS} at most"
+            "fields `visible_pos` and `bbox2d` have {views} and {boxes} entries, expected equal numbers up to {VIEWS}"
         ));
     }
     Ok(Listed {
@@ -142,15 +143,15 @@ fn listed(object: &str, entry: &Value) -> Result<Listed, String> {
 
 fn seen(view: &Value, found: &Value) -> Result<SeenBox, String> {
     let view = view.as_u64().filter(|view| *view < VIEWS as u64);
-    let view = view.ok_or("field `visible_pos` holds what is no view index (0..35)")?;
+    let view = view.ok_or("field `visible_pos` has an entry that is not a view index (0..35)")?;
     let numbers = found.as_array().filter(|numbers| numbers.len() == 4);
-    let numbers = numbers.ok_or("field `bbox2d` holds what is no box of four numbers")?;
+    let numbers = numbers.ok_or("field `bbox2d` has an entry that is not a box of four numbers")?;
     let mut box_px = [0.0; 4];
     for (place, number) in box_px.iter_mut().zip(numbers) {
         *place = read::number(number, "bbox2d")?;
     }
     if box_px[2] < 0.0 || box_px[3] < 0.0 {
-        return Err("field `bbox2d` holds a box of negative size".into());
+        return Err("field `bbox2d` has a box of negative size".into());
     }
     Ok(SeenBox { view: view as u8, box_px })
 }
@@ -194,7 +195,7 @@ mod tests {
     #[test]
     fn errors_name_the_object_and_the_field() {
         let bad_view = parsed(&json!({"name": "lamp", "visible_pos": [36], "bbox2d": [[0, 0, 1, 1]]})).unwrap_err();
-        assert_eq!(bad_view, "object 7: field `visible_pos` holds what is no view index (0..35)");
+        assert_eq!(bad_view, "object 7: field `visible_pos` has an entry that is not a view index (0..35)");
         let no_box = parsed(&json!({"name": "lamp", "visible_pos": [3], "bbox2d": []})).unwrap_err();
         assert!(no_box.contains("have 1 and 0 entries"));
         let negative = parsed(&json!({"name": "lamp", "visible_pos": [3], "bbox2d": [[0, 0, -1, 1]]})).unwrap_err();

@@ -1,4 +1,4 @@
-//! `SCAN_connectivity.json`: the viewpoints of a building and which of them see each other.
+//! `SCAN_connectivity.json`: the viewpoints of a building, and between which of them one can walk straight.
 //!
 //! Format: Matterport3DSimulator's `connectivity/README.md`; a list of `{image_id, pose[16], included, visible[],
 //! unobstructed[], height}`, the pose row-major and in metres, z up.
@@ -9,16 +9,18 @@ use serde_json::Value;
 use std::path::Path;
 use wayword_core::{PlatformError, ViewpointId};
 
-/// More viewpoints than any building has (the largest has 345); the table of edges grows with the square.
+/// Most viewpoints of a building (the largest real one has 345); the table of edges grows with the square of this
+/// number.
 const MAX_VIEWPOINTS: usize = 4096;
-/// The largest real file has 1.5 MB. A list of zeros becomes a tree of about fifty times its size.
+/// Largest file, bytes; the largest real one has 1.5 MB. Parsed in memory, a list of zeros takes about fifty times its
+/// size.
 const MAX_BYTES: u64 = 4 << 20;
-const HINT: &str = "take the file again from Matterport3DSimulator's folder `connectivity`";
+const HINT: &str = "copy the file again from Matterport3DSimulator's folder `connectivity`";
 
 /// A building's viewpoints.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Connectivity {
-    /// Those that are included, in the file's order.
+    /// The included viewpoints, in the file's order.
     pub(crate) viewpoints: Vec<Viewpoint>,
     /// Pairs of indices into `viewpoints`.
     pub(crate) edges: Vec<(usize, usize)>,
@@ -28,11 +30,11 @@ pub(crate) struct Connectivity {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Viewpoint {
     pub(crate) id: ViewpointId,
-    /// The camera, metres, world frame.
+    /// Position of the camera, metres, world frame.
     pub(crate) position: DVec3,
     /// The camera's height above the floor, metres.
     pub(crate) height_m: f64,
-    /// The 3x3 part of the pose: turns the skybox's axes into the world's.
+    /// The 3x3 part of the pose: it rotates the skybox's axes to the world's.
     pub(crate) world_from_skybox: DMat3,
 }
 
@@ -43,10 +45,10 @@ impl Viewpoint {
     }
 }
 
-/// Reads a connectivity file; `None` where there is none.
+/// Reads a connectivity file; `None` if there is none.
 ///
 /// # Errors
-/// When it is not such a file; the message names the viewpoint and the field.
+/// If the file does not have this format; the message names the viewpoint and the field.
 pub(crate) fn read(file: &Path) -> Result<Option<Connectivity>, PlatformError> {
     let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);
@@ -58,7 +60,7 @@ fn parse(bytes: &[u8]) -> Result<Connectivity, String> {
     let items: Vec<Value> =
         serde_json::from_slice(bytes).map_err(|error| format!("is not a JSON list of viewpoints: {error}"))?;
     if items.len() > MAX_VIEWPOINTS {
-        return Err(format!("lists {} viewpoints; {MAX_VIEWPOINTS} at most are read", items.len()));
+        return Err(format!("lists {} viewpoints, expected at most {MAX_VIEWPOINTS}", items.len()));
     }
     // Index among the included viewpoints, by index in the file.
     let mut included = Vec::with_capacity(items.len());
@@ -82,7 +84,7 @@ fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
     let id = ViewpointId::new(read::text(item, "image_id")?).map_err(|error| format!("field `image_id`: {error}"))?;
     let named = |reason| format!("{id}: {reason}");
     if !read::flag(read::field(item, "included").map_err(named)?, "included").map_err(named)? {
-        // The poses of viewpoints that were left out are not used, and not always numbers.
+        // The pose of a viewpoint that is not included is not used, and it may not consist of numbers.
         return Ok(None);
     }
     let pose = pose(item).map_err(named)?;
@@ -100,7 +102,7 @@ fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
 fn pose(item: &Value) -> Result<[f64; 16], String> {
     let numbers = read::list(item, "pose")?;
     if numbers.len() != 16 {
-        return Err(format!("field `pose` has {} numbers, not 16", numbers.len()));
+        return Err(format!("field `pose` has {} numbers, expected 16", numbers.len()));
     }
     let mut pose = [0.0; 16];
     for (place, value) in pose.iter_mut().zip(numbers) {
@@ -112,7 +114,7 @@ fn pose(item: &Value) -> Result<[f64; 16], String> {
 fn neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
     let flags = read::list(item, "unobstructed")?;
     if flags.len() != count {
-        return Err(format!("field `unobstructed` has {} entries for {count} viewpoints", flags.len()));
+        return Err(format!("field `unobstructed` has length {}, but the list of viewpoints has {count}", flags.len()));
     }
     let mut open = Vec::new();
     for (other, value) in flags.iter().enumerate() {
@@ -164,9 +166,9 @@ mod tests {
         broken[0]["pose"][3] = json!("east");
         assert_eq!(parsed(&broken).unwrap_err(), "viewpoint 0: a: field `pose` holds a text, not a number");
         broken[0]["pose"][3] = json!(1e300);
-        assert!(parsed(&broken).unwrap_err().contains("no place in a building"));
+        assert!(parsed(&broken).unwrap_err().contains("not a plausible coordinate"));
         let short = parsed(&json!([item("a", true, 0.0, &[])])).unwrap_err();
-        assert_eq!(short, "viewpoint 0: field `unobstructed` has 0 entries for 1 viewpoints");
+        assert_eq!(short, "viewpoint 0: field `unobstructed` has length 0, but the list of viewpoints has 1");
         assert!(parsed(&json!([item("../a", true, 0.0, &[false])])).unwrap_err().contains("path separators"));
         assert!(parse(b"[{\"pose\": [NaN]}]").unwrap_err().contains("is not a JSON list"));
     }

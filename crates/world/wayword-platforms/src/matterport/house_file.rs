@@ -1,7 +1,8 @@
 //! `SCAN.house`: levels, regions, panoramas and objects of a building.
 //!
-//! Format: Matterport3D's `data_organization.md`, "house_segmentations": ASCII, one record per line, its first word the
-//! kind. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts in `H` are not trusted.
+//! Format: Matterport3D's `data_organization.md`, "house_segmentations": ASCII, one record per line; its first word is
+//! its kind. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts in `H` are not
+//! used.
 
 use super::read;
 use glam::DVec3;
@@ -10,11 +11,11 @@ use wayword_core::{ObjectId, PlatformError, ViewpointId};
 use wayword_world::object_names;
 
 const MAX_BYTES: u64 = 64 << 20;
-/// Longest line that is read: the records have under 40 words.
+/// Most words of a line that are read; the records have fewer than 40.
 const MAX_WORDS: usize = 64;
-const HINT: &str = "take the file again from Matterport3D's house_segmentations";
+const HINT: &str = "get the file again from Matterport3D's house_segmentations";
 
-/// What a `.house` file says.
+/// The contents of a `.house` file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct House {
     /// Height of each level, metres, by its index in the file.
@@ -34,7 +35,7 @@ struct Region {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HouseObject {
     pub(crate) id: ObjectId,
-    /// In plain words; `None` where the annotators gave none.
+    /// In plain words; `None` if the annotators gave no name.
     pub(crate) name: Option<String>,
     /// Index of the region in which it stands.
     pub(crate) region: i64,
@@ -43,11 +44,11 @@ pub(crate) struct HouseObject {
 }
 
 impl House {
-    /// The storey of a viewpoint, the lowest being 1.
+    /// The storey of a viewpoint; the lowest is 1.
     pub(crate) fn level(&self, viewpoint: &ViewpointId) -> Option<u32> {
         let region = self.regions.get(self.panoramas.get(viewpoint)?)?;
         let height_m = self.levels_m.get(&region.level)?;
-        // Levels are numbered from the lowest, in whatever order the file has them.
+        // Storeys are numbered from the lowest, whatever the order in the file is.
         let lower = self.levels_m.iter().filter(|(index, other_m)| (**other_m, **index) < (*height_m, region.level));
         Some(lower.count() as u32 + 1)
     }
@@ -64,10 +65,10 @@ impl House {
     }
 }
 
-/// Reads a `.house` file; `None` where there is none.
+/// Reads a `.house` file; `None` if there is none.
 ///
 /// # Errors
-/// When it is not such a file; the message names the line and the column.
+/// If the file does not have this format; the message names the line and the column.
 pub(crate) fn read(file: &Path) -> Result<Option<House>, PlatformError> {
     let Some(text) = read::text_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);
@@ -141,13 +142,14 @@ impl<'a> Record<'a> {
 
     fn index(&self, column: usize) -> Result<i64, String> {
         let word = self.word(column)?;
-        word.parse().map_err(|_| format!("column {}: {word:.20?} is no index", column + 1))
+        word.parse().map_err(|_| format!("column {}: {word:.20?} is not an index", column + 1))
     }
 
     fn position(&self, column: usize) -> Result<DVec3, String> {
         let number = |column: usize| {
             let word = self.word(column)?;
-            let number: f64 = word.parse().map_err(|_| format!("column {}: {word:.20?} is no number", column + 1))?;
+            let number: f64 =
+                word.parse().map_err(|_| format!("column {}: {word:.20?} is not a number", column + 1))?;
             read::coordinate(number).map_err(|reason| format!("column {}: {reason}", column + 1))
         };
         Ok(DVec3::new(number(column)?, number(column + 1)?, number(column + 2)?))
@@ -195,7 +197,7 @@ mod tests {
     fn errors_name_the_line_and_the_column() {
         assert_eq!(parse("ply\n").unwrap_err(), "line 1: does not begin with ASCII");
         assert_eq!(parse("ASCII\nL 0 1").unwrap_err(), "line 2: has 3 columns; column 5 is missing");
-        assert_eq!(parse("ASCII\nL 0 1 - 0 nan 3").unwrap_err(), "line 2: column 6: NaN is no place in a building");
-        assert_eq!(parse("ASCII\nP v 0 x 0 0 0 0").unwrap_err(), "line 2: column 4: \"x\" is no index");
+        assert_eq!(parse("ASCII\nL 0 1 - 0 nan 3").unwrap_err(), "line 2: column 6: NaN is not a plausible coordinate");
+        assert_eq!(parse("ASCII\nP v 0 x 0 0 0 0").unwrap_err(), "line 2: column 4: \"x\" is not an index");
     }
 }

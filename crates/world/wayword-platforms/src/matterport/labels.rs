@@ -8,15 +8,15 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use wayword_core::{Heading, Label, ViewpointId};
 
-/// Objects of a `.house` file count as visible within this distance and in the same region, metres: as far as REVERIE's
-/// paper says that it looked. Walls within the region are not known.
+/// Objects of a `.house` file count as visible within this distance and in the same region, metres. REVERIE's paper
+/// gives this distance for its own annotations. Walls within the region are not known.
 const HOUSE_REACH_M: f64 = 3.0;
 
-/// Labels from REVERIE's boxes; `eye` and `centres` in the world frame.
+/// Labels from REVERIE's boxes; `eye` and `centres` are in the world frame.
 ///
-/// The direction is that of a box that no picture's edge cuts. An object that every picture cuts goes round the viewer or
-/// over the edge of the lowest view; then its centre's direction stands, and the most central box's only where no centre
-/// is known. The distance is to the centre.
+/// The direction is that of a box that no picture's edge cuts. If every picture cuts the object, it surrounds the
+/// viewer or continues below the lowest view. Then the direction is that of the object's centre, or of the most central
+/// box if the centre is not known. The distance is to the centre.
 pub(crate) fn from_boxes(listed: &[Listed], eye: DVec3, centres: &BTreeMap<String, DVec3>) -> Vec<Label> {
     let mut labels: Vec<Label> = listed
         .iter()
@@ -64,7 +64,7 @@ pub(crate) fn from_house(house: &House, viewpoint: &ViewpointId, eye: DVec3) -> 
     labels
 }
 
-/// The ray from an eye to a point; `None` where the point lies straight above or below.
+/// The ray from an eye to a point; `None` if the point lies straight above or below.
 fn ray_to(eye: DVec3, point: DVec3) -> Option<Ray> {
     let to = point - eye;
     let flat_m = libm::hypot(to.x, to.y);

@@ -1,14 +1,14 @@
-//! Where a user's Matterport3D data lies.
+//! Finds the user's Matterport3D data.
 
 use super::read;
 use std::path::{Path, PathBuf};
 use wayword_core::{PlatformError, SceneId, ViewpointId};
 
-/// Views of a viewpoint in a folder of Matterport3DSimulator's.
+/// Number of Matterport3DSimulator's views at a viewpoint.
 const VIEWS: usize = 36;
-const HINT: &str = "give the folder that holds Matterport3DSimulator's `connectivity` folder as --data";
+const HINT: &str = "give --data the folder that holds Matterport3DSimulator's `connectivity` folder";
 
-/// Where REVERIE's boxes may lie below the data folder.
+/// Where REVERIE's boxes may be below the data folder.
 const BOXES: [&str; 4] = ["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"];
 
 /// The folders and files that were found below the data folder.
@@ -23,20 +23,20 @@ pub(crate) struct Layout {
     views: Vec<PathBuf>,
 }
 
-/// Where a skybox's faces lie.
+/// The files of a skybox's faces.
 #[derive(Debug, Clone)]
 pub(crate) enum SkyboxFiles {
     /// Six faces side by side (Matterport3DSimulator's `downsize_skybox.py`).
     Strip(PathBuf),
-    /// One file per face, as Matterport3D ships them.
+    /// One file per face, as in Matterport3D.
     Faces([PathBuf; 6]),
 }
 
 impl Layout {
-    /// Looks for the parts of Matterport3D below a folder, in the places where its tools put them.
+    /// Searches a folder for the parts of Matterport3D, in the places where its tools put them.
     ///
     /// # Errors
-    /// When there are no connectivity graphs; the message names every place that was tried.
+    /// If there are no connectivity graphs; the message names the places that were tried.
     pub(crate) fn find(data: &Path) -> Result<Self, PlatformError> {
         let connectivity = first(data, &["matterport/connectivity", "connectivity", "graph"]).ok_or_else(|| {
             let reason = if data.is_dir() {
@@ -70,8 +70,8 @@ impl Layout {
         Ok(scenes)
     }
 
-    /// Why nothing is known of objects in some buildings or all, and what to do: there are no boxes of REVERIE's, and `.house` files
-    /// of few or none. `None` where objects are known everywhere.
+    /// Why the objects of some or all buildings are not known, and what to do: there are no REVERIE boxes, and `.house`
+    /// files for few buildings or none. `None` if objects are known everywhere.
     pub(crate) fn lack_of_objects(&self, data: &Path) -> Option<String> {
         let scenes = self.scenes().ok()?;
         let houses = scenes.iter().filter(|scene| self.house(scene).is_some()).count();
@@ -81,11 +81,16 @@ impl Layout {
         let above = data.canonicalize().ok().and_then(|data| data.parent().map(Path::to_owned));
         let hint = match above.filter(|above| first(above, &BOXES).is_some()) {
             Some(above) => format!("give the folder above it, which has boxes: --data {}", above.display()),
-            None => format!("put REVERIE's boxes into {}", data.join(BOXES[0]).display()),
+            None => format!(
+                "put REVERIE's boxes into {}, or the .house file of each building at {}",
+                data.join(BOXES[0]).display(),
+                data.join("v1/scans/SCAN/house_segmentations/SCAN.house").display()
+            ),
         };
         Some(format!(
-            "warning: {}: no boxes of REVERIE's ({}), and .house files for {houses} of its buildings ({} in all); without \
-             them nothing is known of objects: labels name rooms alone, and objects in texts stay unverified\nhint: {hint}",
+            "warning: {}: there are no REVERIE boxes ({}), and {houses} of {} buildings have a .house file; without \
+             either, the objects of a building are not known: labels name only its rooms, and objects in texts stay \
+             unverified\nhint: {hint}",
             data.display(),
             BOXES.join(", "),
             scenes.len()
@@ -96,7 +101,7 @@ impl Layout {
         self.connectivity.join(format!("{scene}_connectivity.json"))
     }
 
-    /// Every file of a scene that is there, sorted.
+    /// Every existing file of a scene, sorted.
     pub(crate) fn files<'a>(&self, scene: &SceneId, viewpoints: impl Iterator<Item = &'a ViewpointId>) -> Vec<PathBuf> {
         let mut files = vec![self.connectivity(scene)];
         files.extend([self.rooms(scene), self.house(scene), self.object_positions.clone()].into_iter().flatten());
@@ -116,22 +121,22 @@ impl Layout {
         files
     }
 
-    /// The file of room letters, whether or not it is there.
+    /// The file of room letters, if it exists.
     pub(crate) fn rooms(&self, scene: &SceneId) -> Option<PathBuf> {
         self.in_scan(scene, "house_segmentations/panorama_to_region.txt")
     }
 
-    /// The `.house` file.
+    /// The `.house` file, if it exists.
     pub(crate) fn house(&self, scene: &SceneId) -> Option<PathBuf> {
         self.in_scan(scene, &format!("house_segmentations/{scene}.house"))
     }
 
-    /// REVERIE's boxes of a viewpoint, whether or not they are there.
+    /// The file of REVERIE's boxes of a viewpoint, which need not exist.
     pub(crate) fn boxes(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
         self.boxes.as_ref().map(|folder| folder.join(format!("{scene}_{viewpoint}.json")))
     }
 
-    /// The six faces of a viewpoint's skybox: one file that has them side by side, or one file each.
+    /// The six faces of a viewpoint's skybox: one file with all of them side by side, or one file each.
     pub(crate) fn skybox(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<SkyboxFiles> {
         let folder = "matterport_skybox_images";
         if let Some(strip) = self.in_scan(scene, &format!("{folder}/{viewpoint}_skybox_small.jpg")) {
@@ -148,19 +153,20 @@ impl Layout {
         folders.into_iter().find(|folder| folder.is_dir())
     }
 
-    /// A file in a scan's folder.
+    /// An existing file in a scan's folder.
     fn in_scan(&self, scene: &SceneId, file: &str) -> Option<PathBuf> {
         self.places_of(scene, file).find(|file| file.is_file())
     }
 
-    /// Where something of a scan may lie. Matterport3D's archives unpack to `SCAN/...` inside `scans/SCAN` or right there.
+    /// The possible paths of a scan's file. Matterport3D's archives unpack to `scans/SCAN/SCAN/...` or
+    /// `scans/SCAN/...`.
     fn places_of(&self, scene: &SceneId, what: &str) -> impl Iterator<Item = PathBuf> {
         let scan = scene.as_str();
         self.scans.iter().flat_map(move |scans| [scans.join(scan).join(what), scans.join(scan).join(scan).join(what)])
     }
 }
 
-/// What lies in a folder, in no order.
+/// The entries of a folder, in no particular order.
 fn files_in(folder: &Path) -> Result<Vec<PathBuf>, PlatformError> {
     let failed = |error: std::io::Error| PlatformError::unread(folder, &error, HINT);
     let entries = std::fs::read_dir(folder).map_err(failed)?;

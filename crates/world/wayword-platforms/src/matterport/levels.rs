@@ -1,31 +1,33 @@
-//! The storey of every viewpoint, the lowest being 1.
+//! The storey of every viewpoint; the lowest is 1.
 
 use std::cmp::Ordering;
 
-/// Storeys lie at least so far apart, metres: a low ceiling and a slab. Split levels lie nearer, and people count them to
-/// the storey that they belong to.
+/// Least height between two storeys, metres: a low ceiling and a slab. Split levels are nearer, and people count them
+/// as parts of a storey.
 const MIN_STOREY_M: f64 = 2.2;
-/// Floor heights within this distance support each other, metres: a step or two.
+/// Floor heights within this distance support each other, metres: one or two steps.
 const REACH_M: f64 = 0.4;
-/// Support that a height needs to be a storey: the viewpoint itself and about one more. On stairs each has its own.
+/// Support that a height needs to be a storey: the viewpoint itself and about one more. On stairs each viewpoint has
+/// only its own.
 const MIN_SUPPORT: f64 = 2.0;
 
 /// The storeys of viewpoints whose floors lie at the given heights (metres, any origin).
 ///
-/// A storey is a height at which many viewpoints stand: heights are taken by falling support, each at least
-/// [`MIN_STOREY_M`] from those before; every viewpoint, also one on stairs, belongs to the nearest. With these constants
-/// the answer is the one that people wrote for 95 % of the REVERIE texts that name a level.
+/// A storey is a height at which many viewpoints stand. Heights become storeys in the order of their support, the
+/// largest first, if they are at least [`MIN_STOREY_M`] from the storeys before. Every viewpoint, also one on stairs,
+/// belongs to the nearest storey. With these constants the result agrees with 95 % of the REVERIE texts that name a
+/// level.
 pub(crate) fn from_floor_heights(floors_m: &[f64]) -> Vec<u32> {
     let storeys = storey_heights(floors_m);
     floors_m.iter().map(|floor_m| nearest(&storeys, *floor_m)).collect()
 }
 
-/// The height of each storey, rising.
+/// The height of each storey, from the lowest.
 fn storey_heights(floors_m: &[f64]) -> Vec<f64> {
     let mut sorted = floors_m.to_vec();
     sorted.sort_by(f64::total_cmp);
     let mut supported: Vec<(f64, f64)> = sorted.iter().map(|floor_m| (support(&sorted, *floor_m), *floor_m)).collect();
-    // The best supported first; of equals the lower.
+    // The best supported first; of two with equal support, the lower.
     supported.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
     let best = supported.first().map_or(0.0, |(support, _)| *support);
     let mut storeys: Vec<f64> = Vec::new();
@@ -39,7 +41,7 @@ fn storey_heights(floors_m: &[f64]) -> Vec<f64> {
     storeys
 }
 
-/// How many of the (sorted) heights lie near, each counting the less the farther it is.
+/// How many of the (sorted) heights are near; each counts the less, the farther away it is.
 fn support(sorted: &[f64], floor_m: f64) -> f64 {
     let first = sorted.partition_point(|other| *other < floor_m - REACH_M);
     let near = sorted[first..].iter().take_while(|other| **other <= floor_m + REACH_M);

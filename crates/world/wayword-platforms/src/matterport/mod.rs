@@ -1,7 +1,7 @@
-//! Matterport3D: real buildings, as the dataset, its simulator and REVERIE ship them.
+//! Matterport3D: real buildings, as the dataset, its simulator and REVERIE provide them.
 //!
-//! What there is to see depends on what the user has: photographs (skyboxes or 36-view folders), or none at all, and then
-//! REVERIE's boxes, the `.house` file and the rooms of the viewpoints carry the perception.
+//! What a view shows depends on the files that the user has: photographs (skyboxes or 36-view folders), and labels from
+//! REVERIE's boxes, the `.house` file and the rooms of the viewpoints. Photographs are optional.
 
 mod boxes;
 mod connectivity;

@@ -5,17 +5,17 @@ use glam::DVec3;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::PlatformError;
 
-/// The file for all 90 buildings has about 2 MB.
+/// Largest file, bytes; the real one for all 90 buildings has about 2 MB.
 const MAX_BYTES: u64 = 8 << 20;
-const HINT: &str = "take the file again from REVERIE's repository";
+const HINT: &str = "download the file again from REVERIE's repository";
 
 /// Centres by scan and object.
 pub(crate) type ObjectPositions = BTreeMap<String, BTreeMap<String, DVec3>>;
 
-/// Reads all centres; none where there is no such file.
+/// Reads all centres; there are none if there is no such file.
 ///
 /// # Errors
-/// When it is not such a file; the message names the scan and the object.
+/// If the file does not have this format; the message names the scan and the object.
 pub(crate) fn read(file: &Path) -> Result<ObjectPositions, PlatformError> {
     let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(ObjectPositions::new());
@@ -54,7 +54,7 @@ mod tests {
     fn errors_name_the_object() {
         assert_eq!(
             parse(br#"{"s": {"4": [1e9, 2, 3]}}"#).unwrap_err(),
-            "scan s, object 4: 1000000000 is no place in a building"
+            "scan s, object 4: 1000000000 is not a plausible coordinate"
         );
         assert!(parse(br#"{"s": {"4": [1, 2]}}"#).unwrap_err().contains("is not {scan"));
     }

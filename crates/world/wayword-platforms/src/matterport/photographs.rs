@@ -1,4 +1,4 @@
-//! The photographs of a viewpoint, and views of them.
+//! The photographs of a viewpoint, and views made from them.
 
 use super::{
     connectivity::Viewpoint,
@@ -12,20 +12,20 @@ use wayword_render::{CubeMap, Face, sample_view};
 
 const WIDTH_PX: u32 = 640;
 const HEIGHT_PX: u32 = 480;
-/// Wider gazes than this are not flat pictures any more, radians.
+/// Widest field of view of a flat picture, radians.
 const MAX_FOV_RAD: f64 = 2.8;
 
-/// What a viewpoint was photographed as.
+/// The photographs of a viewpoint, in one of two forms.
 pub(crate) enum Photographs {
     Skybox { cube: Box<CubeMap>, world_from_skybox: DMat3 },
     Views(ThirtySix),
 }
 
 impl Photographs {
-    /// Reads a viewpoint's skybox, or else its 36 views; `None` where there are neither.
+    /// Reads a viewpoint's skybox, or else its 36 views; `None` if there are neither.
     ///
     /// # Errors
-    /// When a picture is missing from its set, or broken.
+    /// If a picture of the set is missing or broken.
     pub(crate) fn read(layout: &Layout, scene: &SceneId, at: &Viewpoint) -> Result<Option<Self>, PlatformError> {
         if let Some(files) = layout.skybox(scene, &at.id) {
             return Ok(Some(Self::Skybox { cube: Box::new(cube(&files)?), world_from_skybox: at.world_from_skybox }));
@@ -34,7 +34,7 @@ impl Photographs {
         Ok(views.map(Self::Views))
     }
 
-    /// What is seen along a gaze; `None` where it is too wide, or too narrow, for a flat picture.
+    /// The picture along a gaze; `None` if the gaze is too wide or too narrow for a flat picture.
     pub(crate) fn view(&self, gaze: Gaze) -> Option<Image> {
         if !(0.01..=MAX_FOV_RAD).contains(&gaze.horizontal_fov_rad) {
             return None;
@@ -65,8 +65,8 @@ fn cube(files: &SkyboxFiles) -> Result<CubeMap, PlatformError> {
                 let picture = read::picture(file)?;
                 faces.push(Face { side_px: picture.height_px(), rgb: picture.rgb().to_vec() });
             }
-            let faces =
-                <[Face; 6]>::try_from(faces).map_err(|_| read::wrong(&files[0], "has not six faces", PICTURE_HINT))?;
+            let faces = <[Face; 6]>::try_from(faces)
+                .map_err(|_| read::wrong(&files[0], "must have six faces", PICTURE_HINT))?;
             CubeMap::new(faces).map_err(|error| read::wrong(&files[0], error.to_string(), PICTURE_HINT))
         }
     }

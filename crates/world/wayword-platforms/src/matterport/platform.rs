@@ -20,16 +20,17 @@ use wayword_core::{
 };
 use wayword_world::graph_walk;
 
-/// How many viewpoints' boxes are kept in memory.
+/// Number of viewpoints whose boxes are kept in memory.
 const BOXES_KEPT: usize = 256;
-/// How many viewpoints' photographs are kept in memory: 5 MB each for small skyboxes, 19 for whole ones, 33 for 36 views.
+/// Number of viewpoints whose photographs are kept in memory: 5 MB each for small skyboxes, 19 for full ones, 33 for 36
+/// views.
 const PHOTOGRAPHS_KEPT: usize = 8;
 
-/// Matterport3D's buildings, from the files that a user has.
+/// Matterport3D's buildings, from the files that the user has.
 ///
-/// Pictures, where there are photographs, have 640x480 square pixels and the horizontal field of view that is asked for:
-/// a quarter of a panorama is 73.7 degrees high. Labels carry no boxes: their directions are exact, REVERIE's boxes belong
-/// to other views.
+/// If there are photographs, pictures have 640x480 square pixels and the requested horizontal field of view: a quarter
+/// of a panorama is 73.7 degrees high. Labels have exact directions but no boxes, because REVERIE's boxes belong to
+/// other views.
 pub struct Matterport {
     layout: Layout,
     centres: ObjectPositions,
@@ -39,11 +40,11 @@ pub struct Matterport {
 }
 
 impl Matterport {
-    /// Finds the data below a folder: `connectivity` is needed; rooms, `.house` files, REVERIE's boxes and object centres,
-    /// and photographs are used where they are.
+    /// Finds the data below a folder. `connectivity` is needed; rooms, `.house` files, REVERIE's boxes and object
+    /// centres, and photographs are used if they are there.
     ///
     /// # Errors
-    /// When there are no connectivity graphs, or the object centres cannot be read.
+    /// If there are no connectivity graphs, or the object centres cannot be read.
     pub fn open(data: &FilePath) -> Result<Self, PlatformError> {
         let layout = Layout::find(data)?;
         let centres = layout.object_positions.as_deref().map(object_positions::read).transpose()?.unwrap_or_default();
@@ -56,8 +57,8 @@ impl Matterport {
         })
     }
 
-    /// What the data below a folder lacks for telling of objects, and what to do; `None` where it lacks nothing, or holds no
-    /// buildings at all.
+    /// A warning that says which files about objects are missing below a folder, and what to do; `None` if none are
+    /// missing, or if the folder holds no buildings.
     #[must_use]
     pub fn lack_of_objects(data: &FilePath) -> Option<String> {
         Layout::find(data).ok()?.lack_of_objects(data)
@@ -67,7 +68,8 @@ impl Matterport {
         if let Some(loaded) = self.scenes.lock().unwrap_or_else(PoisonError::into_inner).get(scene) {
             return Ok(Arc::clone(loaded));
         }
-        // Not under the lock: other buildings need not wait. Whoever comes second takes what the first has put there.
+        // Loaded without the lock, so that other buildings need not wait. If two threads load the same one, the first
+        // result counts.
         let loaded = Arc::new(Scene::load(&self.layout, scene)?);
         let mut scenes = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(Arc::clone(scenes.entry(scene.clone()).or_insert(loaded)))
@@ -80,7 +82,7 @@ impl Matterport {
         })
     }
 
-    /// Everything that is visible from a viewpoint, or `None` where nothing is known about it.
+    /// All objects that are visible from a viewpoint, or `None` if nothing is known about it.
     fn labels(
         &self,
         id: &SceneId,
@@ -97,7 +99,7 @@ impl Matterport {
         Ok(house.map(|house| labels::from_house(house, viewpoint, eye)))
     }
 
-    /// The picture of a gaze, where there are photographs and the gaze is one that a flat picture can have.
+    /// The picture along a gaze, if there are photographs and the gaze fits a flat picture.
     fn image(&self, id: &SceneId, viewpoint: &Viewpoint, gaze: Gaze) -> Result<Option<Arc<Image>>, PlatformError> {
         let photographs = self
             .photographs
@@ -105,7 +107,8 @@ impl Matterport {
         Ok(photographs.as_ref().as_ref().and_then(|photographs| photographs.view(gaze)).map(Arc::new))
     }
 
-    /// All objects listed anywhere in a building. Viewpoints are read one after another and not kept.
+    /// All objects that are listed anywhere in a building. The viewpoints' files are read one after another and not
+    /// kept.
     fn objects<'a>(&self, id: &SceneId, scene: &'a Scene) -> Result<&'a BTreeMap<ObjectId, Everywhere>, PlatformError> {
         if let Some(objects) = scene.objects.get() {
             return Ok(objects);
@@ -191,7 +194,8 @@ impl Platform for Matterport {
         Ok(self.objects(id, &scene)?.get(object).and_then(|object| object.name.clone()))
     }
 
-    /// Where REVERIE's boxes show it, as its evaluator has it; without them, where the `.house` file's labels do.
+    /// From the viewpoints where REVERIE's boxes show it, as in REVERIE's evaluator; without boxes, from those where
+    /// the `.house` file's labels list it.
     fn visible_from(&self, id: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         let scene = self.scene(id)?;
         let objects = self.objects(id, &scene)?;

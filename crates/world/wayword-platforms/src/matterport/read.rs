@@ -1,4 +1,4 @@
-//! Pictures, and values of JSON files, from outside; and the words for what is wrong with them.
+//! Reads pictures and values of JSON files that come from outside, and says what is wrong with them.
 
 use serde_json::Value;
 use std::path::Path;
@@ -7,36 +7,35 @@ use wayword_world::files;
 
 pub(crate) use wayword_world::files::{bytes_if_there, json_if_there, text_if_there, wrong};
 
-/// Largest file of a picture.
+/// Largest picture file, bytes.
 const MAX_PICTURE_BYTES: u64 = 32 << 20;
 /// What to do about a broken picture.
-pub(crate) const PICTURE_HINT: &str =
-    "take the picture again from Matterport3D, or move it away to work from labels alone";
+pub(crate) const PICTURE_HINT: &str = "get the picture again from Matterport3D, or move it away to use only labels";
 
-/// Numbers beyond this are no place in a building, metres.
+/// Largest absolute value of a coordinate in a building, metres.
 const MAX_COORDINATE_M: f64 = 1e6;
 
-/// Decodes a JPEG or PNG file, within bounds.
+/// Decodes a JPEG or PNG file of limited size.
 ///
 /// # Errors
-/// When it is missing, too large, or no picture.
+/// If it is missing, too large, or not a picture.
 pub(crate) fn picture(file: &Path) -> Result<Image, PlatformError> {
     let wrong = |reason: String| wrong(file, reason, PICTURE_HINT);
     let bytes = bytes_if_there(file, MAX_PICTURE_BYTES, PICTURE_HINT)?
-        .ok_or_else(|| wrong("is missing from its set".into()))?;
+        .ok_or_else(|| wrong("is missing from its set of pictures".into()))?;
     files::picture(&bytes).map_err(wrong)
 }
 
-/// A finite coordinate of plausible size, or the words for what is wrong with it.
+/// A finite coordinate of plausible size, or a text that says what is wrong with it.
 pub(crate) fn coordinate(number: f64) -> Result<f64, String> {
     if number.is_finite() && number.abs() <= MAX_COORDINATE_M {
         Ok(number)
     } else {
-        Err(format!("{number} is no place in a building"))
+        Err(format!("{number} is not a plausible coordinate"))
     }
 }
 
-/// A field of an item, or the words for its absence.
+/// A field of an item, or a text that says that it is missing.
 pub(crate) fn field<'a>(item: &'a Value, name: &str) -> Result<&'a Value, String> {
     item.get(name).ok_or_else(|| format!("field `{name}` is missing"))
 }

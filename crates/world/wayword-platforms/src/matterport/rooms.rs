@@ -8,15 +8,15 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_core::{PlatformError, ViewpointId};
 
 const MAX_BYTES: u64 = 4 << 20;
-const HINT: &str = "take the file again from Matterport3D's house_segmentations";
+const HINT: &str = "get the file again from Matterport3D's house_segmentations";
 
 /// The room of each viewpoint, as a letter.
 pub(crate) type RoomLetters = BTreeMap<ViewpointId, char>;
 
-/// Reads the rooms; `None` where there is no such file.
+/// Reads the rooms; `None` if there is no such file.
 ///
 /// # Errors
-/// When a line is not one of such a file; the message names it.
+/// If a line does not have this format; the message names the line.
 pub(crate) fn read(file: &Path) -> Result<Option<RoomLetters>, PlatformError> {
     let Some(text) = read::text_if_there(file, MAX_BYTES, HINT)? else {
         return Ok(None);

@@ -19,16 +19,16 @@ pub(crate) struct Scene {
     pub(crate) viewpoints: BTreeMap<ViewpointId, Viewpoint>,
     pub(crate) house: Option<House>,
     rooms: Option<rooms::RoomLetters>,
-    /// All objects that REVERIE lists anywhere in the building; read when first asked for.
+    /// All objects that REVERIE lists anywhere in the building; read when first needed.
     pub(crate) objects: OnceLock<BTreeMap<ObjectId, Everywhere>>,
 }
 
-/// An object, over all viewpoints of a building.
+/// What all viewpoints of a building list about one object.
 #[derive(Debug, Default)]
 pub(crate) struct Everywhere {
-    /// In plain words; `None` where the annotators' name has none.
+    /// In plain words; `None` if the annotators' name has no plain words.
     pub(crate) name: Option<String>,
-    /// Where it is listed with a box.
+    /// The viewpoints that list it with a box.
     pub(crate) visible_from: BTreeSet<ViewpointId>,
 }
 
@@ -36,12 +36,12 @@ impl Scene {
     /// Reads a building's graph, rooms and `.house` file.
     ///
     /// # Errors
-    /// When it is not there, or one of its files is broken.
+    /// If it does not exist, or one of its files is broken.
     pub(crate) fn load(layout: &Layout, scene: &SceneId) -> Result<Self, PlatformError> {
         let file = layout.connectivity(scene);
         let read = connectivity::read(&file)?.ok_or_else(|| PlatformError::UnknownScene {
             scene: scene.to_string(),
-            hint: format!("{} is not there", file.display()),
+            hint: format!("{} does not exist", file.display()),
         })?;
         let house = layout.house(scene).map(|file| house_file::read(&file)).transpose()?.flatten();
         let rooms = layout.rooms(scene).map(|file| rooms::read(&file)).transpose()?.flatten();
@@ -49,14 +49,14 @@ impl Scene {
             read::wrong(
                 &file,
                 error.to_string(),
-                "take the file again from Matterport3DSimulator's folder `connectivity`",
+                "copy the file again from Matterport3DSimulator's folder `connectivity`",
             )
         })?;
         let viewpoints = read.viewpoints.into_iter().map(|viewpoint| (viewpoint.id.clone(), viewpoint)).collect();
         Ok(Self { graph: Arc::new(graph), viewpoints, house, rooms, objects: OnceLock::new() })
     }
 
-    /// Whether rooms are known here at all.
+    /// Whether there is a file that gives the rooms.
     pub(crate) fn knows_rooms(&self) -> bool {
         self.rooms.is_some() || self.house.is_some()
     }

@@ -5,12 +5,12 @@ use rayon::prelude::*;
 use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Gaze, Image, PlatformError};
 
-const HINT: &str = "draw the views again: all of one size, with a vertical field of view of 60 degrees";
+const HINT: &str = "render the views again, all of the same size and with a vertical field of view of 60 degrees";
 /// Half of the views' vertical field of view.
 const HALF_FOV_RAD: f64 = FRAC_PI_6;
 const ROWS: usize = 3;
 const COLUMNS: usize = 12;
-/// The most pixels of one view: 36 of them are held.
+/// Most pixels of one view; 36 views are in memory at a time.
 const MAX_PIXELS: u64 = 1280 * 960;
 
 /// The pictures of a panorama, by view index: rows at -30, 0 and 30 degrees of elevation, columns every 30 degrees.
@@ -18,7 +18,7 @@ pub(crate) struct ThirtySix {
     views: Vec<Image>,
 }
 
-/// Where a ray meets a view: how far along its axis, and the pixel (continuous, from the top left corner).
+/// Where a ray meets a view: its component along the view's axis, and the pixel (continuous, from the top left corner).
 struct Hit {
     along: f64,
     x_px: f64,
@@ -29,7 +29,7 @@ impl ThirtySix {
     /// Reads the views of a folder.
     ///
     /// # Errors
-    /// When one is missing or broken, or they are not all of one size.
+    /// If a view is missing or broken, or the views differ in size.
     pub(crate) fn read(folder: &Path) -> Result<Self, PlatformError> {
         let mut views: Vec<Image> = Vec::with_capacity(VIEWS);
         for index in 0..VIEWS {
@@ -44,14 +44,19 @@ impl ThirtySix {
                 ));
             }
             if views.first().is_some_and(|first| (first.width_px(), first.height_px()) != size) {
-                return Err(read::wrong(&file, format!("has {} x {} pixels, unlike 0.jpg", size.0, size.1), HINT));
+                return Err(read::wrong(
+                    &file,
+                    format!("has {} x {} pixels, but 0.jpg has another size", size.0, size.1),
+                    HINT,
+                ));
             }
             views.push(view);
         }
         Ok(Self { views })
     }
 
-    /// The view along a gaze, resampled: each pixel from the view whose axis is nearest, bilinear. RGB, from the top left.
+    /// The view along a gaze. Each pixel comes from the view whose axis is nearest, with bilinear interpolation. RGB,
+    /// from the top left.
     pub(crate) fn sample(&self, gaze: Gaze, width: u32, height: u32) -> Vec<u8> {
         let pixel = 2.0 * libm::tan(gaze.horizontal_fov_rad / 2.0) / f64::from(width);
         let columns: Vec<(usize, f64, f64)> = (0..width)
@@ -78,7 +83,7 @@ impl ThirtySix {
         bilinear(&self.views[COLUMNS * best.0 + column], best.1.x_px, best.1.y_px)
     }
 
-    /// Where the ray (right, ahead, up) of a column's axes meets the view in a row of that column.
+    /// Where a ray, given as (right, ahead, up) in a column's axes, meets the view in a row of that column.
     fn meet(&self, row: usize, right: f64, ahead: f64, up: f64) -> Hit {
         let (sin, cos) = TILTS[row];
         let (along, above) = (ahead * cos + up * sin, up * cos - ahead * sin);
@@ -92,8 +97,8 @@ impl ThirtySix {
 const TILTS: [(f64, f64); ROWS] = [(-0.5, COS_30), (0.0, 1.0), (0.5, COS_30)];
 const COS_30: f64 = 0.866_025_403_784_438_6;
 
-/// The column whose axis is nearest to the direction `off` (a tangent, positive right) from a heading, and the parts of
-/// the ray (off, 1) to the right of and along that axis.
+/// The column whose axis is nearest to the direction `off` (a tangent, positive to the right) from a heading, and the
+/// components of the ray (off, 1) to the right of that axis and along it.
 fn column(heading_rad: f64, off: f64) -> (usize, f64, f64) {
     let steps = libm::round((heading_rad + libm::atan(off)) / FRAC_PI_6);
     let turn = heading_rad - steps * FRAC_PI_6;
@@ -101,7 +106,7 @@ fn column(heading_rad: f64, off: f64) -> (usize, f64, f64) {
     (steps.rem_euclid(COLUMNS as f64) as usize % COLUMNS, sin + cos * off, cos - sin * off)
 }
 
-/// Bilinear between pixel centres, clamped at the edges.
+/// Bilinear interpolation between pixel centres, clamped at the edges.
 fn bilinear(picture: &Image, x_px: f64, y_px: f64) -> [u8; 3] {
     let split = |position: f64, side: u32| {
         let position = (position - 0.5).clamp(0.0, f64::from(side - 1));

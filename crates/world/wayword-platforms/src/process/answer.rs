@@ -1,4 +1,4 @@
-//! What a child answers, taken apart.
+//! Parses the answers of a child.
 
 use super::fault::Fault;
 use serde::Deserialize;
@@ -7,19 +7,20 @@ use wayword_world::said::plain;
 
 /// Longest line of a child, bytes: an answer with a large picture in base64.
 pub(crate) const MAX_LINE_BYTES: usize = 48 << 20;
-/// Most commas and brackets in a line. Each can become a JSON value in memory, which takes far more room than its byte.
+/// Most commas and opening brackets in a line. Each can become a JSON value, which takes far more memory than its one
+/// byte.
 const MAX_VALUES: usize = 1_000_000;
-/// How much of a line an error repeats, characters.
+/// Length of the part of a line that an error shows, characters.
 const SHOWN_CHARS: usize = 80;
 
-/// What a child answered, and to which request.
+/// A child's answer to a request.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Answer {
     pub(crate) id: u64,
     pub(crate) outcome: Result<Value, Refusal>,
 }
 
-/// A child's own error.
+/// An error that the child sent.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub(crate) struct Refusal {
     #[serde(default)]
@@ -36,10 +37,10 @@ struct Wire {
     error: Option<Refusal>,
 }
 
-/// Takes an answer apart.
+/// Parses an answer.
 ///
 /// # Errors
-/// When the line is no JSON object with an id and either a result or an error.
+/// If the line is not a JSON object with an id and either a result or an error.
 pub(crate) fn answer(line: &[u8]) -> Result<Answer, Fault> {
     let nonsense = |reason: String| Fault::Nonsense { reason, start: start_of(line) };
     if line.iter().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count() > MAX_VALUES {
@@ -49,12 +50,12 @@ pub(crate) fn answer(line: &[u8]) -> Result<Answer, Fault> {
     let outcome = match (wire.result, wire.error) {
         (Some(result), None) => Ok(result),
         (None, Some(refusal)) => Err(refusal),
-        _ => return Err(nonsense("an answer has either `result` or `error`".into())),
+        _ => return Err(nonsense("an answer must have either `result` or `error`".into())),
     };
     Ok(Answer { id: wire.id, outcome })
 }
 
-/// The beginning of a line, as an error may show it.
+/// The beginning of a line, in a form that an error may show.
 fn start_of(line: &[u8]) -> String {
     let start = String::from_utf8_lossy(&line[..line.len().min(4 * SHOWN_CHARS)]);
     plain(&start, SHOWN_CHARS)
@@ -86,7 +87,7 @@ mod tests {
             b"",
             b"\xff\xfe",
         ] {
-            assert!(matches!(answer(bad), Err(Fault::Nonsense { .. })), "{bad:?} was taken for an answer");
+            assert!(matches!(answer(bad), Err(Fault::Nonsense { .. })), "{bad:?} was accepted as an answer");
         }
     }
 
@@ -119,7 +120,7 @@ mod tests {
             line[at] = byte;
             line.truncate(line.len() - cut);
             match answer(&line) {
-                Ok(answer) => prop_assert!(answer.outcome.is_ok(), "no mutation of one byte makes an error of it"),
+                Ok(answer) => prop_assert!(answer.outcome.is_ok(), "one byte cannot turn it into an error"),
                 Err(fault) => prop_assert!(fault.to_string().chars().count() < 500 && !fault.leaves_it_usable()),
             }
         }

@@ -1,4 +1,4 @@
-//! One child that runs: its pipes, and one request at a time.
+//! A running child: its pipes, and one request at a time.
 
 use super::{
     answer::{Answer, MAX_LINE_BYTES, answer},
@@ -18,25 +18,27 @@ use std::{
 };
 use wayword_world::said::{Hear, Line, plain, read_line};
 
-/// How long an end is waited for that its closed output announces, and the rest of its error output after it.
+/// How long to wait for a child's end after its output has closed, and then for the rest of its error output.
 const AFTERMATH: Duration = Duration::from_millis(500);
-/// How often a child that does not answer is looked at: whatever it has started may keep its output open when it has ended.
+/// How often to check whether a child that does not answer still runs. Its output need not close when it ends, because
+/// processes that it started may keep the output open.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 
-/// A child process. Dropped, it is asked to go by the end of its input, and killed if it stays; whatever it has started is
-/// killed in either case.
+/// A child process. When it is dropped, its input is closed, which asks it to end; it is killed if it does not end. The
+/// processes that it started are killed in either case.
 pub(crate) struct Running {
     group: Group,
-    /// To the thread that writes: a child that does not read must not hold up whoever asks. `None` once it has to go.
+    /// To the thread that writes: a child that does not read must not block the caller. `None` once the child has to
+    /// end.
     requests: Option<SyncSender<Vec<u8>>>,
-    /// From the thread that reads. It waits until a line is taken, so a flood stays in the pipe.
+    /// From the thread that reads. It waits until a line is received, so a flood of lines stays in the pipe.
     lines: Receiver<Line>,
     last_words: LastWords,
     listener: JoinHandle<()>,
 }
 
 impl Running {
-    /// Starts the program; nothing is asked yet.
+    /// Starts the program, without sending a request.
     pub(crate) fn start(options: &ProcessOptions, hear: &Hear) -> Result<Self, Fault> {
         let mut command = Command::new(&options.program);
         command.args(&options.arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -59,12 +61,12 @@ impl Running {
         Ok(Self { group, requests: Some(requests), lines, last_words, listener })
     }
 
-    /// Whether it has ended since it was last asked.
+    /// Whether it has ended.
     pub(crate) fn has_ended(&self) -> bool {
         self.group.ends_within(Duration::ZERO)
     }
 
-    /// Asks, and waits for the answer.
+    /// Sends a request and waits for the answer.
     pub(crate) fn ask(
         &mut self,
         id: u64,
@@ -74,7 +76,7 @@ impl Running {
     ) -> Result<Value, Fault> {
         let mut request = json!({ "id": id, "method": method, "params": params }).to_string();
         request.push('\n');
-        // If it cannot be sent, the child is gone, and its output says the same.
+        // If the request cannot be sent, the child has ended, and reading its output gives the error.
         let _ = self.requests.as_ref().map(|requests| requests.try_send(request.into_bytes()));
         let answer = match self.next_line(within) {
             Ok(Line::Whole(line)) => answer(&line)?,
@@ -92,7 +94,7 @@ impl Running {
         }
     }
 
-    /// Waits for a line, and no longer than the child lives.
+    /// Waits for a line, but no longer than until the child ends.
     fn next_line(&self, within: Duration) -> Result<Line, RecvTimeoutError> {
         let asked = Instant::now();
         loop {
@@ -100,7 +102,7 @@ impl Running {
             match self.lines.recv_timeout(left.min(LOOK_EVERY)) {
                 Err(RecvTimeoutError::Timeout) if left <= LOOK_EVERY => return Err(RecvTimeoutError::Timeout),
                 Err(RecvTimeoutError::Timeout) if self.has_ended() => {
-                    // What it wrote at last may still be on its way.
+                    // Its last line may not have arrived yet.
                     return Ok(self.lines.recv_timeout(AFTERMATH).unwrap_or(Line::End));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -109,28 +111,29 @@ impl Running {
         }
     }
 
-    /// What the end of its output means.
+    /// The fault that the end of its output means.
     fn end(&self) -> Fault {
         if !self.group.ends_within(AFTERMATH) {
             return Fault::Closed;
         }
-        Fault::Died(self.group.end().map_or_else(|| "nobody knows how".to_owned(), |status| status.to_string()))
+        Fault::Died(self.group.end().map_or_else(|| "exit status unknown".to_owned(), |status| status.to_string()))
     }
 
     fn half(&self, line: &[u8]) -> Fault {
         let end = self.end();
         match answer(line) {
             Err(Fault::Nonsense { start, .. }) => {
-                Fault::Nonsense { reason: format!("half a line, and then it {end}"), start }
+                Fault::Nonsense { reason: format!("half a line, then it {end}"), start }
             }
             _ => end,
         }
     }
 
-    /// Kills it with its group, and tells what it said at last.
+    /// Kills it with its group, and returns the last lines of its error output.
     pub(crate) fn bury(self) -> String {
         self.group.end();
-        // Its last words may still be on their way; a process that left its group may keep the pipe open for ever.
+        // Its last lines may not have arrived yet. The wait is bounded, because a process that left the group may keep
+        // the pipe open for ever.
         let mut waited = Duration::ZERO;
         while !self.listener.is_finished() && waited < AFTERMATH {
             thread::sleep(Duration::from_millis(5));

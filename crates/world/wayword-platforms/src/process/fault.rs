@@ -1,4 +1,4 @@
-//! What can be wrong with a child, and the words for it.
+//! What can be wrong with a child, and the messages for it.
 
 use super::protocol::{FRAME, PROTOCOL};
 use std::io;
@@ -10,34 +10,34 @@ pub(crate) enum Fault {
     NotStarted(#[source] io::Error),
     #[error("died ({0})")]
     Died(String),
-    #[error("closed its standard output, but lives on")]
+    #[error("closed its standard output, but is still running")]
     Closed,
     #[error("did not answer within {0} s")]
     Hung(f64),
     #[error("wrote a line of more than {0} bytes")]
     LongLine(usize),
-    #[error("wrote what is no answer ({reason}): {start:?}")]
+    #[error("wrote a line that is not an answer ({reason}): {start:?}")]
     Nonsense { reason: String, start: String },
     #[error("answered request {found} when it was asked request {asked}")]
     WrongId { asked: u64, found: u64 },
-    #[error("speaks version {0} of the protocol; this is version {PROTOCOL}")]
+    #[error("speaks version {0} of the protocol; Wayword speaks version {PROTOCOL}")]
     Version(u64),
-    #[error("measures in {0:?}, which is not {FRAME:?}")]
+    #[error("uses the frame {0:?}, expected {FRAME:?}")]
     Frame(String),
     #[error("sent a greeting that cannot be used: {0}")]
     Greeting(String),
     #[error("offers other things than before it was restarted")]
     Changed,
-    #[error("was restarted as often as is allowed, and is not started again; at last it {0}")]
+    #[error("was restarted as often as `restarts` allows, and is not started again; the last time it {0}")]
     GaveUp(String),
-    #[error("refuses: {message}")]
+    #[error("refused the request: {message}")]
     Refused { code: Option<String>, message: String },
     #[error("sent an answer that cannot be used: {0}")]
     Misfit(String),
 }
 
 impl Fault {
-    /// Whether the child can still be asked: it understood, and answered this request and no other.
+    /// Whether the child can still be used: it understood the request, and answered this request and no other.
     pub(crate) fn leaves_it_usable(&self) -> bool {
         matches!(self, Self::Refused { .. } | Self::Misfit(_))
     }
@@ -45,18 +45,22 @@ impl Fault {
     /// What to do about it.
     pub(crate) fn hint(&self) -> &'static str {
         match self {
-            Self::NotStarted(_) => "check that the program is there and may be run, and its arguments",
-            Self::Died(_) | Self::Closed | Self::GaveUp(_) => "run it by hand: its own error output says more",
+            Self::NotStarted(_) => "check that the program exists and is executable, and check its arguments",
+            Self::Died(_) | Self::Closed | Self::GaveUp(_) => {
+                "run the program yourself: its own error output says more"
+            }
             Self::Hung(_) => {
-                "give it more time in the world file (answer_within_s, start_within_s), or see why it is slow"
+                "give it more time in the world file (answer_within_s, start_within_s), or find out why it is slow"
             }
             Self::LongLine(_) | Self::Nonsense { .. } | Self::WrongId { .. } => {
-                "only answers may go to standard output, one JSON object a line; print everything else to standard error"
+                "only answers may go to standard output, one JSON object per line; print all else to standard error"
             }
-            Self::Version(_) => "take the wayword_platform.py that came with this version",
-            Self::Frame(_) => "convert in the child, and say so: see docs/PROCESS.md",
-            Self::Greeting(_) | Self::Changed | Self::Misfit(_) => "docs/PROCESS.md says what an answer holds",
-            Self::Refused { .. } => "this is the world's own answer",
+            Self::Version(_) => "use the wayword_platform.py that comes with this version of Wayword",
+            Self::Frame(_) => "convert to this frame in the child, and name it in the greeting: see docs/PROCESS.md",
+            Self::Greeting(_) | Self::Changed | Self::Misfit(_) => {
+                "see docs/PROCESS.md for what an answer must contain"
+            }
+            Self::Refused { .. } => "the message comes from the world program, not from Wayword",
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The viewpoint graph of a child's scene: its own, or made here from places and from what it says of the ways between.
+//! The viewpoint graph of a child's scene: the child's own, or one made here from its places and the ways between them.
 
 use super::{keeper::Keeper, labels::place, protocol::Offer};
 use serde::Deserialize;
@@ -8,15 +8,15 @@ use wayword_core::{DVec3, PlatformError, SceneId, ViewpointGraph, ViewpointId, g
 
 const MAX_VIEWPOINTS: usize = 20_000;
 const MAX_EDGES: usize = 200_000;
-/// Places that are asked for where the graph is made here.
+/// Number of places to ask for, if the graph is made here.
 const POINTS_ASKED: usize = 1000;
-/// Most places whose neighbours are asked for one by one, or whose ways are tried.
+/// Most places from which a graph is made here.
 const MAX_POINTS: usize = 5000;
-/// Ways are tried as far as this many spacings.
+/// Longest way that is tried, in spacings.
 const REACH: f64 = 3.0;
-/// So many nearest places are tried from each.
+/// Number of nearest places to which a way is tried from each place.
 const TRIED: usize = 8;
-/// Ways in one request.
+/// Most ways in one request.
 const BATCH: usize = 128;
 
 /// A place where one can stand.
@@ -53,7 +53,7 @@ struct Walkable {
 /// The graph of a scene.
 ///
 /// # Errors
-/// When the child does not answer, or its answers make no graph.
+/// If the child does not answer, or its answers do not make a graph.
 pub(crate) fn of_scene(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
     if keeper.world().has(Offer::Graph) {
         return whole(keeper, scene);
@@ -61,7 +61,7 @@ pub(crate) fn of_scene(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGrap
     let asked = json!({ "scene": scene, "count": POINTS_ASKED, "seed": 0 });
     let Points { points } = keeper.ask("points", &asked)?;
     if points.is_empty() || points.len() > MAX_POINTS {
-        let reason = format!("{} points, and 1 to {MAX_POINTS} can be used", points.len());
+        let reason = format!("{} points, expected 1 to {MAX_POINTS}", points.len());
         return Err(keeper.misfit("points", reason));
     }
     if keeper.world().has(Offer::Neighbours) {
@@ -75,7 +75,7 @@ fn whole(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformErr
     let Whole { viewpoints, edges } = keeper.ask("graph", &json!({ "scene": scene }))?;
     if viewpoints.is_empty() || viewpoints.len() > MAX_VIEWPOINTS || edges.len() > MAX_EDGES {
         let reason = format!(
-            "{} viewpoints and {} edges, and 1 to {MAX_VIEWPOINTS} and at most {MAX_EDGES} can be used",
+            "viewpoints: {}, expected 1 to {MAX_VIEWPOINTS}; edges: {}, expected at most {MAX_EDGES}",
             viewpoints.len(),
             edges.len()
         );
@@ -97,7 +97,7 @@ fn by_neighbours(keeper: &Keeper, scene: &SceneId, points: &[Waypoint]) -> Resul
         let Neighbours { viewpoints } = keeper.ask("neighbours", &asked)?;
         edges += viewpoints.len();
         if edges > MAX_EDGES {
-            return Err(keeper.misfit("neighbours", format!("more than {MAX_EDGES} in all")));
+            return Err(keeper.misfit("neighbours", format!("more than {MAX_EDGES} neighbours in all")));
         }
         for other in &viewpoints {
             graph.join(name, other).map_err(|error| keeper.misfit("neighbours", error.to_string()))?;
@@ -106,7 +106,7 @@ fn by_neighbours(keeper: &Keeper, scene: &SceneId, points: &[Waypoint]) -> Resul
     Ok(graph)
 }
 
-/// Nodes with the names that the child gave them.
+/// A graph of these places without edges, with the names that the child gave them.
 fn nodes(places: &[Waypoint]) -> Result<ViewpointGraph, String> {
     let mut graph = ViewpointGraph::default();
     for (index, here) in places.iter().enumerate() {
@@ -117,7 +117,7 @@ fn nodes(places: &[Waypoint]) -> Result<ViewpointGraph, String> {
     Ok(graph)
 }
 
-/// Thins the places out, asks which ways between near ones can be walked straight, and keeps the largest connected part.
+/// Thins the places out, asks between which near ones one can walk straight, and keeps the largest connected part.
 fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Waypoint>) -> Result<ViewpointGraph, PlatformError> {
     let spacing_m = keeper.options().spacing_m;
     let points = thinned(points, spacing_m).map_err(|reason| keeper.misfit("points", reason))?;
@@ -127,7 +127,7 @@ fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Waypoint>) -> Result
         let pairs: Vec<_> = batch.iter().map(|(a, b)| [points[*a].position, points[*b].position]).collect();
         let Walkable { walkable } = keeper.ask("walkable", &json!({ "scene": scene, "pairs": pairs }))?;
         if walkable.len() != batch.len() {
-            let reason = format!("{} answers to {} pairs", walkable.len(), batch.len());
+            let reason = format!("`walkable` has length {}, but `pairs` has {}", walkable.len(), batch.len());
             return Err(keeper.misfit("walkable", reason));
         }
         open.extend(batch.iter().zip(walkable).filter(|(_, open)| *open).map(|(pair, _)| *pair));
@@ -135,7 +135,7 @@ fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Waypoint>) -> Result
     joined(&points, &open).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })
 }
 
-/// Places at least `spacing_m` apart, the first of each crowd, each with a name.
+/// Places at least `spacing_m` apart, each with a name; of places nearer together, the first is kept.
 fn thinned(points: Vec<Waypoint>, spacing_m: f64) -> Result<Vec<Waypoint>, String> {
     let mut kept: Vec<Waypoint> = Vec::new();
     for point in points {
@@ -149,7 +149,7 @@ fn thinned(points: Vec<Waypoint>, spacing_m: f64) -> Result<Vec<Waypoint>, Strin
     Ok(kept)
 }
 
-/// Each place with its nearest ones, every pair once, in order.
+/// Pairs of each place with its nearest ones, sorted, each pair once.
 fn near_pairs(points: &[Waypoint], reach_m: f64) -> Vec<(usize, usize)> {
     let positions: Vec<DVec3> = points.iter().map(|point| DVec3::from_array(point.position)).collect();
     let mut pairs = BTreeSet::new();
@@ -166,7 +166,7 @@ fn near_pairs(points: &[Waypoint], reach_m: f64) -> Vec<(usize, usize)> {
     pairs.into_iter().collect()
 }
 
-/// The largest connected part of the graph; of two alike, the one with the first place.
+/// The largest connected part of the graph; of two with the same size, the one with the first place.
 fn joined(points: &[Waypoint], open: &[(usize, usize)]) -> Result<ViewpointGraph, GraphError> {
     let part = parts(points.len(), open);
     let size = |number: usize| part.iter().filter(|other| **other == number).count();
@@ -186,7 +186,7 @@ fn joined(points: &[Waypoint], open: &[(usize, usize)]) -> Result<ViewpointGraph
     Ok(graph)
 }
 
-/// For each place the first place of its part.
+/// For each place, the first place of its connected part.
 fn parts(count: usize, open: &[(usize, usize)]) -> Vec<usize> {
     let mut beside = vec![Vec::new(); count];
     for (a, b) in open {

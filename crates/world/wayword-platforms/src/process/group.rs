@@ -1,7 +1,7 @@
-//! A child and whatever it starts: one process group, which ends as a whole.
+//! A child and the processes that it starts: one process group, which ends as a whole.
 //!
-//! A group's number may be another's as soon as nobody is in it. So the group is killed first and its leader reaped
-//! afterwards: a leader that has ended and was not reaped keeps the number.
+//! The system may give a group's number to another group as soon as no process is in it. So the group is killed first
+//! and its leader is reaped afterwards, because a leader that has ended but was not reaped keeps the number.
 
 use super::guard::Guard;
 use std::{
@@ -14,25 +14,26 @@ use std::{
 };
 use wayword_world::said::Hear;
 
-/// How often an end that is waited for is looked for.
+/// How often to check whether a child has ended, while waiting for its end.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
-/// How long the end of a killed child is waited for. One that hangs in a driver takes longer, and is left to it.
+/// How long to wait for the end of a killed child. A child that hangs in a driver takes longer, and is not waited for.
 const REAPED_WITHIN: Duration = Duration::from_secs(1);
 
-/// Every group that runs, for [`end_all`].
+/// Every running group, for [`end_all`].
 static LIVING: Mutex<Living> = Mutex::new(Living { is_closed: false, groups: Vec::new() });
 
 struct Living {
-    /// Whether no other group may start.
+    /// Whether no more groups may start.
     is_closed: bool,
     groups: Vec<Weak<Mutex<Members>>>,
 }
 
-/// Kills every child that a [`ProcessPlatform`](super::ProcessPlatform) of this program has started, with whatever it has
-/// started, and lets no other start: for a program that ends because of a signal. A request that is under way fails at once.
+/// Kills every child that a [`ProcessPlatform`](super::ProcessPlatform) of this program has started, with the processes
+/// that the child started, and prevents new ones from starting: for a program that ends because of a signal. A request
+/// that is under way fails at once.
 ///
-/// It takes a second at most. It may be called more than once, from any thread, but not within a signal handler itself: it
-/// takes locks.
+/// It takes at most a second. It may be called more than once, from any thread, but not within a signal handler itself,
+/// because it takes locks.
 pub fn end_all() {
     let mut living = lock(&LIVING);
     living.is_closed = true;
@@ -47,35 +48,37 @@ pub fn end_all() {
     }
 }
 
-/// A child's ends of its three pipes.
+/// Our ends of a child's three pipes.
 pub(crate) type Pipes = (Option<ChildStdin>, Option<ChildStdout>, Option<ChildStderr>);
 
-/// A child that was started, and its group. Dropped, the group is killed.
+/// A started child and its group. When it is dropped, the group is killed.
 pub(crate) struct Group(Arc<Mutex<Members>>);
 
 struct Members {
     child: Child,
-    /// The leader of the group, where there is one; the child is otherwise.
+    /// The leader of the group, if there is a guard; otherwise the child is the leader.
     guard: Option<Guard>,
-    /// Whether the leader was reaped: the group's number may be another's now.
+    /// Whether the leader was reaped: another group may have the group's number now.
     is_over: bool,
 }
 
 impl Group {
-    /// Starts a command as a group of its own: a script that starts the simulator (`xvfb-run`, say) has to end together
-    /// with it, and Ctrl-C in the terminal is for Wayword.
+    /// Starts a command in a group of its own. A script that starts the simulator (such as `xvfb-run`) has to end
+    /// together with the simulator, and Ctrl-C in the terminal must reach only Wayword.
     ///
     /// # Errors
-    /// When it cannot be started, or the program is ending.
+    /// If the command cannot be started, or this program is ending.
     pub(crate) fn start(command: &mut Command, guard: Option<&Path>, hear: &Hear) -> io::Result<(Self, Pipes)> {
         let guard = guard.and_then(|program| match Guard::start(program) {
             Ok(guard) => Some(guard),
             Err(error) => {
-                hear(&format!("no guard can be started ({error}): if Wayword is killed, end the simulator by hand"));
+                hear(&format!(
+                    "the guard cannot be started ({error}): if Wayword is killed, end the simulator yourself"
+                ));
                 None
             }
         });
-        // Held while the child starts, so that `end_all` finds it or keeps it from starting.
+        // The lock is held while the child starts, so that `end_all` finds the child or prevents its start.
         let mut living = lock(&LIVING);
         if living.is_closed {
             return Err(io::Error::other("this program is ending"));
@@ -93,7 +96,7 @@ impl Group {
         Ok((Self(members), pipes))
     }
 
-    /// Whether the child ends within a time. Whatever it has started may live on.
+    /// Whether the child ends within a time. The processes that it started may still run.
     pub(crate) fn ends_within(&self, within: Duration) -> bool {
         let asked = Instant::now();
         loop {
@@ -107,7 +110,7 @@ impl Group {
         }
     }
 
-    /// Kills the group, and reaps the child; how the child ended, where it did.
+    /// Kills the group and reaps the child. Returns the child's exit status if it has ended.
     pub(crate) fn end(&self) -> Option<ExitStatus> {
         let mut members = lock(&self.0);
         members.kill();
@@ -127,7 +130,7 @@ impl Members {
         self.is_over || look(&mut self.child) != Look::Runs
     }
 
-    /// It can only fail where nobody is left.
+    /// Kills the group. This fails only if no process is left in it.
     fn kill(&mut self) {
         if self.is_over {
             return;
@@ -135,17 +138,17 @@ impl Members {
         #[cfg(unix)]
         {
             let leader = self.guard.as_mut().map_or(&mut self.child, Guard::process);
-            // Where somebody else has reaped the leader, the number may be another's.
+            // If other code has reaped the leader, another group may have the number.
             if look(leader) != Look::Unknown {
                 use rustix::process::{Pid, Signal, kill_process_group};
                 let _ = kill_process_group(Pid::from_child(leader), Signal::KILL);
             }
         }
-        // It may have left the group.
+        // The child may have left the group.
         let _ = self.child.kill();
     }
 
-    /// Only after [`Self::kill`].
+    /// Reaps the child. Call this only after [`Self::kill`].
     fn reap(&mut self, deadline: Instant) {
         while !self.is_over && matches!(self.child.try_wait(), Ok(None)) && Instant::now() < deadline {
             thread::sleep(LOOK_EVERY);
@@ -155,17 +158,17 @@ impl Members {
     }
 }
 
-/// What is known of a process that was started here.
+/// The state of a process that was started here.
 #[derive(PartialEq)]
 enum Look {
     Runs,
-    /// It is still to be reaped.
+    /// It has ended and is not reaped yet.
     Ended,
-    /// Somebody else reaped it.
+    /// Other code reaped it.
     Unknown,
 }
 
-/// Looks without reaping.
+/// Returns the state without reaping.
 #[cfg(unix)]
 fn look(process: &mut Child) -> Look {
     use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};

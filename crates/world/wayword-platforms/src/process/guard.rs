@@ -1,9 +1,9 @@
-//! Ends a child's group where this program is killed and can do nothing any more.
+//! Ends a child's group if this program is killed and can no longer do so itself.
 //!
-//! A guard is a small process that leads the group and reads from a pipe that only this program can write into. When the
-//! pipe ends, the program is gone, and the guard kills its own group, itself included. The number of the group cannot be
-//! another's then, because the guard is in it. A child that is just being started holds the pipe too until it is in the
-//! group and runs, so no moment is without a guard.
+//! A guard is a small process that leads the group and reads from a pipe that only this program can write into. When
+//! the pipe ends, this program has ended, and the guard kills its own group, itself included. No other group can have
+//! the group's number then, because the guard is in the group. While a child is being started, it holds the pipe too,
+//! until it is in the group and runs. So the child is guarded at every moment.
 
 use std::{
     env,
@@ -19,15 +19,15 @@ pub(crate) const FAREWELL: Duration = Duration::from_millis(500);
 /// The only argument of a guard.
 const ROLE: &str = "guard-children";
 
-/// A guard that stands. Dropped, it is ended.
+/// A running guard. When it is dropped, it is killed.
 pub(crate) struct Guard(Child);
 
 impl Guard {
-    /// Starts a program that calls [`stand_guard_if_asked`] as the leader of a group of its own.
+    /// Starts a program that calls [`stand_guard_if_asked`], as the leader of a group of its own.
     #[cfg(unix)]
     pub(crate) fn start(program: &Path) -> io::Result<Self> {
         let mut command = Command::new(program);
-        // Somebody may wait for the end of our outputs, so the guard has none.
+        // Another program may wait for the end of our outputs, so the guard must not hold them open.
         command.arg(ROLE).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         command.spawn().map(Self)
@@ -38,7 +38,7 @@ impl Guard {
         Err(io::ErrorKind::Unsupported.into())
     }
 
-    /// Its number, and that of its group.
+    /// Its process id, which is also the id of its group.
     #[cfg(unix)]
     pub(crate) fn id(&self) -> u32 {
         self.0.id()
@@ -57,10 +57,10 @@ impl Drop for Guard {
     }
 }
 
-/// This program, to be named as the guard of its children (`ProcessOptions::guard`). `None` where no guard can be.
+/// This program, for use as the guard of its children (`ProcessOptions::guard`). `None` on systems without guards.
 #[must_use]
 pub fn this_program() -> Option<PathBuf> {
-    // Linux finds it by this name also after it was replaced or deleted.
+    // On Linux this path works even after the program was replaced or deleted.
     let own = Path::new("/proc/self/exe");
     match cfg!(unix) {
         true if own.exists() => Some(own.to_owned()),
@@ -69,8 +69,8 @@ pub fn this_program() -> Option<PathBuf> {
     }
 }
 
-/// Has to stand at the very start of `main` in a program that is named as a guard. Where this process was started as one,
-/// it serves as one and does not return.
+/// Must be called at the very start of `main` in a program that is used as a guard. If this process was started as a
+/// guard, the function serves as one and does not return.
 pub fn stand_guard_if_asked() {
     let mut arguments = env::args_os().skip(1);
     let is_asked = arguments.next().is_some_and(|first| first == OsStr::new(ROLE)) && arguments.next().is_none();
@@ -84,10 +84,10 @@ pub fn stand_guard_if_asked() {
 
 #[cfg(unix)]
 fn stand() -> ! {
-    // Nobody writes: this waits for the end of the pipe.
+    // Nothing is written into the pipe: this waits for its end.
     let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
     std::thread::sleep(FAREWELL);
     let _ = rustix::process::kill_current_process_group(rustix::process::Signal::KILL);
-    // Not reached, unless the system refuses.
+    // Reached only if the system refuses the kill.
     std::process::exit(1);
 }

@@ -1,7 +1,7 @@
-//! Keeps a child running: asks it, and starts it anew after a fault, a bounded number of times.
+//! Keeps a child running: sends it requests, and restarts it after a fault, a bounded number of times.
 //!
-//! A request that meets a fault is not asked again: it may be what kills the child. So whoever asked gets the error, and
-//! everybody else a fresh child.
+//! A request that meets a fault is not sent again, because it may be what kills the child. So its caller gets the
+//! error, and the next request goes to a new child.
 
 use super::{
     child::Running,
@@ -19,10 +19,10 @@ use std::{
 use wayword_core::PlatformError;
 use wayword_world::said::Hear;
 
-/// So many answers earn a restart back.
+/// After this many answers the child may be restarted once more.
 const ANSWERS_FOR_A_RESTART: u32 = 200;
 
-/// A child that is kept running, asked by one thread at a time.
+/// A child that is kept running, and used by one thread at a time.
 pub(crate) struct Keeper {
     options: ProcessOptions,
     hear: Hear,
@@ -30,12 +30,12 @@ pub(crate) struct Keeper {
     state: Mutex<ChildState>,
 }
 
-/// The child that runs, and what is known of those before it.
+/// The running child, and what is kept about earlier ones.
 struct ChildState {
     running: Option<Running>,
-    /// The folder of its pictures, without links.
+    /// The folder of its pictures, with links resolved.
     images: Option<PathBuf>,
-    /// Requests so far, of all children: their ids.
+    /// Number of requests so far, to all children; also the id of the last one.
     asked: u64,
     answered: u32,
     restarts_left: u32,
@@ -43,7 +43,7 @@ struct ChildState {
 }
 
 impl Keeper {
-    /// Starts the child and hears its greeting.
+    /// Starts the child and reads its greeting.
     pub(crate) fn start(options: ProcessOptions, hear: Hear) -> Result<Self, PlatformError> {
         let mut state = ChildState {
             running: None,
@@ -53,7 +53,7 @@ impl Keeper {
             restarts_left: options.restarts,
             last_fault: String::new(),
         };
-        // A child that never came up has lost nothing: the user has to see to it.
+        // No request was lost if the first child does not start: the user has to correct the cause.
         let world = state.launch(&options, &hear).map_err(|failed| failed.into_wrong(&options))?;
         Ok(Self { options, hear, world, state: Mutex::new(state) })
     }
@@ -66,15 +66,15 @@ impl Keeper {
         &self.world
     }
 
-    /// Asks for what can be read from the answer alone.
+    /// Sends a request whose result can be read from the answer alone.
     pub(crate) fn ask<T: DeserializeOwned>(&self, method: &'static str, params: &Value) -> Result<T, PlatformError> {
         self.ask_and_take(method, params, |result, _| {
             serde_path_to_error::deserialize(result).map_err(|error| error.to_string())
         })
     }
 
-    /// Asks, and takes from the answer what is needed, before anybody else can ask: the child may put its next picture in
-    /// the place of this one. The folder of its pictures comes along.
+    /// Sends a request, and lets `take` read what it needs before the next request is sent, because the child may then
+    /// overwrite its picture file. `take` also gets the folder of the child's pictures.
     pub(crate) fn ask_and_take<T>(
         &self,
         method: &'static str,
@@ -94,17 +94,17 @@ impl Keeper {
         take(result, state.images.as_deref()).map_err(|reason| self.misfit(method, reason))
     }
 
-    /// The error for an answer that was understood, but cannot be used.
+    /// The error for an answer that has the right form but cannot be used.
     pub(crate) fn misfit(&self, method: &'static str, reason: impl Into<String>) -> PlatformError {
         Failed::without_request(Fault::Misfit(reason.into()), method).into_error(&self.options)
     }
 
-    /// Starts the child again if it is gone.
+    /// Starts the child again if it has ended.
     fn revive(&self, state: &mut ChildState) -> Result<(), PlatformError> {
         if let Some(running) = state.running.as_ref()
             && running.has_ended()
         {
-            // Nobody was waiting for it, so nobody's request is lost.
+            // No request was waiting for it, so none is lost.
             state.last_fault =
                 format!("ended by itself{}", state.running.take().map_or_else(String::new, Running::bury));
         }
@@ -140,7 +140,7 @@ impl ChildState {
     }
 
     fn greeted(&mut self, greeting: Value) -> Result<World, Fault> {
-        // The version first: another one may greet in another way.
+        // The version is checked first, because another version may have another greeting.
         if let Some(version) = greeting.get("protocol").and_then(Value::as_u64)
             && version != PROTOCOL
         {
@@ -185,7 +185,7 @@ impl ChildState {
         result.map_err(|fault| self.buried(fault, method))
     }
 
-    /// What a fault makes of a request: the child is buried if it cannot be asked any more.
+    /// The failure of a request after a fault. If the child cannot be used any more, it is killed here.
     fn buried(&mut self, fault: Fault, method: &'static str) -> Failed {
         let mut last_words = String::new();
         if !fault.leaves_it_usable() {
@@ -196,7 +196,7 @@ impl ChildState {
     }
 }
 
-/// A request that was not answered.
+/// A request that failed.
 struct Failed {
     fault: Fault,
     method: &'static str,
@@ -205,12 +205,12 @@ struct Failed {
 }
 
 impl Failed {
-    /// What is not the fault of one request.
+    /// A failure that does not belong to one request.
     fn without_request(fault: Fault, method: &'static str) -> Self {
         Self { fault, method, id: None, last_words: String::new() }
     }
 
-    /// The error of a child that was in use: it is lost where it cannot be asked any more.
+    /// The error for a child that was in use: `Lost` if it cannot be used any more.
     fn into_error(self, options: &ProcessOptions) -> PlatformError {
         if self.fault.leaves_it_usable() {
             return self.into_wrong(options);
@@ -219,7 +219,7 @@ impl Failed {
         PlatformError::Lost { world, reason: self.reason(), hint: self.fault.hint() }
     }
 
-    /// The error of a child that does not do what it should.
+    /// The error for a child that does something wrong.
     fn into_wrong(self, options: &ProcessOptions) -> PlatformError {
         PlatformError::File { file: options.shown(), reason: self.reason(), hint: self.fault.hint() }
     }

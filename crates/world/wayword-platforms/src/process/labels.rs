@@ -1,4 +1,4 @@
-//! What a child says about a view, taken into Wayword's words.
+//! Converts what a child says about a view into Wayword's labels.
 
 use super::{picture::Sent, protocol};
 use serde::Deserialize;
@@ -6,9 +6,9 @@ use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
 
 /// Most objects in one answer.
 const MAX_LABELS: usize = 5000;
-/// Numbers beyond this are no place and no distance in a world, metres.
+/// Largest absolute value of a coordinate or a distance, metres.
 pub(crate) const MAX_COORDINATE_M: f64 = 1e6;
-/// A box may reach so far out of its picture, pixels: rounding.
+/// How far a box may reach out of its picture because of rounding, pixels.
 const BOX_SLACK_PX: f64 = 1.0;
 
 /// The answer to `observe`.
@@ -22,12 +22,12 @@ pub(crate) struct Observed {
     pub(crate) room: Option<String>,
 }
 
-/// An object that is seen.
+/// A visible object.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Seen {
     object: ObjectId,
     name: String,
-    /// Its centre, metres; or a direction instead.
+    /// Its centre, metres. If there is none, `heading_rad` gives its direction.
     #[serde(default)]
     position: Option<[f64; 3]>,
     #[serde(default)]
@@ -42,20 +42,20 @@ pub(crate) struct Seen {
     colour: Option<String>,
 }
 
-/// The labels of a view: those whose centre lies within its width.
+/// The labels of a view: those of objects whose centre lies within its width.
 pub(crate) fn of_view(seen: Vec<Seen>, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Vec<Label>, String> {
     if seen.len() > MAX_LABELS {
-        return Err(format!("{} labels, and at most {MAX_LABELS} are taken", seen.len()));
+        return Err(format!("{} labels, expected at most {MAX_LABELS}", seen.len()));
     }
     let labels: Result<Vec<Label>, String> = seen.into_iter().map(|seen| seen.label(eye, gaze, size_px)).collect();
     Ok(labels?.into_iter().filter(|label| gaze.holds(label.heading)).collect())
 }
 
-/// A place, if it is one.
+/// A position, if its coordinates are finite and at most [`MAX_COORDINATE_M`].
 pub(crate) fn place(position: [f64; 3]) -> Result<DVec3, String> {
     let place = DVec3::from_array(position);
     let near = place.is_finite() && place.abs().max_element() <= MAX_COORDINATE_M;
-    near.then_some(place).ok_or_else(|| format!("{position:?} is no place in a world"))
+    near.then_some(place).ok_or_else(|| format!("{position:?} is not a plausible position"))
 }
 
 impl Seen {
@@ -67,7 +67,7 @@ impl Seen {
     fn unchecked(self, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Label, String> {
         let position = self.position.map(place).transpose()?;
         let (heading, elevation_rad) = match (position, self.heading_rad) {
-            // What hangs right above the eye is ahead as well as anywhere else.
+            // An object straight above the eye has no heading, so any will do.
             (Some(centre), _) => (Heading::towards(eye, centre).unwrap_or(gaze.heading), elevation_rad(eye, centre)),
             (None, Some(heading)) => {
                 let heading = Heading::new(heading).map_err(|error| format!("`heading_rad`: {error}"))?;
@@ -99,10 +99,10 @@ fn elevation_rad(eye: DVec3, centre: DVec3) -> f64 {
 
 fn within(field: &str, number: f64, most: f64) -> Result<f64, String> {
     let fits = number.is_finite() && number.abs() <= most;
-    fits.then_some(number).ok_or_else(|| format!("`{field}` is {number}, which is beyond {most}"))
+    fits.then_some(number).ok_or_else(|| format!("`{field}` is {number}, which is more than {most} in size"))
 }
 
-/// A box within its picture, cut to it.
+/// A box, cut to its picture; an error if it does not lie within the picture.
 fn box_px([x, y, width, height]: [f64; 4], (width_px, height_px): (u32, u32)) -> Result<[f64; 4], String> {
     let cut = |from: f64, long: f64, side_px: u32| {
         let side = f64::from(side_px);
@@ -155,7 +155,7 @@ mod tests {
             (json!({"object": "7", "name": "lamp"}), "position"),
             (json!({"object": "7", "name": "a\nb", "heading_rad": 0}), "name"),
             (json!({"object": "a/b", "name": "lamp", "heading_rad": 0}), "separators"),
-            (json!({"object": "7", "name": "lamp", "position": [0.0, 1e9, 0.0]}), "no place"),
+            (json!({"object": "7", "name": "lamp", "position": [0.0, 1e9, 0.0]}), "not a plausible position"),
             (json!({"object": "7", "name": "lamp", "heading_rad": 0, "distance_m": -1}), "negative"),
             (json!({"object": "7", "name": "lamp", "heading_rad": 0, "box_px": [600, 0, 100, 10]}), "640 x 480"),
             (json!({"object": "7", "name": "lamp", "heading_rad": 0, "elevation_rad": 3}), "elevation_rad"),

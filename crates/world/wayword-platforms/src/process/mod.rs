@@ -1,15 +1,17 @@
-//! Any world: a simulator in any language as a child process.
+//! Any simulator, in any language, as a child process.
 //!
-//! Wayword writes one request a line into the child's standard input and reads one answer a line from its standard output;
-//! `docs/PROCESS.md` says what stands in them, and `python/wayword_platform.py` is the other side of it in Python. The child
-//! converts into Wayword's frame (z up, metres, radians clockwise from +y) and says so in its greeting.
+//! Wayword writes one request per line to the child's standard input and reads one answer per line from its standard
+//! output. `docs/PROCESS.md` describes requests and answers, and `python/wayword_platform.py` implements the child's
+//! side in Python. The child converts to Wayword's frame (z up, metres, radians clockwise from +y) and names that frame
+//! in its greeting.
 //!
-//! The child is not trusted: lines, pictures, counts and times are bounded, and one that dies, hangs, floods or sends
-//! nonsense costs the request that was under way and is started anew, a bounded number of times (`keeper.rs`).
+//! The child is not trusted: lines, pictures, counts and times are bounded. If it dies, hangs, floods its output or
+//! sends something that is not an answer, the request under way fails and the child is restarted, a bounded number of
+//! times (`keeper.rs`).
 //!
-//! A child ends with whatever it has started (`group.rs`): when its platform is dropped, after a fault, and by [`end_all`].
-//! Where the program is killed, or exits without dropping the platform, only a guard can end it (`guard.rs`): see
-//! [`ProcessOptions::guard`].
+//! A child ends together with the processes that it started (`group.rs`): when its platform is dropped, after a fault,
+//! and by [`end_all`]. If this program is killed, or exits without dropping the platform, only a guard can end the
+//! child (`guard.rs`): see [`ProcessOptions::guard`].
 
 mod answer;
 mod child;

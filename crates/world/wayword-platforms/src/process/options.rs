@@ -1,4 +1,4 @@
-//! Which program is a world, and how patient to be with it.
+//! Which program to start, and how long to wait for it.
 
 use crate::matterport::read;
 use serde::Deserialize;
@@ -11,38 +11,39 @@ use wayword_world::said::plain;
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
 const HINT: &str = "a world file holds a JSON object with \"command\": [PROGRAM, ARGUMENT, ...], see docs/PROCESS.md";
-/// Longest time that can be asked for, seconds.
+/// Longest time limit that can be set, seconds.
 const MAX_WAIT_S: f64 = 86_400.0;
 /// Longest side of a picture, pixels.
 const MAX_SIDE_PX: u32 = 4096;
 
-/// A program that is a world, and what is asked of it.
+/// A world program, and its settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProcessOptions {
     /// The program.
     pub program: PathBuf,
     /// Its arguments.
     pub arguments: Vec<String>,
-    /// The folder in which it runs; Wayword's own where there is none.
+    /// The folder in which it runs; if `None`, Wayword's current folder.
     pub folder: Option<PathBuf>,
     /// Width of pictures, pixels.
     pub width_px: u32,
     /// Height of pictures, pixels.
     pub height_px: u32,
-    /// Distance between viewpoints where the graph is made here, metres.
+    /// Distance between viewpoints if Wayword makes the graph, metres.
     pub spacing_m: f64,
-    /// How long a greeting may take: simulators start slowly.
+    /// Time limit for the greeting; simulators start slowly.
     pub start_within: Duration,
-    /// How long any other answer may take.
+    /// Time limit for any other answer.
     pub answer_within: Duration,
-    /// How often it is started again; one more each time it has answered 200 requests, but never more than this.
+    /// How often the child may be restarted. Each 200 answers allow one more restart, but never more than this number.
     pub restarts: u32,
-    /// A program that calls [`stand_guard_if_asked`](super::stand_guard_if_asked) first of all:
-    /// [`this_program`](super::this_program), where it does. It is started beside the child, and ends the child with
-    /// whatever that has started where this program is killed, or exits without dropping the platform.
+    /// A program that calls [`stand_guard_if_asked`](super::stand_guard_if_asked) at its very start:
+    /// [`this_program`](super::this_program), if it does so. It is started beside the child. If this program is killed,
+    /// or exits without dropping the platform, the guard ends the child and the processes that the child started.
     ///
-    /// Without a guard, and on systems other than Unix, the child is then only told by the end of its input, and one that
-    /// hangs lives on. A process that leaves the child's group (`setsid`, a daemon) is never ended.
+    /// Without a guard, and on systems other than Unix, only the end of its input asks the child to end in this case,
+    /// and a child that hangs continues to run. A process that leaves the child's group (`setsid`, a daemon) is never
+    /// ended.
     pub guard: Option<PathBuf>,
 }
 
@@ -66,8 +67,8 @@ struct WorldFile {
 }
 
 impl ProcessOptions {
-    /// A program without arguments; pictures of 640x480, viewpoints 1 m apart, 3 minutes to start, one to answer, 5 restarts,
-    /// no guard.
+    /// A program without arguments, with the default settings: pictures of 640x480, viewpoints 1 m apart, 3 minutes to
+    /// start, 1 minute to answer, 5 restarts, no guard.
     #[must_use]
     pub fn new(program: impl Into<PathBuf>) -> Self {
         Self {
@@ -84,17 +85,17 @@ impl ProcessOptions {
         }
     }
 
-    /// The command as errors name it: a script says more than the interpreter that runs it.
+    /// The command as errors name it: the script if there is one, because its name says more than the interpreter's.
     pub(crate) fn shown(&self) -> PathBuf {
         let script = self.arguments.first().filter(|first| Path::new(first).extension().is_some());
         script.map_or_else(|| self.program.clone(), |script| PathBuf::from(plain(script, 200)))
     }
 
-    /// What a file says: a world file where its name ends in `.json`, else the program itself. A world file's command runs
-    /// in the file's folder.
+    /// Reads a file: a world file if its name ends in `.json`, else the file is the program itself. A world file's
+    /// command runs in the file's folder.
     ///
     /// # Errors
-    /// When the file is missing, or is no world file.
+    /// If the file is missing, or is not a valid world file.
     pub fn read(file: &Path) -> Result<Self, PlatformError> {
         let wrong = |reason: String| read::wrong(file, reason, HINT);
         if file.extension().is_none_or(|end| end != "json") {
@@ -113,7 +114,7 @@ impl WorldFile {
     fn resolved(self, folder: &Path) -> Result<ProcessOptions, String> {
         let mut command = self.command.into_iter();
         let program = PathBuf::from(command.next().ok_or("\"command\" is empty")?);
-        // A bare name is looked for on the PATH, a path starts from the world file.
+        // A bare name is searched in PATH; a path is relative to the world file's folder.
         let program = if program.components().count() > 1 { folder.join(program) } else { program };
         let default = ProcessOptions::new(program);
         Ok(ProcessOptions {
@@ -147,7 +148,7 @@ fn within<T: PartialOrd + std::fmt::Display>(
     let value = given.unwrap_or(default);
     let fits = range.contains(&value);
     fits.then_some(()).map_or_else(
-        || Err(format!("\"{name}\" has to lie between {} and {}", range.start(), range.end())),
+        || Err(format!("\"{name}\" must be between {} and {}", range.start(), range.end())),
         |()| Ok(value),
     )
 }

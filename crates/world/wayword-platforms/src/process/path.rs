@@ -1,4 +1,4 @@
-//! Random paths that a child draws itself.
+//! Random paths that the child chooses itself.
 
 use super::{keeper::Keeper, labels::place};
 use serde::Deserialize;
@@ -11,7 +11,7 @@ use wayword_world::{episode_path, graph_walk};
 
 /// Most stops of a path.
 const MAX_STOPS: usize = 1000;
-/// Lengths may be off by this, metres: rounding on the way.
+/// Tolerance of a path's length, for rounding, metres.
 const SLACK_M: f64 = 1e-3;
 
 #[derive(Deserialize)]
@@ -28,7 +28,7 @@ struct Walk {
     target: Option<ObjectId>,
 }
 
-/// A viewpoint of the graph, or a place anywhere.
+/// A stop: a viewpoint of the graph, or any position.
 #[derive(Deserialize)]
 struct Given {
     #[serde(default)]
@@ -39,7 +39,8 @@ struct Given {
     level: Option<u32>,
 }
 
-/// Asks the child for a path, and holds it to what was asked for. `platform` is the child's own, for the target's name.
+/// Asks the child for a path, and checks it against the request. `platform` is the child's platform, for the target's
+/// name.
 pub(crate) fn drawn(
     keeper: &Keeper,
     platform: &dyn Platform,
@@ -51,7 +52,7 @@ pub(crate) fn drawn(
         "scene": scene,
         "hops": [request.hops.start(), request.hops.end()],
         "length_m": [request.length_m.start(), request.length_m.end()],
-        // Not every language has whole numbers beyond 2^53.
+        // Some languages cannot represent whole numbers beyond 2^53.
         "seed": wayword_core::seed::derive(seed, &["process path", scene.as_str()]) >> 11,
     });
     let Drawn { path } = keeper.ask("sample_path", &asked)?;
@@ -60,7 +61,7 @@ pub(crate) fn drawn(
     };
     let misfit = |reason: String| keeper.misfit("sample_path", reason);
     if !(2..=MAX_STOPS).contains(&walk.stops.len()) {
-        return Err(misfit(format!("a path of {} stops; it has 2 to {MAX_STOPS}", walk.stops.len())));
+        return Err(misfit(format!("`stops` has length {}, expected 2 to {MAX_STOPS}", walk.stops.len())));
     }
     let on_graph = walk.stops.iter().any(|stop| stop.viewpoint.is_some());
     let graph = if on_graph { Some(platform.graph(scene)?) } else { None };
@@ -88,12 +89,12 @@ impl Given {
                 let level = self.level.filter(|level| *level > 0);
                 Ok(Stop { position: place(position)?, viewpoint: None, level })
             }
-            _ => Err("a stop has a `viewpoint` or a `position`".into()),
+            _ => Err("a stop must have a `viewpoint` or a `position`".into()),
         }
     }
 }
 
-/// Whether a path is what was asked for: its length, and its hops where all its stops are viewpoints.
+/// Checks a path against the request: its length, and its hops if all its stops are viewpoints.
 fn fits(path: &Path, request: &PathRequest) -> Result<(), String> {
     let Some(length_m) = path.length_m() else { return Err("a path of unknown length".into()) };
     let hops = path.frames.len() - 1;
@@ -101,7 +102,7 @@ fn fits(path: &Path, request: &PathRequest) -> Result<(), String> {
     let on_graph = path.frames.iter().all(|frame| frame.viewpoint.is_some());
     if !(least..=most).contains(&length_m) || (on_graph && !request.hops.contains(&hops)) {
         return Err(format!(
-            "a path of {hops} hops and {length_m:.3} metres, not of {}",
+            "a path with hops: {hops}, metres: {length_m:.3}; expected {}",
             graph_walk::in_words(request)
         ));
     }

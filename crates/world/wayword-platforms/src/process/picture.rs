@@ -1,4 +1,4 @@
-//! Pictures of a child: in base64 within its answer, or in a file of the folder that its greeting names.
+//! The child's pictures: in base64 within its answer, or in a file in the folder that its greeting names.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
 use image::{ImageFormat, ImageReader, Limits};
@@ -12,16 +12,16 @@ use wayword_core::Image;
 
 /// Largest file, bytes.
 const MAX_FILE_BYTES: u64 = 32 << 20;
-/// The most memory that decoding one picture may take, bytes: 4096 x 4096 pixels, and room to work.
+/// Most memory that decoding one picture may take, bytes: enough for 4096 x 4096 pixels and intermediate data.
 const MAX_DECODED_BYTES: u64 = 256 << 20;
 
-/// A picture as it is sent.
+/// A picture as the child sends it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 pub(crate) enum Sent {
     /// A PNG or JPEG file in base64.
     Base64(String),
-    /// A PNG or JPEG file in the child's folder, by its path from there.
+    /// A PNG or JPEG file, as a path relative to the child's folder.
     File(PathBuf),
 }
 
@@ -29,7 +29,7 @@ impl Sent {
     /// The bytes of the PNG or JPEG file.
     pub(crate) fn bytes(self, folder: Option<&Path>) -> Result<Vec<u8>, String> {
         match self {
-            Self::Base64(text) => STANDARD.decode(text).map_err(|error| format!("`image`: no base64: {error}")),
+            Self::Base64(text) => STANDARD.decode(text).map_err(|error| format!("`image` is not base64: {error}")),
             Self::File(file) => {
                 let folder = folder.ok_or("`image` is a file, but the greeting named no folder `images`")?;
                 confined(folder, &file).map_err(|reason| format!("`image` {}: {reason}", file.display()))
@@ -38,16 +38,16 @@ impl Sent {
     }
 }
 
-/// The bytes of a file that lies in a folder (which is free of links), whatever links are on the way.
+/// The bytes of a file, which must lie in the folder after all links are resolved. The folder's own path has no links.
 fn confined(folder: &Path, file: &Path) -> Result<Vec<u8>, String> {
     if !file.components().all(|part| matches!(part, Component::Normal(_))) {
-        return Err("is no plain path within the folder `images`".into());
+        return Err("is not a plain path within the folder `images`".into());
     }
     let found = folder.join(file).canonicalize().map_err(|error| error.to_string())?;
     if !found.starts_with(folder) {
         return Err("leads out of the folder `images`".into());
     }
-    // Anything else, a pipe say, could be waited for without end.
+    // Reading anything else, such as a pipe, could block for ever.
     if !found.is_file() {
         return Err("is not a file".into());
     }
@@ -60,16 +60,17 @@ fn confined(folder: &Path, file: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Decodes a picture of the size that was asked for. The size stands at its beginning, so one of another size costs nothing.
+/// Decodes a picture, which must have the requested size. The size is read first, so a picture of another size is not
+/// decoded.
 pub(crate) fn decode(bytes: &[u8], (width_px, height_px): (u32, u32)) -> Result<Image, String> {
-    // Decoders for other formats may be there for other purposes.
+    // Only these two formats are allowed, even if the build contains decoders for others.
     let format =
         image::guess_format(bytes).ok().filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg));
     let format = format.ok_or("`image` is neither PNG nor JPEG")?;
     let reader = || ImageReader::with_format(Cursor::new(bytes), format);
     let (width, height) = reader().into_dimensions().map_err(|error| format!("`image`: {error}"))?;
     if (width, height) != (width_px, height_px) {
-        return Err(format!("`image` has {width} x {height} pixels, and {width_px} x {height_px} were asked for"));
+        return Err(format!("`image` has {width} x {height} pixels, expected {width_px} x {height_px}"));
     }
     let mut reader = reader();
     let mut limits = Limits::default();
@@ -126,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_huge_picture_is_refused_by_its_first_bytes() {
-        // A PNG's width and height are bytes 16 to 24; the check sum that follows the header has to fit them.
+        // A PNG's width and height are bytes 16 to 24; the checksum after the header must match them.
         let mut bomb = png(4, 3);
         bomb[16..24].copy_from_slice(&[0, 0, 0xff, 0xff, 0, 0, 0xff, 0xff]);
         let sum = crc(&bomb[12..29]).to_be_bytes();

@@ -23,26 +23,27 @@ use wayword_world::{episode_path::labels_around, graph_walk, said::Hear};
 
 /// Most scenes that a child may list.
 const MAX_SCENES: usize = 10_000;
-/// Narrowest and widest gaze that one flat picture can show, radians.
+/// Narrowest field of view of one flat picture, radians.
 const NARROWEST_RAD: f64 = 0.05;
+/// Widest field of view of one flat picture, radians.
 const WIDEST_RAD: f64 = 2.6;
 
-/// A world that another program is.
+/// A platform whose scenes another program provides.
 ///
-/// A scene's graph is asked for once. Requests go to the child one after another; a request that meets a fault is an error
-/// for whoever asked, and the child is started anew for the next.
+/// The child is asked for a scene's graph only once. Requests go to the child one after another. If a request meets a
+/// fault, its caller gets an error, and the child is restarted for the next request.
 pub struct ProcessPlatform {
     keeper: Keeper,
     known: Mutex<BTreeMap<SceneId, Arc<Known>>>,
 }
 
-/// What was learnt about a scene.
+/// What the child has said about a scene.
 struct Known {
     graph: Arc<ViewpointGraph>,
     objects: OnceLock<BTreeMap<ObjectId, Everywhere>>,
 }
 
-/// An object, wherever it is seen.
+/// What all viewpoints show of one object.
 #[derive(Default)]
 struct Everywhere {
     name: String,
@@ -65,19 +66,19 @@ struct Viewpoints {
 }
 
 impl ProcessPlatform {
-    /// Starts the world that a file names (see [`ProcessOptions::read`]) and hears its greeting; `hear` is told each line
-    /// that the child writes on its standard error.
+    /// Starts the program that a file names (see [`ProcessOptions::read`]) and reads its greeting. `hear` receives each
+    /// line that the child writes to its standard error.
     ///
     /// # Errors
-    /// When the file is no world file, or the child cannot be started or greets wrongly.
+    /// If the file is not a valid world file, the child cannot be started, or its greeting cannot be used.
     pub fn open(file: &FilePath, hear: Hear) -> Result<Self, PlatformError> {
         Self::start(ProcessOptions::read(file)?, hear)
     }
 
-    /// Starts a world.
+    /// Starts a program and reads its greeting.
     ///
     /// # Errors
-    /// When the child cannot be started or greets wrongly.
+    /// If the child cannot be started, or its greeting cannot be used.
     pub fn start(options: ProcessOptions, hear: Hear) -> Result<Self, PlatformError> {
         Ok(Self { keeper: Keeper::start(options, hear)?, known: Mutex::default() })
     }
@@ -96,7 +97,8 @@ impl ProcessPlatform {
         if let Some(known) = self.known.lock().unwrap_or_else(PoisonError::into_inner).get(scene) {
             return Ok(Arc::clone(known));
         }
-        // Not under the lock: views of other scenes need not wait. Whoever comes second takes what the first has put there.
+        // Asked without the lock, so that views of other scenes need not wait. If two threads ask for the same graph,
+        // the first result counts.
         let graph = Arc::new(graph::of_scene(&self.keeper, scene)?);
         let made = Arc::new(Known { graph, objects: OnceLock::new() });
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
@@ -159,7 +161,7 @@ impl ProcessPlatform {
         }
         let labels = match seen.labels {
             Some(seen) if lists_objects => labels::of_view(seen, pose.position, gaze, self.size_px())?,
-            None if lists_objects => return Err("no `labels`, although it offers them: none are an empty list".into()),
+            None if lists_objects => return Err("no `labels`, although it offers them (send [] for none)".into()),
             _ => Vec::new(),
         };
         let room =
@@ -167,7 +169,8 @@ impl ProcessPlatform {
         Ok(Some(GroundTruth { labels, lists_objects, room }))
     }
 
-    /// All objects that are seen from anywhere on the graph. Every viewpoint is looked from, without a picture.
+    /// All objects that are seen from any viewpoint of the graph. The child is asked for every viewpoint, without a
+    /// picture.
     fn objects<'a>(
         &self,
         scene: &SceneId,
@@ -254,7 +257,7 @@ impl Platform for ProcessPlatform {
         Ok(self.objects(scene, &known)?.get(object).map(|object| object.name.clone()))
     }
 
-    /// As the child says, or else from where its labels show it.
+    /// The viewpoints that the child names, or else those from which its labels show the object.
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         if self.has(Offer::VisibleFrom) {
             let asked = json!({ "scene": scene, "object": object });

@@ -1,4 +1,4 @@
-//! What both sides agree on: the greeting, and what a world can offer. `docs/PROCESS.md` is the same in words.
+//! The protocol's greeting, and what a world program can offer. `docs/PROCESS.md` describes the protocol.
 
 use serde::Deserialize;
 use std::{collections::BTreeSet, fmt, path::PathBuf};
@@ -6,33 +6,33 @@ use wayword_world::said::plain;
 
 /// Version of the protocol.
 pub const PROTOCOL: u64 = 1;
-/// The frame and the units of every number, which a child has to repeat: z up, metres, radians clockwise from +y.
+/// The frame and the units of all numbers; the child has to repeat this text: z up, metres, radians clockwise from +y.
 pub(crate) const FRAME: &str = "z-up, metres, radians clockwise from +y";
-/// Longest name of a world, an object, a room or a colour, characters.
+/// Longest name of a world program, an object, a room or a colour, characters.
 pub(crate) const MAX_NAME_CHARS: usize = 200;
 
-/// One thing that a world can be asked for, beside its scenes and what is seen from a pose.
+/// Something that a world program can provide, besides its scenes and the views from a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Offer {
     /// The whole viewpoint graph of a scene.
     Graph,
     /// Places where one can stand.
     Points,
-    /// The points that can be reached from a point in one hop.
+    /// The points that one can reach from a point in one hop.
     Neighbours,
     /// Whether one can walk straight from one place to another.
     Walkable,
-    /// Random paths of its own.
+    /// Random paths that it chooses itself.
     SamplePath,
     /// Pictures.
     Pictures,
-    /// The objects that are seen, each time all of them.
+    /// The visible objects; always all of them.
     Labels,
     /// The room in which one stands.
     Rooms,
     /// The name of an object by its id.
     ObjectName,
-    /// From where an object can be seen.
+    /// The viewpoints from which an object is visible.
     VisibleFrom,
 }
 
@@ -62,17 +62,17 @@ impl fmt::Display for Offer {
     }
 }
 
-/// What a child is, as it says in its greeting.
+/// A world program, as its greeting describes it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct World {
-    /// Its name, to be shown.
+    /// Its name, for display.
     pub name: String,
-    /// What it can be asked for.
+    /// What it provides.
     pub offers: BTreeSet<Offer>,
 }
 
 impl World {
-    /// Whether it can be asked for something.
+    /// Whether it provides something.
     #[must_use]
     pub fn has(&self, offer: Offer) -> bool {
         self.offers.contains(&offer)
@@ -86,40 +86,40 @@ pub(crate) struct Greeting {
     pub(crate) frame: String,
     name: String,
     offers: Vec<String>,
-    /// The folder of its pictures, where it does not send them within its answers.
+    /// The folder of its pictures, if it does not send them within its answers.
     #[serde(default)]
     pub(crate) images: Option<PathBuf>,
 }
 
 impl Greeting {
-    /// The world that it makes known. Offers of later versions are passed over.
+    /// The world program that the greeting describes. Offers of later versions are ignored.
     ///
     /// # Errors
-    /// When what it offers is too little to walk and to see.
+    /// If its offers are not enough for paths and views.
     pub(crate) fn world(&self) -> Result<World, String> {
         let offers: BTreeSet<Offer> = self.offers.iter().filter_map(|name| Offer::named(name)).collect();
-        let world = World { name: name("its name", &self.name)?, offers };
+        let world = World { name: name("`name`", &self.name)?, offers };
         let joins = world.has(Offer::Neighbours) || world.has(Offer::Walkable);
         let walks = world.has(Offer::Graph) || (world.has(Offer::Points) && joins);
         if !walks {
-            return Err("a world offers `graph`, or `points` with `neighbours` or `walkable`".into());
+            return Err("`offers` must contain `graph`, or `points` with `neighbours` or `walkable`".into());
         }
         if !world.has(Offer::Pictures) && !world.has(Offer::Labels) {
-            return Err("a world offers `pictures`, `labels` or both".into());
+            return Err("`offers` must contain `pictures`, `labels` or both".into());
         }
         Ok(world)
     }
 }
 
-/// A name that may be shown, without blanks around it.
+/// A name that may be displayed, without blanks around it.
 ///
 /// # Errors
-/// When it is empty, too long, or holds control characters.
+/// If it is empty, too long, or contains control characters.
 pub(crate) fn name(what: &str, text: &str) -> Result<String, String> {
     let text = text.trim();
     if text.is_empty() || plain(text, MAX_NAME_CHARS) != text {
         let shown = plain(text, 40);
-        return Err(format!("{what} {shown:?} is no name: one line of 1 to {MAX_NAME_CHARS} characters is"));
+        return Err(format!("{what} {shown:?} is not a name: expected one line of 1 to {MAX_NAME_CHARS} characters"));
     }
     Ok(text.to_owned())
 }

@@ -1,4 +1,4 @@
-//! What a child says on its standard error: passed on while it speaks, and its last words kept for errors.
+//! A child's standard error: each line is passed on at once, and the last lines are kept for error messages.
 
 use std::{
     collections::VecDeque,
@@ -7,11 +7,11 @@ use std::{
 };
 use wayword_world::said::{Hear, plain};
 
-/// Lines that are kept for errors.
+/// Number of last lines that are kept for error messages.
 const KEPT_LINES: usize = 12;
-/// Characters of a line that are passed on and kept.
+/// Most characters of a line that are passed on and kept.
 const MAX_LINE_CHARS: usize = 400;
-/// Lines of one child that are passed on. One that says more is not heard, but its last words are still kept.
+/// Most lines of one child that are passed on. Later lines are not passed on, but the last ones are still kept.
 const MAX_HEARD_LINES: usize = 2000;
 
 /// The last lines of a child's standard error.
@@ -25,7 +25,7 @@ impl LastWords {
         let mut heard = 0;
         loop {
             let mut line = Vec::new();
-            // A longer line comes in pieces.
+            // A longer line is read in pieces.
             let read = (&mut pipe).take(4 * MAX_LINE_CHARS as u64).read_until(b'\n', &mut line);
             if !matches!(read, Ok(1..)) {
                 return;
@@ -35,7 +35,7 @@ impl LastWords {
             if heard <= MAX_HEARD_LINES {
                 hear(&line);
             } else if heard == MAX_HEARD_LINES + 1 {
-                hear("(it says more, which is left out)");
+                hear("(further lines of this program are not shown)");
             }
             self.keep(line);
         }
@@ -52,14 +52,14 @@ impl LastWords {
         }
     }
 
-    /// The lines, as an error ends with them; nothing where there are none.
+    /// The lines, in the form for the end of an error message; empty if there are none.
     pub(crate) fn in_words(&self) -> String {
         let lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if lines.is_empty() {
             return String::new();
         }
         let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-        format!("; its last words: {}", lines.join(" | "))
+        format!("; its last error output: {}", lines.join(" | "))
     }
 }
 

@@ -1,4 +1,5 @@
-//! A world of four viewpoints that can do everything wrong. In scene `good` it behaves; in any other it plays its role.
+//! A world program with four viewpoints that can do everything wrong. In scene `good` it behaves; in any other it plays
+//! its role.
 
 use serde_json::{Value, json};
 use std::{
@@ -9,10 +10,10 @@ use std::{
 
 pub(crate) const WIDTH_PX: u32 = 32;
 pub(crate) const HEIGHT_PX: u32 = 24;
-/// Places of viewpoints: a line with a bend.
+/// Positions of the viewpoints: a line with a bend.
 pub(crate) const PLACES: [(&str, [f64; 3]); 4] =
     [("a", [0.0, 0.0, 1.5]), ("b", [0.0, 2.0, 1.5]), ("c", [2.0, 2.0, 1.5]), ("d", [2.0, 4.0, 1.5])];
-/// Where its only object stands.
+/// Position of its only object.
 pub(crate) const LAMP: [f64; 3] = [0.5, 3.0, 1.0];
 
 struct Actor {
@@ -42,7 +43,7 @@ fn hang() -> ! {
 
 impl Actor {
     fn say(&mut self, line: &str) {
-        // Whoever listened may be gone.
+        // The reader may have closed the pipe.
         if self.out.write_all(line.as_bytes()).is_err() {
             std::process::exit(1);
         }
@@ -102,7 +103,7 @@ impl Actor {
         if self.role == "neighbours" {
             return PLACES.iter().map(|(id, position)| json!({"id": id, "position": position})).collect();
         }
-        // Two rooms of a metre's grid with a wall at x = 4.5 that has a door at y = 2.
+        // Two rooms on a grid of 1 m, with a wall at x = 4.5 that has a door at y = 2.
         (0..50).map(|n| json!({"position": [f64::from(n % 10), f64::from(n / 10), 1.5]})).collect()
     }
 
@@ -208,7 +209,7 @@ fn base64(bytes: &[u8]) -> String {
     base64::Engine::encode(&base64::engine::general_purpose::STANDARD, bytes)
 }
 
-/// An answer in which one to three things are broken.
+/// An answer with one to three mutations.
 fn mutated(line: &str, seed: u64) -> String {
     use rand::Rng;
     let odd =

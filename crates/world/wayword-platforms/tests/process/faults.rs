@@ -1,4 +1,4 @@
-//! What remains of a world that misbehaves.
+//! What happens if a world program misbehaves.
 
 use super::{actor, look, options, pid, started};
 use std::{path::Path, sync::Arc, time::Duration};
@@ -20,7 +20,7 @@ fn a_fault_costs_its_own_request_and_a_fresh_child_answers_the_next() {
         ("hangs", short, "did not answer within 4 s"),
         ("floods", long, "line of more than 50331648 bytes"),
         ("floods lines", long, "answered request 0 when it was asked request 3"),
-        ("prints", long, "no answer (expected value at line 1 column 1): \"Loading textures...\""),
+        ("prints", long, "not an answer (expected value at line 1 column 1): \"Loading textures...\""),
         ("half", long, "half a line"),
         ("wrong id", long, "answered request 4 when it was asked request 3"),
     ] {
@@ -28,7 +28,7 @@ fn a_fault_costs_its_own_request_and_a_fresh_child_answers_the_next() {
         let before = pid(&look(&platform, "good").unwrap());
         let error = look(&platform, "bad").unwrap_err().to_string();
         assert!(error.contains(says) && error.contains("request 3 (`observe`)"), "{role}: {error}");
-        let (_, last_words) = error.split_once("its last words: ").unwrap();
+        let (_, last_words) = error.split_once("its last error output: ").unwrap();
         assert!(last_words.contains(&format!("about to do something: [31m{role}")), "{role}: {error}");
         let after = pid(&look(&platform, "good").unwrap());
         assert_ne!(before, after, "{role}: the faulty child still answers");
@@ -37,23 +37,26 @@ fn a_fault_costs_its_own_request_and_a_fresh_child_answers_the_next() {
 
 #[test]
 fn a_child_that_ends_its_output_and_lives_on_is_killed() {
-    // Not the actor: whoever holds its descriptor 3 open would have to close it too.
+    // Not the actor: its output stays open until every copy of its descriptor 3 is closed.
     let greeting = r#"{"id":1,"result":{"protocol":1,"frame":"z-up, metres, radians clockwise from +y","name":"x","offers":["graph","labels"]}}"#;
     let script = format!("read line; echo '{greeting}'; read line; echo tired >&2; exec >&-; sleep 1000");
     let options = ProcessOptions { arguments: vec!["-c".into(), script], ..ProcessOptions::new("sh") };
     let platform = ProcessPlatform::start(options, Arc::new(|_: &str| ())).unwrap();
     let error = platform.scenes().unwrap_err().to_string();
-    assert!(error.contains("closed its standard output, but lives on; its last words: tired"), "{error}");
+    assert!(
+        error.contains("closed its standard output, but is still running; its last error output: tired"),
+        "{error}"
+    );
 }
 
 #[test]
 fn an_answer_that_cannot_be_used_is_an_error_and_the_child_lives_on() {
     for (role, says) in [
-        ("refuses", "refuses: the floor islava"),
+        ("refuses", "refused the request: the floor islava"),
         ("blind", "no `image`"),
         ("unlabelled", "no `labels`"),
         ("wrong shape", "missing field `object`"),
-        ("other size", "33 x 24 pixels, and 32 x 24 were asked for"),
+        ("other size", "33 x 24 pixels, expected 32 x 24"),
         ("no picture", "neither PNG nor JPEG"),
     ] {
         let platform = started(role).unwrap();
@@ -74,7 +77,7 @@ fn a_picture_outside_the_folder_is_not_read() {
     std::fs::create_dir(&folder).unwrap();
     let platform = ProcessPlatform::start(options("escapes", &folder), Arc::new(|_: &str| ())).unwrap();
     let error = look(&platform, "bad").unwrap_err().to_string();
-    assert!(error.contains("no plain path within the folder"), "{error}");
+    assert!(error.contains("not a plain path within the folder"), "{error}");
 }
 
 #[test]
@@ -113,8 +116,8 @@ fn an_answer_too_many_spoils_the_next_request_and_no_more() {
 #[test]
 fn a_greeting_that_cannot_be_used_is_refused_at_once() {
     for (role, says) in [
-        ("next version", "speaks version 2 of the protocol; this is version 1"),
-        ("y up", "measures in \"y-up\""),
+        ("next version", "speaks version 2 of the protocol; Wayword speaks version 1"),
+        ("y up", "uses the frame \"y-up\""),
         ("sees nothing", "`pictures`, `labels` or both"),
         ("no such folder", "/nowhere/at/all"),
     ] {
@@ -152,7 +155,7 @@ fn broken_answers_are_errors_or_views_and_never_the_end() {
         refused += usize::from(look(&platform, "bad").is_err());
     }
     assert!(refused > 50, "hardly anything was broken: {refused}");
-    // What is left in the pipe of the last child may spoil one more.
+    // What is left in the pipe of the last child may make one more request fail.
     assert!((0..2).any(|_| look(&platform, "good").is_ok()));
     assert_eq!(platform.scenes().unwrap().len(), 2);
 }

@@ -1,4 +1,4 @@
-//! Graphs of worlds that have none of their own.
+//! Graphs of world programs that offer no graph.
 
 use super::{actor, scene, started};
 use wayword_core::{PathRequest, Platform};

@@ -1,4 +1,4 @@
-//! Children come and go with their platform.
+//! A child starts and ends with its platform.
 
 use super::{look, pid, started};
 use std::{
@@ -8,7 +8,7 @@ use std::{
 };
 use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
 
-/// Whether a process still runs: one that waits to be reaped does not.
+/// Whether a process still runs; one that waits to be reaped does not count.
 fn runs(pid: u32) -> bool {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
     stat.rsplit_once(") ").is_some_and(|(_, rest)| !rest.starts_with('Z'))
@@ -21,7 +21,7 @@ fn ends_soon(pid: u32) -> bool {
     })
 }
 
-/// Whether there is an entry for it in the process table, dead or alive.
+/// Whether the process table has an entry for it, running or not.
 fn is_listed(pid: u32) -> bool {
     Path::new(&format!("/proc/{pid}")).exists()
 }
@@ -41,8 +41,8 @@ fn no_child_outlives_its_platform_and_none_stays_as_a_zombie() {
     assert!(!is_listed(child), "a child that died was not reaped");
 }
 
-/// A world behind a script that starts two servers for it, as `xvfb-run` does: one keeps the world's pipes open, one does
-/// not. And their process numbers.
+/// A platform whose script starts two servers first, as `xvfb-run` does, and the servers' process ids. One server keeps
+/// the script's pipes open, the other does not.
 fn with_servers(role: &str) -> (ProcessPlatform, [u32; 2]) {
     let folder = tempfile::tempdir().unwrap();
     let note = folder.path().join("pids");
@@ -62,8 +62,8 @@ fn what_a_child_has_started_ends_with_it() {
     for role in ["behaves", "stays"] {
         let (platform, servers) = with_servers(role);
         drop(platform);
-        // The kill reaches all at once, but the kernel may take a moment.
-        assert!(servers.into_iter().all(ends_soon), "{role}: what it has started outlived it");
+        // The kill goes to all processes at once, but the kernel may take a moment.
+        assert!(servers.into_iter().all(ends_soon), "{role}: a process that it started outlived it");
     }
 }
 
@@ -84,8 +84,8 @@ fn a_child_that_dies_is_told_of_while_what_it_has_started_keeps_its_output_open(
     let asked = Instant::now();
     let error = look(&platform, "bad").unwrap_err().to_string();
     assert!(error.contains("died (exit status: 3)"), "{error}");
-    assert!(asked.elapsed() < Duration::from_secs(20), "it waited for an answer of nobody");
-    assert!(servers.into_iter().all(ends_soon), "what it has started outlived it");
+    assert!(asked.elapsed() < Duration::from_secs(20), "the request waited although the child was dead");
+    assert!(servers.into_iter().all(ends_soon), "a process that it started outlived it");
 }
 
 #[test]
@@ -99,14 +99,14 @@ fn a_guard_that_cannot_be_started_is_told_of_and_missed_by_nobody() {
             .unwrap();
     look(&platform, "good").unwrap();
     let heard = heard.lock().unwrap().join("|");
-    assert!(heard.contains("no guard can be started") && heard.contains("by hand"), "{heard}");
+    assert!(heard.contains("the guard cannot be started") && heard.contains("end the simulator yourself"), "{heard}");
 }
 
 #[test]
 fn a_child_that_left_after_its_answer_is_started_again_and_nobody_loses_anything() {
     let platform = started("leaves").unwrap();
     let first = pid(&look(&platform, "bad").unwrap());
-    // It leaves right after the answer; whoever asks while it is leaving is unlucky.
+    // The child ends right after its answer. A request while it is ending may fail, so this waits.
     assert!(ends_soon(first));
     let second = pid(&look(&platform, "good").unwrap());
     assert_ne!(first, second);

@@ -1,4 +1,4 @@
-"""A yard with a pillar, for a test: each side of the compass has its colour."""
+"""A yard with a pillar, for a test: each of the four directions has its own colour."""
 import math
 import sys
 

@@ -1,4 +1,4 @@
-//! What a world that behaves gives.
+//! Tests with a world program that behaves.
 
 use super::{actor, look, options, pid, scene, started};
 use std::{collections::BTreeSet, path::Path, sync::Arc};
@@ -62,15 +62,15 @@ fn a_world_may_draw_its_own_paths_and_is_held_to_the_request() {
     let names: Vec<_> = path.frames.iter().map(|frame| frame.viewpoint.as_ref().unwrap().as_str()).collect();
     assert_eq!(names, ["a", "b", "c"]);
     assert_eq!(path, drawn("draws viewpoints", &request()).unwrap(), "the seed that is sent is the same");
-    // Hops are not asked of a walk over open ground.
+    // The number of hops is not checked for a path over open ground.
     let path = drawn("draws places", &request()).unwrap();
     assert!((path.length_m().unwrap() - 5.0).abs() < 1e-12 && path.frames[1].level == Some(1));
     let long = PathRequest { length_m: 6.0..=7.0, ..request() };
     for (role, request, says) in [
-        ("draws viewpoints", &long, "4.000 metres, not of 2 to 3 hops and 6 to 7 metres"),
-        ("draws places", &long, "5.000 metres"),
+        ("draws viewpoints", &long, "metres: 4.000; expected 2 to 3 hops and 6 to 7 metres"),
+        ("draws places", &long, "metres: 5.000"),
         ("draws strangers", &request(), "nobody is not in the graph"),
-        ("draws stubs", &request(), "1 stops"),
+        ("draws stubs", &request(), "`stops` has length 1"),
         ("draws nothing", &request(), "holds no path with 2 to 3 hops"),
     ] {
         let error = drawn(role, request).unwrap_err();
