@@ -1,7 +1,7 @@
 //! Basis textures (`GOOGLE_texture_basis`), as the picture of a scene.
 //!
-//! The decoder (`basisu`) is another's code; its panics are contained. Memory: its codebooks have at most 2 x 65,536 entries; texels
-//! as in `glb`.
+//! The decoder (`basisu`) is third-party code; its panics are contained. Memory: its codebooks have at most 2 x 65,536
+//! entries; for texels see `glb`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,8 +1,9 @@
 //! Scenes as binary glTF: read with their pictures, and drawn.
 //!
-//! The reader of glTF (`gltf`) and the decoders of pictures (`image`, `basisu`) are others' code; their panics are contained.
-//! Memory: JSON becomes up to some hundred times its length (an empty object of three bytes is a material); a picture may have
-//! 2^20 texels in any file, and 512 for each byte of a larger one, at up to 20 bytes while it is decoded.
+//! The reader of glTF (`gltf`) and the decoders of pictures (`image`, `basisu`) are third-party code; their panics are
+//! contained. Memory: JSON grows to some hundred times its length (an empty object of three bytes is a material). A
+//! picture may have 2^20 texels in any file, and 512 for each byte of a larger one. A texel takes up to 20 bytes while
+//! it is decoded.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Scenes as text glTF with their bytes in data addresses: what `glb` holds, without a container in the way.
+//! Scenes as text glTF with their bytes in data addresses: the same as `glb`, without the container.
 //!
 //! Containment and memory: see `glb`.
 #![no_main]

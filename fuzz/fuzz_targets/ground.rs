@@ -1,7 +1,8 @@
-//! `.navmesh` files, walked on: islands, storeys, shortest ways, the viewpoint graph, frames along a way.
+//! Walks on `.navmesh` files: islands, storeys, shortest ways, the viewpoint graph, frames along a way.
 //!
-//! The search for ways (`polyanya`) is another's code; its panics are contained. Memory: a polygon of 32 bytes may name the 255
-//! triangles of a list that others name too (72 bytes each); viewpoints and frames are bounded by number, whatever the area.
+//! The search for ways (`polyanya`) is third-party code; its panics are contained. Memory: a polygon of 32 bytes may
+//! name the 255 triangles of a list that other polygons name too (72 bytes each). The numbers of viewpoints and frames
+//! are bounded, whatever the area.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -27,7 +28,7 @@ fuzz_target!(init: begin("ground", &seeds::navmesh::all()), |data: &[u8]| {
                 let _ = stops_along(&ground, &way, 1.0);
             }
         }
-        // Over wide ground it takes half a second: done for a part of such inputs only, so that there is time for others.
+        // On wide ground this takes half a second, so it runs for a part of these inputs only.
         if ground.area_m2() < 60.0 || data.ends_with(&[0]) {
             let _ = viewpoint_graph(&ground, 0);
         }

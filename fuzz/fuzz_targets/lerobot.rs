@@ -1,8 +1,9 @@
-//! Datasets of LeRobot. The first byte says which file of which dataset the rest stands for: Parquet with rows, with pictures or with
-//! lists of episodes, or the JSON beside it.
+//! Datasets of LeRobot. The first byte says which file of which dataset the rest replaces: Parquet with rows, with
+//! pictures or with lists of episodes, or the JSON beside it.
 //!
-//! Parquet (`parquet`), what it is packed with (`snap`, `zstd`, `flate2`) and pictures (`image`) are read by others' code, whose panics
-//! are contained. Memory: pages may unpack to 256 times their length, and a few rows may have 64 values for each byte of a file.
+//! Third-party code reads Parquet (`parquet`), its compression (`snap`, `zstd`, `flate2`) and pictures (`image`); its
+//! panics are contained. Memory: pages may unpack to 256 times their length, and a few rows may have 64 values for each
+//! byte of a file.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -21,7 +22,7 @@ fn datasets() -> &'static [Files] {
     })
 }
 
-/// Every file of every dataset behind its number; Parquet of other programs in the place of the first rows.
+/// Every file of every dataset after its number, and Parquet of other programs in place of the first file.
 fn seeds() -> Vec<Vec<u8>> {
     let all = datasets().iter().flatten().map(|(_, bytes)| bytes.clone());
     let mut seeds: Vec<Vec<u8>> = (0..).zip(all).map(|(number, bytes)| [vec![number], bytes].concat()).collect();

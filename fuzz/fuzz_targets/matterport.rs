@@ -1,9 +1,9 @@
-//! A building's files as Matterport3D and REVERIE have them. The first byte says which one the rest is: connectivity, `.house`,
-//! rooms, boxes, centres, or a skybox.
+//! A building's files in the formats of Matterport3D and REVERIE. The first byte says which one the rest is:
+//! connectivity, `.house`, rooms, boxes, centres, or a skybox.
 //!
-//! No containment: JSON (`serde_json`) and pictures (`image`) are others' code, but panics in them would reach the user. Memory: a
-//! byte of JSON becomes a value of 72 bytes, in a list that is copied while it grows; a picture may take 256 MiB while it is
-//! decoded, which is the program's own limit for any file.
+//! No containment: JSON (`serde_json`) and pictures (`image`) are read by third-party code, but its panics would reach
+//! the user. Memory: a byte of JSON becomes a value of 72 bytes, in a list that is copied while it grows. A picture may
+//! take 256 MiB while it is decoded, which is the program's own limit for any file.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,7 +1,8 @@
 //! MCAP files of ROS 2: records, chunks, messages, poses, pictures.
 //!
-//! The readers (`mcap`, with LZ4 and Zstandard in C, and `image`) are others' code; panics are contained. Memory: a record of a chunk may
-//! have 256 MiB, and 1000 times what the chunk has, while it is unpacked; a picture may take 256 MiB while it is decoded.
+//! The readers (`mcap`, with LZ4 and Zstandard in C, and `image`) are third-party code; their panics are contained.
+//! Memory: while a chunk is unpacked, a record of it may have 256 MiB, and 1000 times the chunk's length. A picture may
+//! take 256 MiB while it is decoded.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

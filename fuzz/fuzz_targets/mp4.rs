@@ -1,7 +1,8 @@
 //! MP4 files with H.264 or AV1: their boxes, and their pictures.
 //!
-//! The decoders (`openh264` in C++, `re_rav1d`) are others' code; panics are contained. What C++ allocates is not counted, only held to
-//! libFuzzer's limit. Memory: a picture has at most 64 million pixels, whatever the file; three bytes for each.
+//! The decoders (`openh264` in C++, `re_rav1d`) are third-party code; their panics are contained. Memory of C++ is not
+//! counted; only libFuzzer's limit applies to it. Memory: a picture has at most 64 million pixels of three bytes,
+//! whatever the file.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

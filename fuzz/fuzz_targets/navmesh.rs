@@ -1,7 +1,7 @@
-//! `.navmesh` files: read, and written back the same.
+//! `.navmesh` files: read, and written back with the same bytes.
 //!
-//! No containment: all of this code is ours. Memory: the longest expansion is a list that is copied while it grows and written
-//! out again, each at most a few times the bytes that it came from.
+//! No containment: all of this code is our own. Memory: what grows most is a list that is copied while it grows and
+//! written out again, each time at most a few times the bytes that it came from.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,6 +1,6 @@
 //! PNG and JPEG, as the picture of a scene.
 //!
-//! The decoders (`image` with `png` and `zune-jpeg`) are others' code; their panics are contained. Memory: see `glb`.
+//! The decoders (`image` with `png`, `zune-jpeg`) are third-party code; their panics are contained. Memory: see `glb`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,7 +1,8 @@
-//! Pose files beside pictures. The first byte says of which kind the rest is: text, CSV, JSON, or the description of a recording.
+//! Pose files beside pictures. The first byte says of which kind the rest is: text, CSV, JSON, or the description of a
+//! recording.
 //!
-//! No containment: JSON (`serde_json`) and TOML (`toml`) are others' code, but panics in them would reach the user. Memory: a byte of JSON
-//! becomes a value of 72 bytes, in a list that is copied while it grows.
+//! No containment: JSON (`serde_json`) and TOML (`toml`) are read by third-party code, but its panics would reach the
+//! user. Memory: a byte of JSON becomes a value of 72 bytes, in a list that is copied while it grows.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,7 +1,9 @@
-//! What a child process says: greeting, scenes, a graph, a view, a path. The child is `cat`, which says the whole input at once.
+//! Messages of a child process: greeting, scenes, a graph, a view, a path. The child is `cat`, which writes the whole
+//! input at once.
 //!
-//! No containment: JSON (`serde_json`) and pictures (`image`) are others' code, but panics in them would reach the user. Memory: a
-//! byte of JSON becomes a value of 72 bytes, in a list that is copied while it grows, and then what it means.
+//! No containment: JSON (`serde_json`) and pictures (`image`) are read by third-party code, but its panics would reach
+//! the user. Memory: a byte of JSON becomes a value of 72 bytes, in a list that is copied while it grows, and then the
+//! data that the JSON describes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

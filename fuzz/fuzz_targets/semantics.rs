@@ -1,7 +1,7 @@
-//! Semantic files beside a scene, as the platform opens them. The first byte says which one the rest is: HM3D's `.semantic.txt` or
-//! `.semantic.glb`, Matterport3D's `.house` or `_semantic.ply`.
+//! Semantic files beside a scene, as the platform opens them. The first byte says which one the rest is: HM3D's
+//! `.semantic.txt` or `.semantic.glb`, Matterport3D's `.house` or `_semantic.ply`.
 //!
-//! Decoders of GLB and of pictures are others' code; their panics are contained. Memory: see `glb`.
+//! Decoders of GLB and of pictures are third-party code; their panics are contained. Memory: see `glb`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,7 +1,7 @@
 //! Frames of ThreeDWorld's output: FlatBuffers of every kind.
 //!
-//! No containment: all of this code is ours. Memory: texts and bytes are borrowed; an entry of a vector that names a table takes
-//! four bytes, and becomes a struct of up to 72.
+//! No containment: all of this code is our own. Memory: texts and bytes are borrowed. An entry of a vector that names a
+//! table takes four bytes, and becomes a struct of up to 72.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,7 +1,8 @@
-//! VirtualHome's graph of a home, as JSON over HTTP: read, made a floor, and walked on.
+//! VirtualHome's graph of a home, as JSON over HTTP: read, turned into a floor, and walked on.
 //!
-//! No containment: JSON (`serde_json`) and HTTP (`ureq`) are others' code, but panics in them would reach the user. Memory: a floor
-//! has at most 80 x 80 m of 10 cm, whatever the graph; JSON becomes up to some hundred times its length.
+//! No containment: JSON (`serde_json`) and HTTP (`ureq`) are read by third-party code, but its panics would reach the
+//! user. Memory: a floor has at most 80 x 80 m in cells of 10 cm, whatever the graph. JSON grows to some hundred times
+//! its length.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

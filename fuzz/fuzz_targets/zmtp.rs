@@ -1,6 +1,6 @@
-//! What comes over ThreeDWorld's socket: ZeroMQ's greeting, frames, the version, one answer.
+//! Bytes that come over ThreeDWorld's socket: ZeroMQ's greeting, frames, the version, one answer.
 //!
-//! No containment: all of this code is ours. Memory: a mebibyte for each message that is announced, before it comes, and the
+//! No containment: all of this code is our own. Memory: one MiB for each announced message, before it comes, and the
 //! reader's buffer of 64 KiB.
 #![no_main]
 
@@ -16,18 +16,18 @@ use wayword_live::tdw::{Command, Controller, ControllerOptions, Frequency};
 
 const BOUND: Bound = Bound { flat: 4 << 20, per_byte: 64 };
 
-/// What a build says that behaves.
+/// The bytes of a correct build.
 static GOOD: OnceLock<Vec<u8>> = OnceLock::new();
 
 fn seeds() -> Vec<Vec<u8>> {
     let tapes = ["1.12.27", "1.13.0.0"].map(tape::record);
     GOOD.get_or_init(|| tapes[1].clone());
-    // An older peer greets in fewer words.
+    // An older peer has a shorter greeting.
     let old = b"\xff\0\0\0\0\0\0\0\x01\x7f\x01\x03\0\0\x01\0\0\x05hello\x01\0\x01\x0a\0\0\0\0ftre\0\0\0\x04\0\0\0\x01";
     tapes.into_iter().chain([old.to_vec()]).collect()
 }
 
-/// Somebody who says all of it at once, and then nothing more.
+/// A peer that sends all bytes at once, and then nothing more.
 fn speaker(to: std::net::SocketAddr, bytes: &[u8]) -> Option<TcpStream> {
     let mut stream = TcpStream::connect(to).ok()?;
     stream.set_nonblocking(true).ok()?;
@@ -45,7 +45,7 @@ fuzz_target!(init: begin("zmtp", &seeds()), |data: &[u8]| {
     };
     BOUND.hold(data, || {
         let mut controller = Controller::bind(options).expect("a port");
-        // Behind a stranger waits a build that behaves, so that nobody has to wait for the end of the patience.
+        // A correct build connects after the fuzzed peer, so that the controller does not wait until its time is up.
         let good = GOOD.get().map_or(&[][..], Vec::as_slice);
         let _speakers = [data, good].map(|bytes| speaker(controller.address(), bytes));
         if controller.connect().is_ok()

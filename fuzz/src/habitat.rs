@@ -1,4 +1,4 @@
-//! The same ways into Habitat's readers that the program takes.
+//! Calls Habitat's readers in the same way as the program.
 
 use crate::scratch;
 use std::path::Path;

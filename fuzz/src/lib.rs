@@ -1,4 +1,4 @@
-//! What the fuzz targets share: a bound on memory, a rule about panics, and seeds.
+//! Code that the fuzz targets share: a bound on memory, a rule about panics, and seeds.
 
 pub mod habitat;
 pub mod recording;
@@ -17,14 +17,14 @@ use wayword_core::contain::is_contained;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Memory that one input may take at most: so much for every input, and so much for each of its bytes.
+/// Most memory that one input may take: a flat amount for every input, plus an amount for each of its bytes.
 pub struct Bound {
     pub flat: usize,
     pub per_byte: usize,
 }
 
 impl Bound {
-    /// Runs a target on an input: what is allocated at any one time keeps to the bound.
+    /// Runs a target on an input. Panics where more is allocated at any one time than the bound allows.
     pub fn hold(&self, input: &[u8], target: impl FnOnce()) {
         MEMORY.reset_peak_usage();
         let before = MEMORY.current_usage();
@@ -35,10 +35,10 @@ impl Bound {
     }
 }
 
-/// To be called once: puts seeds into the target's corpus and sets the rule about panics.
+/// Puts seeds into the target's corpus and sets the rule about panics. Call it once.
 ///
-/// libFuzzer's hook ends the process at every panic. Ours lets those pass that are contained and in another crate's code, and
-/// tells each of their places once.
+/// libFuzzer's hook ends the process at every panic. This one lets a panic pass that is contained and in another
+/// crate's code, and prints the place of each of these once.
 pub fn begin(target: &str, seeds: &[Vec<u8>]) {
     seeds::sow(target, seeds);
     let piped = Arc::new(AtomicBool::new(false));

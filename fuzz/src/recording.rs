@@ -1,10 +1,10 @@
-//! The same way into recordings that the program takes.
+//! Opens recordings in the same way as the program.
 
 use std::{path::Path, sync::Arc};
 use wayword_core::{Gaze, PathRequest, Platform, PlatformError};
 use wayword_recording::RecordingPlatform;
 
-/// Opens what lies under a path, walks along its first two recordings and looks twice on each.
+/// Opens the recordings under a path, samples a path from each of the first two, and looks from the first two frames.
 pub fn walk(path: &Path) -> Result<(), PlatformError> {
     let platform = RecordingPlatform::open(path, Arc::new(|_: &str| ()))?;
     for scene in platform.scenes()?.iter().take(2) {

@@ -1,16 +1,16 @@
-//! Folders for one input, in memory where the system has such a place.
+//! Folders for one input, in memory where the system has `/dev/shm`.
 
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
-/// An empty folder that is gone when it is dropped.
+/// An empty folder that is deleted when it is dropped.
 pub fn folder() -> TempDir {
     let memory = Path::new("/dev/shm");
     if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }
         .expect("a folder for scratch files")
 }
 
-/// Writes a file below a folder, with the folders on the way.
+/// Writes a file below a folder, and makes the folders on the way.
 pub fn write(folder: &Path, file: &str, bytes: &[u8]) {
     let file = folder.join(file);
     if let Some(parent) = file.parent() {

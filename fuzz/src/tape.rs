@@ -1,4 +1,4 @@
-//! What a build of ThreeDWorld sends: the stand-in's own bytes, listened to on their way.
+//! The bytes that a build of ThreeDWorld sends, recorded between the stand-in and a controller.
 
 use std::{
     io::{Read, Write},
@@ -11,7 +11,7 @@ use wayword_live::tdw::{
     stand_in::{StandIn, StandInOptions},
 };
 
-/// Everything that the stand-in of a version sends for one list of commands, its greeting included.
+/// Everything that the stand-in of a version sends for one list of commands, including its greeting.
 pub fn record(version: &'static str) -> Vec<u8> {
     let options = ControllerOptions {
         address: ([127, 0, 0, 1], 0).into(),
@@ -75,7 +75,7 @@ fn commands() -> Vec<Command> {
     ]
 }
 
-/// The frames of a tape, ZMTP 3.0's framing taken away.
+/// The frames of a tape, without ZMTP 3.0's framing.
 pub fn frames(tape: &[u8]) -> Vec<Vec<u8>> {
     // 64 bytes of greeting come first.
     let mut rest = tape.get(64..).unwrap_or_default();

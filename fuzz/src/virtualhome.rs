@@ -1,4 +1,4 @@
-//! As much of VirtualHome's executable as it takes to hand a graph to the platform.
+//! The part of VirtualHome's executable that it takes to hand a graph to the platform.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
@@ -17,7 +17,7 @@ pub fn set_graph(text: String) {
     *GRAPH.lock().unwrap_or_else(PoisonError::into_inner) = text;
 }
 
-/// Starts to listen; gives back the address, as clients take it.
+/// Starts to listen; returns the address, as clients take it.
 pub fn start() -> String {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let url = format!("http://{}", listener.local_addr().expect("its address"));

@@ -2,7 +2,7 @@
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 
-/// 16 x 16 texels in ETC1S, made with the reference encoder (basis_universal 1.16) of a picture of our own.
+/// 16 x 16 texels in ETC1S, made by the reference encoder (basis_universal 1.16) from a picture of our own.
 const ETC1S: &str = "c0ITAE0AvwSIAAAAIxABAAABAAAAEQAAAAAAAAAAAAAAAAAAAAAAAwBkAAAALwAAAwCTAAAADQAAoAAAAC8AAABNAAAAAAAAAAAAAAAAAAAA\
     ABAAEAAEAAQAzwAAAAYAAADe6CBA3AABAAAASF6Q3QUwJQAAAAAAgGQHPAATAgQAAAAAyAEZACYABAAAAACQYjwDBAAAAKiqqqpSVVVVBRTA\
     hAABAAAAALJBBoAJAAAAAAAQZCXA1IABAABhABaonNwJEABMAAAAAAAAIIAA43s0aJ4G";
@@ -32,7 +32,7 @@ fn plain(format: u8, blocks: [u16; 2], bytes: usize) -> Vec<u8> {
     file
 }
 
-/// A file of every format that the decoder knows by number: ETC1S, UASTC, HDR, raw ASTC and its packed kin.
+/// A file of every format that the decoder knows by number: ETC1S, UASTC, HDR, raw ASTC and packed ASTC.
 pub fn all() -> Vec<Vec<u8>> {
     let mut all = vec![etc1s()];
     all.extend((1..=4).map(|format| plain(format, [2, 2], 64)));

@@ -73,7 +73,7 @@ pub fn with_picture(picture: &[u8]) -> Vec<u8> {
     container(&document, &bytes)
 }
 
-/// Documents of the kinds that are read: a picture in PNG and in Basis; no indices, strips, fans, no scene, no material.
+/// Documents of the kinds that are read: a picture in PNG, in Basis; no indices, strips, fans, no scene, no material.
 fn documents() -> Vec<(Value, Vec<u8>)> {
     let mut documents = vec![triangle(&picture::png(2, 2)), triangle(&basis::etc1s())];
     let mut changed = |change: fn(&mut Value)| {
@@ -101,7 +101,7 @@ pub fn binaries() -> Vec<Vec<u8>> {
     documents().iter().map(|(document, bytes)| container(document, bytes)).collect()
 }
 
-/// Files of text, with their bytes in them.
+/// Text files, with their bytes in them.
 pub fn texts() -> Vec<Vec<u8>> {
     let text = |(mut document, bytes): (Value, Vec<u8>)| {
         document["buffers"][0]["uri"] =

@@ -1,4 +1,4 @@
-//! Inputs to begin with, all made here: nothing of anybody's dataset.
+//! Seed inputs. All are made here, and none comes from a dataset.
 
 pub mod basis;
 pub mod glb;

@@ -17,7 +17,7 @@ pub fn baked() -> Vec<u8> {
     bake(&model, &NavMeshSettings::default()).expect("a navmesh").to_bytes()
 }
 
-/// A square metre at a tile's place, its four edges leading into the tiles around; the second half of it raised by detail.
+/// A square metre at a tile's place. Its four edges lead into the tiles around it, and detail raises its second half.
 fn tile(place: [i32; 2], reference: u32) -> Vec<u8> {
     let (x, z) = (place[0] as f32, place[1] as f32);
     let verts = [[x, 0.0, z], [x, 0.0, z + 1.0], [x + 1.0, 0.0, z + 1.0], [x + 1.0, 0.0, z]];
@@ -28,7 +28,7 @@ fn tile(place: [i32; 2], reference: u32) -> Vec<u8> {
     floats(&mut bytes, &[1.5, 0.1, 0.2, x, 0.0, z, x + 1.0, 0.2, z + 1.0, 20.0]);
     verts.iter().for_each(|vert| floats(&mut bytes, vert));
     ints(&mut bytes, &[-1]);
-    // Behind -x, +z, +x and -z: portals, by Detour's numbers of the sides.
+    // Portals to -x, +z, +x and -z, with Detour's numbers of the sides.
     for corner in [0_u16, 1, 2, 3, 0, 0, 0x8004, 0x8002, 0x8000, 0x8006, 0, 0, 1] {
         bytes.extend(corner.to_le_bytes());
     }

@@ -1,4 +1,4 @@
-//! The recordings that the tests of `wayword-recording` read: all of them show scenes of our own.
+//! The recordings that the tests of `wayword-recording` read. All of them show scenes of our own.
 
 use flate2::read::GzDecoder;
 use std::{
@@ -12,7 +12,7 @@ pub fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/world/wayword-recording/fixtures")
 }
 
-/// The files of a folder and below, sorted, as their paths from there and what they hold, unpacked.
+/// The files below a folder, sorted: their paths relative to it, and their unpacked contents.
 pub fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files = Vec::new();
     let mut open = vec![folder.to_owned()];
@@ -41,12 +41,12 @@ pub fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// What the files of a kind hold.
+/// The contents of the fixtures of a kind.
 pub fn of_kind(kind: &str) -> Vec<Vec<u8>> {
     files(&fixtures().join(kind)).into_iter().map(|(_, bytes)| bytes).collect()
 }
 
-/// Pose files, the first byte of each saying of which kind it is.
+/// Pose files. The first byte of each says of which kind it is.
 pub fn poses() -> Vec<Vec<u8>> {
     let texts: [(u8, &str); 7] = [
         (0, "# time x y z qx qy qz qw\n0 0 0 1.5 0 0 0 1\n1 1 0 1.5 0 0 0.7 0.7\n2 2 1 1.5 0 0 0 1\n"),

@@ -1,13 +1,13 @@
-//! What programs say to one another: JSON and text.
+//! Messages between programs, and files: JSON and text.
 
-/// A home with two rooms, a door, and a sofa, as VirtualHome tells it.
+/// A home with two rooms, a door and a sofa, as VirtualHome sends it.
 pub const HOME: &str = r#"{"nodes":[
 {"id":1,"class_name":"kitchen","category":"Rooms","bounding_box":{"center":[-1,1.25,0],"size":[2,2.5,2]}},
 {"id":2,"class_name":"bedroom","category":"Rooms","bounding_box":{"center":[1,1.25,0],"size":[2,2.5,2]}},
 {"id":3,"class_name":"doorjamb","category":"Doors","bounding_box":{"center":[0,1,0],"size":[0.2,2,1]}},
 {"id":4,"class_name":"sofa","category":"Furniture","bounding_box":{"center":[1,0.4,0.5],"size":[0.5,0.8,0.5]}}],"edges":[]}"#;
 
-/// Everything that a child says that has a graph, labels and paths.
+/// All answers of a child process that offers a graph, labels and paths.
 pub const CHILD: &str = r#"{"id":1,"result":{"protocol":1,"frame":"z-up, metres, radians clockwise from +y","name":"w","offers":["graph","pictures","labels","rooms","sample_path","object_name","visible_from"]}}
 {"id":2,"result":{"scenes":["s"]}}
 {"id":3,"result":{"viewpoints":[{"id":"a","position":[0,0,1.5],"level":1},{"id":"b","position":[2,0,1.5]}],"edges":[["a","b"]]}}
@@ -18,7 +18,7 @@ pub const CHILD: &str = r#"{"id":1,"result":{"protocol":1,"frame":"z-up, metres,
 {"id":8,"result":{"viewpoints":["a"]}}
 "#;
 
-/// The same by points and the ways between them.
+/// The same for one that offers points, and says between which of them one can walk.
 pub const WALKER: &str = r#"{"id":1,"result":{"protocol":1,"frame":"z-up, metres, radians clockwise from +y","name":"w","offers":["points","walkable","labels"]}}
 {"id":2,"result":{"scenes":["s","t"]}}
 {"id":3,"result":{"points":[{"position":[0,0,1.5]},{"position":[1.5,0,1.5]},{"position":[0,1.5,1.5],"level":2}]}}
@@ -27,7 +27,7 @@ pub const WALKER: &str = r#"{"id":1,"result":{"protocol":1,"frame":"z-up, metres
 {"id":6,"error":{"code":"unknown_scene","message":"no"}}
 "#;
 
-/// The same by points and their neighbours.
+/// The same for one that offers points and their neighbours.
 pub const NEIGHBOUR: &str = r#"{"id":1,"result":{"protocol":1,"frame":"z-up, metres, radians clockwise from +y","name":"w","offers":["points","neighbours","pictures"],"images":"/tmp"}}
 {"id":2,"result":{"scenes":["s"]}}
 {"id":3,"result":{"points":[{"id":"a","position":[0,0,1.5]},{"id":"b","position":[1.5,0,1.5]}]}}
@@ -39,7 +39,7 @@ pub const NEIGHBOUR: &str = r#"{"id":1,"result":{"protocol":1,"frame":"z-up, met
 /// Two viewpoints of a building.
 pub const CONNECTIVITY: &str = r#"[{"image_id":"a","pose":[0,-1,0,0,0,0,-1,0,1,0,0,1.6,0,0,0,1],"included":true,"visible":[false,true],"unobstructed":[false,true],"height":1.5},
 {"image_id":"b","pose":[0,-1,0,2,0,0,-1,0,1,0,0,1.6,0,0,0,1],"included":true,"visible":[true,false],"unobstructed":[true,false],"height":1.5}]"#;
-/// Its levels, rooms and objects.
+/// Its storeys, rooms and objects.
 pub const HOUSE: &str = "ASCII 1.1\nL 0 1 - 0 0 0.0 0 0 0 1 1 1 0\nR 0 0 0 0 b 0 0 0 0 0 0 1 1 1 2.5\nP a 0 0 0 1 2 1.5\nP b 0 0 0 1 2 1.5\n\
     O 5 0 9 1 1 0.5 1 0 0 0 1 0 1 1 1\nC 9 3 coffee#table 5 table\n";
 /// Its rooms.
@@ -50,7 +50,7 @@ pub const BOXES: &str =
 /// REVERIE's centres.
 pub const CENTRES: &str = r#"{"s":{"5":[1,1,0.5]}}"#;
 
-/// Files of a building, the first byte of each saying which it is.
+/// Files of a building. The first byte of each says which one it is.
 pub fn building() -> Vec<Vec<u8>> {
     let texts = [CONNECTIVITY, HOUSE, ROOMS, BOXES, CENTRES].map(|text| text.as_bytes().to_vec());
     let pictures = [super::picture::png(12, 2), super::picture::jpeg(48, 8)];

@@ -1,4 +1,4 @@
-//! How long a round trip with a frame of 900 kB takes over loopback: commands to a build, its answer, and the picture read.
+//! Measures a round trip over loopback with a frame of 900 kB: commands to a build, its answer, reading the picture.
 
 #![allow(clippy::expect_used, missing_docs, reason = "a benchmark may fail")]
 

@@ -1,18 +1,18 @@
-//! Pictures that came over a socket.
+//! Decodes pictures that came over a socket.
 
 use image::{ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 
-/// Longest side of a picture that is taken, pixels.
+/// Longest side of an accepted picture, pixels.
 const MAX_SIDE_PX: u32 = 8192;
 
-/// The RGB pixels of a file, rows from the top; what is wrong with it otherwise.
+/// The RGB pixels of a file, rows from the top, or what is wrong with the file.
 ///
-/// The size is known before: a file of another size is refused before it is decoded, so that its header cannot make us take
-/// more memory than the picture has.
+/// The caller knows the size. A file of another size is refused before it is decoded, so that its header cannot make
+/// the program allocate more memory than the picture needs.
 pub(crate) fn rgb(file: &[u8], format: ImageFormat, (width, height): (u32, u32)) -> Result<Vec<u8>, String> {
     if !(1..=MAX_SIDE_PX).contains(&width) || !(1..=MAX_SIDE_PX).contains(&height) {
-        return Err(format!("{width} x {height} pixels: each side must lie in 1..={MAX_SIDE_PX}"));
+        return Err(format!("a size of {width} x {height} pixels: each side must lie in 1..={MAX_SIDE_PX}"));
     }
     let mut reader = ImageReader::new(Cursor::new(file));
     reader.set_format(format);
@@ -23,7 +23,7 @@ pub(crate) fn rgb(file: &[u8], format: ImageFormat, (width, height): (u32, u32))
     let decoded = reader.decode().map_err(|error| error.to_string())?;
     let (its_width, its_height) = (decoded.width(), decoded.height());
     if (its_width, its_height) != (width, height) {
-        return Err(format!("its file has {its_width} x {its_height} pixels: expected {width} x {height}"));
+        return Err(format!("the file has {its_width} x {its_height} pixels: expected {width} x {height}"));
     }
     Ok(decoded.into_rgb8().into_raw())
 }

@@ -1,7 +1,8 @@
-//! Simulators that run beside Wayword, over their own sockets: ThreeDWorld's build and VirtualHome's executable.
+//! Platforms over simulators that run as separate programs: ThreeDWorld's build and VirtualHome's executable. Wayword
+//! talks to them over their own sockets.
 //!
-//! Everything that comes over a socket is untrusted: sizes are bounded before memory is taken, and what cannot be read is an
-//! error that says what was expected, and where.
+//! Bytes that come over a socket are not trusted. Sizes are checked before memory is allocated. Where bytes cannot be
+//! read, the error says what was expected, and where.
 
 mod decode;
 mod live;

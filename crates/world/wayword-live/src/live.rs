@@ -1,4 +1,4 @@
-//! What all live simulators have in common: a platform over one that runs beside us, one look at a time.
+//! The code that all live simulators share: a platform over a running simulator, which answers one request at a time.
 
 use crate::{
     raster::Raster,
@@ -12,8 +12,8 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
 };
 use wayword_core::{
-    DVec3, Failure, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform,
-    PlatformError, Pose, SceneId, View, ViewpointGraph, ViewpointId,
+    DVec3, Failure, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
+    SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
 use wayword_world::{said::Hear, seen_from};
@@ -21,48 +21,48 @@ use wayword_world::{said::Hear, seen_from};
 /// Widest gaze that one flat picture can show, radians.
 const WIDEST_RAD: f64 = 2.6;
 
-/// A simulator that runs beside us.
+/// A simulator that runs as a separate program.
 pub(crate) trait Simulator: Send + fmt::Debug {
-    /// What goes wrong with it.
+    /// Its errors.
     type Error: std::error::Error;
     /// Its name, as `--platform` takes it.
     const NAME: &'static str;
 
-    /// Where it is, for messages.
+    /// Its address, for messages.
     fn address(&self) -> String;
 
-    /// Has somebody told what is waited for, and what the simulator's scenes lack.
+    /// Sets who receives progress lines: what the program waits for, and what the simulator's scenes lack.
     fn tell(&mut self, ear: Ear);
 
     /// The scenes that it lists.
     fn scenes(&self) -> Vec<String>;
 
-    /// How scenes are named, where this one is none.
+    /// `None` where the scene's name is valid; otherwise a hint that says how scenes are named.
     fn refuses(&self, scene: &SceneId) -> Option<&'static str>;
 
-    /// Sees to it that the simulator is there with this scene in it. Cheap, where it is.
+    /// Connects to the simulator and loads this scene. Cheap where the scene is loaded already.
     fn enter(&mut self, scene: &SceneId) -> Result<(), Self::Error>;
 
-    /// Asks what stands where in the scene, and where one can walk.
+    /// Asks where the objects of the scene are, and where one can walk.
     fn survey(&mut self) -> Result<Survey, Self::Error>;
 
-    /// Looks through a camera without elevation.
+    /// Takes a picture through a camera whose elevation is 0.
     fn shoot(&mut self, camera: &Camera) -> Result<Shot, Self::Error>;
 
-    /// The corners of the shortest way between two eyes, both among them; `None` where there is none.
+    /// The corners of the shortest way between two eye positions, both ends included; `None` where there is no way.
     fn way(&mut self, survey: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, Self::Error>;
 
     /// What to do about an error.
     fn hint(error: &Self::Error) -> &'static str;
 
-    /// Whether the simulator is lost over an error, so that trying once more makes sense at once.
+    /// Whether an error means that the simulator was lost. Then the program tries once more at once.
     fn is_loss(error: &Self::Error) -> bool;
 
-    /// How an error is dealt with that trying once more did not mend.
+    /// The kind of failure to report where trying once more did not help.
     fn failure(error: &Self::Error) -> Failure;
 }
 
-/// Who hears what a simulator is waited for; nobody at first.
+/// Receives the progress lines about a simulator. At first they go nowhere: see [`Ear::deaf`].
 #[derive(Clone)]
 pub(crate) struct Ear(Hear);
 
@@ -82,14 +82,14 @@ impl fmt::Debug for Ear {
     }
 }
 
-/// What a scene holds.
+/// What a scene contains.
 #[derive(Debug)]
 pub(crate) struct Survey {
-    /// Eyes and the straight walks between them.
+    /// Viewpoints at eye height, and between which of them one can walk straight.
     pub(crate) graph: ViewpointGraph,
     /// The floor.
     pub(crate) raster: Raster,
-    /// Things by their colours.
+    /// Objects by their colours.
     pub(crate) palette: Palette,
     /// Rooms, where they have names.
     pub(crate) rooms: Vec<Room>,
@@ -103,13 +103,13 @@ pub(crate) struct Room {
     pub(crate) bounds_m: (DVec3, DVec3),
 }
 
-/// A picture, and the colour of each pixel's object as [`sight::colour_id`] has it.
+/// A picture, and the colour of each pixel's object as [`sight::colour_id`] encodes it.
 pub(crate) struct Shot {
     pub(crate) rgb: Vec<u8>,
     pub(crate) ids: Vec<u32>,
 }
 
-/// Size of pictures and distance of frames.
+/// Size of pictures, and distance between frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pictures {
     /// Width, pixels.
@@ -126,7 +126,7 @@ impl Default for Pictures {
     }
 }
 
-/// A platform over a simulator. Where the simulator is lost, it is waited for again, once, and the scene loaded anew.
+/// A platform over a simulator. When the simulator is lost, the platform waits for it once more and reloads the scene.
 #[derive(Debug)]
 pub struct Live<S> {
     pictures: Pictures,
@@ -144,7 +144,7 @@ struct Running<S> {
 struct Scene {
     survey: Survey,
     graph: Arc<ViewpointGraph>,
-    /// The viewpoints from which each object is seen; looked for when first asked for.
+    /// The viewpoints from which each object is seen; computed when they are first asked for.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
 }
 
@@ -162,7 +162,7 @@ impl<S: Simulator> Live<S> {
         self.lock().simulator.address()
     }
 
-    /// Does something with the simulator while a scene is in it.
+    /// Runs `act` with the simulator while the scene is loaded in it.
     fn with<T>(
         &self,
         scene: &SceneId,
@@ -189,7 +189,7 @@ impl<S: Simulator> Live<S> {
         })
     }
 
-    /// The scene, surveyed: whoever knows it already needs no simulator.
+    /// The scene with its survey. A scene that was surveyed before needs no simulator.
     fn scene(&self, scene: &SceneId) -> Result<Arc<Scene>, PlatformError> {
         if let Some(known) = self.lock().scenes.get(scene) {
             return Ok(known.clone());
@@ -199,7 +199,7 @@ impl<S: Simulator> Live<S> {
         let lost = || PlatformError::Lost {
             world: running.simulator.address(),
             reason: format!("the survey of {scene} was lost"),
-            hint: "ask again",
+            hint: "try again",
         };
         running.scenes.get(scene).cloned().ok_or_else(lost)
     }
@@ -217,15 +217,15 @@ impl<S: Simulator> Live<S> {
         }
     }
 
-    /// Has `hear` told what is waited for, and what the simulator's scenes lack.
+    /// Sends progress lines to `hear`: what the program waits for, and what the simulator's scenes lack.
     #[must_use]
     pub fn heard_by(self, hear: Hear) -> Self {
         self.lock().simulator.tell(Ear(hear));
         self
     }
 
-    /// The picture, what shows in it, and the room: nothing of that where the scene has neither objects nor named rooms, as
-    /// nobody has labelled what shows there.
+    /// The picture and its ground truth: labels of what is visible, and the room. There is no ground truth where the
+    /// scene has neither objects nor named rooms, because then nothing in it is labelled.
     fn seen(&self, scene: &SceneId, eye: DVec3, gaze: Gaze) -> Result<(Vec<u8>, Option<GroundTruth>), PlatformError> {
         let camera = self.camera(eye, gaze);
         self.with(scene, |simulator, known| {
@@ -304,7 +304,7 @@ impl<S: Simulator> Platform for Live<S> {
         let (rgb, truth) = self.seen(scene, from.pose.position, gaze)?;
         let image = Image::new(self.pictures.width_px, self.pictures.height_px, rgb);
         let pose = Pose::level(from.pose.position, gaze.heading);
-        // The picture was held against this size when it was decoded.
+        // The decoder has checked the picture's size.
         Ok(View::new(pose, gaze.horizontal_fov_rad, image.ok().map(Arc::new), truth))
     }
 

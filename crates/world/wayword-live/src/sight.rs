@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
 use wayword_render::{Camera, Picture, Visible, evident_objects};
 
-/// Always there, so never worth a label.
+/// Names that get no label, because such things are everywhere.
 const SHELL: [&str; 6] = ["floor", "wall", "walls", "ceiling", "character", "door jamb"];
 
 /// An object of a scene.
@@ -20,8 +20,8 @@ pub(crate) struct Thing {
 }
 
 impl Thing {
-    /// An object by the middle of its box and the ways from there to three of its sides. `None` for what is no object that
-    /// anybody would name.
+    /// An object from the middle of its box and the vectors from there to three of its sides. `None` where the name is
+    /// empty or in [`SHELL`], or a number is not finite.
     pub(crate) fn new(id: i64, name: &str, centre: DVec3, [a, b, c]: [DVec3; 3]) -> Option<Self> {
         let name = plain(name);
         let usable = centre.is_finite() && [a, b, c].iter().all(|side| side.is_finite());
@@ -34,13 +34,13 @@ impl Thing {
     }
 }
 
-/// A model's name in plain words: lower case, no underscores.
+/// The name of a 3D model in plain words: lower case, no underscores.
 pub(crate) fn plain(name: &str) -> String {
     let words: String = name.chars().take(64).map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
     words.split_whitespace().map(str::to_lowercase).collect::<Vec<_>>().join(" ")
 }
 
-/// The scene's things by their colour, `0xRRGGBB`: as ids of pixels.
+/// The scene's objects by their colour, `0xRRGGBB`, which is also the id of a pixel.
 pub(crate) type Palette = BTreeMap<u32, Thing>;
 
 /// The id of a colour.
@@ -48,8 +48,8 @@ pub(crate) fn colour_id([r, g, b]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0, r, g, b])
 }
 
-/// Labels of what is visible, largest first: things whose box's middle lies within the gaze. `ids` are the colours of the
-/// picture's pixels, rows from the top.
+/// Labels of visible objects, largest first. The middle of an object's box must lie within the gaze. `ids` are the
+/// colours of the picture's pixels, rows from the top.
 pub(crate) fn labels(camera: &Camera, gaze: Gaze, ids: Vec<u32>, palette: &Palette) -> Vec<Label> {
     let depth_m = vec![0.0; ids.len()];
     let picture = Picture { width: camera.width, height: camera.height, rgb: Vec::new(), depth_m, ids };

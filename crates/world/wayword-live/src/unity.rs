@@ -1,17 +1,17 @@
-//! Unity's world, in which both simulators live: left-handed, metres, +y up, +z forward, yaw clockwise seen from above.
+//! Unity's coordinates, which both simulators use: left-handed, metres, +y up, +z forward, yaw clockwise from above.
 //!
-//! Wayword's is right-handed with z up. Changing y and z does both: it turns the up axis and mirrors, so that headings,
-//! which are clockwise from above in both, stay what they are.
+//! Wayword's world frame is right-handed with z up. Swapping y and z converts one to the other, because it changes the
+//! up axis and mirrors. Headings stay the same, because both count them clockwise from above.
 
 use wayword_core::{DVec3, Heading};
 
-/// A Unity position or direction in the world frame.
+/// Converts a Unity position or direction to the world frame.
 #[must_use]
 pub fn wayword_from_unity([x, y, z]: [f64; 3]) -> DVec3 {
     DVec3::new(x, z, y)
 }
 
-/// A position or direction of the world frame in Unity's.
+/// Converts a position or direction of the world frame to Unity's.
 #[must_use]
 pub fn unity_from_wayword(place: DVec3) -> [f64; 3] {
     [place.x, place.z, place.y]
@@ -24,7 +24,7 @@ pub fn unity_rotation_from_heading(heading: Heading) -> [f64; 4] {
     [0.0, sin, 0.0, cos]
 }
 
-/// Where a Unity rotation (x, y, z, w) turns +z, in the world frame.
+/// The direction to which a Unity rotation (x, y, z, w) turns +z, in the world frame.
 #[must_use]
 pub fn wayword_forward_from_unity_rotation([x, y, z, w]: [f64; 4]) -> DVec3 {
     wayword_from_unity([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])

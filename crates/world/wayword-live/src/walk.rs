@@ -1,4 +1,4 @@
-//! Random walks through a live world: a way between two places, with frames along it.
+//! Random paths through a live simulator's scene: a way between two places, with frames along it.
 
 use rand::Rng;
 use wayword_core::{
@@ -8,14 +8,14 @@ use wayword_world::wander::{Wander, no_such_walk, wander};
 
 /// Height of the eye above the ground, metres.
 pub(crate) const EYE_M: f64 = 1.5;
-/// A corner so near to the frame before it gets none of its own, metres.
+/// A corner nearer than this to the last kept corner, or to the end, gets no frame of its own, metres.
 const CROWDED_M: f64 = 0.4;
-/// A target is at most so far from the last frame, metres.
+/// Largest distance of a target from the last frame, metres.
 const TARGET_REACH_M: f64 = 4.0;
 
-/// What a walk needs of a world.
+/// What sampling a path needs from a simulator.
 pub(crate) trait Walkable {
-    /// The corners of the shortest way between two eyes, both among them; `None` where there is none.
+    /// The corners of the shortest way between two eye positions, both ends included; `None` where there is no way.
     fn way(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, PlatformError>;
 
     /// What is visible from a pose within a gaze.
@@ -28,7 +28,7 @@ pub(crate) trait Walkable {
     }
 }
 
-/// A walk between two of `eyes` whose length keeps to `request`, with frames at most `interval_m` apart and at corners.
+/// A path between two of `eyes` whose length `request` allows. Frames are at corners and at most `interval_m` apart.
 pub(crate) fn path(
     world: &mut dyn Walkable,
     (scene, eyes): (&SceneId, &[DVec3]),
@@ -41,7 +41,7 @@ pub(crate) fn path(
     found.ok_or_else(|| no_such_walk(scene, request))
 }
 
-/// Walks through a live world.
+/// Samples paths through a live simulator's scene.
 struct Walker<'a, R> {
     world: &'a mut dyn Walkable,
     eyes: &'a [DVec3],
@@ -64,7 +64,7 @@ impl<R: Rng> Wander for Walker<'_, R> {
     }
 }
 
-/// Where frames are taken: at both ends, at corners, and at equal distances of at most `interval_m` between.
+/// Where frames are taken: at both ends, at corners, and between them at equal distances of at most `interval_m`.
 fn stops(way: &[DVec3], interval_m: f64) -> Vec<Stop> {
     let interval_m = if interval_m.is_finite() { interval_m.max(0.1) } else { 1.0 };
     let Some((first, rest)) = way.split_first() else { return Vec::new() };
@@ -86,7 +86,7 @@ fn stops(way: &[DVec3], interval_m: f64) -> Vec<Stop> {
     places.into_iter().map(|position| Stop { position, viewpoint: None, level: None }).collect()
 }
 
-/// One of the things in reach that has no namesake in sight.
+/// A random object within reach that is the only visible one of its name.
 fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
     let is_alone = |label: &&Label| labels.iter().filter(|other| other.name == label.name).count() == 1;
     let in_reach = |label: &&Label| label.distance_m.is_some_and(|distance_m| distance_m <= TARGET_REACH_M);
@@ -95,7 +95,7 @@ fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
     Some(Target { object: chosen.object.clone(), name: chosen.name.clone(), told_by: Vec::new(), has_namesake: false })
 }
 
-/// Refuses a frame from which nothing can be looked at.
+/// Refuses a frame whose position is not finite or too far out.
 pub(crate) fn check(scene: &SceneId, frame: &Frame) -> Result<(), PlatformError> {
     let usable = frame.pose.position.is_finite() && frame.pose.position.abs().max_element() < 1e5;
     if usable { Ok(()) } else { Err(PlatformError::NotAViewpoint { scene: scene.clone() }) }

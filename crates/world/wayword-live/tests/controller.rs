@@ -1,4 +1,4 @@
-//! The controller against the stand-in build, against its faults, and against another implementation of ZeroMQ.
+//! Tests the controller with the stand-in build and its faults, and with a third-party implementation of ZeroMQ.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -100,9 +100,10 @@ fn where_no_build_comes_the_error_says_how_to_start_one() {
     assert!(error.contains("TDW.x86_64 -port"), "{error}");
 }
 
-/// The greeting and READY of a REQ socket, and an empty message as a build sends it first.
+/// A build's first message, in its envelope.
 const HELLO: &[u8] = b"\x01\x00\x00\x05hello";
 
+/// The greeting and READY of a REQ socket.
 fn greeting() -> Vec<u8> {
     let mut bytes = vec![0xff, 0, 0, 0, 0, 0, 0, 0, 1, 0x7f, 3, 0];
     bytes.extend(b"NULL");
@@ -111,7 +112,7 @@ fn greeting() -> Vec<u8> {
     bytes
 }
 
-/// What the controller makes of a connection on which exactly these bytes come.
+/// The controller's error for a connection on which exactly these bytes come.
 fn connected_by(bytes: &[u8]) -> TdwError {
     let options = ControllerOptions { connect_timeout: Duration::from_millis(700), ..options() };
     let mut controller = Controller::bind(options).unwrap();
@@ -148,9 +149,9 @@ fn no_length_that_is_only_announced_costs_memory() {
         let error = connected_by(&announced).to_string();
         assert!(error.contains(&format!("one of {length} bytes")), "{error}");
     }
-    // What may be as long as this has to come first.
+    // A length within the limit costs no memory either: the controller waits for the bytes.
     let announced = [&greeting()[..], b"\x01\x00\x02", &(200_u64 << 20).to_be_bytes(), b"abc"].concat();
-    assert!(connected_by(&announced).to_string().contains("nothing came in time"));
+    assert!(connected_by(&announced).to_string().contains("timed out while reading a message"));
 }
 
 #[test]
@@ -179,7 +180,7 @@ fn a_build_with_an_older_zeromq_is_understood() {
     build.join().unwrap();
 }
 
-/// Another implementation as the build: what we write, it reads, and the other way round.
+/// A third-party implementation plays the build: each side reads what the other writes.
 #[test]
 fn the_zeromq_crate_agrees_about_the_bytes() {
     let mut controller = Controller::bind(options()).unwrap();
@@ -214,8 +215,8 @@ fn the_zeromq_crate_agrees_about_the_bytes() {
     build.join().unwrap();
 }
 
-/// 10,000 steps with frames of 900 kB; prints what a step takes and how much memory the process holds. By hand: it takes a
-/// while (`cargo test --release -p wayword-live --test controller -- --ignored --nocapture`).
+/// 10,000 steps with frames of 900 kB; prints the time for a step and the memory of the process. Run it yourself,
+/// because it takes a while (`cargo test --release -p wayword-live --test controller -- --ignored --nocapture`).
 #[test]
 #[ignore = "takes a minute; for measuring"]
 fn ten_thousand_steps_need_no_more_memory_than_a_hundred() {

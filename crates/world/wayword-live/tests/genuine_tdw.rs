@@ -1,5 +1,5 @@
-//! The genuine Python client drives the stand-in build. `WAYWORD_TDW_PYTHON` names a Python, or several with commas between,
-//! that has the package `tdw`; without it there is nothing to run.
+//! The genuine Python client drives the stand-in build. `WAYWORD_TDW_PYTHON` names a Python that has the package `tdw`,
+//! or several with commas between them. Without it the tests are skipped.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -43,7 +43,7 @@ fn near(told: &Value, expected: [f64; 3]) -> bool {
 fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
     let Ok(pythons) = std::env::var("WAYWORD_TDW_PYTHON") else {
         println!(
-            "SKIPPED: name a Python with the package tdw in WAYWORD_TDW_PYTHON (pip install tdw==1.13.0.0, or 1.12.27)"
+            "SKIPPED: set WAYWORD_TDW_PYTHON to a Python with the package tdw (pip install tdw==1.13.0.0, or 1.12.27)"
         );
         return;
     };
@@ -51,7 +51,7 @@ fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
         for version in ["1.13.0.0", "1.12.27"] {
             let client = Command::new(python).args(["-c", "import tdw.version as v; print(v.__version__)"]).output();
             let client = String::from_utf8_lossy(&client.unwrap().stdout).trim().to_owned();
-            // The client knows the layout of its own version only.
+            // The client knows only the layout of its own version.
             if client.starts_with("1.13") == version.starts_with("1.13") {
                 let (told, saved) = drive(python, version);
                 holds(&told, &saved, version);
@@ -65,11 +65,11 @@ fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
     }
 }
 
-/// Every floor plan with every layout, as the package's own lists have them.
+/// Loads every floor plan with every layout from the package's own lists.
 #[test]
 fn furniture_of_the_genuine_package_can_be_placed() {
     let Ok(pythons) = std::env::var("WAYWORD_TDW_PYTHON") else {
-        println!("SKIPPED: name a Python with the package tdw in WAYWORD_TDW_PYTHON");
+        println!("SKIPPED: set WAYWORD_TDW_PYTHON to a Python with the package tdw");
         return;
     };
     for python in pythons.split(',') {
@@ -89,11 +89,11 @@ fn furniture_of_the_genuine_package_can_be_placed() {
     }
 }
 
-/// libzmq as the build: the socket that most programs have.
+/// libzmq, the implementation that most programs use, plays the build.
 #[test]
 fn libzmq_agrees_about_the_bytes() {
     let Ok(pythons) = std::env::var("WAYWORD_TDW_PYTHON") else {
-        println!("SKIPPED: name a Python with the package pyzmq in WAYWORD_TDW_PYTHON");
+        println!("SKIPPED: set WAYWORD_TDW_PYTHON to a Python with the package pyzmq");
         return;
     };
     let python = pythons.split(',').next().unwrap_or_default().to_owned();
@@ -102,7 +102,7 @@ fn libzmq_agrees_about_the_bytes() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/pretend_build.py");
     let port = controller.address().port().to_string();
     let build = std::thread::spawn(move || Command::new(python).arg(script).arg(port).output().unwrap());
-    // Its first answer is that it did not hear, its second has a megabyte, and a long list of commands is its third.
+    // Its first answer says that it received nothing, its second has a megabyte, its third follows a long list.
     assert_eq!(controller.connect().unwrap().tdw, "1.13.0.0");
     let many = vec![TdwCommand::SendSceneRegions { frequency: Frequency::Once }; 10_000];
     assert_eq!(controller.communicate(&many).unwrap().frame_number, 2);

@@ -1,5 +1,5 @@
-//! The genuine Python client drives the stand-in of VirtualHome. `WAYWORD_VIRTUALHOME_PYTHON` names a Python that has the
-//! package `virtualhome` and a `numpy` before 2; without it there is nothing to run.
+//! The genuine Python client drives the stand-in of VirtualHome. `WAYWORD_VIRTUALHOME_PYTHON` names a Python that has
+//! the package `virtualhome` and a `numpy` before 2. Without it the test is skipped.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -14,7 +14,8 @@ use wayword_render::Camera;
 fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
     let Ok(python) = std::env::var("WAYWORD_VIRTUALHOME_PYTHON") else {
         println!(
-            "SKIPPED: name a Python with the package virtualhome in WAYWORD_VIRTUALHOME_PYTHON (pip install virtualhome==2.3.0 'numpy<2')"
+            "SKIPPED: set WAYWORD_VIRTUALHOME_PYTHON to a Python with the package virtualhome \
+             (pip install virtualhome==2.3.0 'numpy<2')"
         );
         return;
     };
@@ -51,7 +52,7 @@ fn holds(told: &Value) {
     }
     assert_eq!(told["cameras"], serde_json::json!([0, 1]));
     assert_eq!(told["shape"], serde_json::json!([[120, 160, 3], [120, 160, 3]]));
-    // What the client decoded is what our renderer draws from there: looking east.
+    // The client decoded what our renderer draws from the same place, looking east.
     let at = |n: usize| told["at"][n].as_f64().unwrap();
     let picture = scene
         .picture(&Camera {

@@ -1,4 +1,4 @@
-//! The platform over the stand-in build: graph, paths, views, labels, and what becomes of them when the build is lost.
+//! Tests the platform with the stand-in build: graph, paths, views, labels, and all of them when the build is lost.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -74,7 +74,7 @@ fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
     }
 }
 
-/// What the stand-in sends is what our renderer draws, through the whole chain: pixels, and names of what is seen where.
+/// Through the whole chain, a view has the pixels that our renderer draws, and labels of the objects that they show.
 #[test]
 fn a_view_is_the_houses_own_and_its_labels_are_what_the_pixels_show() {
     let (platform, _build) = start(StandInOptions::default());
@@ -110,8 +110,8 @@ fn a_view_is_the_houses_own_and_its_labels_are_what_the_pixels_show() {
     assert!(labels > 5, "{labels}");
 }
 
-/// The built-in platform knows the same house from within: what it labels, the pixels and boxes that came over the socket
-/// must tell as well.
+/// The built-in platform knows the same house directly. The pixels and boxes that come over the socket must yield the
+/// same labels.
 #[test]
 fn labels_are_those_of_the_built_in_platform() {
     let (platform, _build) = start(StandInOptions::default());
@@ -156,7 +156,7 @@ fn a_scene_that_nobody_knows_is_refused_without_a_build() {
     assert!(platform.scenes().unwrap().contains(&scene()));
 }
 
-/// As much of the Python package `tdw` as a plan with one sofa takes.
+/// The part of the Python package `tdw` that a floor plan with one sofa needs.
 fn package(folder: &Path) {
     let write = |name: &str, text: String| {
         fs::create_dir_all(folder.join(name).parent().unwrap()).unwrap();
@@ -172,7 +172,7 @@ fn package(folder: &Path) {
     write("metadata_libraries/models.json", format!(r#"{{"records":{{"sofa_a":{record}}}}}"#));
 }
 
-/// What is known of all that is seen from the first eye of a scene.
+/// The ground truth of a view to the north from every seventh viewpoint of a scene.
 fn truths(platform: &TdwPlatform, scene: &str) -> Vec<Option<wayword_core::GroundTruth>> {
     let scene = SceneId::new(scene).unwrap();
     let graph = platform.graph(&scene).unwrap();
@@ -199,8 +199,8 @@ fn a_plan_without_furniture_has_no_labels_and_says_how_it_is_furnished() {
         &format!("TDW.x86_64 -port {port}"),
         "build 1.13.0.0 has connected",
         "loads floorplan_1a;",
-        "floorplan_1a holds no furniture",
-        "as floorplan_1a_0;",
+        "floorplan_1a has no furniture",
+        "as in floorplan_1a_0,",
         "--data",
     ] {
         assert!(lines.contains(told), "{told}: {lines}");
@@ -208,5 +208,5 @@ fn a_plan_without_furniture_has_no_labels_and_says_how_it_is_furnished() {
     heard.lock().unwrap().clear();
     let furnished = truths(&platform, "floorplan_1a_0");
     assert!(furnished.iter().flatten().any(|truth| truth.lists_objects && !truth.labels.is_empty()));
-    assert!(!heard.lock().unwrap().join("\n").contains("holds no furniture"));
+    assert!(!heard.lock().unwrap().join("\n").contains("has no furniture"));
 }

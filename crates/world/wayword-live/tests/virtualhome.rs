@@ -1,4 +1,4 @@
-//! The platform over the stand-in executable: graph, paths, views, labels, rooms; and answers that nobody should send.
+//! Tests the platform with the stand-in executable: graph, paths, views, labels, rooms; and broken answers.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -122,7 +122,7 @@ fn scenes_are_homes_and_a_simulator_that_is_not_there_is_named() {
     assert!(gone.contains("http://127.0.0.1") && gone.contains("-http-port"), "{gone}");
 }
 
-/// The stand-in says that it cannot clear what is empty, as the genuine executable may; the genuine client goes on.
+/// The stand-in fails to clear where no home is loaded, as the genuine executable may. The genuine client goes on then.
 #[test]
 fn a_clear_that_fails_is_no_fault() {
     let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
@@ -144,7 +144,7 @@ fn who_waits_is_told_for_what_and_how_it_is_started() {
     assert!(lines.contains(&format!("-batchmode -http-port={}", simulator.port())), "{lines}");
 }
 
-/// What the client makes of an answer, whatever is asked.
+/// The client's error for an answer, whatever the request was.
 fn answered(status: &'static str, announced: usize, content: &'static str) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("http://{}", listener.local_addr().unwrap());
@@ -164,7 +164,7 @@ fn what_cannot_be_read_says_where_and_what_was_expected() {
         ("200 OK", "{]", "expected an answer with `success`"),
         ("200 OK", r#"{"success":true,"message":"nodes?"}"#, "expected a graph of nodes with boxes"),
         ("200 OK", r#"{"success":true,"message":"{\"nodes\":[{\"id\":true}]}"}"#, "line 1 column 20"),
-        ("200 OK", r#"{"success":false,"message":"no home"}"#, "could not: no home"),
+        ("200 OK", r#"{"success":false,"message":"no home"}"#, "says that it failed: no home"),
         ("500 Oh", "sad", "status 500: sad"),
     ];
     for (status, content, expected) in cases {

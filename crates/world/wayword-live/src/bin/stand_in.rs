@@ -1,6 +1,6 @@
 //! Runs a stand-in for a simulator, for demonstrations without one:
-//! `cargo run -p wayword-live --features stand-in -- tdw 1071` connects to a controller on that port, as TDW's build does;
-//! `... -- virtualhome 8080` listens there, as VirtualHome's executable does.
+//! `cargo run -p wayword-live --features stand-in -- tdw 1071` connects to a controller on that port like TDW's build;
+//! `... -- virtualhome 8080` listens on that port like VirtualHome's executable.
 
 use std::{env, error::Error, net::SocketAddr, thread::park};
 use wayword_live::{tdw, virtualhome};
@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let address = SocketAddr::from(([127, 0, 0, 1], port.parse()?));
     match simulator.as_str() {
         "tdw" => {
-            // As in the genuine build, a floor plan without furniture has none, and no labels.
+            // As in the genuine build, an unfurnished floor plan shows no furniture and has no labels.
             let options = tdw::stand_in::StandInOptions { furnishes: false, ..Default::default() };
             tdw::stand_in::StandIn::start(address, options).join();
         }

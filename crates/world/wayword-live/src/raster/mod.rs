@@ -1,4 +1,4 @@
-//! A floor as cells that are free or not: where a simulator says no more than that.
+//! A floor as a grid of cells that are free or not, for where a simulator says no more than that.
 
 #[cfg(test)]
 mod tests;
@@ -15,7 +15,7 @@ const APART_M: f64 = 1.5;
 const REACH_M: f64 = 3.0;
 const STRAIGHT: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// Cells over a floor. Cell 0 is the south-western one; rows lead north.
+/// Cells over a floor. Cell 0 is the south-western one; rows are counted from south to north.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Raster {
     /// Middle of cell 0, metres, world frame.
@@ -26,8 +26,8 @@ pub(crate) struct Raster {
 }
 
 impl Raster {
-    /// A raster over a rectangle; `is_free` is asked for the middle of each cell. `None` where it would have no cell, or
-    /// more than [`MAX_CELLS`].
+    /// A raster over a rectangle; `is_free` is called with the middle of each cell. `None` where the raster would have
+    /// no cell, or more than [`MAX_CELLS`].
     pub(crate) fn over(
         [x0, y0]: [f64; 2],
         [x1, y1]: [f64; 2],
@@ -45,7 +45,7 @@ impl Raster {
         Some(raster)
     }
 
-    /// A raster from the middles of cells, of which those that are listed with `true` are free.
+    /// A raster from the middles of cells. Cells that are listed with `true` are free, and all others are not.
     pub(crate) fn of_cells(cells: &[([f64; 2], bool)], cell_m: f64) -> Option<Self> {
         let finite = || cells.iter().filter(|(middle, _)| middle.iter().all(|number| number.is_finite()));
         let bound = |axis: usize, start: f64, better: fn(f64, f64) -> f64| {
@@ -91,7 +91,7 @@ impl Raster {
         (inside && next < self.free.len()).then_some(next)
     }
 
-    /// Takes away everything but the largest part in which one can walk.
+    /// Keeps only the largest connected part in which one can walk.
     pub(crate) fn keep_largest_part(&mut self) {
         let mut part = vec![0_usize; self.free.len()];
         let mut sizes = vec![0_usize];
@@ -116,7 +116,7 @@ impl Raster {
         self.free.iter_mut().zip(part).for_each(|(free, name)| *free = *free && name == largest);
     }
 
-    /// Steps from each cell to the next that is not free; what lies outside is not.
+    /// Steps from each cell to the nearest one that is not free. Everything outside the raster counts as not free.
     fn clearances(&self) -> Vec<u32> {
         let mut steps = vec![u32::MAX; self.free.len()];
         let mut open = VecDeque::new();
@@ -138,7 +138,7 @@ impl Raster {
         steps
     }
 
-    /// Places for viewpoints: the most open ones first, none too near to another.
+    /// Places for viewpoints: those farthest from obstacles first, none too near to another.
     pub(crate) fn places(&self) -> Vec<[f64; 2]> {
         let clearances = self.clearances();
         let mut cells: Vec<usize> = (0..self.free.len()).filter(|cell| self.free[*cell]).collect();
@@ -161,8 +161,8 @@ impl Raster {
         })
     }
 
-    /// The corners of a way between two points, both among them; `None` where there is none. Within a few percent of the
-    /// shortest: it keeps to the middles of cells.
+    /// The corners of a way between two points, both ends included; `None` where there is no way. It is at most a few
+    /// percent longer than the shortest way, because it keeps to the middles of cells.
     pub(crate) fn shortest(&self, from: [f64; 2], to: [f64; 2]) -> Option<Vec<[f64; 2]>> {
         let start = self.cell_at(from).filter(|cell| self.free[*cell])?;
         let goal = self.cell_at(to).filter(|cell| self.free[*cell])?;
@@ -173,21 +173,21 @@ impl Raster {
         };
         let steps = |cell: usize| around(move |step| self.neighbour(cell, step).filter(|next| self.free[*next]));
         let cells = shortest(self.free.len(), start, goal, left, steps)?;
-        // The ends are where they were asked for, as far as the walk stays open.
+        // The way begins and ends at the points that were asked for, and not in the middles of their cells.
         let middles = cells.into_iter().map(|cell| self.middle(cell));
         let points: Vec<[f64; 2]> = [from].into_iter().chain(middles).chain([to]).collect();
         Some(taut(&points, |a, b| self.is_straight(a, b)))
     }
 
-    /// A graph over eyes above this floor: edges where the walk is straight and free, and corners of shortest ways between
-    /// parts that no such edge joins.
+    /// A viewpoint graph over eye positions above this floor. Its edges are straight, free walks. Where parts of it are
+    /// not connected, the corners of a shortest way between them become viewpoints too.
     pub(crate) fn graph(&self, eyes: &[DVec3]) -> Result<ViewpointGraph, GraphError> {
         let mut graph = ViewpointGraph::default();
         let mut nodes: Vec<(ViewpointId, DVec3)> = Vec::new();
         for eye in eyes {
             self.add(&mut graph, &mut nodes, *eye)?;
         }
-        // Each round joins two parts, or finds that nothing can.
+        // Each round joins two parts, or finds that no way joins them.
         for _ in 0..eyes.len() {
             if graph.components() < 2 || !self.join_parts(&mut graph, &mut nodes)? {
                 break;
@@ -214,7 +214,7 @@ impl Raster {
         Ok(())
     }
 
-    /// Adds the corners of the shortest way between the first part and the node nearest to it that is in another.
+    /// Adds the corners of the shortest way between the first part and the nearest node outside it.
     fn join_parts(
         &self,
         graph: &mut ViewpointGraph,

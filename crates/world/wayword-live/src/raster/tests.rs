@@ -1,7 +1,7 @@
 use super::*;
 use proptest::prelude::*;
 
-/// Rows of text, the northernmost first; a dot is free. Cells of half a metre.
+/// A raster from rows of text, the northernmost first; a dot is a free cell. Cells are half a metre wide.
 fn drawn(rows: &[&str]) -> Raster {
     let cells = rows.iter().rev().enumerate().flat_map(|(y, row)| {
         row.chars().enumerate().map(move |(x, cell)| ([x as f64 * 0.5, y as f64 * 0.5], cell == '.'))
@@ -21,7 +21,7 @@ fn a_way_leads_through_the_door_and_no_wall() {
     assert!(way.iter().any(|corner| (corner[1] - 2.0).abs() < 0.3), "{way:?} misses the door");
     assert!(way.windows(2).all(|leg| raster.is_straight(leg[0], leg[1])));
     assert!(!raster.is_straight([0.0, 0.0], [3.5, 0.0]));
-    assert_eq!(raster.shortest([0.0, 0.0], [2.0, 0.0]), None, "a wall is no place");
+    assert_eq!(raster.shortest([0.0, 0.0], [2.0, 0.0]), None, "a goal inside a wall has no way");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// A point or a direction, Unity's (see [`crate::unity`]).
+/// A point or a direction in Unity's coordinates (see [`crate::unity`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[allow(missing_docs, reason = "each is the coordinate of that name")]
 pub struct Vector3 {
@@ -41,12 +41,12 @@ pub enum Frequency {
     Never,
 }
 
-/// A command. Fields are named as in the command's JSON; those that are left out there have the build's defaults.
+/// A command. Fields are named as in the command's JSON; fields that are missing here have the build's defaults.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "$type", rename_all = "snake_case")]
 #[allow(missing_docs, reason = "fields are those of command_api.md")]
 pub enum Command {
-    /// Lets the build end at its errors.
+    /// Makes the build quit when it logs an error.
     SetErrorHandling,
     /// Asks for `vers`.
     SendVersion,
@@ -56,9 +56,9 @@ pub enum Command {
     AddScene { name: String, url: String },
     /// Walls around a procedural room, in order.
     CreateExteriorWalls { walls: Vec<GridPoint> },
-    /// Walls within it.
+    /// Walls inside a procedural room.
     CreateInteriorWalls { walls: Vec<GridPoint> },
-    /// Its ceiling.
+    /// The ceiling of a procedural room.
     CreateProcGenCeiling,
     /// Downloads and places an object; `rotation` in Euler angles, degrees.
     AddObject {
@@ -83,9 +83,9 @@ pub enum Command {
         kind: &'static str,
         id: String,
     },
-    /// Puts it somewhere.
+    /// Moves an avatar to a position.
     TeleportAvatarTo { position: Vector3, avatar_id: String },
-    /// Turns it.
+    /// Sets an avatar's rotation.
     RotateAvatarTo { rotation: Quaternion, avatar_id: String },
     /// Size of pictures, pixels.
     SetScreenSize { width: u32, height: u32 },

@@ -1,4 +1,4 @@
-//! The controller's side of the conversation: a REP socket that builds connect to, and one list of commands for each answer.
+//! The controller's side of the connection: a REP socket that builds connect to. Each list of commands gets one answer.
 
 use super::{
     commands::Command,
@@ -12,10 +12,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How often a build may say that it heard nothing, for one list of commands: as often as with the Python client
-/// (`Controller.communicate`).
+/// How often a build may say that it received nothing, for one list of commands. The Python client
+/// (`Controller.communicate`) has the same limit.
 const MAX_RESENDS: u32 = 1000;
-/// How long a stranger may take to greet.
+/// How long a new connection may take for its greeting.
 const GREETING: Duration = Duration::from_secs(5);
 
 /// Where to wait for a build, and for how long.
@@ -41,8 +41,8 @@ impl Default for ControllerOptions {
 
 /// A controller: at most one build at a time.
 ///
-/// After an error on the wire the build is let go, because nobody knows any more whose turn it is; [`Controller::connect`]
-/// takes the next one.
+/// After an error on the wire the controller drops the build, because it is not known any more which side has to send
+/// next. [`Controller::connect`] takes the next build.
 #[derive(Debug)]
 pub struct Controller {
     listener: TcpListener,
@@ -71,7 +71,7 @@ impl From<Version<'_>> for BuildVersion {
     }
 }
 
-/// What a build answered: frames of output data and the frame's number.
+/// A build's answer: frames of output data, and the number of the build's own frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Response {
     frames: Vec<Vec<u8>>,
@@ -85,10 +85,11 @@ impl Response {
         self.frames.iter().map(|frame| Ok(Output::read(frame)?))
     }
 
-    /// What `pick` takes of the first frame that it takes anything of.
+    /// Calls `pick` with each frame whose id is `id`, and returns the first result that is not `None`. `asked` names
+    /// the command that asked for the frame, for the error.
     ///
     /// # Errors
-    /// Where there is none, or a frame of a kind that we know cannot be read.
+    /// Where there is no result, or a frame with this id cannot be read.
     pub fn first<'a, T>(
         &'a self,
         id: &'static str,
@@ -105,7 +106,7 @@ impl Response {
 }
 
 impl Controller {
-    /// Starts to listen; no build needs to be there yet.
+    /// Starts to listen. No build has to run yet.
     ///
     /// # Errors
     /// When the port is taken.
@@ -116,34 +117,34 @@ impl Controller {
         Ok(Self { listener, options, build: None })
     }
 
-    /// Where builds connect to: the port that the system chose, where 0 was asked for.
+    /// Where builds connect to. Where port 0 was asked for, this has the port that the system chose.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.listener.local_addr().unwrap_or(self.options.address)
     }
 
-    /// Whether a build is there.
+    /// Whether a build is connected.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.build.is_some()
     }
 
-    /// Which build is there.
+    /// The version of the connected build.
     #[must_use]
     pub fn version(&self) -> Option<&BuildVersion> {
         self.build.as_ref().map(|build| &build.version)
     }
 
-    /// How long a build is waited for.
+    /// How long the controller waits for a build.
     #[must_use]
     pub fn patience(&self) -> Duration {
         self.options.connect_timeout
     }
 
-    /// Waits for a build, unless one is there, and asks it who it is.
+    /// Waits for a build, unless one is connected, and asks for its version.
     ///
     /// # Errors
-    /// When none comes in time, or it does not speak as a build does.
+    /// When no build connects in time, or what connects does not speak as a build does.
     pub fn connect(&mut self) -> Result<&BuildVersion, TdwError> {
         if self.build.is_none() {
             let peer = self.wait()?;
@@ -166,7 +167,7 @@ impl Controller {
         self.version().ok_or_else(|| self.nobody(None))
     }
 
-    /// Takes connections until one greets as a build does. Who only opens one and says nothing costs five seconds.
+    /// Accepts connections until one greets as a build does. A connection that stays silent costs five seconds.
     fn wait(&self) -> Result<Peer, TdwError> {
         let deadline = Instant::now() + self.options.connect_timeout;
         let mut last = None;
@@ -176,7 +177,7 @@ impl Controller {
                     Ok(peer) => return Ok(peer),
                     Err(error) => last = Some(error),
                 },
-                // Nobody yet, or somebody who left again.
+                // No connection yet, or one that was closed again.
                 Err(_) => sleep(Duration::from_millis(5)),
             }
         }
@@ -187,10 +188,10 @@ impl Controller {
         TdwError::NoBuild { address: self.address(), seconds: self.options.connect_timeout.as_secs(), last }
     }
 
-    /// Sends commands and waits for the answer, telling them again as long as the build says that it did not hear.
+    /// Sends commands and waits for the answer. Sends them again as long as the build says that it received nothing.
     ///
     /// # Errors
-    /// When no build is there, it is gone, late or quits with an error, or it answers what no build does.
+    /// When no build is connected; when it is gone, is late or quits with an error; or when its answer is not valid.
     pub fn communicate(&mut self, commands: &[Command]) -> Result<Response, TdwError> {
         let told = self.tell(commands);
         if told.as_ref().is_err_and(TdwError::is_loss) {
@@ -225,10 +226,10 @@ impl Controller {
         Err(TdwError::NeverHeard { times: MAX_RESENDS })
     }
 
-    /// Ends the build, where one is there.
+    /// Ends the build, where one is connected.
     ///
     /// # Errors
-    /// When it does not answer; it is let go in any case.
+    /// When it does not answer. The controller drops it in any case.
     pub fn terminate(&mut self) -> Result<(), TdwError> {
         if self.is_connected() {
             let told = self.communicate(&[Command::Terminate]);
@@ -239,7 +240,7 @@ impl Controller {
     }
 }
 
-/// The build speaks first, and what it says then means nothing.
+/// The build sends the first message, and its content means nothing.
 fn greet(stream: TcpStream, deadline: Instant) -> Result<Peer, WireError> {
     let deadline = deadline.min(Instant::now() + GREETING);
     let mut peer = Peer::greet(stream, Role::Rep, deadline)?;

@@ -6,7 +6,7 @@ use std::{io, net::SocketAddr};
 /// Why a build does not give what it was asked for.
 #[derive(Debug, thiserror::Error)]
 pub enum TdwError {
-    /// The port cannot be had.
+    /// The port cannot be opened.
     #[error("cannot listen on {address}: {source}; is another controller running there?")]
     Bind {
         /// Where.
@@ -14,17 +14,21 @@ pub enum TdwError {
         /// What the system says.
         source: io::Error,
     },
-    /// No build came.
-    #[error("no build came to {address} within {seconds} s{}; start it as TDW.x86_64 -port {}", said(.last), address.port())]
+    /// No build connected.
+    #[error(
+        "no ThreeDWorld build connected to {address} within {seconds} s{}; start it with TDW.x86_64 -port {}",
+        said(.last),
+        address.port()
+    )]
     NoBuild {
-        /// Where it was waited for.
+        /// Where the controller waited.
         address: SocketAddr,
-        /// How long.
+        /// How long it waited.
         seconds: u64,
-        /// What went wrong with the last one that tried.
+        /// What went wrong with the last connection that was tried.
         last: Option<WireError>,
     },
-    /// The conversation with the build broke.
+    /// The connection with the build broke.
     #[error("the build at {address}: {source}")]
     Wire {
         /// Where it is.
@@ -33,24 +37,24 @@ pub enum TdwError {
         source: WireError,
     },
     /// A frame that cannot be read.
-    #[error("the build's {0}; is it of a version from 1.11 to 1.13?")]
+    #[error("cannot read the build's {0}; is its version between 1.11 and 1.13?")]
     Output(#[from] OutputError),
     /// An answer without its last frame, the frame's number.
-    #[error("the build's answer ends in a frame of {length} bytes: expected the frame's number, 4 bytes big-endian")]
+    #[error("the last frame of the build's answer has length {length}: expected the frame number, 4 bytes big-endian")]
     NoFrameNumber {
         /// How long that frame is.
         length: usize,
     },
     /// An answer that lacks what was asked for.
-    #[error("the build sent no `{id}` though it was asked to {asked}; does this scene have it?")]
+    #[error("the build sent no `{id}`, although the command {asked} asks for it; does this scene have such data?")]
     Missing {
         /// The id of the missing frame.
         id: &'static str,
         /// What was asked.
         asked: &'static str,
     },
-    /// The build never heard the commands.
-    #[error("the build asked {times} times to be told again (`ftre`), and then was given up; see its log")]
+    /// The build never received the commands.
+    #[error("the build asked {times} times for the same commands (`ftre`), so Wayword gave up; see the build's log")]
     NeverHeard {
         /// How often.
         times: u32,
@@ -66,17 +70,17 @@ pub enum TdwError {
         /// What is wrong.
         reason: String,
     },
-    /// What the user named cannot be used.
+    /// A scene or package that the user named cannot be used.
     #[error("{0}")]
     Scene(String),
 }
 
 fn said(last: &Option<WireError>) -> String {
-    last.as_ref().map_or_else(String::new, |error| format!(" (one tried: {error})"))
+    last.as_ref().map_or_else(String::new, |error| format!(" (the last connection failed: {error})"))
 }
 
 impl TdwError {
-    /// Whether a new build could do better: this one is gone, or talks nonsense.
+    /// Whether a new build may help, because this one is gone or sends wrong bytes.
     pub(super) fn is_loss(&self) -> bool {
         matches!(self, Self::Wire { .. } | Self::NeverHeard { .. } | Self::Quit | Self::NoFrameNumber { .. })
     }

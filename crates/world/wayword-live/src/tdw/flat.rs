@@ -1,8 +1,8 @@
-//! Reading FlatBuffers, as far as TDW's output uses them: tables found over their vtables, strings, vectors, structs.
+//! Reads FlatBuffers, as far as TDW's output uses them: tables with vtables, strings, vectors, structs.
 //!
-//! Every offset is held against the input before it is followed. Strings, bytes and tables are borrowed from it, so that a
-//! hostile buffer whose offsets all point at one long string costs no memory for it. Nothing follows offsets in a circle:
-//! how deep one goes is in the code that reads a table, not in the bytes.
+//! Every offset is checked against the input's length before it is followed. Strings, bytes and tables are borrowed
+//! from the input, so a hostile buffer whose offsets all point at one long string takes no memory for it. Offsets
+//! cannot lead in a circle, because the code that reads a table sets the depth, and not the bytes.
 
 /// Bytes that are not what they should be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -46,7 +46,7 @@ fn u32_at(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, Misr
     fixed(bytes, at, expected).map(|raw| u32::from_le_bytes(raw) as usize)
 }
 
-/// Follows an offset, which counts from where it stands.
+/// Follows an offset, which counts from its own position.
 fn followed(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, Misread> {
     let to = at.saturating_add(u32_at(bytes, at, expected)?);
     if to < bytes.len() { Ok(to) } else { Err(Misread { at, expected }) }
@@ -72,7 +72,7 @@ impl<'a> Table<'a> {
         Ok(Self { bytes, at, vtable, end })
     }
 
-    /// Where a field of a size lies; none where the table leaves it out.
+    /// Where a field of `size` bytes lies; `None` where the table leaves it out.
     fn field(&self, slot: usize, size: usize, expected: &'static str) -> Result<Option<usize>, Misread> {
         let entry = 4 + 2 * slot;
         if entry + 2 > self.vtable.len() {
@@ -87,7 +87,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Says that a field is not what it should be.
+    /// The error for a field that is not what it should be.
     pub(super) fn misfit(&self, slot: usize, expected: &'static str) -> Misread {
         let at = self.field(slot, 1, expected).ok().flatten().unwrap_or(self.at);
         Misread { at, expected }

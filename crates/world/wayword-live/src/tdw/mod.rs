@@ -1,7 +1,7 @@
-//! ThreeDWorld: a controller for the live build, and the platform on top of it.
+//! ThreeDWorld: a controller for the live build (TDW's executable), and the platform on top of it.
 //!
-//! The build connects to the controller's port, and from then on each list of commands has one answer. Byte layouts are those
-//! of the Python client `tdw`, versions 1.11 to 1.13.0.0.
+//! The build connects to the controller's port. From then on each list of commands gets one answer. Byte layouts are
+//! those of the Python client `tdw`, versions 1.11 to 1.13.0.0.
 
 mod commands;
 mod controller;

@@ -1,4 +1,4 @@
-//! From a pass's bytes to pixels.
+//! Decodes the passes of a picture.
 
 use super::{error::TdwError, output::Pass};
 use crate::decode;
@@ -7,7 +7,7 @@ use image::ImageFormat;
 /// Near and far plane of the build's cameras, metres.
 const PLANES_M: [f32; 2] = [0.1, 100.0];
 
-/// The passes that are asked for.
+/// The passes that Wayword asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PassKind {
     Img,
@@ -41,15 +41,15 @@ pub(super) fn rgb(pass: &Pass<'_>, kind: PassKind, size: (u32, u32)) -> Result<V
     decode::rgb(pass.bytes, format, size).map_err(|reason| TdwError::Picture { pass: kind.name(), reason })
 }
 
-/// Depth along the camera's forward axis from a `_depth` pass, metres, rows from the top: raw pixels with the bottom row
-/// first, `(r + g / 256 + b / 65536) * (far - near) / 256` (`TDWUtils.get_depth_values`).
+/// Depth along the camera's forward axis from a `_depth` pass, metres, rows from the top. The pass has raw pixels with
+/// the bottom row first: `(r + g / 256 + b / 65536) * (far - near) / 256` (`TDWUtils.get_depth_values`).
 ///
 /// # Errors
 /// When there are not three bytes for each pixel.
 pub fn depth_m(bytes: &[u8], width: u32, height: u32) -> Result<Vec<f32>, TdwError> {
     let row = width as usize * 3;
     if row == 0 || bytes.len() as u64 != u64::from(width) * u64::from(height) * 3 {
-        let reason = format!("{} bytes: expected {width} x {height} pixels of 3", bytes.len());
+        let reason = format!("its length is {}: expected {width} x {height} pixels of 3 bytes", bytes.len());
         return Err(TdwError::Picture { pass: "_depth", reason });
     }
     let [near, far] = PLANES_M;

@@ -12,22 +12,22 @@ use wayword_core::{DVec3, Failure, SceneId};
 use wayword_render::Camera;
 use wayword_world::said;
 
-/// What can be chosen about the platform.
+/// Options of the platform.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TdwOptions {
     /// Where to wait for the build.
     pub controller: ControllerOptions,
     /// Folder of the Python package `tdw`, whose lists of furniture are needed for furnished floor plans.
     pub package: Option<PathBuf>,
-    /// How it looks.
+    /// Size of pictures, and distance between frames.
     pub pictures: Pictures,
 }
 
-/// ThreeDWorld over a live build: scenes `floorplan_1a` to `floorplan_5c` (with furniture `floorplan_1a_0`), and procedural
-/// rooms like `room_8x10`.
+/// ThreeDWorld over a live build: scenes `floorplan_1a` to `floorplan_5c` (with furniture `floorplan_1a_0`), and
+/// procedural rooms like `room_8x10`.
 pub type TdwPlatform = Live<Tdw>;
 
-/// A build, and what is in it.
+/// A build, and the scene that it has loaded.
 #[derive(Debug)]
 pub struct Tdw {
     controller: Controller,
@@ -38,10 +38,10 @@ pub struct Tdw {
 }
 
 impl TdwPlatform {
-    /// A platform that listens at once, and waits for a build when it is first asked for something that takes one.
+    /// A platform that listens at once, and waits for a build at the first request that needs one.
     ///
     /// # Errors
-    /// When the port cannot be had.
+    /// When the port cannot be opened.
     pub fn new(options: TdwOptions) -> Result<Self, TdwError> {
         let TdwOptions { controller, package, pictures } = options;
         let controller = Controller::bind(controller)?;
@@ -49,7 +49,7 @@ impl TdwPlatform {
         Ok(Self::over(Tdw { controller, package, size, loaded: None, ear: Ear::deaf() }, pictures))
     }
 
-    /// Where builds connect to: `tcp://` and the port that was really taken.
+    /// Where builds connect to: `tcp://`, the host, and the port that was really opened.
     #[must_use]
     pub fn waits_at(&self) -> String {
         self.address()
@@ -60,7 +60,8 @@ impl Tdw {
     fn connect(&mut self) -> Result<(), TdwError> {
         let (address, seconds) = (self.controller.address(), self.controller.patience().as_secs());
         self.ear.hear(&format!(
-            "waiting up to {seconds} s for a ThreeDWorld build to connect to {address}; it is started as TDW.x86_64 -port {}",
+            "waiting up to {seconds} s for a ThreeDWorld build to connect to {address}; \
+             if it does not run yet, start it with TDW.x86_64 -port {}",
             address.port()
         ));
         let build = self.controller.connect()?.tdw.clone();
@@ -69,14 +70,14 @@ impl Tdw {
     }
 }
 
-/// What to do about a scene in which nothing has a label: walls, doors and windows are parts of a plan, and no objects of it.
+/// What to do about a scene in which nothing has a label. In a floor plan, walls, doors and windows are not objects.
 fn unlabelled(scene: Option<&SceneId>) -> String {
     let scene = scene.map_or("the scene", SceneId::as_str);
     let plan =
         scene.get(.."floorplan_1a".len()).filter(|plan| plan.starts_with("floorplan_")).unwrap_or("floorplan_1a");
     format!(
-        "{scene} holds no furniture: nothing in it has a label, so a model has to see (--see). Furnished are the plans that end in a \
-         number, as {plan}_0; their furniture is listed in the Python package tdw, whose folder is given as --data"
+        "{scene} has no furniture, so nothing in it has a label: name a model with --see, or choose a furnished floor \
+         plan. Its name ends in a number, as in {plan}_0, and it needs the folder of the Python package tdw as --data"
     )
 }
 
@@ -97,7 +98,7 @@ impl Simulator for Tdw {
     }
 
     fn refuses(&self, scene: &SceneId) -> Option<&'static str> {
-        let hint = "floor plans are named as in floorplan_1a or floorplan_1a_0, rooms as in room_8x10";
+        let hint = "scenes are named like floorplan_1a, floorplan_1a_0 (furnished) or room_8x10";
         Plan::of(scene).is_none().then_some(hint)
     }
 
@@ -112,7 +113,7 @@ impl Simulator for Tdw {
         self.loaded = None;
         let plan = Plan::of(scene).ok_or_else(|| TdwError::Scene(format!("there is no scene {scene}")))?;
         let commands = plan.commands(self.package.as_deref())?;
-        self.ear.hear(&format!("the build loads {scene}; what it does not have yet it downloads, which takes minutes"));
+        self.ear.hear(&format!("the build loads {scene}; it downloads what it does not have yet, which takes minutes"));
         session::load(&mut self.controller, commands, self.size)?;
         self.loaded = Some(scene.clone());
         Ok(())
@@ -137,7 +138,9 @@ impl Simulator for Tdw {
     fn hint(error: &TdwError) -> &'static str {
         match error {
             TdwError::Scene(_) => "choose another scene",
-            TdwError::Bind { .. } | TdwError::NoBuild { .. } => "the live build runs beside Wayword and connects to it",
+            TdwError::Bind { .. } | TdwError::NoBuild { .. } => {
+                "the build is a separate program that connects to Wayword"
+            }
             _ => "restart the build, or look into its Player.log",
         }
     }

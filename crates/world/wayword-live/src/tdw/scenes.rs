@@ -1,4 +1,4 @@
-//! The scenes that a build is told to load: TDW's floor plans, and procedural rooms.
+//! The scenes that a build can load: TDW's floor plans, and procedural rooms.
 
 use super::{
     commands::{Command, GridPoint, Vector3},
@@ -15,11 +15,11 @@ use wayword_core::SceneId;
 
 /// Floor plans that TDW has, by their structure and look (`tdw/add_ons/floorplan.py`).
 const PLANS: [&str; 12] = ["1a", "1b", "1c", "2a", "2b", "2c", "4a", "4b", "4c", "5a", "5b", "5c"];
-/// Ways to furnish each.
+/// Furniture layouts of each floor plan.
 const LAYOUTS: [&str; 3] = ["0", "1", "2"];
-/// A procedural scene that is listed; any other size can be asked for by its name.
+/// The one procedural scene in the list of scenes; other sizes are available by name.
 const ROOM: &str = "room_8x10";
-/// Sides that a procedural room may have, metres.
+/// Lengths that the sides of a procedural room may have, metres.
 const SIDES_M: std::ops::RangeInclusive<u32> = 3..=40;
 /// Largest file of the Python package that is read, bytes.
 const MAX_FILE_BYTES: u64 = 32 << 20;
@@ -33,7 +33,7 @@ pub(super) enum Plan {
     Room { width_m: u32, length_m: u32 },
 }
 
-/// The names of all scenes that can be listed; floor plans come furnished where the furniture's lists are at hand.
+/// The names of all listed scenes. Floor plans are furnished where the lists of furniture are available.
 pub(super) fn names(package: Option<&Path>) -> Vec<String> {
     let furnished = |plan: &str| LAYOUTS.map(|layout| format!("floorplan_{plan}_{layout}")).to_vec();
     let mut names: Vec<String> = match package {
@@ -70,8 +70,8 @@ impl Plan {
                 let mut commands = vec![Command::AddScene { name: scene.clone(), url }];
                 if let Some(layout) = layout {
                     let package = package.ok_or_else(|| {
-                        let hint = "name the folder of the Python package tdw, where they are";
-                        TdwError::Scene(format!("the furniture of {scene}_{layout} is not at hand: {hint}"))
+                        let hint = "give the folder of the Python package tdw, which lists it, as --data";
+                        TdwError::Scene(format!("the furniture of {scene}_{layout} is not available: {hint}"))
                     })?;
                     commands.extend(Furniture::read(package)?.commands(scene, layout)?);
                 }
@@ -81,7 +81,8 @@ impl Plan {
     }
 }
 
-/// The system's name in the scenes' addresses, and in the records of models: the build runs beside us.
+/// The operating system's name in the scenes' addresses, and in the records of 3D models. It is this machine's, because
+/// the build runs beside Wayword.
 fn system() -> (&'static str, &'static str) {
     match std::env::consts::OS {
         "macos" => ("osx", "Darwin"),
@@ -90,7 +91,7 @@ fn system() -> (&'static str, &'static str) {
     }
 }
 
-/// A box of walls, and in one that is wide enough a wall across with a gap of two metres.
+/// A box of walls. Where it is large enough, a wall across it with a gap of two metres makes two rooms.
 fn room(width: u32, length: u32) -> Vec<Command> {
     let bottom = (0..=width).map(|x| GridPoint { x, y: 0 });
     let top = (0..=width).map(|x| GridPoint { x, y: length });
@@ -158,7 +159,7 @@ fn read<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
     let mut text = String::new();
     let opened = File::open(file).and_then(|file| file.take(MAX_FILE_BYTES).read_to_string(&mut text));
     opened.map_err(|error| refused(error.to_string()))?;
-    // Python writes numbers that JSON does not have; the package's lists hold a few.
+    // Python writes NaN, which JSON does not have; the package's lists contain a few.
     let text = text.replace(": NaN", ": null");
     serde_json::from_str(&text).map_err(|error| refused(error.to_string()))
 }
@@ -169,8 +170,8 @@ impl Furniture {
         Ok(Self { layouts, package: package.to_owned() })
     }
 
-    /// Each piece where the layout has it, and held there: a picture of it is the same whenever it is taken. Pieces have
-    /// numbers from 1 on.
+    /// Commands that place each piece where the layout has it, and fix it there so that pictures of it are always the
+    /// same. Pieces are numbered from 1.
     fn commands(&self, scene: &str, layout: &str) -> Result<Vec<Command>, TdwError> {
         let structure = scene.trim_start_matches("floorplan_").get(..1).unwrap_or_default();
         let pieces = self.layouts.get(structure).and_then(|layouts| layouts.get(layout));
@@ -186,7 +187,7 @@ impl Furniture {
             let url = record.and_then(|record| record.urls.get(system().1));
             let (Some(record), Some(url)) = (record, url) else {
                 let at = format!("{} of {}", piece.name, piece.library);
-                return Err(TdwError::Scene(format!("the package tdw does not know the model {at} for this system")));
+                return Err(TdwError::Scene(format!("the package tdw has no 3D model {at} for this system")));
             };
             commands.push(Command::AddObject {
                 name: piece.name.clone(),
@@ -206,10 +207,10 @@ impl Furniture {
         Ok(commands)
     }
 
-    /// A library's records; its name comes from a file, so it must not lead out of the folder.
+    /// A library's records. Its name comes from a file, so it must not lead out of the folder.
     fn library(&self, name: &str) -> Result<Library, TdwError> {
         if name.contains(['/', '\\']) || name.starts_with('.') {
-            return Err(TdwError::Scene(format!("the package tdw names a library {name:?}: expected a file's name")));
+            return Err(TdwError::Scene(format!("the package tdw names a library {name:?}: expected a file name")));
         }
         read(&self.package.join("metadata_libraries").join(name))
     }

@@ -1,4 +1,4 @@
-//! A build with a scene in it: what is asked of it, step by step.
+//! The requests to a build that has loaded a scene, step by step.
 
 use super::{
     commands::{Command, Frequency, Quaternion, Vector3},
@@ -22,11 +22,11 @@ use wayword_render::Camera;
 const AVATAR: &str = "a";
 /// Side of the occupancy map's cells, metres: two fit into a narrow door.
 const CELL_M: f64 = 0.25;
-/// From where the map looks down for obstacles: below ceilings, metres.
+/// Height from which the map looks down for obstacles, metres: below ceilings.
 const RAYCAST_M: f64 = 2.5;
 /// How far a place may be from the navmesh, metres.
 const SNAP_M: f64 = 0.5;
-/// Questions in one list of commands.
+/// Most questions in one list of commands.
 const BATCH: usize = 256;
 
 /// Loads a scene and puts the avatar into it.
@@ -45,7 +45,7 @@ pub(super) fn load(
     controller.communicate(&commands).map(drop)
 }
 
-/// Asks what stands where, and where one can walk.
+/// Asks where the objects are, and where one can walk.
 pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
     let (ids, frequency) = (Vec::new(), Frequency::Once);
     let answer = controller.communicate(&[
@@ -63,7 +63,7 @@ pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
     raster.keep_largest_part();
     let eyes = eyes(controller, &raster.places())?;
     let graph = raster.graph(&eyes).map_err(|error| TdwError::Scene(error.to_string()))?;
-    // Its regions have boxes, but no names.
+    // The build's regions have boxes, but no names.
     Ok(Survey { graph, raster, palette: palette(&answer)?, rooms: Vec::new() })
 }
 
@@ -73,7 +73,7 @@ fn raster(map: &Occupancy) -> Option<Raster> {
     Raster::of_cells(&cells, CELL_M)
 }
 
-/// Things by their colours. One that has no box is left out: nobody could say where it is.
+/// Objects by their colours. An object without a box is left out, because its place is not known.
 fn palette(answer: &Response) -> Result<Palette, TdwError> {
     let bounds = answer.first("boun", "send_bounds", |output| match output {
         Output::Bounds(bounds) => Some(bounds),
@@ -94,7 +94,7 @@ fn palette(answer: &Response) -> Result<Palette, TdwError> {
     Ok(segments.iter().filter_map(thing).collect())
 }
 
-/// The eyes above those places that are on the navmesh.
+/// Eye positions above those of the places that are on the navmesh.
 fn eyes(controller: &mut Controller, places: &[[f64; 2]]) -> Result<Vec<DVec3>, TdwError> {
     let mut eyes = Vec::new();
     for batch in places.chunks(BATCH) {
@@ -119,7 +119,7 @@ fn eyes(controller: &mut Controller, places: &[[f64; 2]]) -> Result<Vec<DVec3>, 
     Ok(eyes)
 }
 
-/// The corners of the way between two eyes, eyes themselves; `None` where the navmesh has none.
+/// The corners of the way between two eye positions, all at eye height; `None` where the navmesh has no way.
 pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, TdwError> {
     let [origin, destination] = [from, to].map(|eye| vector(eye - DVec3::Z * EYE_M));
     let answer = controller.communicate(&[Command::SendNavMeshPath { origin, destination, id: 0 }])?;
@@ -133,7 +133,7 @@ pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result
     Ok(Some(way).filter(|way| way.len() >= 2 && way.iter().all(|corner| corner.is_finite())))
 }
 
-/// Looks through a camera of the size that the scene was loaded with.
+/// Takes a picture through a camera of the size that the scene was loaded with.
 pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot, TdwError> {
     let size = (camera.width, camera.height);
     let avatar_id = || AVATAR.to_owned();
@@ -151,7 +151,7 @@ pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot
         _ => None,
     })?;
     if (images.width, images.height) != size {
-        let reason = format!("{} x {} pixels: expected {} x {}", images.width, images.height, size.0, size.1);
+        let reason = format!("it has {} x {} pixels: expected {} x {}", images.width, images.height, size.0, size.1);
         return Err(TdwError::Picture { pass: PassKind::Img.name(), reason });
     }
     let pixels = |kind: PassKind| {

@@ -1,4 +1,4 @@
-//! The reader against the stand-in's frames, and against what nobody should send.
+//! Tests the reader with the stand-in's frames, and with frames that no build should send.
 
 use super::{Output, output, stand_in::frames_of_every_kind};
 use proptest::prelude::*;
@@ -66,7 +66,7 @@ fn held(output: &Output<'_>) -> usize {
     }
 }
 
-/// An element is borrowed by an offset of four bytes, and the widest takes 64.
+/// An element takes at least four bytes in the frame, its offset, and at most 64 bytes once it is read.
 const MOST_FOLD: usize = 16;
 
 fn reads_within_bounds(frame: &[u8]) {
@@ -94,7 +94,7 @@ proptest! {
     ) {
         let kinds = frames_of_every_kind();
         let mut frame = kinds[kind % kinds.len()].1.clone();
-        // Where offsets and lengths are: pixels and numbers further on are never wrong.
+        // Only this part has offsets and lengths. Pixels and numbers further on are valid whatever their value.
         let near = frame.len().min(400);
         for (at, byte) in changes {
             frame[at.index(near)] = byte;

@@ -11,7 +11,7 @@ use ureq::Agent;
 
 /// Largest answer that is read, bytes: a picture of 8192 x 4096 pixels in base64.
 const LARGEST_ANSWER: u64 = 128 << 20;
-/// So much of what the simulator says stands in an error.
+/// How much of the simulator's message an error quotes.
 const QUOTED_CHARS: usize = 200;
 
 /// A simulator at an address.
@@ -36,7 +36,7 @@ pub struct Camera {
 pub enum Mode {
     /// What an eye sees.
     Normal,
-    /// Each object in its colour.
+    /// Each object in a colour of its own.
     Instances,
 }
 
@@ -67,7 +67,7 @@ impl Client {
             .http_status_as_error(false)
             .max_redirects(0)
             .timeout_global(Some(timeout))
-            // The simulator runs beside us: no proxy reaches it.
+            // The simulator runs beside Wayword, where no proxy reaches it.
             .proxy(None)
             .build();
         Self { agent: Agent::new_with_config(config), url: url.into(), asked: 0 }
@@ -103,12 +103,12 @@ impl Client {
         Err(HomeError::Failed { action, message: quoted(&answer.message.unwrap_or_default()) })
     }
 
-    /// Loads one of its homes, and takes away characters and cameras of before.
+    /// Loads one of its homes, and removes the characters and cameras that were there before.
     ///
     /// # Errors
     /// When the simulator is gone or has no such home.
     pub fn reset(&mut self, home: u32) -> Result<(), HomeError> {
-        // The genuine client goes on where there was nothing to clear.
+        // Like the genuine client, this goes on where there was nothing to clear.
         match self.post("clear", &[home.into()], &[]) {
             Ok(_) | Err(HomeError::Failed { .. }) => {}
             Err(error) => return Err(error),
@@ -119,7 +119,7 @@ impl Client {
     /// Everything that is in the home.
     ///
     /// # Errors
-    /// When the simulator is gone, or what it sends is no graph.
+    /// When the simulator is gone, or does not send a graph.
     pub fn environment_graph(&mut self) -> Result<EnvironmentGraph, HomeError> {
         let action = "environment_graph";
         let answer = self.post(action, &[], &[])?;
@@ -174,13 +174,13 @@ impl Client {
     /// The colour of each object in pictures of instances, by the object's id.
     ///
     /// # Errors
-    /// When the simulator is gone, or what it sends are no colours.
+    /// When the simulator is gone, or does not send colours.
     pub fn instance_colors(&mut self) -> Result<BTreeMap<i64, [u8; 3]>, HomeError> {
         let action = "instance_colors";
         let answer = self.post(action, &[], &[])?;
         let message = answer.message.unwrap_or_default();
-        let colours: BTreeMap<i64, [f64; 3]> = parsed(action, "three numbers by each id", message.as_bytes())?;
-        // Unity's colours are shares of one; a channel above that shows that they are bytes.
+        let colours: BTreeMap<i64, [f64; 3]> = parsed(action, "three numbers for each id", message.as_bytes())?;
+        // Channels of Unity's colours lie between 0 and 1. A channel above 1 shows that these are bytes.
         let scale = if colours.values().flatten().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
         let byte = |channel: f64| (channel * scale).round().clamp(0.0, 255.0) as u8;
         Ok(colours.into_iter().map(|(id, rgb)| (id, rgb.map(byte))).collect())

@@ -3,8 +3,8 @@
 /// Why VirtualHome does not give what it was asked for.
 #[derive(Debug, thiserror::Error)]
 pub enum HomeError {
-    /// Nobody answers.
-    #[error("action {action}: {reason}; start the simulator with -batchmode -http-port and that port")]
+    /// The simulator does not answer.
+    #[error("action {action}: {reason}; start VirtualHome with -batchmode -http-port=PORT, with this address's port")]
     Unreachable {
         /// What was asked.
         action: &'static str,
@@ -21,8 +21,8 @@ pub enum HomeError {
         /// The beginning of what it said.
         message: String,
     },
-    /// It says that it could not.
-    #[error("action {action}: the simulator could not: {message}")]
+    /// The simulator says that the action failed.
+    #[error("action {action}: the simulator says that it failed: {message}")]
     Failed {
         /// What was asked.
         action: &'static str,
@@ -39,7 +39,7 @@ pub enum HomeError {
         /// What is wrong, and where.
         reason: String,
     },
-    /// A home in which one cannot walk.
+    /// A home in which the agent cannot walk.
     #[error("the home's graph {0}")]
     Floor(String),
 }

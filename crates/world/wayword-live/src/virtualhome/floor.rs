@@ -1,4 +1,4 @@
-//! Where one can walk in a home, told from the boxes of what is in it.
+//! Computes where one can walk in a home, from the boxes of its rooms, doors and objects.
 
 use super::{error::HomeError, graph::EnvironmentGraph};
 use crate::raster::Raster;
@@ -6,15 +6,16 @@ use wayword_core::DVec3;
 
 /// Side of the floor's cells, metres.
 const CELL_M: f64 = 0.1;
-/// Half the width of who walks, metres.
+/// Half the width of the agent, metres.
 const RADIUS_M: f64 = 0.2;
-/// A room ends so far inside its box: walls stand on its edge, whether or not they are in the graph.
+/// How far inside its box a room ends, metres, because walls stand on the box's edge even where the graph lacks them.
 const WALL_M: f64 = 0.15;
 /// How far a door's passage reaches into the rooms on both sides, metres.
 const REACH_M: f64 = 0.5;
-/// What lies lower than this above the floor is stepped over, and what hangs higher is walked under, metres.
+/// Heights above the floor between which objects are in the way, metres: the agent steps over lower ones and walks
+/// under higher ones.
 const IN_WAY_M: [f64; 2] = [0.1, 1.7];
-/// Largest home, metres, and most things in it: keeps the time that a hostile graph can cost to seconds.
+/// Largest home, metres, and most nodes in it, so that a hostile graph costs seconds at most.
 const MAX_SIDE_M: f64 = 80.0;
 const MAX_NODES: usize = 5000;
 
@@ -29,7 +30,7 @@ fn grown((low, high): (DVec3, DVec3), by: [f64; 2]) -> Area {
     ([low.x - by[0], low.y - by[1]], [high.x + by[0], high.y + by[1]])
 }
 
-/// The floor's height and its free cells: rooms and the passages between them, less what stands in the way.
+/// The floor's height and its free cells: the rooms and the passages between them, without what stands in the way.
 pub(super) fn raster(graph: &EnvironmentGraph) -> Result<(f64, Raster), HomeError> {
     if graph.nodes.len() > MAX_NODES {
         let found = graph.nodes.len();
@@ -64,7 +65,7 @@ pub(super) fn raster(graph: &EnvironmentGraph) -> Result<(f64, Raster), HomeErro
     Ok((floor_m, raster))
 }
 
-/// The floor in a door and before it, on both sides of the wall: a door is wide along the wall and thin across.
+/// The floor in a doorway and in front of it, on both sides of the wall. A door is wide along the wall and thin across.
 fn passage(door: (DVec3, DVec3)) -> Area {
     let size = door.1 - door.0;
     let along = |length: f64| -(RADIUS_M.min(length / 2.0 - CELL_M));

@@ -4,7 +4,7 @@ use crate::unity::wayword_from_unity;
 use serde::Deserialize;
 use wayword_core::DVec3;
 
-/// Everything in a home. Edges are not kept: what is inside what can be told from the boxes.
+/// Everything in a home. Edges are not kept, because the boxes show what is inside what.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct EnvironmentGraph {
     /// Rooms, walls, doors, furniture, things.
@@ -36,7 +36,7 @@ pub struct BoundingBox {
 }
 
 impl BoundingBox {
-    /// Lower and upper corner in the world frame. `None` where they are no places.
+    /// Lower and upper corner in the world frame. `None` where they are not finite or too far out.
     pub(super) fn bounds_m(&self) -> Option<(DVec3, DVec3)> {
         let (centre, half) = (wayword_from_unity(self.center), wayword_from_unity(self.size).abs() / 2.0);
         let usable = centre.is_finite() && half.is_finite() && centre.abs().max_element() < 1e5;
@@ -49,12 +49,12 @@ impl Node {
         self.category == "Rooms"
     }
 
-    /// What leads from room to room.
+    /// Whether it leads from room to room.
     pub(super) fn is_passage(&self) -> bool {
         matches!(self.class_name.as_str(), "doorjamb" | "door" | "doorway")
     }
 
-    /// Whether it stands for itself rather than for a part of the building, or somebody in it.
+    /// Whether it is an object, and not a part of the building or a character.
     pub(super) fn is_thing(&self) -> bool {
         !matches!(self.category.as_str(), "Rooms" | "Walls" | "Floor" | "Floors" | "Ceiling" | "Characters")
     }

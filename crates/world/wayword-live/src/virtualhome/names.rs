@@ -1,4 +1,4 @@
-//! Words from VirtualHome's names of classes, which run them together.
+//! Splits VirtualHome's class names, which run words together.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -14,13 +14,14 @@ static CLASSES: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
     lines.flat_map(named).collect()
 });
 
-/// What the first words of other names are: of classes that users add, and of the stand-in's. What follows has to be a word as well: three letters at least.
+/// First words of names that are not in the list: names of classes that users add, and the stand-in's. What follows
+/// must be a word as well, of at least three letters.
 const FIRST: [&str; 26] = [
     "bathroom", "bedroom", "ceiling", "clothes", "coffee", "closet", "cutting", "desk", "dining", "dish", "door",
     "floor", "garage", "garbage", "kitchen", "laundry", "light", "living", "picture", "power", "remote", "table",
     "toilet", "tv", "wall", "washing",
 ];
-/// Names that begin with one of these words and are one word.
+/// Names that begin with one of these words but are one word.
 const WHOLE: [&str; 8] = ["closets", "doorway", "floors", "kitchens", "lights", "tables", "tablet", "tablets"];
 
 /// `coffeetable` as "coffee table", `clothes_pants` as "pants".
@@ -32,7 +33,7 @@ pub(super) fn words(class_name: &str) -> String {
     }
 }
 
-/// A name that is on no list, taken apart behind words that such names begin with.
+/// Splits a name that is not in the list, after each word of [`FIRST`] at its beginning.
 fn apart(name: &str) -> String {
     let (mut rest, mut words) = (name, Vec::new());
     while !WHOLE.contains(&rest) {

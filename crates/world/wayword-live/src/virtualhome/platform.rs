@@ -20,14 +20,14 @@ use wayword_render::Camera;
 /// Homes that VirtualHome has.
 const HOMES: std::ops::Range<u32> = 0..50;
 
-/// What can be chosen about the platform.
+/// Options of the platform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VirtualHomeOptions {
     /// Where it listens.
     pub url: String,
     /// How long each of its answers may take.
     pub timeout: Duration,
-    /// How it looks.
+    /// Size of pictures, and distance between frames.
     pub pictures: Pictures,
 }
 
@@ -41,7 +41,7 @@ impl Default for VirtualHomeOptions {
 /// VirtualHome over its running executable: scenes `home_0` to `home_49`.
 pub type VirtualHomePlatform = Live<VirtualHome>;
 
-/// The executable, and what is in it.
+/// The executable, and the home that it has loaded.
 #[derive(Debug)]
 pub struct VirtualHome {
     client: Client,
@@ -52,7 +52,7 @@ pub struct VirtualHome {
 }
 
 impl VirtualHomePlatform {
-    /// A platform that speaks to the simulator when it is first asked for something that takes one.
+    /// A platform that contacts the simulator at the first request that needs it.
     #[must_use]
     pub fn new(options: VirtualHomeOptions) -> Self {
         let VirtualHomeOptions { url, timeout, pictures } = options;
@@ -123,7 +123,8 @@ impl Simulator for VirtualHome {
         let url = self.client.url();
         let port = url.rsplit(':').next().filter(|port| port.parse::<u16>().is_ok()).unwrap_or("8080");
         self.ear.hear(&format!(
-            "asking VirtualHome at {url} for {scene}; it is started with -batchmode -http-port={port}, and loads a home in some seconds"
+            "asking VirtualHome at {url} for {scene}, which takes some seconds; \
+             if it does not run, start it with -batchmode -http-port={port}"
         ));
         self.client.reset(home)?;
         let camera = HomeCamera { position: [0.0, EYE_M, 0.0], rotation_deg: [0.0; 3], field_of_view_deg: 60.0 };
@@ -152,7 +153,7 @@ impl Simulator for VirtualHome {
             Ok(Shot { rgb, ids: colours.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect() })
         })();
         if shot.is_err() {
-            // A simulator that was started anew has another home in it, or none.
+            // A simulator that was restarted has another home loaded, or none.
             self.loaded = None;
         }
         shot
@@ -166,7 +167,7 @@ impl Simulator for VirtualHome {
     fn hint(error: &HomeError) -> &'static str {
         match error {
             HomeError::Floor(_) => "choose another home",
-            HomeError::Unreachable { .. } => "the simulator runs beside Wayword",
+            HomeError::Unreachable { .. } => "the simulator is a separate program that has to run beside Wayword",
             _ => "restart the simulator, or look into its log",
         }
     }

@@ -9,7 +9,7 @@ import json
 import sys
 import sysconfig
 
-# The client, version 2.3.0, was written for Python up to 3.9, and looks for itself at the sixth place of the path.
+# The client, version 2.3.0, was written for Python up to 3.9, and searches for itself in the sixth entry of sys.path.
 collections.Iterable = collections.abc.Iterable
 sys.path[5:5] = [""] * (5 - len(sys.path)) + [sysconfig.get_paths()["purelib"]]
 

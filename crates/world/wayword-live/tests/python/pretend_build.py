@@ -1,4 +1,4 @@
-"""Pretends to be a TDW build with libzmq's own REQ socket, and prints what the controller told it.
+"""Pretends to be a TDW build with libzmq's own REQ socket, and prints what the controller sends to it.
 
 Usage: pretend_build.py PORT
 """

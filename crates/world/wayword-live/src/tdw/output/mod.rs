@@ -1,5 +1,5 @@
-//! What the build sends back: one frame for each thing that was asked for. Slots and defaults are those of the classes in
-//! `tdw/FBOutput` of the Python client, version 1.13.0.0.
+//! Output data of the build: one frame for each kind of data that a command asked for. Slots and defaults are those of
+//! the classes in `tdw/FBOutput` of the Python client, version 1.13.0.0.
 
 mod read;
 
@@ -33,11 +33,11 @@ pub enum Output<'a> {
     Sensors(&'a str, Vec<Sensor<'a>>),
     /// `isnm`: whether a position is on the navmesh.
     OnNavMesh(OnNavMesh),
-    /// `quit`: the build ends; whether without an error.
+    /// `quit`: the build ends; true where it ends without an error.
     Quit(bool),
     /// `vers`: which build it is.
     Version(Version<'a>),
-    /// `ftre`: the build heard nothing, and wants the commands again.
+    /// `ftre`: the build received nothing and asks for the commands again.
     FailedToReceive,
     /// Anything else, by its id.
     Other([u8; 4]),
@@ -85,7 +85,7 @@ pub struct Segment<'a> {
 /// A way over the navmesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NavMeshPath {
-    /// The number that was asked with.
+    /// The id of the request.
     pub id: i32,
     /// Whether it leads all the way (state 1), to the nearest point (2), or nowhere (4).
     pub state: u8,
@@ -107,7 +107,7 @@ pub struct Region {
 /// Free and occupied cells of the floor, row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Occupancy {
-    /// Rows and columns as `shape[1]` and `shape[0]` say: the client reshapes to them in this order.
+    /// Rows and columns: the build's `shape[1]` and `shape[0]`, because the client reshapes to them in this order.
     pub shape: [usize; 2],
     /// 0 free, 1 occupied, -1 outside.
     pub cells: Vec<i8>,
@@ -118,7 +118,7 @@ pub struct Occupancy {
 /// Where an avatar is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Avatar<'a> {
-    /// Which.
+    /// The avatar.
     pub id: &'a str,
     /// Its position.
     pub position: [f32; 3],
@@ -131,7 +131,7 @@ pub struct Avatar<'a> {
 /// Where an object is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transform {
-    /// Which.
+    /// The object.
     pub id: i32,
     /// Its position: the middle of its bottom.
     pub position: [f32; 3],
@@ -144,7 +144,7 @@ pub struct Transform {
 /// How large an object is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Which.
+    /// The object.
     pub id: i32,
     /// Middles of its box's sides: front, back, right, left, top, bottom; then the box's own middle.
     pub points: [[f32; 3]; 7],
@@ -181,11 +181,11 @@ pub struct Sensor<'a> {
 /// Whether a position is on the navmesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnNavMesh {
-    /// The number that was asked with.
+    /// The id of the request.
     pub id: i32,
     /// Whether it is.
     pub is_on: bool,
-    /// The nearest position that is.
+    /// The nearest position on the navmesh.
     pub position: [f32; 3],
 }
 

@@ -1,4 +1,4 @@
-//! From bytes to output data.
+//! Reads output data from bytes.
 
 use super::{
     super::flat::{Misread, Table},
@@ -15,7 +15,7 @@ impl<'a> Output<'a> {
     /// Reads a frame.
     ///
     /// # Errors
-    /// Where its bytes are not what its id promises.
+    /// Where its bytes do not fit its id.
     pub fn read(frame: &'a [u8]) -> Result<Self, OutputError> {
         let id = id_of(frame)
             .ok_or(OutputError { id: String::new(), source: Misread { at: 4, expected: "an id of four letters" } })?;
@@ -45,7 +45,7 @@ impl<'a> Output<'a> {
     }
 }
 
-/// Holds the lengths of vectors that belong together against each other.
+/// Checks that a vector has the length that fits the vectors it belongs to.
 fn has_length(
     (table, slot): (&Table<'_>, usize),
     count: usize,
@@ -59,7 +59,7 @@ fn colour((table, slot): (&Table<'_>, usize), rgb: [i32; 3]) -> Result<[u8; 3], 
     if rgb.iter().all(|channel| (0..256).contains(channel)) {
         Ok(rgb.map(|channel| channel as u8))
     } else {
-        Err(table.misfit(slot, "colours of 0 to 255"))
+        Err(table.misfit(slot, "colour channels of 0 to 255"))
     }
 }
 
@@ -83,7 +83,7 @@ fn segments<'a>(table: &Table<'a>) -> Result<Vec<Segment<'a>>, Misread> {
     let colours = table.i32s(3)?;
     has_length((table, 1), names.len(), ids.len(), "a name for each id")?;
     has_length((table, 2), categories.len(), ids.len(), "a category for each id")?;
-    has_length((table, 3), colours.len(), 3 * ids.len(), "three colours for each id")?;
+    has_length((table, 3), colours.len(), 3 * ids.len(), "three colour channels for each id")?;
     let rows = ids.into_iter().zip(names).zip(categories).zip(colours.as_chunks::<3>().0);
     rows.map(|(((id, name), category), rgb)| Ok(Segment { id, name, category, colour: colour((table, 3), *rgb)? }))
         .collect()
@@ -187,7 +187,7 @@ fn on_nav_mesh(table: &Table<'_>) -> Result<OnNavMesh, Misread> {
     Ok(OnNavMesh { position, is_on: table.bool(1)?, id: table.i32(2, 0)? })
 }
 
-/// From 1.13 on the version is no FlatBuffer, though its id is the same: flag, length, two texts.
+/// From 1.13 on the version is not a FlatBuffer, although its id is the same. It is a flag, a length and two texts.
 fn version(frame: &[u8]) -> Result<Version<'_>, Misread> {
     if let Some(version) = plain_version(frame) {
         return Ok(version);

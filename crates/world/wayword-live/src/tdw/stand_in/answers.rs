@@ -1,4 +1,4 @@
-//! What the stand-in answers to each question: the build's own frames.
+//! The stand-in's answer to each command, in the build's own frames.
 
 use super::{
     flat::{Field, buffer},
@@ -12,10 +12,10 @@ use wayword_core::DVec3;
 use wayword_house::Object;
 
 const UNITY: &str = "2020.3.24f1";
-/// The finest occupancy map that is drawn, metres.
+/// Smallest cell of an occupancy map, metres.
 const FINEST_CELL_M: f64 = 0.1;
 
-/// The frame that answers a command; none where it asks for nothing, or for what the stand-in does not have.
+/// The frames that answer a command; none where it asks for nothing, or for data that the stand-in does not have.
 pub(super) fn to(state: &BuildState, kind: &str, command: &Value) -> Vec<Vec<u8>> {
     let id = command["id"].as_i64().unwrap_or(0) as i32;
     let avatars = || state.avatars.iter();

@@ -1,4 +1,4 @@
-//! Writing FlatBuffers, so that TDW's own client can read them.
+//! Writes FlatBuffers that TDW's own client can read.
 
 /// A field of a table.
 pub(super) enum Field {
@@ -27,7 +27,7 @@ impl Field {
     }
 }
 
-/// A whole buffer: a table under a file identifier. Everything that a table refers to comes behind it.
+/// A whole buffer: a file identifier and a table. Everything that a table refers to comes after it.
 pub(super) fn buffer(id: &[u8; 4], fields: Vec<Field>) -> Vec<u8> {
     let mut bytes = vec![0; 4];
     bytes.extend_from_slice(id);
@@ -36,7 +36,7 @@ pub(super) fn buffer(id: &[u8; 4], fields: Vec<Field>) -> Vec<u8> {
     bytes
 }
 
-/// Appends a table and what it refers to; gives back where it starts.
+/// Appends a table and what it refers to; returns where the table starts.
 fn table(bytes: &mut Vec<u8>, fields: Vec<Field>) -> usize {
     align(bytes);
     let vtable = bytes.len();
@@ -113,7 +113,7 @@ fn vector(bytes: &mut Vec<u8>, at: usize, count: usize, raw: &[u8]) {
     bytes.push(0);
 }
 
-/// Appends a vector of offsets yet to be filled in; gives back where each stands.
+/// Appends a vector of offsets that are filled in later; returns the position of each.
 fn offsets(bytes: &mut Vec<u8>, at: usize, count: usize) -> impl Iterator<Item = usize> + use<> {
     vector(bytes, at, count, &vec![0; 4 * count]);
     let first = bytes.len() - 1 - 4 * count;

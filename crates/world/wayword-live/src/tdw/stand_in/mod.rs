@@ -1,8 +1,8 @@
-//! A program that speaks like the TDW build and draws a generated house: what tests and demonstrations drive.
+//! A program that speaks the TDW build's protocol and draws a generated house, for tests and demonstrations.
 //!
-//! It knows the commands that Wayword and its tests send and passes over all others, as the build does with what it cannot
-//! do. Rooms, walls and furniture are the house's, whatever scene and objects it is told to load; whether there is furniture may
-//! depend on whether objects were added ([`StandInOptions::furnishes`]).
+//! It knows the commands that Wayword and its tests send and ignores all others, as the build ignores what it cannot
+//! do. Rooms, walls and furniture are those of the house, whatever scene and objects the commands name. Whether there
+//! is furniture may depend on whether objects were added ([`StandInOptions::furnishes`]).
 
 mod answers;
 mod flat;
@@ -26,28 +26,28 @@ use std::{
 pub use world::World;
 use world::Worlds;
 
-/// How often it looks whether it is to stop.
+/// How often it checks whether it has to stop.
 const PAUSE: Duration = Duration::from_millis(50);
-/// How long it takes part in an exchange that has begun.
+/// How long an exchange may take once it has begun.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Which build to pretend to be, and which of its faults to have.
+/// Which build the stand-in imitates, and which of its faults it has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StandInOptions {
-    /// The version that it says it is; up to 1.12 `vers` is a FlatBuffer, later plain bytes.
+    /// The version that it reports. Up to 1.12 `vers` is a FlatBuffer, later plain bytes.
     pub version: &'static str,
-    /// Seed of the house that it draws; the next one with a single storey is taken.
+    /// Seed of the house that it draws: the first house with a single storey from this seed on.
     pub house: u64,
-    /// Whether the house is furnished and labelled whatever it is told to load. Else it is as the genuine build's floor plans
-    /// are: without furniture until an object is added, and with labels for furniture alone.
+    /// Whether the house is furnished and labelled, whatever scene is loaded. Otherwise it is like the genuine build's
+    /// floor plans: without furniture until an object is added, and with labels for furniture only.
     pub furnishes: bool,
-    /// So many lists of commands it pretends not to have heard (`ftre`).
+    /// How many lists of commands it pretends not to have received (`ftre`).
     pub deaf: u32,
-    /// After so many answers the connection breaks, once, and a new build takes over.
+    /// After this many answers the connection breaks, once, and a new build takes over.
     pub breaks_after: Option<u32>,
-    /// After so many answers it says nothing more.
+    /// After this many answers it sends nothing more.
     pub hangs_after: Option<u32>,
-    /// Answers every list of commands with these frames instead, where there are any.
+    /// Frames with which it answers every list of commands, instead of its own answers.
     pub canned: Option<Vec<Vec<u8>>>,
 }
 
@@ -65,7 +65,7 @@ impl Default for StandInOptions {
     }
 }
 
-/// A stand-in that runs in a thread of its own until it is dropped or told to terminate.
+/// A stand-in that runs in a thread of its own until it is dropped or receives the command to end.
 #[derive(Debug)]
 pub struct StandIn {
     stop: Arc<AtomicBool>,
@@ -73,7 +73,7 @@ pub struct StandIn {
 }
 
 impl StandIn {
-    /// Starts one that connects to a controller as soon as it listens.
+    /// Starts a stand-in, which connects as soon as the controller listens.
     #[must_use]
     pub fn start(controller: SocketAddr, options: StandInOptions) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
@@ -82,7 +82,7 @@ impl StandIn {
         Self { stop, thread: Some(thread) }
     }
 
-    /// Waits until it has been told to terminate.
+    /// Waits until it has received the command to end.
     pub fn join(mut self) {
         self.thread.take().map(JoinHandle::join);
     }
@@ -140,7 +140,7 @@ impl Build {
             }
             if self.options.breaks_after.is_some_and(|after| self.answered > after) {
                 self.options.breaks_after = None;
-                return Err(WireError::Gone { doing: "breaking as was asked" });
+                return Err(WireError::Gone { doing: "breaking the connection on purpose" });
             }
             let frames = self.frames(&mut state, &commands);
             peer.until(Instant::now() + PATIENCE);
@@ -165,7 +165,7 @@ impl Build {
     }
 }
 
-/// Does what it is told and gives back what it was asked for, one frame each.
+/// Runs the commands and returns the frames that they ask for.
 fn obey(state: &mut BuildState, message: &[Vec<u8>]) -> Vec<Vec<u8>> {
     let commands: Vec<Value> = message.first().and_then(|text| serde_json::from_slice(text).ok()).unwrap_or_default();
     let mut frames = Vec::new();
@@ -178,7 +178,7 @@ fn obey(state: &mut BuildState, message: &[Vec<u8>]) -> Vec<Vec<u8>> {
     frames
 }
 
-/// An `imag` frame with one raw pass of a size, for [`StandInOptions::canned`]: the largest picture that the build sends.
+/// An `imag` frame with one raw pass of a size, for [`StandInOptions::canned`]: the build's largest picture.
 #[must_use]
 pub fn canned_picture(width: u32, height: u32) -> Vec<u8> {
     use flat::Field;

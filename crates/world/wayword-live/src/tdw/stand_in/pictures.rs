@@ -9,8 +9,8 @@ const PLANES_M: [f32; 2] = [0.1, 100.0];
 /// One pass: mask, bytes, extension.
 pub(super) struct Pass(pub(super) i32, pub(super) Vec<u8>, pub(super) u8);
 
-/// The passes of a drawn picture that the build would send for `names`; those that it does not know are left out. In the
-/// `_id` pass, what is no object is black.
+/// The passes of a drawn picture that the build would send for `names`. Unknown passes are left out. In the `_id` pass,
+/// pixels that show no object are black.
 pub(super) fn passes(picture: &Picture, names: &[String], png: bool, is_object: impl Fn(u32) -> bool) -> Vec<Pass> {
     let colour = |id: &u32| if is_object(*id) { id_colour(*id) } else { [0; 3] };
     let colours = || picture.ids.iter().flat_map(colour).collect::<Vec<u8>>();
@@ -26,18 +26,18 @@ pub(super) fn passes(picture: &Picture, names: &[String], png: bool, is_object: 
     names.iter().filter_map(pass).collect()
 }
 
-/// The colour of an object in the `_id` pass: another for each number, and black for what has none.
+/// The colour of an object in the `_id` pass: a different one for each id, and black for 0, which is no object.
 pub(crate) fn id_colour(id: u32) -> [u8; 3] {
     let [r, g, b, _] = id.wrapping_mul(0x009e_3779).to_le_bytes();
     [r, g, b]
 }
 
-/// RGB pixels as a PNG, quickly.
+/// RGB pixels as a PNG, with fast compression.
 pub(crate) fn png_file((width, height): (u32, u32), rgb: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let (compression, filter) = (codecs::png::CompressionType::Fast, codecs::png::FilterType::Sub);
     let encoder = codecs::png::PngEncoder::new_with_quality(&mut bytes, compression, filter);
-    // Into memory, of a picture whose size fits its pixels: nothing can fail.
+    // This cannot fail, because it writes to memory and the size fits the pixels.
     let _ = encoder.write_image(rgb, width, height, ExtendedColorType::Rgb8);
     bytes
 }

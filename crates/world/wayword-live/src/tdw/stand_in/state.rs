@@ -1,4 +1,4 @@
-//! What the stand-in has been told so far.
+//! The stand-in's state: what commands have set so far.
 
 use super::world::{World, Worlds};
 use crate::unity::{wayword_forward_from_unity_rotation, wayword_from_unity};
@@ -28,7 +28,7 @@ pub(super) enum Pictures {
 #[derive(Debug)]
 pub(super) struct BuildState {
     pub(super) worlds: Worlds,
-    /// What is loaded of them.
+    /// The one that is loaded.
     pub(super) world: Arc<World>,
     pub(super) version: &'static str,
     pub(super) avatars: Vec<Avatar>,
@@ -54,12 +54,12 @@ impl BuildState {
         }
     }
 
-    /// Whether it has said which build it is.
+    /// Whether it has reported its version.
     pub(super) fn is_known(&self) -> bool {
         self.asked_version
     }
 
-    /// Does what a command says.
+    /// Carries out a command.
     pub(super) fn obey(&mut self, kind: &str, command: &Value) {
         match kind {
             "load_scene" | "add_scene" => {
@@ -130,7 +130,7 @@ fn side(command: &Value, name: &str) -> u32 {
     command[name].as_u64().unwrap_or(256).clamp(1, 4096) as u32
 }
 
-/// A point; what is missing is 0, as in the build.
+/// A point; a missing coordinate is 0, as in the build.
 pub(super) fn vector(value: &Value) -> [f64; 3] {
     ["x", "y", "z"].map(|axis| value[axis].as_f64().unwrap_or(0.0))
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use wayword_core::DVec3;
 use wayword_house::{Ground, House, HouseScene, Object, Role, generate};
 
-/// Steps in which a position on the navmesh is looked for, metres.
+/// Step of the search for a position on the navmesh, metres.
 const SNAP_STEP_M: f64 = 0.05;
 
 /// A house with its drawing and its walkable ground.

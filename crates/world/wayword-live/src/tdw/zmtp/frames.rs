@@ -3,14 +3,14 @@
 use super::{Peer, WireError};
 use std::io::Write;
 
-/// Longest message that is taken: a few pictures of 8192 x 4096 raw pixels.
+/// Longest message that is accepted: a few pictures of 8192 x 4096 raw pixels.
 const MAX_MESSAGE_BYTES: u64 = 256 << 20;
 /// Most frames that one message may have.
 const MAX_FRAMES: usize = 4096;
-/// Commands between two messages (heartbeats, say) that are passed over.
+/// Most commands between two messages (such as heartbeats) that are skipped.
 const MAX_COMMANDS: usize = 64;
 
-/// What was announced about a frame.
+/// The header of a frame.
 pub(super) struct Header {
     pub(super) command: bool,
     more: bool,
@@ -21,7 +21,7 @@ impl Peer {
     /// The next message without its envelope: everything after the empty frame that a REQ or REP socket puts first.
     ///
     /// # Errors
-    /// When the connection ends, is late, or carries what no such socket sends.
+    /// When the connection ends or is late, or its bytes are not what a REQ or REP socket sends.
     pub(crate) fn receive(&mut self) -> Result<Vec<Vec<u8>>, WireError> {
         let mut frames = Vec::new();
         let mut in_envelope = true;
@@ -32,7 +32,7 @@ impl Peer {
             if header.command {
                 commands += 1;
                 if commands > MAX_COMMANDS {
-                    return Err(self.malformed(0, "a message", "one command after another"));
+                    return Err(self.malformed(0, "a message", "more than 64 commands"));
                 }
                 continue;
             }
@@ -49,7 +49,7 @@ impl Peer {
                 return if whole {
                     Ok(frames)
                 } else {
-                    Err(self.malformed(0, "an empty frame and content", "neither"))
+                    Err(self.malformed(0, "an empty frame and content", "not both"))
                 };
             }
         }
@@ -60,7 +60,7 @@ impl Peer {
     /// # Errors
     /// When the connection ends or is late.
     pub(crate) fn send(&mut self, frames: &[impl AsRef<[u8]>]) -> Result<(), WireError> {
-        // Small frames travel together; a large one is not copied.
+        // Small frames are sent in one write; a large frame is not copied.
         let mut packet = vec![u8::from(!frames.is_empty()), 0];
         for (index, frame) in frames.iter().enumerate() {
             let (frame, more) = (frame.as_ref(), u8::from(index + 1 < frames.len()));
@@ -101,7 +101,7 @@ impl Peer {
     pub(super) fn body(&mut self, header: &Header, most: u64) -> Result<Vec<u8>, WireError> {
         if header.length > most {
             let found = format!("one of {} bytes", header.length);
-            return Err(self.malformed(8, "a frame within what is left of 256 MiB (4 KiB for a command)", found));
+            return Err(self.malformed(8, "a frame that fits into the rest of 256 MiB (4 KiB for a command)", found));
         }
         self.take_long(header.length, "reading a message")
     }

@@ -1,4 +1,4 @@
-//! How two sockets meet: signature, revision, then what the older of the two understands.
+//! The greeting of two sockets: signature, revision, and the rest in the older of their two revisions.
 
 use super::{Peer, Role, WireError};
 
@@ -26,7 +26,7 @@ impl Role {
         }
     }
 
-    /// Whom it talks to, by name and number.
+    /// The kinds of socket that it talks to, by name and number.
     fn talks_to(self) -> [(&'static str, u8); 2] {
         match self {
             Self::Rep => [("REQ", 3), ("DEALER", 5)],
@@ -96,7 +96,7 @@ fn ready(role: Role) -> Vec<u8> {
     [&[4, body.len() as u8], &body[..]].concat()
 }
 
-/// The property Socket-Type of a READY command; names of properties are compared without their case (RFC 23).
+/// The property Socket-Type of a READY command. Case does not matter in the names of properties (RFC 23).
 fn socket_type(body: &[u8]) -> Option<&[u8]> {
     let mut rest = body.strip_prefix(b"\x05READY")?;
     while let Some((length, after)) = rest.split_first() {

@@ -1,9 +1,9 @@
-//! ZeroMQ's wire protocol, as far as a REP and a REQ socket over TCP need it: ZMTP 3.0 with the NULL mechanism (RFC 23), and
-//! ZMTP 2.0 (RFC 15) for builds with an older NetMQ.
+//! ZeroMQ's wire protocol, as far as a REP and a REQ socket over TCP need it: ZMTP 3.0 with the NULL mechanism (RFC 23),
+//! and ZMTP 2.0 (RFC 15) for builds with an older NetMQ.
 //!
-//! The crate `zeromq` 0.7 would be the other way. It was not taken, because it allocates whatever length a frame announces
-//! before a byte of it has come, so that nine bytes from a stranger end the program; because it refuses peers older than
-//! 3.0; and because it needs an async runtime. Tests hold this module against it and against libzmq.
+//! The crate `zeromq` 0.7 is not used, for three reasons. It allocates whatever length a frame announces before a byte
+//! of the frame has come, so nine bytes from an unknown peer end the program. It refuses peers older than 3.0. It needs
+//! an async runtime. Tests check this module against it and against libzmq.
 
 mod frames;
 mod greeting;
@@ -14,7 +14,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Which end of the conversation a socket is.
+/// Which end of the connection a socket is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
     /// Answers: the controller.
@@ -24,7 +24,7 @@ pub(crate) enum Role {
     Req,
 }
 
-/// A conversation that cannot go on.
+/// Why a connection cannot go on.
 #[derive(Debug, thiserror::Error)]
 pub enum WireError {
     /// The other side closed the connection.
@@ -34,7 +34,7 @@ pub enum WireError {
         doing: &'static str,
     },
     /// Nothing came, or could be sent, in time.
-    #[error("nothing came in time while {doing}")]
+    #[error("timed out while {doing}")]
     Late {
         /// What was under way.
         doing: &'static str,
@@ -47,14 +47,14 @@ pub enum WireError {
         /// What the system says.
         source: io::Error,
     },
-    /// Bytes that are not ZeroMQ, or more of them than are taken.
+    /// Bytes that are not ZeroMQ, or more of them than are accepted.
     #[error("byte {at} of the connection: expected {expected}, found {found}")]
     Malformed {
         /// Where, counted from the first byte that came.
         at: u64,
         /// What should have been there.
         expected: &'static str,
-        /// What was.
+        /// What was there.
         found: String,
     },
 }
@@ -80,7 +80,7 @@ pub(crate) struct Peer {
     taken: u64,
 }
 
-/// A stream whose reads end at a deadline, however slowly the bytes drip.
+/// A stream whose reads end at a deadline, however slowly the bytes come.
 #[derive(Debug)]
 struct Timed {
     stream: TcpStream,
@@ -90,7 +90,7 @@ struct Timed {
 impl Timed {
     fn left(&self) -> io::Result<Duration> {
         let left = self.deadline.saturating_duration_since(Instant::now());
-        // The system takes a zero for "for ever".
+        // For the system, a timeout of zero means "for ever".
         if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
     }
 }
@@ -104,10 +104,10 @@ impl Read for Timed {
 }
 
 impl Peer {
-    /// Greets whoever is at the other end of a connection.
+    /// Exchanges greetings with the other end of a connection.
     ///
     /// # Errors
-    /// When it is no ZeroMQ socket of the fitting kind, or does not answer by the deadline.
+    /// When the other end is not a ZeroMQ socket of the fitting kind, or does not answer by the deadline.
     pub(crate) fn greet(stream: TcpStream, role: Role, deadline: Instant) -> Result<Self, WireError> {
         let set_up = |stream: &TcpStream| {
             stream.set_nonblocking(false)?;
@@ -140,7 +140,7 @@ impl Peer {
         Ok(bytes)
     }
 
-    /// Takes as many bytes as were announced. Memory grows with what really comes.
+    /// Takes as many bytes as were announced. Memory grows with the bytes that really come.
     fn take_long(&mut self, length: u64, doing: &'static str) -> Result<Vec<u8>, WireError> {
         let mut bytes = Vec::with_capacity(length.min(1 << 20) as usize);
         let taken = (&mut self.reader).take(length).read_to_end(&mut bytes);

@@ -1,4 +1,4 @@
-//! A generated house as VirtualHome tells of it.
+//! A generated house as VirtualHome describes it.
 
 use crate::{
     tdw::stand_in::{World, id_colour, png},
@@ -10,7 +10,7 @@ use wayword_core::DVec3;
 use wayword_house::Role;
 use wayword_render::Camera;
 
-/// Numbers of rooms begin here: above those of things.
+/// The first id of a room: above the ids of objects.
 const FIRST_ROOM: usize = 100_000;
 
 #[derive(Debug)]
@@ -38,7 +38,7 @@ impl Home {
         Self { world: World::with_one_storey(number.saturating_add(1)) }
     }
 
-    /// Rooms and things, and which thing is in which room.
+    /// Rooms and objects, and which object is in which room.
     pub(super) fn graph(&self) -> Value {
         let house = &self.world.house().house;
         let room_id = |room: usize| (FIRST_ROOM + room) as u64;
@@ -67,7 +67,7 @@ impl Home {
         json!({ "nodes": nodes, "edges": edges })
     }
 
-    /// The colour of each thing, as shares.
+    /// The colour of each object, with channels between 0 and 1.
     pub(super) fn colours(&self) -> Value {
         let colour = |id: u32| json!(id_colour(id).map(|channel| f64::from(channel) / 255.0));
         Value::Object(self.world.objects().map(|(id, _)| (id.to_string(), colour(id))).collect::<Map<_, _>>())

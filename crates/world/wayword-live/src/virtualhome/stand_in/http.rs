@@ -1,4 +1,4 @@
-//! As much of HTTP/1.1 as one request on one connection takes.
+//! The part of HTTP/1.1 that one request on one connection needs.
 
 use serde_json::Value;
 use std::{
@@ -11,7 +11,7 @@ use std::{
 const MAX_HEAD: u64 = 16 << 10;
 const MAX_BODY: u64 = 16 << 20;
 
-/// Reads a request, has it answered, and closes the connection.
+/// Reads a request, sends the answer, and closes the connection.
 pub(super) fn serve(stream: TcpStream, answer: impl FnOnce(&Value) -> Value) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_read_timeout(Some(Duration::from_secs(10)))?;

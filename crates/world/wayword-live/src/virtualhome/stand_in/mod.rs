@@ -1,4 +1,4 @@
-//! A program that speaks like VirtualHome's executable and shows a generated house: what tests and demonstrations drive.
+//! A program that speaks VirtualHome's protocol and shows a generated house, for tests and demonstrations.
 
 mod home;
 mod http;
@@ -16,7 +16,7 @@ use std::{
     time::Duration,
 };
 
-/// How often it looks whether it is to stop.
+/// How often it checks whether it has to stop.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// A stand-in that runs in a thread of its own until it is dropped.
@@ -28,8 +28,8 @@ pub struct StandIn {
 }
 
 impl StandIn {
-    /// Starts one that listens at an address; port 0 lets the system choose. Home `n` is the first generated house with one storey from seed `n + 1`
-    /// on.
+    /// Starts a stand-in that listens at an address; port 0 lets the system choose. Home `n` is the first generated
+    /// house with one storey from seed `n + 1` on.
     ///
     /// # Errors
     /// When the port is taken.
@@ -43,7 +43,7 @@ impl StandIn {
             let mut filmed = Filmed::default();
             while !stopped.load(Ordering::Relaxed) {
                 match listener.accept() {
-                    // Whoever breaks off a request gets no answer.
+                    // A request that breaks off gets no answer.
                     Ok((stream, _)) => drop(http::serve(stream, |request| filmed.answer(request))),
                     Err(_) => sleep(PAUSE),
                 }
@@ -93,7 +93,7 @@ impl Filmed {
         })
     }
 
-    /// What an action gives: some of message, value and list; `None` where it fails.
+    /// The result of an action: a message, a value or a list; `None` where it fails.
     fn act(&mut self, request: &Value) -> Option<Value> {
         let int = |n: usize| request["intParams"][n].as_u64();
         let text = || serde_json::from_str::<Value>(request["stringParams"][0].as_str()?).ok();
