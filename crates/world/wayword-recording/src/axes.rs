@@ -1,4 +1,4 @@
-//! How others write poses down, and how they are turned into Wayword's: metres, z up, north is +y.
+//! Conventions of recorded poses, and how they are turned into Wayword's: metres, z up, north is +y.
 
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
@@ -16,7 +16,7 @@ pub(crate) enum World {
     YDown,
 }
 
-/// What the orientation of a pose is that of.
+/// Which body the orientation of a pose belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Body {
@@ -24,7 +24,7 @@ pub(crate) enum Body {
     Robot,
     /// A camera's optical frame: z ahead, x right, y down (REP 103; TUM RGB-D).
     Optical,
-    /// A camera of OpenGL: -z ahead, x right, y up (NeRF's `transforms.json`).
+    /// An OpenGL camera: -z ahead, x right, y up (NeRF's `transforms.json`).
     OpenGl,
 }
 
@@ -33,17 +33,17 @@ pub(crate) enum Body {
 pub(crate) struct Axes {
     pub(crate) world: World,
     pub(crate) body: Body,
-    /// How far the camera looks to the right of what `body` has ahead, radians.
+    /// How far the camera looks to the right of the direction ahead of `body`, radians.
     pub(crate) mount_rad: f64,
 }
 
 impl Axes {
-    /// z up.
+    /// The axes of a body in a world with z up.
     pub(crate) const fn of(body: Body) -> Self {
         Self { world: World::ZUp, body, mount_rad: 0.0 }
     }
 
-    /// A position in Wayword's frame.
+    /// Turns a recorded position or direction into Wayword's frame.
     pub(crate) fn wayword_from_recorded(self, recorded: DVec3) -> DVec3 {
         let DVec3 { x, y, z } = recorded;
         match self.world {
@@ -53,25 +53,25 @@ impl Axes {
         }
     }
 
-    /// Where the camera looks, in the horizontal plane of Wayword's frame, by a quaternion (x, y, z, w); `None` where it looks
-    /// straight up or down, or the quaternion is none.
+    /// Where the camera looks, in the horizontal plane of Wayword's frame, by a quaternion (x, y, z, w); `None` where
+    /// it looks straight up or down, or the quaternion is invalid.
     pub(crate) fn heading(self, recorded_from_body: [f64; 4]) -> Option<Heading> {
         self.heading_along(rotated(recorded_from_body, self.ahead())?)
     }
 
-    /// The same by a rotation's columns.
+    /// As [`Axes::heading`], by a rotation's columns.
     pub(crate) fn heading_by_columns(self, recorded_from_body: [DVec3; 3]) -> Option<Heading> {
         let [x, y, z] = recorded_from_body;
         let ahead = self.ahead();
         self.heading_along(x * ahead.x + y * ahead.y + z * ahead.z)
     }
 
-    /// The same by a yaw: radians counter-clockwise from the recorded +x, as ROS has it.
+    /// As [`Axes::heading`], by a yaw: radians counter-clockwise from the recorded +x, as in ROS.
     pub(crate) fn heading_by_yaw(self, yaw_rad: f64) -> Option<Heading> {
         Heading::new(FRAC_PI_2 - yaw_rad + self.mount_rad).ok()
     }
 
-    /// What the body has above it, in its own frame.
+    /// The body's up direction, in its own frame.
     pub(crate) fn above(self) -> DVec3 {
         match self.body {
             Body::Robot => DVec3::Z,
@@ -80,7 +80,7 @@ impl Axes {
         }
     }
 
-    /// What the body has ahead, in its own frame.
+    /// The body's direction ahead, in its own frame.
     pub(crate) fn ahead(self) -> DVec3 {
         match self.body {
             Body::Robot => DVec3::X,
@@ -96,7 +96,7 @@ impl Axes {
 }
 
 impl World {
-    /// As `recording.toml` has it.
+    /// Its name in `recording.toml`.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::ZUp => "z-up",
@@ -107,7 +107,7 @@ impl World {
 }
 
 impl Body {
-    /// As `recording.toml` has it.
+    /// Its name in `recording.toml`.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Robot => "robot",
@@ -117,12 +117,12 @@ impl Body {
     }
 }
 
-/// The columns of the rotation that a quaternion (x, y, z, w) is; `None` where it is none.
+/// The columns of the rotation that a quaternion (x, y, z, w) describes; `None` where the quaternion is invalid.
 pub(crate) fn columns(quaternion: [f64; 4]) -> Option<[DVec3; 3]> {
     Some([rotated(quaternion, DVec3::X)?, rotated(quaternion, DVec3::Y)?, rotated(quaternion, DVec3::Z)?])
 }
 
-/// A vector turned by a quaternion (x, y, z, w), which need not be of length 1.
+/// A vector turned by a quaternion (x, y, z, w), which need not have length 1.
 fn rotated([x, y, z, w]: [f64; 4], vector: DVec3) -> Option<DVec3> {
     let length = libm::sqrt(x * x + y * y + z * z + w * w);
     if !(length.is_finite() && length > 1e-6) {

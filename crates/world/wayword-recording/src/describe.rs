@@ -1,4 +1,5 @@
-//! What a user says about a recording in a file of its own: `recording.toml` in a folder, `NAME.toml` beside `NAME.mp4`.
+//! What a user says about a recording in a file of its own: `recording.toml` in a folder, `NAME.toml` beside
+//! `NAME.mp4`.
 
 use crate::axes::{Axes, Body, World};
 use serde::Deserialize;
@@ -25,15 +26,15 @@ pub(crate) struct Description {
     pub(crate) poses: Option<String>,
     /// Which way is up in the world of the poses.
     pub(crate) world: Option<World>,
-    /// What the orientation of a pose is that of.
+    /// Which body the orientation of a pose belongs to.
     pub(crate) orientation: Option<Body>,
-    /// How far the camera looks to the right of what `orientation` has ahead, degrees.
+    /// How far the camera looks to the right of the direction ahead of `orientation`, degrees.
     pub(crate) mount_deg: Option<f64>,
-    /// Pictures per second, where they have no times.
+    /// Pictures per second, for pictures without times.
     pub(crate) pictures_per_s: Option<f64>,
     /// Distance between frames, metres, where there are poses.
     pub(crate) interval_m: Option<f64>,
-    /// Time between frames, seconds, where there are none.
+    /// Time between frames, seconds, where there are no poses.
     pub(crate) interval_s: Option<f64>,
 }
 
@@ -41,7 +42,7 @@ impl Description {
     /// Reads a description; the default where there is no such file.
     ///
     /// # Errors
-    /// When it is not TOML, says what is unknown, or a number is out of bounds.
+    /// When it is not TOML, has an unknown key, or a number is out of range.
     pub(crate) fn read(file: &Path) -> Result<Self, PlatformError> {
         let Some(text) = files::text_if_there(file, MAX_FILE_BYTES, HINT)? else { return Ok(Self::default()) };
         let described: Self = toml::from_str(&text).map_err(|error| files::wrong(file, error.to_string(), HINT))?;
@@ -53,14 +54,14 @@ impl Description {
             ("interval_s", described.interval_s, 0.01..=3600.0),
         ] {
             if let Some(number) = number.filter(|number| !bounds.contains(number)) {
-                let reason = format!("{name} = {number} lies outside of {} to {}", bounds.start(), bounds.end());
+                let reason = format!("{name} = {number} is out of range ({} to {})", bounds.start(), bounds.end());
                 return Err(files::wrong(file, reason, HINT));
             }
         }
         Ok(described)
     }
 
-    /// Reads the description of a file, which lies beside it.
+    /// Reads the description that lies beside a file.
     ///
     /// # Errors
     /// As [`Description::read`].
@@ -69,14 +70,15 @@ impl Description {
         Self::read(&Self::file_beside(recording))
     }
 
-    /// Where the description of a file is looked for: `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same folder.
+    /// Where the description of a file is looked for: `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same
+    /// folder.
     #[cfg(any(feature = "mcap", feature = "video"))]
     pub(crate) fn file_beside(recording: &Path) -> PathBuf {
         let own = recording.with_extension("toml");
         if own.is_file() { own } else { recording.with_file_name(FILE) }
     }
 
-    /// How poses are to be read, where their format has orientations of `usual` in a world with z up.
+    /// How to read poses whose format usually has the axes `usual`: what the user set replaces these.
     pub(crate) fn axes(&self, usual: Axes) -> Axes {
         Axes {
             world: self.world.unwrap_or(usual.world),

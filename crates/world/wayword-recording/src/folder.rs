@@ -16,9 +16,9 @@ use wayword_world::files;
 
 /// Subfolders in which datasets keep their pictures.
 pub(crate) const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
-/// What stands in the names of pictures that datasets keep beside photographs.
+/// Words in the names of pictures that datasets keep beside photographs.
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
-/// What the names of pictures end in that are not read.
+/// Endings of pictures that cannot be read.
 const UNREAD: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff", "bmp"];
 /// TUM's list of pictures with their times.
 const LIST: &str = "rgb.txt";
@@ -26,13 +26,13 @@ const MAX_LIST_BYTES: u64 = 64 << 20;
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
 /// Kinds of files that are read as pictures, whatever their names end in.
 const PICTURES: [&str; 2] = ["a PNG picture", "a JPEG picture"];
-const PICTURE_HINT: &str = "take the picture out, or give a whole one";
+const PICTURE_HINT: &str = "remove the picture, or replace it with an intact one";
 
 /// A folder of pictures.
 pub(crate) struct Folder {
     scene: SceneId,
     root: PathBuf,
-    /// Where the pictures are, and those in it.
+    /// The folder in which the pictures are.
     pictures: PathBuf,
     names: Vec<String>,
 }
@@ -64,13 +64,13 @@ impl Folder {
         Ok(names.next().map(|first| (self.pictures.join(first), 1 + names.count())))
     }
 
-    /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else one after
-    /// another.
+    /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else one
+    /// after another.
     fn timed(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
         let list = self.root.join(LIST);
         if let Some(text) = files::text_if_there(&list, MAX_LIST_BYTES, HINT)? {
             return listed(&text, &self.root).map_err(|reason| {
-                files::wrong(&list, reason, "expected lines of `time file`, with names of their own")
+                files::wrong(&list, reason, "expected lines of `time file`, each file with a name of its own")
             });
         }
         let named: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
@@ -147,13 +147,13 @@ impl Reel for Pictures {
     }
 }
 
-/// What a file is, where its first bytes are those of something else than a picture that is read.
+/// The error for a file whose first bytes show that it is not a PNG or JPEG picture; `None` where it may be one.
 fn unfit(file: &Path) -> Option<PlatformError> {
     let kind = Kind::at(file).filter(|kind| !PICTURES.contains(&kind.name))?;
     Some(files::wrong(file, format!("is {}, neither PNG nor JPEG", kind.name), kind.hint))
 }
 
-/// Lines of `time file`; files lie below the folder.
+/// Reads lines of `time file`; the files must lie below the folder.
 fn listed(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
     let lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
@@ -162,18 +162,18 @@ fn listed(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
     let mut names = BTreeSet::new();
     let read = lines.map(|(at, line)| {
         let (time, file) =
-            line.trim().split_once([' ', '\t']).ok_or_else(|| format!("line {}: only one word", at + 1))?;
+            line.trim().split_once([' ', '\t']).ok_or_else(|| format!("line {}: has only one word", at + 1))?;
         let time_s: f64 =
             time.parse().ok().filter(|time_s: &f64| time_s.is_finite()).ok_or_else(|| {
-                format!("line {}: {:?} is no time", at + 1, time.chars().take(40).collect::<String>())
+                format!("line {}: {:?} is not a time", at + 1, time.chars().take(40).collect::<String>())
             })?;
         let file = Path::new(file.trim());
         if !file.components().all(|part| matches!(part, Component::Normal(_))) {
-            return Err(format!("line {}: the file does not lie below the folder", at + 1));
+            return Err(format!("line {}: the file is not inside the folder", at + 1));
         }
-        // By its name a picture is found again.
+        // Pose files and frames refer to a picture by its name alone.
         if !names.insert(file.file_name()) {
-            return Err(format!("line {}: a file of this name stands in a line before", at + 1));
+            return Err(format!("line {}: an earlier line has a file with the same name", at + 1));
         }
         Ok((time_s, root.join(file)))
     });
@@ -186,10 +186,10 @@ fn is_picture(name: &str) -> bool {
     !name.starts_with('.') && ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// Whether a file is a photograph of a kind that is not read, as its name ends.
+/// Whether a file is, by its ending, a photograph of a kind that cannot be read.
 pub(crate) fn is_unread_picture(name: &str) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    // Datasets keep depth maps as TIFF.
+    // Datasets keep depth maps as TIFF, and these are not missing photographs.
     !name.starts_with('.') && !is_no_photograph(name) && UNREAD.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
@@ -198,18 +198,18 @@ fn is_no_photograph(name: &str) -> bool {
     NO_PHOTOGRAPHS.iter().any(|word| name.contains(word))
 }
 
-/// Names without those of depth maps and the like, unless there is nothing else.
+/// The names without depth maps and the like; all of them where nothing else is left.
 fn photographs(names: Vec<String>) -> Vec<String> {
     let photographs: Vec<String> = names.iter().filter(|name| !is_no_photograph(name)).cloned().collect();
     if photographs.is_empty() { names } else { photographs }
 }
 
-/// The time that a picture's name is: `1305031102.175304.png` in seconds, `1403636579763555584.png` in nanoseconds. Names that
-/// count (`000012.png`) are no times.
+/// The time that a picture's name stands for, seconds: `1305031102.175304.png` is in seconds, `1403636579763555584.png`
+/// in nanoseconds. `None` where the name is a running number (`000012.png`).
 fn time_of(name: &str) -> Option<f64> {
     let stem = Path::new(name).file_stem()?.to_str()?;
     let digits = stem.bytes().all(|byte| byte.is_ascii_digit());
-    // KITTI counts with ten digits.
+    // KITTI's running numbers have ten digits, as times in seconds have.
     if digits && stem.starts_with('0') {
         return None;
     }
@@ -230,7 +230,7 @@ mod tests {
     use super::*;
     use image::{Rgb, RgbImage};
 
-    /// A folder with pictures whose red is their number.
+    /// A folder with pictures; the red of each is its number.
     fn folder(names: &[&str]) -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();
         for (at, name) in names.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What a file is that is not read here, by its first bytes, and what makes of it one that is.
+//! Names a file that cannot be read by its first bytes, and says how to convert it.
 
 use crate::names::entries;
 use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
@@ -6,28 +6,28 @@ use wayword_core::PlatformError;
 #[cfg(any(feature = "mcap", feature = "video"))]
 use wayword_world::files;
 
-/// What makes a file that is read here of any video that ffmpeg reads. It codes the pictures anew: few videos hold H.264 or AV1,
-/// and only these may be copied.
+/// Converts any video that ffmpeg reads. The command encodes the pictures again, because only H.264 and AV1 could be
+/// copied, and few videos hold these.
 pub(crate) const ENCODE: &str =
-    "if players show it, this makes a video that is read here: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
-const CONVERT: &str = "this makes a picture that is read here: ffmpeg -i IN -frames:v 1 OUT.png";
-const CONVERT_HEIC: &str = "this makes a picture that is read here: heif-convert IN OUT.jpg (package libheif-examples), \
+    "if a video player shows it, convert it: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
+const CONVERT: &str = "convert it: ffmpeg -i IN -frames:v 1 OUT.png";
+const CONVERT_HEIC: &str = "convert it: heif-convert IN OUT.jpg (package libheif-examples), \
                             or on macOS: sips -s format jpeg IN --out OUT.jpg";
 const BAG_1: &str =
-    "rosbags-convert --src IN.bag --dst OUT --dst-storage mcap --dst-typestore ros2_humble (PyPI rosbags)";
-const BAG_2: &str = "rosbags-convert --src FOLDER --dst OUT --dst-storage mcap (PyPI rosbags)";
+    "convert it: rosbags-convert --src IN.bag --dst OUT --dst-storage mcap --dst-typestore ros2_humble (PyPI rosbags)";
+const BAG_2: &str = "convert it: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap (PyPI rosbags)";
 const POINTER: &str = "fetch the file itself: git lfs pull";
 const AGAIN: &str = "copy or record it again";
 
-/// Bytes that tell what a file is.
+/// First bytes of a file that show its kind.
 const HEAD_BYTES: u64 = 512;
-/// Files of a folder that are looked into.
+/// Most files of a folder that are looked into.
 const MOST_LOOKED_INTO: usize = 200;
 
 /// What a file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Kind {
-    /// As it stands behind "is".
+    /// Its name with an article, to follow "is".
     pub(crate) name: &'static str,
     /// What to do about it.
     pub(crate) hint: &'static str,
@@ -44,7 +44,7 @@ impl Kind {
         Self { name, hint, is_recording: false }
     }
 
-    /// What lies at a path; `None` where nobody can tell.
+    /// The kind of a file; `None` where it is not known.
     pub(crate) fn at(file: &Path) -> Option<Self> {
         if !file.is_file() {
             return None;
@@ -54,7 +54,7 @@ impl Kind {
         Self::of(&head)
     }
 
-    /// What begins so.
+    /// The kind of a file that begins with these bytes.
     fn of(head: &[u8]) -> Option<Self> {
         if head.is_empty() {
             return Some(EMPTY);
@@ -79,13 +79,14 @@ impl Kind {
     }
 }
 
-/// Nobody finished writing it.
+/// A file without any bytes: its writer did not finish.
 const EMPTY: Kind = Kind::other("empty", AGAIN);
-/// EBML's number, with which Matroska and WebM begin.
+/// EBML's magic number, with which Matroska and WebM begin.
 const MATROSKA: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
 const HEIC: Kind = Kind::recording("an HEIC picture", CONVERT_HEIC);
 const MP4: Kind = Kind::recording("an MP4 video", "rename it to end in .mp4");
-/// What stands where in which files; the first that fits counts. At 4 it is the kind of a box of MP4, at 8 that of a RIFF file.
+/// Offset and bytes that show a kind; the first that fits counts. At offset 4 it is the kind of an MP4 box, at 8 that
+/// of a RIFF file.
 const STARTS: &[(usize, &[u8], Kind)] = &[
     (0, b"\x89PNG\r\n\x1a\n", Kind::recording("a PNG picture", "rename it to end in .png")),
     (0, &[0xff, 0xd8, 0xff], Kind::recording("a JPEG picture", "rename it to end in .jpg")),
@@ -121,7 +122,8 @@ const STARTS: &[(usize, &[u8], Kind)] = &[
     (0, b"version https://git-lfs", Kind::other("a pointer of git-lfs", POINTER)),
 ];
 
-/// Whether a file can begin with a box of MP4: its length stands first, 0 for "up to the end" and 1 for "told behind".
+/// Whether a file can begin with a box of MP4: its length comes first; 0 means "up to the end", and 1 that the length
+/// follows later.
 fn is_box(head: &[u8]) -> bool {
     let Some(first) = head.first_chunk::<4>() else { return false };
     let is_length = matches!(u32::from_be_bytes(*first), 0 | 1 | 8..=0x8000_0000);
@@ -129,15 +131,16 @@ fn is_box(head: &[u8]) -> bool {
     is_length && !is_printable && text(head).is_none()
 }
 
-/// Whether what begins with "BM" goes on as a bitmap: four bytes of nothing, and behind 14 bytes a header of a length that there is.
+/// Whether a file that begins with "BM" goes on as a bitmap: four zero bytes, and after 14 bytes a header with one of
+/// the known lengths.
 fn is_bitmap(head: &[u8]) -> bool {
     let four = |at: usize| head.get(at..)?.first_chunk::<4>().map(|bytes| u32::from_le_bytes(*bytes));
     four(6) == Some(0) && matches!(four(14), Some(12 | 40 | 52 | 56 | 64 | 108 | 124))
 }
 
-/// Bytes as text, where they are some.
+/// Bytes as text; `None` where they are not text.
 fn text(head: &[u8]) -> Option<&str> {
-    // The last letter may be cut.
+    // The last character may be cut.
     let text = match std::str::from_utf8(head) {
         Ok(text) => text,
         Err(error) if error.error_len().is_none() => std::str::from_utf8(&head[..error.valid_up_to()]).ok()?,
@@ -155,15 +158,16 @@ fn of_text(head: &[u8]) -> Option<Kind> {
     Some(Kind::other("text", AGAIN))
 }
 
-/// Recordings that are not read, in words, and what to do about the first.
+/// Recordings that cannot be read, in words, and what to do about the most frequent kind.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Unread {
-    /// As "a WebM video", or of a folder "1.heic is an HEIC picture, as are 3 more".
+    /// As "a WebM video", or of a folder "1.heic is an HEIC picture (and 3 more)".
     pub(crate) what: String,
     pub(crate) hint: &'static str,
 }
 
-/// The recording that is not read at a path: a file, or a folder with pictures or videos. `None` where there is nothing of the kind.
+/// Finds recordings that cannot be read at a path: a file, or a folder with pictures or videos. `None` where there are
+/// none.
 ///
 /// # Errors
 /// When a folder cannot be read.
@@ -185,17 +189,17 @@ pub(crate) fn unread(path: &Path, within: &[&str]) -> Result<Option<Unread>, Pla
     let Some(hint) = counts.values().max_by_key(|(count, ..)| *count).map(|(.., hint)| *hint) else { return Ok(None) };
     let told = counts.iter().map(|(kind, (count, name, _))| match count {
         1 => format!("{name} is {kind}"),
-        more => format!("{name} is {kind}, as are {} more", more - 1),
+        more => format!("{name} is {kind} (and {} more)", more - 1),
     });
     Ok(Some(Unread { what: told.collect::<Vec<_>>().join("; "), hint }))
 }
 
-/// A file that should be a recording by its name and is none: what it is, or what its reader says of it.
+/// The error for a file that is not what its name says: names what it is, or else gives the reader's reason.
 #[cfg(any(feature = "mcap", feature = "video"))]
 pub(crate) fn refusal(file: &Path, own: &str, (reason, hint): (String, &'static str)) -> PlatformError {
     match Kind::at(file).filter(|kind| kind.name != own) {
         Some(kind) if kind.hint.starts_with("rename") => {
-            files::wrong(file, format!("is {} in spite of its name", kind.name), kind.hint)
+            files::wrong(file, format!("is {}, although its name says otherwise", kind.name), kind.hint)
         }
         Some(kind) => files::wrong(file, format!("is {}, not {own}", kind.name), kind.hint),
         None => files::wrong(file, reason, hint),
@@ -226,7 +230,7 @@ mod tests {
         assert_eq!(name(b"\x1a\x45\xdf\xa3\xa3B\x86\x81\x01B\xf7\x81\x01B\x82\x88matroska"), "a Matroska video");
         assert_eq!(name(b""), "empty");
         assert_eq!(name("It was no video, but a caf\u{e9}".as_bytes()), "text");
-        assert_eq!(name(&"\u{e9}".as_bytes()[..1]), "text", "the last letter is cut");
+        assert_eq!(name(&"\u{e9}".as_bytes()[..1]), "text", "the last character is cut");
         assert_eq!(name(b"<!DOCTYPE html><title>404"), "a web page");
         assert_eq!(name(b"version https://git-lfs.github.com/spec/v1\noid"), "a pointer of git-lfs");
         assert_eq!(name(b"#ROSBAG V2.0\n"), "a ROS 1 bag");

@@ -1,8 +1,8 @@
-//! What robots leave behind: pictures in the order of their times, with or without poses.
+//! Recordings of robots and phones: pictures in the order of their times, with or without poses.
 //!
-//! Every kind of recording (`folder`, `video`, `mcap`, `lerobot`) gives the same: times, pictures, and where the camera was if that
-//! is known (`reel`). What is done with them is the same for all: pictures at equal distances or times, the blurred and the doubled
-//! left out (`choose`), and a [`RecordingPlatform`] that walks along them.
+//! Every kind of recording (`folder`, `video`, `mcap`, `lerobot`) gives the same: times, pictures, and where the camera
+//! was if that is known (`reel`). All of them are then treated alike. `choose` picks frames at equal distances or times
+//! and leaves out blurred and repeated pictures. [`RecordingPlatform`] makes paths of these frames.
 
 mod axes;
 mod choose;

@@ -1,4 +1,4 @@
-//! What recordings, and the files in their folders, are called.
+//! Names of recordings, and of the files in their folders.
 
 use std::{
     cmp::Ordering,
@@ -13,7 +13,7 @@ const MOST_NAMED: usize = 12;
 /// Most entries of a folder that are looked at.
 const MAX_ENTRIES: usize = 1_000_000;
 
-/// The name of the recording that a file or folder is.
+/// The scene name of a recording, from the name of its file or folder.
 pub(crate) fn scene_of(path: &Path) -> Result<SceneId, PlatformError> {
     let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
     let name = match name {
@@ -30,16 +30,20 @@ pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(wrong)? {
         if names.len() == MAX_ENTRIES {
-            return Err(files::wrong(folder, format!("holds more than {MAX_ENTRIES} files"), "split it up"));
+            return Err(files::wrong(
+                folder,
+                format!("holds more than {MAX_ENTRIES} files"),
+                "split it into several folders",
+            ));
         }
-        // A name that is not text cannot be one of ours.
+        // A name that is not UTF-8 cannot be a file that is read here.
         names.extend(entry.map_err(wrong)?.file_name().into_string().ok());
     }
     names.sort_by(|a, b| in_order(a, b));
     Ok(names)
 }
 
-/// Those of these files that are there and plain, sorted, each once.
+/// Those of these files that exist and are plain files, sorted, each once.
 pub(crate) fn plain(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
     let mut plain: Vec<PathBuf> = files.into_iter().filter(|file| file.is_file()).collect();
     plain.sort();
@@ -47,7 +51,7 @@ pub(crate) fn plain(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
     plain
 }
 
-/// There is no such recording among those that there are.
+/// The error for a recording that is not among `there`.
 pub(crate) fn unknown(scene: &SceneId, there: &[SceneId]) -> PlatformError {
     let names: Vec<&str> = there.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
     let more = if there.len() > MOST_NAMED { ", ..." } else { "" };
@@ -55,13 +59,13 @@ pub(crate) fn unknown(scene: &SceneId, there: &[SceneId]) -> PlatformError {
     PlatformError::UnknownScene { scene: scene.to_string(), hint }
 }
 
-/// The order of names in which numbers count as numbers.
+/// Compares names, with numbers in them compared as numbers.
 fn in_order(a: &str, b: &str) -> Ordering {
     let (mut left, mut right) = (a.as_bytes(), b.as_bytes());
     while let (Some(x), Some(y)) = (left.first(), right.first()) {
         let order = if x.is_ascii_digit() && y.is_ascii_digit() {
             let (x, y) = (leading_number(&mut left), leading_number(&mut right));
-            // Without leading zeros the longer number is the greater.
+            // Without leading zeros, the longer number is the greater one.
             x.len().cmp(&y.len()).then_with(|| x.cmp(y))
         } else {
             let order = x.cmp(y);
@@ -75,7 +79,7 @@ fn in_order(a: &str, b: &str) -> Ordering {
     left.len().cmp(&right.len()).then_with(|| a.cmp(b))
 }
 
-/// Takes the digits at the beginning off; returns them without leading zeros.
+/// Removes the digits at the beginning of `text` and returns them without leading zeros.
 fn leading_number<'a>(text: &mut &'a [u8]) -> &'a [u8] {
     let end = text.iter().position(|byte| !byte.is_ascii_digit()).unwrap_or(text.len());
     let (number, rest) = text.split_at(end);

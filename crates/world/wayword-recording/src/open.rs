@@ -16,7 +16,8 @@ use wayword_world::files;
 const HINT: &str =
     "give a folder of pictures (PNG, JPEG), a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file";
 
-/// Opens what lies under a path: one recording, or a folder that holds several. `hear` is told what is passed over in it.
+/// Opens what lies under a path: one recording, or a folder that holds several. `hear` gets a line for each file that
+/// is skipped.
 pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, PlatformError> {
     if let Some(source) = one(path)? {
         return Ok(source);
@@ -25,7 +26,7 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
         return Err(no_recording(path));
     }
     let (mut sources, mut passed_over, mut broken) = (Vec::new(), Vec::new(), Vec::new());
-    // macOS leaves "._x.mp4" beside "x.mp4" on foreign disks, and file managers leave folders of small pictures.
+    // macOS leaves "._x.mp4" beside "x.mp4" on foreign disks, and file managers leave hidden folders of thumbnails.
     for entry in entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
         match one(&path.join(&entry)) {
             Ok(Some(source)) => sources.push(source),
@@ -38,7 +39,9 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
             return Err(error);
         }
         return Err(match kind::unread(path, &WITHIN)? {
-            Some(Unread { what, hint }) => files::wrong(path, format!("holds no recording that is read: {what}"), hint),
+            Some(Unread { what, hint }) => {
+                files::wrong(path, format!("holds no recording that can be read: {what}"), hint)
+            }
             None => files::wrong(path, "holds no pictures and no recordings", HINT),
         });
     }
@@ -46,59 +49,61 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
         let file = path.join(&entry);
         if let Some(Unread { what, hint }) = kind::unread(&file, &WITHIN)? {
             let why = if file.is_dir() { what } else { format!("it is {what}") };
-            hear(&format!("{entry} is passed over: {why}, which cannot be read as it is; {hint}"));
+            hear(&format!("{entry} is skipped: {why}, which cannot be read as it is; {hint}"));
         }
     }
     for (entry, error) in broken {
         let path = path.join(&entry);
         match scene_of(&path) {
             Ok(scene) => sources.push(Box::new(Unopened { scene, path })),
-            // Nobody can ask for it.
-            Err(_) => hear(&format!("{entry} is passed over: {error}")),
+            // Without a valid name, no setting can choose it.
+            Err(_) => hear(&format!("{entry} is skipped: {error}")),
         }
     }
     let mut scenes = BTreeSet::new();
     if let Some(twice) = sources.iter().flat_map(|source| source.scenes()).find(|scene| !scenes.insert(scene.clone())) {
-        let reason = format!("holds two recordings that are called {twice}");
+        let reason = format!("holds two recordings with the name {twice}");
         return Err(files::wrong(path, reason, "give one of them another name, or name the file itself"));
     }
     Ok(Box::new(Shelf { sources }))
 }
 
-/// Why there is no recording at a path that is no folder.
+/// Why there is no recording at a path that is not a folder.
 fn no_recording(path: &Path) -> PlatformError {
     match Kind::at(path) {
-        Some(kind) => files::wrong(path, format!("is no recording that is read: it is {}", kind.name), kind.hint),
-        None if path.exists() => files::wrong(path, "is no recording that is known here", HINT),
+        Some(kind) => {
+            files::wrong(path, format!("is not a recording that can be read: it is {}", kind.name), kind.hint)
+        }
+        None if path.exists() => files::wrong(path, "is not a recording of a known kind", HINT),
         None => files::wrong(path, "there is no such file or folder", HINT),
     }
 }
 
-/// The recording that a path is.
+/// The recording at a path.
 ///
 /// # Errors
-/// When it is none, or cannot be opened.
+/// When there is none, or it cannot be opened.
 pub(crate) fn recording(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
     one(path)?.ok_or_else(|| no_recording(path))
 }
 
-/// The source that a path is, if it is one.
+/// The source at a path; `None` where there is none.
 fn one(path: &Path) -> Result<Option<Box<dyn Source>>, PlatformError> {
     if path.is_dir() {
         if path.join("meta").join("info.json").is_file() {
             return lerobot(path).map(Some);
         }
         let Some(folder) = Folder::open(path)? else { return Ok(None) };
-        // Whoever keeps a picture beside her videos means these.
+        // A picture may lie beside videos by chance, so the program does not guess which is meant.
         if let Some((file, _)) = folder.beside_pictures(is_file_of_ours)? {
             let file = file.file_name().unwrap_or_default().display();
-            let reason = format!("holds pictures, and recordings as {file} too");
+            let reason = format!("holds pictures and also recordings, such as {file}");
             return Err(files::wrong(path, reason, "give the recording's own path, or move the pictures away"));
         }
-        // A walk in which every second picture is missing is another walk.
+        // The picture files that cannot be read may be part of the same recording, so its path would have gaps.
         if let Some((file, count)) = folder.beside_pictures(is_unread_picture)? {
-            let kind = Kind::at(&file).map_or("a picture that is not read", |kind| kind.name);
-            let more = if count > 1 { format!(", as are {} more", count - 1) } else { String::new() };
+            let kind = Kind::at(&file).map_or("a picture that cannot be read", |kind| kind.name);
+            let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
             let reason =
                 format!("holds pictures, but {} is {kind}{more}", file.file_name().unwrap_or_default().display());
             let hint = Kind::at(&file).map_or("move it away", |kind| kind.hint);
@@ -158,7 +163,7 @@ fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
 #[cfg(not(all(feature = "lerobot", feature = "mcap", feature = "video")))]
 fn absent(path: &Path, what: &str) -> PlatformError {
     let hint = "build it with `cargo build --release --features full`";
-    files::wrong(path, format!("this build reads no {what}"), hint)
+    files::wrong(path, format!("this build cannot read {what}"), hint)
 }
 
 #[cfg(test)]
@@ -190,10 +195,10 @@ mod tests {
         let shelf = shelf(&["map.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
         let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();
-        assert!(error.contains("holds pictures, and recordings as walk.mp4 too"), "{error}");
+        assert!(error.contains("holds pictures and also recordings, such as walk.mp4"), "{error}");
     }
 
-    /// The beginning of a file as other programs write it.
+    /// The first bytes of files as other programs write them.
     const WEBM: &[u8] = b"\x1a\x45\xdf\xa3\x9fB\x86\x81\x01B\xf7\x81\x01B\xf2\x81\x04B\xf3\x81\x08B\x82\x84webm";
     const HEIC: &[u8] = b"\0\0\0\x1cftypheic\0\0\0\0mif1heicmiaf";
     const WEBP: &[u8] = b"RIFF\x24\0\0\0WEBPVP8 ";
@@ -215,7 +220,7 @@ mod tests {
             (
                 &[("1.heic", HEIC), ("2.heic", HEIC)][..],
                 "",
-                &["1.heic is an HEIC picture, as are 1 more", "heif-convert"][..],
+                &["1.heic is an HEIC picture (and 1 more)", "heif-convert"][..],
             ),
             (&[("rgb/1.webp", WEBP)], "", &["1.webp is a WebP picture", "ffmpeg -i IN -frames:v 1 OUT.png"]),
             (&[("walk.webm", WEBM)], "walk.webm", &["it is a WebM video", "-c:v libx264 -pix_fmt yuv420p"]),
@@ -228,10 +233,10 @@ mod tests {
             (
                 &[("1.png", b""), ("2.gif", b"GIF89a"), ("3.gif", b"GIF87a")],
                 "",
-                &["holds pictures, but 2.gif is a GIF picture, as are 1 more", "ffmpeg"],
+                &["holds pictures, but 2.gif is a GIF picture (and 1 more)", "ffmpeg"],
             ),
             (&[("1.jpg", b""), ("2.TIF", b"II*\0")], "", &["but 2.TIF is a TIFF or raw picture"]),
-            (&[("1.bmp", BMP), ("2.bmp", BMP)], "", &["1.bmp is a BMP picture, as are 1 more", "ffmpeg"]),
+            (&[("1.bmp", BMP), ("2.bmp", BMP)], "", &["1.bmp is a BMP picture (and 1 more)", "ffmpeg"]),
             (&[("walk.avi", b"RIFF\xdc\x6d\0\0AVI LIST")], "walk.avi", &["it is an AVI video", "libx264"]),
             (&[("walk.bag", b"#ROSBAG V2.0\n")], "walk.bag", &["it is a ROS 1 bag", "rosbags-convert"]),
             (&[("notes.txt", b"no video")], "", &["holds no pictures and no recordings", "PNG, JPEG"]),
@@ -253,11 +258,11 @@ mod tests {
         let heard = heard.into_inner();
         assert_eq!(heard.len(), 2, "{heard:?}");
         assert!(
-            heard[0].starts_with("b.webm is passed over: it is a WebM video, which cannot be read as it is; "),
+            heard[0].starts_with("b.webm is skipped: it is a WebM video, which cannot be read as it is; "),
             "{heard:?}"
         );
         assert!(
-            heard[1].starts_with("c is passed over: 1.heic is an HEIC picture, which cannot be read as it is; "),
+            heard[1].starts_with("c is skipped: 1.heic is an HEIC picture, which cannot be read as it is; "),
             "{heard:?}"
         );
     }
@@ -276,6 +281,6 @@ mod tests {
         let shelf = shelf(&["walk/1.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
         let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();
-        assert!(error.contains("two recordings that are called walk"), "{error}");
+        assert!(error.contains("two recordings with the name walk"), "{error}");
     }
 }

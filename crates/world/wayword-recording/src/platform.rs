@@ -20,29 +20,31 @@ use wayword_core::{
 };
 use wayword_world::{files, said::Hear};
 
-/// Recordings that are kept open.
+/// Most recordings that are kept open.
 const OPEN: usize = 8;
-/// Pictures that are kept in memory: 1.2 MB each at most.
+/// Most pictures that are kept in memory: 1.2 MB each at most.
 const KEPT: usize = 256;
-/// Frames that are read together: a video is decoded from a key picture on, whichever one is wanted.
+/// Frames that are read together, because a video has to be decoded from a key picture on, whichever picture is wanted.
 const AHEAD: usize = 16;
-/// The longer side of larger pictures is made this long, pixels: what other worlds draw, and what models that see take in.
+/// Larger pictures are scaled down until their longer side has this length, pixels: other platforms draw, and vision
+/// models take, pictures of about this size.
 const LONGEST_PX: u32 = 640;
-/// Horizontal field of view where nobody says, radians: a robot's or a telephone's usual camera.
+/// Horizontal field of view where neither the recording nor the user says it, radians: that of a robot's or phone's
+/// usual camera.
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
-/// Unreadable recordings that are told one by one.
+/// Most unreadable recordings that an error lists.
 const MOST_TOLD: usize = 3;
 const HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
 
 /// Folders of pictures, videos, MCAP files and LeRobot datasets.
 ///
-/// A scene is one recording; it can be seen from where its pictures were taken, in the direction in which they were taken, and
-/// from nowhere else. It knows neither objects nor rooms.
+/// A scene is one recording. It can only be seen from where its pictures were taken, in the direction in which they
+/// were taken. It has no labels and no rooms.
 pub struct RecordingPlatform {
     path: PathBuf,
     source: Box<dyn Source>,
     hear: Hear,
-    /// One is opened at a time: all its pictures are looked at then, which two need not do at once.
+    /// Opened one at a time, because opening looks at many pictures of a recording.
     opened: Recent<SceneId, Opened>,
     pictures: Recent<(SceneId, usize), Image>,
 }
@@ -50,18 +52,19 @@ pub struct RecordingPlatform {
 /// A recording whose frames have been chosen.
 struct Opened {
     recording: Recording,
-    /// Pictures that are frames, in order.
+    /// Numbers of the pictures that are frames, in order.
     stops: Vec<usize>,
     ids: Vec<ViewpointId>,
     /// Where each frame was taken; empty where that is not known.
     places: Vec<DVec3>,
-    /// Stops to which no way leads from the one before.
+    /// Stops that cannot be reached from the one before.
     breaks: BTreeSet<usize>,
     graph: Arc<ViewpointGraph>,
 }
 
 impl RecordingPlatform {
-    /// Opens a recording, or a folder that holds several. `hear` is told what became of each recording's pictures.
+    /// Opens a recording, or a folder that holds several. `hear` gets a line about each recording when its frames are
+    /// chosen.
     ///
     /// # Errors
     /// When there is none, or this build cannot read its kind.
@@ -98,7 +101,7 @@ impl RecordingPlatform {
         })
     }
 
-    /// The picture of a frame; those of the frames after it are read along.
+    /// The picture of a frame. The pictures of the next frames are read with it.
     fn picture(&self, scene: &SceneId, opened: &Opened, at: usize) -> Result<Arc<Image>, PlatformError> {
         self.pictures.get_or_make((scene.clone(), opened.stops[at]), || {
             let wanted = &opened.stops[at..opened.stops.len().min(at + AHEAD)];
@@ -113,7 +116,7 @@ impl RecordingPlatform {
                 Ok(())
             })?;
             let name = || FilePath::new(opened.ids[at].as_str()).to_owned();
-            first.ok_or_else(|| files::wrong(&name(), "the recording did not give this picture", HINT))
+            first.ok_or_else(|| files::wrong(&name(), "this picture cannot be read from the recording", HINT))
         })
     }
 }
@@ -154,7 +157,7 @@ impl Opened {
         Path::frames_along((first..=last).map(stop).collect(), self.looking(first))
     }
 
-    /// Where the camera looked when a frame was taken: as its track says, else along the way.
+    /// Where the camera looked when a frame was taken: as the track says, else along the path.
     fn looking(&self, at: usize) -> Option<Heading> {
         let track = self.recording.track.as_ref()?;
         let along = || {
@@ -165,11 +168,12 @@ impl Opened {
         track.at(self.recording.reel.times_s()[self.stops[at]])?.heading.or_else(along)
     }
 
-    /// First and last stop of a path of the kind that is asked for: the whole recording where it is one, else a stretch of it.
+    /// First and last stop of a path that fits the request: the whole recording if it fits, else a stretch of it;
+    /// `None` where none fits.
     fn stretch(&self, request: &PathRequest, dice: &mut impl Rng) -> Option<(usize, usize)> {
         let end = self.stops.len().checked_sub(1).filter(|end| *end > 0)?;
         let (far, wanted) = self.measured(request);
-        // Lengths grow with the last stop, so those that fit lie together.
+        // Lengths grow with the last stop, so the stops that fit follow each other.
         let lasts = |first: usize| {
             let behind = self.breaks.range(first + 1..).next().copied().unwrap_or(end + 1);
             let rest = &far[first + 1..behind];
@@ -185,7 +189,8 @@ impl Opened {
         Some((first, dice.random_range(lasts(first))))
     }
 
-    /// How far each stop lies along the way, and how far two may be apart: metres, or hops where these are not known.
+    /// The distance of each stop from the first along the path, and how far two may be apart: in metres, or in hops
+    /// without poses.
     fn measured(&self, request: &PathRequest) -> (Vec<f64>, RangeInclusive<f64>) {
         if self.motion() == Motion::Unknown {
             let hops = (0..self.stops.len()).map(|at| at as f64).collect();
@@ -208,7 +213,7 @@ impl Platform for RecordingPlatform {
         Ok(self.source.scenes())
     }
 
-    /// Opens each recording and looks at its first picture: what is found here, a run would find item by item.
+    /// Opens each recording and looks at its first picture, to report all errors before a run finds them item by item.
     fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         let all = self.source.scenes();
         let known = scenes.iter().filter(|scene| all.binary_search(scene).is_ok());
@@ -227,16 +232,16 @@ impl Platform for RecordingPlatform {
             wrong.len(),
             all.len()
         );
-        Err(files::wrong(&self.path, reason, "docs/RECORDINGS.md tells what is read"))
+        Err(files::wrong(&self.path, reason, "docs/RECORDINGS.md lists what can be read"))
     }
 
-    /// The frames one after another, not joined where the way between them is not known; empty where no pose is known.
+    /// The frames in order, each joined to the next unless the way between them is not known; empty without poses.
     fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
         Ok(self.opened(scene)?.graph.clone())
     }
 
-    /// The whole recording where its length fits, else a stretch of it. Without poses the number of hops counts, and there is no
-    /// length.
+    /// The whole recording if its length fits, else a stretch of it. Without poses the number of hops counts instead of
+    /// the length.
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
         let opened = self.opened(scene)?;
         let mut dice = rng(seed, &["stretch", scene.as_str()]);
@@ -251,13 +256,13 @@ impl Platform for RecordingPlatform {
         Ok(Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None, motion: opened.motion() })
     }
 
-    /// The picture that was taken there, where it was taken in this direction; else a view without one.
+    /// The picture that was taken there, if it was taken in this direction; else a view without a picture.
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let opened = self.opened(scene)?;
         let id = from.viewpoint.as_ref().ok_or_else(|| PlatformError::NotAViewpoint { scene: scene.clone() })?;
         let unknown = || PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: id.clone() };
         let at = opened.ids.iter().position(|other| other == id).ok_or_else(unknown)?;
-        // Without a pose the picture is what the walker sees ahead.
+        // Without a pose, the picture counts as the view ahead.
         let looking = opened.looking(at).unwrap_or(from.pose.heading);
         if !gaze.holds(looking) {
             return Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, None));
@@ -286,7 +291,7 @@ impl Platform for RecordingPlatform {
     }
 }
 
-/// Places one after another, as far as the way between them is known.
+/// A graph of places in order, each joined to the next unless there is a break.
 fn chain(
     ids: &[ViewpointId],
     places: &[DVec3],
@@ -320,19 +325,29 @@ fn scaled(image: &Image) -> Image {
     small.and_then(|small| Image::new(wide, high, small.into_raw()).ok()).unwrap_or_else(|| image.clone())
 }
 
-/// What became of a recording's pictures.
+/// A line that says how many frames were chosen, and what was left out and why.
 fn told(scene: &SceneId, recording: &Recording, choice: &Choice) -> String {
-    let count = |count: usize, what: &str| if count > 0 { format!("; {count} {what}") } else { String::new() };
+    let count = |count: usize, what: &str| if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") };
+    let left_out = |places: usize, why: &str| match places {
+        0 => String::new(),
+        places => format!("; {} left out because {why}", count(places, "place")),
+    };
     let poses = if recording.track.is_some() { "" } else { "; no poses, so no turns and distances" };
+    let without_pose = match choice.without_pose {
+        0 => String::new(),
+        pictures => format!("; {} without a pose", count(pictures, "picture")),
+    };
+    let gaps = match choice.breaks.len() {
+        0 => String::new(),
+        gaps => format!("; {} that no path crosses", count(gaps, "gap")),
+    };
     format!(
-        "recording {scene}: {} pictures, {} frames{poses}{}{}{}{}{}",
-        recording.reel.times_s().len(),
-        choice.stops.len(),
-        count(choice.without_pose, "pictures without a pose"),
-        count(choice.blurred, "places left out as blurred"),
-        count(choice.alike, "as the same as before"),
-        count(choice.turned_away, "as looking away from the way"),
-        count(choice.breaks.len(), "gaps over which no path leads"),
+        "recording {scene}: {}, {}{poses}{without_pose}{}{}{}{gaps}",
+        count(recording.reel.times_s().len(), "picture"),
+        count(choice.stops.len(), "frame"),
+        left_out(choice.blurred, "the pictures are blurred"),
+        left_out(choice.alike, "the picture shows the same as the one before"),
+        left_out(choice.turned_away, "the camera looked away from the path"),
     )
 }
 

@@ -1,8 +1,9 @@
-//! Whether poses can be meant as they are read: people and robots walk on a level plane and hold their cameras upright.
+//! Whether poses are plausible with the axes they are read by: people and robots move on a level plane with their
+//! cameras upright.
 //!
-//! Stairs climb at 35 degrees, so a walk that goes straight up again and again while it hardly leaves a vertical plane is read in
-//! the wrong frame, or is a drone's or a lift's. What the cameras have above them tells which. It is only asked for where the user
-//! has not said it: `world` and `orientation` in a `recording.toml` are believed.
+//! Stairs climb at 35 degrees. A path that goes straight up again and again and hardly leaves a vertical plane was read
+//! in the wrong frame, or it is that of a drone or a lift. The program tells these apart by whether the cameras are
+//! upright. It does not question what the user set as `world` and `orientation` in a `recording.toml`.
 
 use crate::{
     axes::{Axes, Body, World},
@@ -10,40 +11,40 @@ use crate::{
 };
 use wayword_core::DVec3;
 
-/// Nothing is said of shorter walks, metres.
+/// Shorter paths are not judged, metres.
 const LEAST_M: f64 = 3.0;
-/// Steps of a walk are as long as this, metres: shorter ones are the tracker's noise.
+/// Least length of a step of a path, metres: shorter ones are the tracker's noise.
 const STEP_M: f64 = 0.4;
 /// Steps that rise or fall by more than this share of their length are steeper than stairs and ramps (55 degrees).
 const STEEP: f64 = 0.82;
-/// So much of a walk over such steps is more than a ladder, as a share of its length.
+/// A path climbs if such steps make up this share of its length, which is more than a ladder.
 const CLIMBING: f64 = 0.25;
-/// The plane of a walk is as thick as this, metres, or this share of the walk's longest side.
+/// A path is level if it rises by at most this, metres, or by this share of its longest side.
 const PLANE_M: f64 = 0.5;
 const PLANE_SHARE: f64 = 0.08;
-/// A camera is upright if what it has above it points up by so much (the cosine of 60 degrees).
+/// A camera is upright if its own up direction is within 60 degrees of the vertical (this is the cosine).
 const UPRIGHT: f64 = 0.5;
-/// Cameras are upright in this share of the poses, where these are read as they are meant.
+/// Cameras are upright in at least this share of the poses, if these are read with the right axes.
 const MOSTLY: f64 = 0.9;
-/// Another frame is only named if by that one the cameras are held so well on average (the cosine of 37 degrees).
+/// Other axes are only suggested if the cameras are this upright on average with them (the cosine of 37 degrees).
 const WELL_UPRIGHT: f64 = 0.8;
-/// Share of the poses that must tell how the camera was held.
+/// Least share of the poses that must say how the camera was held.
 const TOLD: f64 = 0.8;
 
 /// A pose as it was written down.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     pub(crate) position: DVec3,
-    /// recorded_from_body by its columns, where the pose tells how the camera was held.
+    /// recorded_from_body by its columns, where the pose says how the camera was held.
     pub(crate) held: Option<[DVec3; 3]>,
 }
 
-/// Why poses are hardly meant as they are read.
+/// Why poses are probably read with the wrong axes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Doubt {
-    /// By other axes all is well: the user has to say which.
+    /// With other axes all is well: the user has to say which are right.
     Misread(String),
-    /// It is odd, and may be right.
+    /// It is odd, but may be right.
     Odd(String),
 }
 
@@ -55,7 +56,7 @@ impl Doubt {
     }
 }
 
-/// What is doubtful about poses in the order of their times, if they are read by these axes.
+/// What is doubtful about poses, in the order of their times, if they are read with these axes.
 pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> Option<Doubt> {
     let walk = Walk::of(samples).filter(|walk| walk.length_m >= LEAST_M)?;
     let climbs = walk.climbs(axes.world) && !walk.is_level(axes.world);
@@ -65,19 +66,20 @@ pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> 
     }
     if let Some(meant) = meant(&walk, axes, described) {
         let odd = match (stands == Some(true), climbs) {
-            (true, _) => "the walk climbs straight up",
-            (false, true) => "the camera lies on its side and the walk climbs straight up",
+            (true, _) => "the path climbs straight up",
+            (false, true) => "the camera lies on its side and the path climbs straight up",
             (false, false) => "the camera lies on its side",
         };
         let words = format!(
-            "read with {}, {odd}; with {} the camera is upright and the walk level. Write {} into a recording.toml beside it, or {} if \
-             that is right",
+            "read with {}, {odd}; read with {}, the camera is upright and the path is level. Write {} into a \
+             recording.toml beside it, or {} if the poses are right as they are",
             told(axes),
             told(meant),
             changed(axes, meant),
             told(axes)
         );
-        // A drone may look straight down or go straight up, and a telephone may be held on its side: only both together are sure.
+        // A drone may look straight down or go straight up, and a phone may be held on its side. Only both together are
+        // certain.
         let is_misread = climbs && stands == Some(false) && meant.world != axes.world;
         return Some(if is_misread { Doubt::Misread(words) } else { Doubt::Odd(words) });
     }
@@ -85,8 +87,8 @@ pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> 
         Some(true) => None,
         Some(false) => walk.upright(axes).filter(|upright| *upright <= -WELL_UPRIGHT).map(|_| {
             Doubt::Odd(format!(
-                "read with {} the camera stands on its head: say how poses are meant in a recording.toml (world, orientation), or turn \
-                 them so that z is up",
+                "read with {}, the camera is upside down: set `world` and `orientation` in a recording.toml, or \
+                 rotate the poses so that z is up",
                 told(axes)
             ))
         }),
@@ -94,20 +96,20 @@ pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> 
     }
 }
 
-/// What is odd about places alone: they keep to a plane that would be level in another world.
+/// What is odd about positions alone: they keep to a plane that would be level in another world.
 fn plane(walk: &Walk, axes: Axes, described: &Description) -> Option<Doubt> {
     let is_meant = |world: &World| *world != axes.world && walk.is_level(*world) && !walk.climbs(*world);
     let meant = [World::ZUp, World::YUp].into_iter().find(is_meant).filter(|_| described.world.is_none())?;
     let (now, meant) = (world_told(axes.world), world_told(meant));
     Some(Doubt::Odd(format!(
-        "read with {now} the walk climbs and falls {:.1} m straight up, and by {meant} it keeps to one floor: if so, write {meant} into a \
-         recording.toml beside it (y-down where y grows downwards), else {now}",
+        "read with {now}, the path climbs and falls {:.1} m; read with {meant}, it stays level. If that is right, \
+         write {meant} into a recording.toml beside it (y-down if y grows downwards), else write {now}",
         walk.climbed_m(axes.world)
     )))
 }
 
-/// Other axes by which the cameras are upright and the walk is level: those that change least, then those by which the camera looks
-/// where it goes.
+/// Other axes with which the cameras are upright and the path is level: those that differ least from the present ones,
+/// then those with which the camera looks where it goes.
 fn meant(walk: &Walk, axes: Axes, described: &Description) -> Option<Axes> {
     let worlds = [World::ZUp, World::YUp, World::YDown].into_iter();
     let worlds = worlds.filter(|world| *world == axes.world || described.world.is_none());
@@ -120,12 +122,12 @@ fn meant(walk: &Walk, axes: Axes, described: &Description) -> Option<Axes> {
     could.filter(fits).min_by(|a, b| changes(a).cmp(&changes(b)).then(walk.ahead(*b).total_cmp(&walk.ahead(*a))))
 }
 
-/// A walk in the frame in which it was recorded.
+/// A path in the frame in which it was recorded.
 struct Walk {
     /// At least a step apart.
     places: Vec<DVec3>,
     length_m: f64,
-    /// How the camera was held, at those places; empty where too few poses tell.
+    /// How the camera was held at those places; empty where too few poses say it.
     held: Vec<[DVec3; 3]>,
 }
 
@@ -150,28 +152,28 @@ impl Walk {
         self.places.windows(2).map(|pair| pair[1] - pair[0])
     }
 
-    /// How much of what the camera has above it points up, pose by pose; nothing where too few poses tell.
+    /// The vertical component of the camera's up direction, pose by pose; empty where too few poses say it.
     fn ups(&self, axes: Axes) -> impl Iterator<Item = f64> {
         self.held.iter().map(move |held| axes.wayword_from_recorded(along(held, axes.above())).z)
     }
 
-    /// The same on average.
+    /// The mean of [`Walk::ups`].
     fn upright(&self, axes: Axes) -> Option<f64> {
         (!self.held.is_empty()).then(|| self.ups(axes).sum::<f64>() / self.held.len() as f64)
     }
 
-    /// Whether the camera is upright in most of the poses; `None` where too few tell.
+    /// Whether the camera is upright in most of the poses; `None` where too few say it.
     fn stands(&self, axes: Axes) -> Option<bool> {
         let upright = self.ups(axes).filter(|up| *up >= UPRIGHT).count();
         (!self.held.is_empty()).then_some(upright as f64 >= MOSTLY * self.held.len() as f64)
     }
 
-    /// How much of the steps goes where the camera looks, metres.
+    /// How far the steps go in the direction in which the camera looks, metres.
     fn ahead(&self, axes: Axes) -> f64 {
         self.steps().zip(&self.held).map(|(step, held)| along(held, axes.ahead()).dot(step)).sum()
     }
 
-    /// Whether much of the walk goes straight up or down.
+    /// Whether much of the path goes straight up or down.
     fn climbs(&self, world: World) -> bool {
         let up = up(world);
         let steep = self.steps().filter(|step| step.dot(up).abs() > STEEP * step.length());
@@ -182,7 +184,7 @@ impl Walk {
         self.steps().map(|step| step.dot(up(world)).abs()).sum()
     }
 
-    /// Whether the walk keeps to a plane that is level in a world.
+    /// Whether the path keeps to a plane that is level in a world.
     fn is_level(&self, world: World) -> bool {
         let low = self.places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = self.places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -196,7 +198,7 @@ fn along([x, y, z]: &[DVec3; 3], of_body: DVec3) -> DVec3 {
     *x * of_body.x + *y * of_body.y + *z * of_body.z
 }
 
-/// What is up in the recorded frame.
+/// The up direction in the recorded frame.
 fn up(world: World) -> DVec3 {
     match world {
         World::ZUp => DVec3::Z,
@@ -213,7 +215,7 @@ fn told(axes: Axes) -> String {
     format!("world = \"{}\" and orientation = \"{}\"", axes.world.name(), axes.body.name())
 }
 
-/// The settings that lead from one to the other.
+/// The settings that differ between two sets of axes, as `recording.toml` has them.
 fn changed(from: Axes, to: Axes) -> String {
     let world = (from.world != to.world).then(|| world_told(to.world));
     let body = (from.body != to.body).then(|| format!("orientation = \"{}\"", to.body.name()));

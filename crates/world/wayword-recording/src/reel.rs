@@ -18,10 +18,10 @@ pub(crate) trait Source: Send + Sync {
     /// The plain files that one of [`Source::scenes`] is read from, sorted: pictures, poses and what describes it.
     ///
     /// # Errors
-    /// When it cannot be told which these are.
+    /// When the program cannot find out which files these are.
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError>;
 
-    /// Looks whether one of [`Source::scenes`] can be read, as far as its index and the first picture tell.
+    /// Checks whether one of [`Source::scenes`] can be read: its index, and its first picture.
     ///
     /// # Errors
     /// When it cannot.
@@ -35,38 +35,38 @@ pub(crate) trait Source: Send + Sync {
 
 /// One recording of one camera.
 pub(crate) struct Recording {
-    /// Its pictures.
     pub(crate) reel: Box<dyn Reel>,
-    /// Where the camera was; `None` where the recording does not know.
+    /// Where the camera was; `None` where the recording does not say.
     pub(crate) track: Option<Track>,
-    /// Horizontal field of view of its pictures, radians, where the recording itself knows it.
+    /// Horizontal field of view of its pictures, radians, where the recording itself says it.
     pub(crate) horizontal_fov_rad: Option<f64>,
     /// What the user says about it.
     pub(crate) described: Description,
 }
 
-/// Who is handed a picture: its number, and the picture.
+/// Takes a picture: its number, and the picture.
 pub(crate) type Take<'a> = dyn FnMut(usize, Image) -> Result<(), PlatformError> + 'a;
 
 /// The pictures of a recording, in the order of their times.
 pub(crate) trait Reel: Send + Sync {
-    /// When each picture was taken, seconds on the clock of the recording's track, not descending.
+    /// When each picture was taken, seconds on the clock of the recording's track, in ascending order (equal times may
+    /// follow).
     fn times_s(&self) -> &[f64];
 
     /// The name of a picture, unique within the recording.
     fn name(&self, number: usize) -> String;
 
-    /// Hands out the wanted pictures, in order, one at a time: a picture need not stay in memory while the next is read.
-    /// `wanted` ascends, without repetition, and names numbers below the length of [`Reel::times_s`].
+    /// Hands out the wanted pictures, in order, one at a time: a picture need not stay in memory while the next is
+    /// read. `wanted` ascends without repetition; its numbers are below the length of [`Reel::times_s`].
     ///
     /// # Errors
     /// When one cannot be read, or `take` fails.
     fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError>;
 
-    /// Looks whether the wanted pictures are ones, where that costs little.
+    /// Checks whether the wanted files are pictures, where that costs little.
     ///
     /// # Errors
-    /// When one is none.
+    /// When one is not a picture.
     fn glance(&self, _wanted: &[usize]) -> Result<(), PlatformError> {
         Ok(())
     }

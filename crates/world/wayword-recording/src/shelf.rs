@@ -40,7 +40,7 @@ impl Source for Shelf {
     }
 }
 
-/// A recording that could not be opened when its folder was: whoever wants it is told why, and nobody else.
+/// A recording that could not be opened with its folder. The error appears only when this recording is used.
 pub(crate) struct Unopened {
     pub(crate) scene: SceneId,
     pub(crate) path: PathBuf,

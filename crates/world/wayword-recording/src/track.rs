@@ -2,11 +2,12 @@
 
 use wayword_core::{DVec3, Heading};
 
-/// Longest time between two fixes over which the way is taken to be straight, seconds.
+/// Longest time between two fixes between which the track is interpolated on a straight line, seconds.
 const MAX_GAP_S: f64 = 2.0;
-/// How far beyond the first and last fix, or a gap, these hold, seconds: cameras and trackers do not start together.
+/// A fix also counts for times this far before the first fix, after the last, or into a gap, seconds: cameras and
+/// trackers do not start together.
 const MAX_BEYOND_S: f64 = 0.1;
-/// Positions farther off than this are no places, metres: UTM counts up to ten million from the equator.
+/// Positions with a larger coordinate are invalid, metres: UTM counts up to ten million from the equator.
 const MAX_COORDINATE_M: f64 = 2e7;
 
 /// Where the camera was at one time, in Wayword's frame.
@@ -16,7 +17,7 @@ pub(crate) struct Fix {
     pub(crate) time_s: f64,
     /// Of the camera, or of the robot that carries it, metres.
     pub(crate) position: DVec3,
-    /// Where the camera looks, where that is known.
+    /// Where the camera looks, if that is known.
     pub(crate) heading: Option<Heading>,
 }
 
@@ -24,13 +25,13 @@ pub(crate) struct Fix {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Track {
     fixes: Vec<Fix>,
-    /// What is odd about them, in words.
+    /// A warning about them, in words.
     doubt: Option<String>,
 }
 
 impl Track {
-    /// A track from fixes in any order; `None` where there is none. Of several fixes at one time the first counts, and those
-    /// without a place or time do not.
+    /// A track from fixes in any order; `None` where no fix is left. Fixes without a valid position or time are
+    /// dropped, and of several fixes at one time the first counts.
     pub(crate) fn new(mut fixes: Vec<Fix>) -> Option<Self> {
         fixes.retain(|fix| {
             let place = fix.position;
@@ -41,12 +42,12 @@ impl Track {
         (!fixes.is_empty()).then_some(Self { fixes, doubt: None })
     }
 
-    /// The same, with what is odd about it.
+    /// The same track with a warning.
     pub(crate) fn in_doubt(self, doubt: String) -> Self {
         Self { doubt: Some(doubt), ..self }
     }
 
-    /// What is odd about it, in words.
+    /// The warning about it, in words.
     pub(crate) fn doubt(&self) -> Option<&str> {
         self.doubt.as_deref()
     }
@@ -57,8 +58,8 @@ impl Track {
         (time_s(self.fixes.first()), time_s(self.fixes.last()))
     }
 
-    /// Where the camera was at a time: on the straight way between two fixes that are near in time, else at the nearest one if
-    /// it is very near; `None` where neither is.
+    /// Where the camera was at a time: on the straight line between two fixes that are at most [`MAX_GAP_S`] apart,
+    /// else at the nearest fix if it is at most [`MAX_BEYOND_S`] away; `None` otherwise.
     pub(crate) fn at(&self, time_s: f64) -> Option<Fix> {
         let next = self.fixes.partition_point(|fix| fix.time_s < time_s);
         let (before, after) = (next.checked_sub(1).map(|at| self.fixes[at]), self.fixes.get(next).copied());

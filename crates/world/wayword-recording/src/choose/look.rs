@@ -5,21 +5,22 @@ use wayword_core::Image;
 /// Size of the small grey picture by which pictures are compared, pixels.
 const WIDE: usize = 32;
 const HIGH: usize = 24;
-/// Width at which sharpness is measured, pixels at least: motion blur is wide, and noise of single pixels is no sharpness.
+/// Least width at which sharpness is measured, pixels: motion blur is wide, and noise of single pixels is not
+/// sharpness.
 const MEASURED_PX: usize = 320;
 /// Variance that a picture of one colour gets from its noise, levels squared.
 const NOISE: f64 = 25.0;
 
-/// What has been seen of a picture.
+/// What is measured of a picture.
 #[derive(Debug, Clone)]
 pub(super) struct Look {
-    /// Variance of the Laplacian over that of the picture: how much of what there is to see is edges.
+    /// Variance of the Laplacian over that of the picture: the share of edges in what the picture shows.
     pub(super) sharpness: f64,
     small: Vec<f32>,
 }
 
 impl Look {
-    /// Looks at a picture.
+    /// Measures a picture.
     pub(super) fn at(image: &Image) -> Self {
         let (width, height) = (image.width_px() as usize, image.height_px() as usize);
         let step = (width / MEASURED_PX).max(1);
@@ -35,7 +36,7 @@ impl Look {
     }
 }
 
-/// The picture in grey at another size: each pixel the mean of those that it covers.
+/// The picture in grey at another size: each pixel is the mean of those that it covers.
 fn shrunk(image: &Image, wide: usize, high: usize) -> Vec<f32> {
     let (width, height) = (image.width_px() as usize, image.height_px() as usize);
     let span =
@@ -48,7 +49,7 @@ fn shrunk(image: &Image, wide: usize, high: usize) -> Vec<f32> {
             let mut sum = 0_u32;
             for row in top..bottom {
                 let pixels = &image.rgb()[3 * (row * width + left)..3 * (row * width + right)];
-                // Green is seen twice as well as red and blue.
+                // Green counts twice, because eyes see it better than red and blue.
                 sum += pixels
                     .chunks_exact(3)
                     .map(|p| u32::from(p[0]) + 2 * u32::from(p[1]) + u32::from(p[2]))

@@ -1,28 +1,29 @@
-//! Where frames are to be: marks along the way or the time, and the pictures near each.
+//! Where frames should be: marks at equal distances or times, and the pictures near each.
 
 use super::{INTERVAL_M, INTERVAL_S, MOST_LEFT_OUT};
 use crate::reel::Recording;
 use wayword_core::DVec3;
 
-/// Pictures that are looked at for one mark.
+/// Most pictures that are looked at for one mark.
 const MOST_CANDIDATES: usize = 5;
-/// Pictures so near to a mark may stand for it, share of the interval.
+/// A picture at most this far from a mark may be its frame, share of the interval.
 const NEAR: f64 = 0.2;
-/// What is left at the end gets a mark of its own from this share of the interval on; less moves the last mark to the end.
+/// A rest at the end gets its own mark if it has at least this share of the interval; else the last mark moves to the
+/// end.
 const LEFT_OVER: f64 = 0.5;
 
-/// A place or time at which there is to be a frame.
+/// A place or time at which there should be a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Mark {
-    /// The picture at it.
+    /// Number of the picture at the mark.
     pub(super) at: usize,
-    /// Pictures that may stand for it, ascending, itself among them.
+    /// Pictures that may be its frame, ascending; `at` is one of them.
     pub(super) candidates: Vec<usize>,
-    /// Whether nobody knows how the camera came here from the mark before.
+    /// Whether it is not known how the camera came here from the mark before.
     pub(super) after_gap: bool,
 }
 
-/// The marks of a recording, and how many pictures have no pose although others do.
+/// The marks of a recording, and the number of pictures without a pose where others have one.
 pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
     let times_s = recording.reel.times_s();
     let Some(track) = &recording.track else {
@@ -37,7 +38,7 @@ pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
     let interval_m = recording.described.interval_m.unwrap_or(INTERVAL_M);
     let off = |a: usize, b: usize| place(a).distance(place(b));
     let mut marks = spread(&posed, interval_m, &off);
-    // Where the tracker was lost, and found again far away.
+    // The tracker lost its place here and found it again far away.
     let leap_m = (MOST_LEFT_OUT + 1) as f64 * interval_m;
     let leaps = posed.windows(2).filter(|pair| pair[1] - pair[0] > 1 && off(pair[0], pair[1]) > leap_m);
     let found_again: Vec<usize> = leaps.map(|pair| pair[1]).collect();
@@ -50,11 +51,11 @@ pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
     (marks, times_s.len() - posed.len())
 }
 
-/// Marks that lie about one interval apart: a tracker trembles while a robot stands, so what counts is how far it got
-/// from the last mark, and not how long its track is.
+/// Marks about one interval apart. The distance from the last mark counts, not the length of the track, because a
+/// tracker's positions jitter while a robot stands still.
 fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) -> Vec<Mark> {
     let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return Vec::new() };
-    // Places in `pictures`, not numbers of pictures.
+    // Indices into `pictures`, not numbers of pictures.
     let mut marks = vec![0];
     let mut from = *first;
     for (at, picture) in pictures.iter().enumerate() {
@@ -62,7 +63,7 @@ fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) 
         if over < 0.0 {
             continue;
         }
-        // Of pictures that are far apart the one before may lie nearer to where a frame is due.
+        // Where pictures are far apart, the one before may be nearer to where the frame should be.
         let before = at.saturating_sub(1);
         if marks.last() != Some(&before) && interval - off(from, pictures[before]) < over {
             marks.push(before);
@@ -93,7 +94,7 @@ fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) 
     marks.iter().map(mark).collect()
 }
 
-/// At most so many of a range, evenly spread, `kept` among them.
+/// At most [`MOST_CANDIDATES`] of a range, evenly spread; `kept` is one of them.
 fn thinned(range: std::ops::RangeInclusive<usize>, kept: usize) -> impl Iterator<Item = usize> {
     let length = range.end() - range.start() + 1;
     let step = length.div_ceil(MOST_CANDIDATES).max(1);

@@ -1,5 +1,5 @@
-//! Which pictures of a recording become frames of its path: at equal distances, or at equal times where no pose is known; the
-//! blurred and the doubled left out.
+//! Which pictures of a recording become frames of its path: at equal distances, or at equal times where no pose is
+//! known. Blurred and repeated pictures are left out.
 
 mod look;
 mod marks;
@@ -12,13 +12,14 @@ use wayword_core::{Gaze, Heading, Image, PlatformError};
 
 /// Distance between frames unless the user says otherwise, metres.
 pub(crate) const INTERVAL_M: f64 = 1.0;
-/// Time between frames unless the user says otherwise, seconds: at a walk of 0.7 m/s a bit more than a metre.
+/// Time between frames unless the user says otherwise, seconds: at a walking speed of 0.7 m/s a bit more than a metre.
 pub(crate) const INTERVAL_S: f64 = 2.0;
 /// A picture with less than this share of the recording's usual sharpness is blurred.
 const BLURRED: f64 = 0.3;
 /// A picture that differs by less than this from the one before it shows the same, levels of 255 on average.
 const ALIKE: f64 = 2.0;
-/// Most places in a row that may be left out: beyond, the straight line between two frames is not the way that was walked.
+/// Most places in a row that may be left out: after more, the straight line between two frames may not be the way that
+/// was walked.
 const MOST_LEFT_OUT: usize = 2;
 
 /// The frames of a recording, and what was left out.
@@ -26,19 +27,19 @@ const MOST_LEFT_OUT: usize = 2;
 pub(crate) struct Choice {
     /// Numbers of pictures, ascending.
     pub(crate) stops: Vec<usize>,
-    /// Places in `stops` to which the way from the stop before is not known, although poses are.
+    /// Indices into `stops`: the way to these stops from the one before is not known, although poses are.
     pub(crate) breaks: BTreeSet<usize>,
     /// Places that were left out because every picture there is blurred.
     pub(crate) blurred: usize,
-    /// Places whose picture shows what the one before it shows.
+    /// Places that were left out because their picture shows the same as the one before.
     pub(crate) alike: usize,
-    /// Places at which the camera looked away from the direction of travel.
+    /// Places that were left out because the camera looked away from the direction of travel.
     pub(crate) turned_away: usize,
-    /// Pictures at whose time no pose is known, where others have one.
+    /// Pictures without a pose at their time, where others have one.
     pub(crate) without_pose: usize,
 }
 
-/// Chooses the frames. `each` is handed every picture that was looked at, so that whoever needs it later has it.
+/// Chooses the frames. `each` gets every picture that was looked at, so that the caller need not read it again.
 ///
 /// # Errors
 /// When a picture cannot be read.
@@ -66,7 +67,7 @@ fn candidates(marks: &[Mark]) -> Vec<usize> {
     wanted
 }
 
-/// The same, once every candidate has been looked at.
+/// Chooses the frames once every candidate has been looked at.
 fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choice {
     let look = |number: usize| {
         let found = looks.binary_search_by_key(&number, |(number, _)| *number).ok();
@@ -74,10 +75,10 @@ fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choi
     };
     let least = BLURRED * usual_sharpness(looks);
     let mut choice = Choice::default();
-    // The mark of the last stop, and what is seen there.
+    // The mark of the last stop, and its picture's measures.
     let mut last: Option<(usize, &Look)> = None;
     for (at, mark) in marks.iter().enumerate() {
-        // Without its ends a path is another one.
+        // The ends are always kept: without them the path would be another one.
         let is_end = at == 0 || at + 1 == marks.len();
         let is_break = recording.track.is_some() && last.is_some_and(|(from, _)| is_lost(&marks[from + 1..=at]));
         let before = choice.stops.last().copied().filter(|_| !is_break);
@@ -126,12 +127,13 @@ fn usual_sharpness(looks: &[(usize, Look)]) -> f64 {
     all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Whether the way over these marks, the last of which would be the next stop, is lost.
+/// Whether the way over these marks is not known; the last of them would be the next stop.
 fn is_lost(marks: &[Mark]) -> bool {
     marks.len() > MOST_LEFT_OUT + 1 || marks.iter().any(|mark| mark.after_gap)
 }
 
-/// Whether somebody who comes from the stop `before` and looks ahead sees what a picture shows; true where that is not known.
+/// Whether a picture shows what an agent sees that comes from the stop `before` and looks ahead; true where that is not
+/// known.
 fn faces_the_way(recording: &Recording, before: usize, number: usize) -> bool {
     let fix = |number: usize| recording.track.as_ref()?.at(recording.reel.times_s()[number]);
     let faces = || {

@@ -27,7 +27,7 @@ impl Reel for Painted {
     }
 }
 
-/// Stripes whose place tells the number; `blur` widens their edges, pixels.
+/// Stripes whose position depends on the number; `blur` widens their edges, pixels.
 fn stripes(number: usize, blur: usize) -> Image {
     let (width, height) = (320, 240);
     let row: Vec<f64> =
@@ -65,9 +65,9 @@ fn without_poses_frames_are_equally_far_apart_in_time() {
 
 #[test]
 fn with_poses_frames_are_equally_far_apart_in_space_and_standing_makes_none() {
-    // Half a metre a second for four seconds, a rest of six, and again.
+    // Half a metre a second for four seconds, a stop of six seconds, then half a metre a second again.
     let x_m = |at: usize| 0.05 * (at.min(40) + at.saturating_sub(100)) as f64;
-    // A tracker trembles.
+    // A tracker's positions jitter.
     let fixes = (0..=140).map(|at| fix(at, x_m(at) + if at % 2 == 0 { 0.004 } else { -0.004 }, 90.0)).collect();
     let choice = chosen(&recording(141, |number| stripes(number, 0), Some(fixes)));
     let places: Vec<f64> = choice.stops.iter().map(|at| (10.0 * x_m(*at)).round() / 10.0).collect();
@@ -110,7 +110,7 @@ fn a_camera_that_looks_aside_shows_no_way() {
 
 #[test]
 fn only_pictures_that_a_walker_would_be_shown_are_frames() {
-    // A view is 90 degrees wide: what was taken 50 degrees off the way lies in none.
+    // A view is 90 degrees wide: a picture that was taken 50 degrees off the way is not in the view ahead.
     let deg = |at: usize| if (15..=25).contains(&at) { 140.0 } else { 130.0 };
     let fixes = (0..=60).map(|at| fix(at, at as f64 / 20.0, deg(at))).collect();
     let choice = chosen(&recording(61, |number| stripes(number, 0), Some(fixes)));
@@ -119,7 +119,7 @@ fn only_pictures_that_a_walker_would_be_shown_are_frames() {
 
 #[test]
 fn at_the_end_the_picture_along_the_way_is_taken_and_not_the_last_one() {
-    // Whoever has arrived turns on the spot.
+    // After arriving, the camera turns on the spot.
     let x_m = |at: usize| at.min(40) as f64 / 20.0;
     let fixes = (0..=60).map(|at| fix(at, x_m(at), if at > 44 { 180.0 } else { 90.0 })).collect();
     let choice = chosen(&recording(61, |number| stripes(number, 0), Some(fixes)));
@@ -128,21 +128,21 @@ fn at_the_end_the_picture_along_the_way_is_taken_and_not_the_last_one() {
 
 #[test]
 fn no_way_leads_over_what_nobody_knows() {
-    // Ten metres were walked while the tracker was lost.
+    // The camera moved ten metres while the tracker was lost.
     let fixes = (0..=40).map(|at| fix(at, at as f64 / 20.0, 90.0));
     let fixes = fixes.chain((70..=100).map(|at| fix(at, 10.0 + (at - 70) as f64 / 20.0, 90.0))).collect();
     let choice = chosen(&recording(101, |number| stripes(number, 0), Some(fixes)));
     let pieces: Vec<usize> = choice.breaks.iter().map(|at| choice.stops[*at]).collect();
     assert!(matches!(pieces[..], [69..=70]), "{choice:?}");
 
-    // Five metres in a row were filmed sideways.
+    // The camera looked sideways for five metres.
     let deg = |at: usize| if (10..=110).contains(&at) { 180.0 } else { 90.0 };
     let fixes = (0..=160).map(|at| fix(at, at as f64 / 20.0, deg(at))).collect();
     let choice = chosen(&recording(161, |number| stripes(number, 0), Some(fixes)));
     assert_eq!(choice.turned_away, 4);
     assert_eq!(choice.breaks.iter().map(|at| choice.stops[*at]).collect::<Vec<_>>(), [80]);
 
-    // Without poses nothing is claimed of the way, so nothing is lost.
+    // Without poses nothing is said of the way, so there are no gaps.
     let choice = chosen(&recording(201, |number| stripes(number.clamp(20, 180), 0), None));
     let alike = chosen(&recording(201, |number| stripes(if number < 160 { 0 } else { number }, 0), None));
     assert!(choice.breaks.is_empty() && alike.breaks.is_empty() && alike.alike > 3, "{alike:?}");
@@ -152,7 +152,7 @@ fn no_way_leads_over_what_nobody_knows() {
 fn pictures_without_a_pose_are_counted_and_left_out() {
     let fixes = (20..=60).map(|at| fix(at, at as f64 / 20.0, 90.0)).collect();
     let choice = chosen(&recording(101, |number| stripes(number, 0), Some(fixes)));
-    // A pose holds a tenth of a second beyond its time, give or take rounding.
+    // A pose also counts for pictures a tenth of a second away, give or take rounding.
     assert!((19..=20).contains(&choice.stops[0]) && (60..=61).contains(choice.stops.last().unwrap()), "{choice:?}");
     assert!((101 - 43..=101 - 41).contains(&choice.without_pose), "{choice:?}");
 }

@@ -1,4 +1,4 @@
-//! Which camera of a dataset is looked through.
+//! Chooses the camera of a dataset.
 
 use super::info::Info;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub(super) enum Kept {
 /// The camera that the user named, else the only one.
 ///
 /// # Errors
-/// When there is none, not this one, or several and she named none.
+/// When there is no camera, the named one does not exist, or there are several and none is named.
 pub(super) fn choose(root: &Path, info: &Info, named: Option<&str>) -> Result<Camera, PlatformError> {
     let keys: Vec<&String> =
         info.features.iter().filter(|(_, feature)| feature.is_camera()).map(|(key, _)| key).collect();
@@ -38,7 +38,7 @@ pub(super) fn choose(root: &Path, info: &Info, named: Option<&str>) -> Result<Ca
         (_, []) => return Err(wrong("has no camera".to_owned(), NONE)),
         (Some(named), _) => {
             let found = keys.iter().find(|key| key.as_str() == named);
-            *found.ok_or_else(|| wrong(format!("has no camera {named:?}, but {}", listed()), CHOOSE))?
+            *found.ok_or_else(|| wrong(format!("has no camera {named:?}; its cameras: {}", listed()), CHOOSE))?
         }
         (None, [only]) => *only,
         (None, _) => return Err(wrong(format!("has several cameras: {}", listed()), CHOOSE)),

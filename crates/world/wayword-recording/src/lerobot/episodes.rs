@@ -1,4 +1,4 @@
-//! The episodes of a dataset: how long they are, and in which files they lie.
+//! The episodes of a dataset: their lengths and their files.
 
 use super::{
     camera::{Camera, Kept},
@@ -13,7 +13,7 @@ use wayword_core::PlatformError;
 use wayword_world::files;
 
 const MAX_LIST_BYTES: u64 = 512 << 20;
-const HINT: &str = "fetch the dataset again, with its folder meta, or write it again with the library of LeRobot";
+const HINT: &str = "download the dataset again, with its folder meta, or write it again with LeRobot's library";
 
 /// One episode.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ pub(super) struct Episode {
     pub(super) length: u64,
     /// The Parquet file with its rows.
     pub(super) data: PathBuf,
-    /// Where its pictures are, if they are a video.
+    /// The stretch of a video with its pictures; `None` where pictures are in the rows.
     pub(super) clip: Option<Clip>,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Episode {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clip {
     pub(super) file: PathBuf,
-    /// When the episode begins in it, seconds.
+    /// When the episode begins in the video, seconds.
     pub(super) from_s: f64,
 }
 
@@ -110,7 +110,7 @@ fn in_file(root: &Path, file: &Path, info: &Info, camera: &Camera) -> Result<Vec
             let mut from_s = Vec::new();
             table.numbers(&of_video("from_timestamp"), 0..table.rows(), &mut |row, time_s| {
                 from_s.push(time_s);
-                if time_s.is_finite() { Ok(()) } else { Err(format!("row {row} holds {time_s}")) }
+                if time_s.is_finite() { Ok(()) } else { Err(format!("row {row} holds {time_s}, which is not a time")) }
             })?;
             Some((whole(&of_video("chunk_index"))?, whole(&of_video("file_index"))?, from_s))
         }
@@ -136,12 +136,12 @@ fn in_file(root: &Path, file: &Path, info: &Info, camera: &Camera) -> Result<Vec
     episodes.collect()
 }
 
-/// A column of counts: one for each row.
+/// A column of whole numbers that are not negative: one for each row.
 fn whole_numbers(table: &Table, name: &str) -> Result<Vec<u64>, PlatformError> {
     let mut numbers = Vec::new();
     table.numbers(name, 0..table.rows(), &mut |row, number| {
         if !(0.0..=1e12).contains(&number) || number.fract() != 0.0 {
-            return Err(format!("row {row} holds {number}, which is no count"));
+            return Err(format!("row {row} holds {number}, which is not a count"));
         }
         numbers.push(number as u64);
         Ok(())

@@ -1,4 +1,4 @@
-//! `meta/info.json`: what a dataset says about itself.
+//! `meta/info.json`, in which a dataset describes itself.
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -23,7 +23,7 @@ pub(super) enum Layout {
     Files,
 }
 
-/// What a dataset says about itself.
+/// The content of `meta/info.json`.
 #[derive(Debug, Deserialize)]
 pub(super) struct Info {
     codebase_version: String,
@@ -53,15 +53,15 @@ fn usual_chunk() -> u64 {
 }
 
 impl Info {
-    /// Where it lies in a dataset.
+    /// Its path in a dataset.
     pub(super) fn file(root: &Path) -> PathBuf {
         root.join("meta").join("info.json")
     }
 
-    /// Reads it.
+    /// Reads `meta/info.json`.
     ///
     /// # Errors
-    /// When it is not there, is not what the library writes, or of another version.
+    /// When it does not exist, is not as the library writes it, or has a version that cannot be read.
     pub(super) fn read(root: &Path) -> Result<Self, PlatformError> {
         let file = Self::file(root);
         let wrong = |reason: String| files::wrong(&file, reason, HINT);
@@ -72,9 +72,10 @@ impl Info {
             return Err(wrong("chunks_size is 0".into()));
         }
         if !(1e-3..=1e4).contains(&info.fps) {
-            return Err(wrong(format!("fps is {}", info.fps)));
+            return Err(wrong(format!("fps is {}, which is out of range (0.001 to 10000)", info.fps)));
         }
-        info.layout().ok_or_else(|| wrong(format!("is of version {:?}, which is not read", info.codebase_version)))?;
+        info.layout()
+            .ok_or_else(|| wrong(format!("is of version {:?}, which cannot be read", info.codebase_version)))?;
         Ok(info)
     }
 
@@ -94,14 +95,14 @@ impl Info {
 }
 
 impl Feature {
-    /// Whether pictures of a camera are behind it, and not depths.
+    /// Whether it holds pictures of a camera, and not depths.
     pub(super) fn is_camera(&self) -> bool {
         let depths =
             ["video.is_depth_map", "is_depth_map"].iter().any(|key| self.info.get(key) == Some(&Value::Bool(true)));
         matches!(self.dtype.as_str(), "video" | "image") && !depths
     }
 
-    /// How many numbers a row has, where it is a list of fractions.
+    /// Numbers per row; `None` where it is not a list of floating-point numbers.
     pub(super) fn width(&self) -> Option<usize> {
         match (self.dtype.as_str(), self.shape.as_slice()) {
             ("float32" | "float64", [width @ 1..=MAX_WIDTH]) => usize::try_from(*width).ok(),
@@ -109,8 +110,8 @@ impl Feature {
         }
     }
 
-    /// The names of its elements, also of those that are grouped (`{"motors": ["x", "y"]}`); `None` where not every element has
-    /// one.
+    /// The names of its elements, also where they are grouped (`{"motors": ["x", "y"]}`); `None` where not every
+    /// element has a name.
     pub(super) fn names(&self) -> Option<Vec<&str>> {
         let mut names = Vec::new();
         collect(&self.names, &mut names);
@@ -118,7 +119,7 @@ impl Feature {
     }
 }
 
-/// Texts in the order in which they stand.
+/// Collects all texts in a value, in order.
 fn collect<'a>(value: &'a Value, into: &mut Vec<&'a str>) {
     match value {
         Value::String(name) => into.push(name),

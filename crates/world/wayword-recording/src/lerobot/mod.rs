@@ -1,6 +1,8 @@
-//! Datasets of LeRobot, versions 2.0, 2.1 and 3.0: rows in Parquet files, pictures within them or in videos, one scene for each episode.
+//! LeRobot datasets, versions 2.0, 2.1 and 3.0: rows in Parquet files, pictures in the rows or in videos, one scene for
+//! each episode.
 //!
-//! After huggingface/lerobot, `lerobot/datasets/lerobot_dataset.py` and `utils.py` (0.3.3 writes version 2.1, 0.4.4 version 3.0).
+//! The format follows huggingface/lerobot, `lerobot/datasets/lerobot_dataset.py` and `utils.py` (0.3.3 writes version
+//! 2.1, 0.4.4 version 3.0).
 
 mod camera;
 mod episodes;
@@ -31,7 +33,7 @@ use std::{
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
-const HINT: &str = "fetch the dataset again, or write it again with the library of LeRobot";
+const HINT: &str = "download the dataset again, or write it again with LeRobot's library";
 
 /// Folders below `meta` in which its files lie: `meta/episodes/chunk-000`.
 const META_DEPTH: usize = 2;
@@ -43,12 +45,12 @@ pub(crate) struct Dataset {
     info: Info,
     camera: Camera,
     pose_feature: Option<PoseFeature>,
-    /// By name, which is also by number.
+    /// Sorted by name, which is also the order of their numbers.
     episodes: Vec<(SceneId, Episode)>,
 }
 
 impl Dataset {
-    /// Opens the dataset in a folder; reads what it says about itself, and the list of its episodes.
+    /// Opens the dataset in a folder; reads its description and the list of its episodes.
     ///
     /// # Errors
     /// When its folder `meta` cannot be read, or it has several cameras and the user named none.
@@ -91,7 +93,7 @@ impl Dataset {
             None => track,
         };
         Track::new(fixes).map(in_doubt).map(Some).ok_or_else(|| {
-            let reason = format!("column {:?}: no row holds a place in metres", feature.feature);
+            let reason = format!("column {:?}: no row holds a valid position in metres", feature.feature);
             files::wrong(
                 table.path(),
                 reason,
@@ -128,7 +130,7 @@ impl Source for Dataset {
     }
 }
 
-/// What lies in a folder and in those below it, without what is hidden.
+/// The files in a folder and in the folders below it, without hidden ones.
 fn below(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformError> {
     let mut files = Vec::new();
     for name in entries(folder)?.iter().filter(|name| !name.starts_with('.')) {
@@ -142,7 +144,7 @@ fn below(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformError> {
     Ok(files)
 }
 
-/// The rows of an episode in its file, which lie together.
+/// The rows of an episode in its file; they must be contiguous.
 fn rows_of(table: &Table, episode: &Episode, layout: Option<Layout>) -> Result<Range<u64>, PlatformError> {
     const COLUMN: &str = "episode_index";
     let mut rows: Option<Range<u64>> = None;
@@ -155,7 +157,7 @@ fn rows_of(table: &Table, episode: &Episode, layout: Option<Layout>) -> Result<R
             }
             let rows = rows.get_or_insert(row..row);
             if rows.end != row {
-                return Err(format!("row {row}: the rows of episode {} do not lie together", episode.number));
+                return Err(format!("row {row}: the rows of episode {} are not contiguous", episode.number));
             }
             rows.end = row + 1;
             Ok(())
@@ -163,8 +165,8 @@ fn rows_of(table: &Table, episode: &Episode, layout: Option<Layout>) -> Result<R
     }
     let rows = rows.unwrap_or(0..0);
     if rows.end - rows.start != episode.length || rows.is_empty() {
-        let reason =
-            format!("holds {} rows of episode {}, not {}", rows.end - rows.start, episode.number, episode.length);
+        let count = rows.end - rows.start;
+        let reason = format!("the number of rows of episode {} is {count}, not {}", episode.number, episode.length);
         return Err(files::wrong(table.path(), reason, HINT));
     }
     Ok(rows)
@@ -176,7 +178,7 @@ fn times_s(table: &Table, rows: Range<u64>) -> Result<Vec<f64>, PlatformError> {
     table.numbers("timestamp", rows, &mut |row, time_s| {
         let last_s = times_s.last().copied().unwrap_or(f64::MIN);
         if !time_s.is_finite() || time_s < last_s {
-            return Err(format!("row {row}: {time_s} s comes after {last_s} s"));
+            return Err(format!("row {row}: the time {time_s} s follows {last_s} s; times must not decrease"));
         }
         times_s.push(time_s);
         Ok(())

@@ -1,22 +1,24 @@
-//! Parquet files, as far as datasets of LeRobot need them: whole numbers, fractions and bytes, and lists of fractions.
+//! Reads Parquet files, as far as LeRobot datasets need them: integers, floating-point numbers, bytes, and lists of
+//! floating-point numbers.
 //!
-//! The crate `parquet` decodes them: levels, dictionaries, values, and what the footer says about columns. Its panics are contained.
-//! Files come from outside, and the crate believes some of what they announce. Version 60.1 was weighed, place by place:
+//! The crate `parquet` decodes levels, dictionaries, values, and what the footer says about columns. Its panics are
+//! contained. Files are not trusted, but the crate believes some of the numbers in them. This is what version 60.1
+//! does, and what is done here instead:
 //!
-//! | announced | the crate | here |
+//! | number in the file | the crate | here |
 //! |---|---|---|
-//! | the footer's length | holds it against the file's | and at most 64 MiB (`footer`) |
-//! | a column's number of children in the schema | reserves memory for up to 2^31, and recurses as deep as they nest | the schema is built from the footer here, 16 deep, and handed to the crate, which then passes over the footer's (`footer`) |
-//! | lists in the footer | holds their lengths against the bytes that are left, but for those that it passes over | all are held against the bytes that are left (`thrift`) |
-//! | rows, and where columns lie | believes it | held against the file's length (`footer`) |
-//! | lists in a page's header | passes over up to 2^31 elements behind the end of the file | the headers are read here (`pages`) |
-//! | the length of a page once it is unfolded | reserves up to 2 GiB; unfolds gzip without a bound | pages are unfolded here, to 8 MiB or 256 times their length (`pages`) |
-//! | entries of a dictionary | reserves memory for up to 2^31 | held against the dictionary's length (`pages`) |
-//! | values of a page | takes memory for those of the rows that are asked for; a row's list may go on over all pages | rows are asked for in steps, and their pages may not announce more than a file of this length holds (`pages`) |
-//! | lengths of texts that are encoded as differences | reserves memory for any number | such encodings are refused (`pages`) |
+//! | the footer's length | checks it against the file's | the same, and at most 64 MiB (`footer`) |
+//! | a column's number of children in the schema | reserves memory for up to 2^31, and recurses as deep as they nest | the schema is built from the footer here, at most 16 deep, and given to the crate, which then skips the footer's (`footer`) |
+//! | lists in the footer | checks their lengths against the remaining bytes, except for lists that it skips | all are checked against the remaining bytes (`thrift`) |
+//! | rows, and where columns lie | believes them | checked against the file's length (`footer`) |
+//! | lists in a page's header | skips up to 2^31 elements beyond the end of the file | the headers are read here (`pages`) |
+//! | the decompressed length of a page | reserves up to 2 GiB; decompresses gzip without a limit | pages are decompressed here, to at most 8 MiB or 256 times their length (`pages`) |
+//! | entries of a dictionary | reserves memory for up to 2^31 | checked against the dictionary's length (`pages`) |
+//! | values of a page | takes memory for the values of the requested rows; a row's list may go on over all pages | rows are requested in steps, and their pages may not announce more values than a file of this length holds (`pages`) |
+//! | number of texts whose lengths are encoded as differences | reserves memory for any number | such encodings are refused (`pages`) |
 //!
-//! So memory keeps to a multiple of the file's length. Time does not in one place: in a footer that was made for this, whose fields
-//! are of other kinds than the crate takes them for, a list of truths costs it two seconds for nine bytes.
+//! So memory is at most a multiple of the file's length. Time is not, in one place: in a malicious footer, whose fields
+//! have other types than the crate expects, a list of booleans costs the crate two seconds for nine bytes.
 
 mod column;
 mod footer;
@@ -38,11 +40,12 @@ use std::{
 use wayword_core::PlatformError;
 use wayword_world::files;
 
-const HINT: &str = "fetch the file again; if it is whole, write it again with pyarrow and Snappy, as LeRobot does";
+const HINT: &str =
+    "download the file again; if it is complete, write it again with pyarrow and Snappy, as LeRobot does";
 /// Rows that are read at a time.
 const STEP_ROWS: u64 = 1024;
 
-/// Who is handed the bytes of a row, if it has some.
+/// Takes the bytes of a row; `None` where the row has none.
 pub(super) type TakeBytes<'a> = dyn FnMut(u64, Option<&[u8]>) -> Result<(), PlatformError> + 'a;
 
 /// A Parquet file: rows with named columns.
@@ -53,16 +56,16 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Opens a file and reads what it says about itself.
+    /// Opens a file and reads its footer.
     ///
     /// # Errors
-    /// When it is no Parquet file.
+    /// When it is not a Parquet file.
     pub(super) fn open(path: &Path) -> Result<Self, PlatformError> {
         let about = footer::read(&files::open(path, HINT)?);
         Ok(Self { path: path.to_owned(), about: about.map_err(|reason| files::wrong(path, reason, HINT))? })
     }
 
-    /// The file.
+    /// The path of the file.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
@@ -107,7 +110,7 @@ impl Table {
         })
     }
 
-    /// Some elements of a column of lists of `width` numbers: `kept` of each row, one row after another.
+    /// Some elements of a column of lists of `width` numbers: for each row in order, those at the indices `kept`.
     ///
     /// # Errors
     /// When there is no such column, a list has another length, or the file is broken.
@@ -141,8 +144,8 @@ impl Table {
         Ok(numbers)
     }
 
-    /// Hands out the bytes of some rows, which ascend: those of a column of bytes, or of its part `bytes`, as pictures are kept.
-    /// `None` where a row holds none.
+    /// Hands out the bytes of some rows, which must ascend. The column holds bytes itself or in its part `bytes`, as
+    /// for pictures. `None` where a row has no bytes.
     ///
     /// # Errors
     /// When there is no such column, the file is broken, or `take` fails.
@@ -173,20 +176,21 @@ impl Table {
         self.about.file_metadata().schema_descr().columns()
     }
 
-    /// The only column of a name that fits.
+    /// The only column with this name that fits.
     fn leaf(&self, name: &str, fits: impl Fn(&ColumnDescriptor) -> bool) -> Result<usize, PlatformError> {
         let leaves = self.leaves().iter().enumerate();
         let mut found = leaves.filter(|(_, leaf)| is_named(leaf, name) && fits(leaf)).map(|(at, _)| at);
         match (found.next(), found.next()) {
             (Some(leaf), None) => Ok(leaf),
             _ if self.has(name) => {
-                Err(files::wrong(&self.path, format!("column {name:?} is of another kind than expected"), HINT))
+                Err(files::wrong(&self.path, format!("column {name:?} is not of the expected type"), HINT))
             }
             _ => Err(files::wrong(&self.path, format!("has no column {name:?}"), HINT)),
         }
     }
 
-    /// Reads a column group by group. `read` is told which rows of the file its values are, and which of these are wanted.
+    /// Reads a column, row group by row group. `read` gets the rows of the group in the file, and which of these are
+    /// wanted.
     fn each(
         &self,
         leaf: usize,
@@ -217,7 +221,7 @@ fn is_number(leaf: &ColumnDescriptor) -> bool {
     matches!(leaf.physical_type(), Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE)
 }
 
-/// The list of the next row. Whole rows are handed out, so it ends within the same cells.
+/// The list of the next row. Only whole rows are handed out, so the list ends within the same cells.
 fn next_list(cells: &mut Peekable<Cells<f64>>, width: usize) -> Result<Vec<f64>, String> {
     let mut list = Vec::with_capacity(width);
     let mut next = cells.next();
@@ -225,7 +229,7 @@ fn next_list(cells: &mut Peekable<Cells<f64>>, width: usize) -> Result<Vec<f64>,
         list.push(number.ok_or("holds no number")?);
         next = cells.next_if(|(begins_row, _)| !begins_row && list.len() <= width);
     }
-    if list.len() == width { Ok(list) } else { Err(format!("is no list of {width} numbers")) }
+    if list.len() == width { Ok(list) } else { Err(format!("is not a list of {width} numbers")) }
 }
 
 fn near(row: u64, reason: &str) -> String {

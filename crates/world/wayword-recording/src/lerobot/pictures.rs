@@ -1,4 +1,4 @@
-//! The pictures of an episode: within its rows, or a stretch of a video.
+//! The pictures of an episode: in its rows, or in a stretch of a video.
 
 use super::{episodes::Clip, parquet::Table};
 use crate::{
@@ -8,9 +8,9 @@ use crate::{
 use wayword_core::PlatformError;
 use wayword_world::files;
 
-const HINT: &str = "fetch the dataset again, or write it again with the library of LeRobot";
+const HINT: &str = "download the dataset again, or write it again with LeRobot's library";
 
-/// Pictures within rows.
+/// Pictures in rows.
 pub(super) struct Stills {
     table: Table,
     /// The camera's column.
@@ -41,7 +41,7 @@ impl Reel for Stills {
             let wrong =
                 |reason| files::wrong(self.table.path(), format!("{} of row {row}: {reason}", self.column), HINT);
             let bytes =
-                bytes.ok_or_else(|| wrong("only the name of a picture is kept here, not the picture".to_owned()))?;
+                bytes.ok_or_else(|| wrong("only the picture's name is stored here, not the picture".to_owned()))?;
             take((row - self.first) as usize, files::picture(bytes).map_err(wrong)?)
         })
     }
@@ -50,13 +50,14 @@ impl Reel for Stills {
 /// A stretch of a video.
 pub(super) struct Stretch {
     film: Film,
-    /// Which picture of the video each of the episode's is; ascends.
+    /// For each picture of the episode, its number in the video; ascending.
     numbers: Vec<usize>,
     times_s: Vec<f64>,
 }
 
 impl Stretch {
-    /// The pictures that were taken at these times from the beginning of the episode on, seconds; `step_s` lies between two.
+    /// The pictures at these times after the beginning of the episode, seconds; `step_s` is the time between two
+    /// pictures.
     ///
     /// # Errors
     /// When the video cannot be read, or has no picture for one of them.
@@ -68,7 +69,7 @@ impl Stretch {
             let number = nearest(stretch.film.times_s(), wanted_s, step_s / 2.0);
             let number = number.ok_or_else(|| {
                 let reason =
-                    format!("row {row} of the episode needs a picture at {wanted_s:.3} s, and there is none near");
+                    format!("row {row} of the episode needs a picture at {wanted_s:.3} s, but the video has none near");
                 files::wrong(&clip.file, reason, HINT)
             })?;
             // Two rows may share a picture; the second has nothing new to show.
@@ -81,7 +82,7 @@ impl Stretch {
     }
 }
 
-/// The number of the time that is nearest to another and not further away than `most_s`.
+/// Index of the time nearest to `wanted_s`; `None` where it is further away than `most_s`.
 fn nearest(times_s: &[f64], wanted_s: f64, most_s: f64) -> Option<usize> {
     let next = times_s.partition_point(|time_s| *time_s < wanted_s);
     let off = |at: usize| times_s.get(at).map(|time_s| ((time_s - wanted_s).abs(), at));

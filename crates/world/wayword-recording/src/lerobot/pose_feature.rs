@@ -1,4 +1,4 @@
-//! Which numbers of a dataset's rows tell where the robot was.
+//! Finds the numbers in a dataset's rows that say where the robot was.
 
 use super::info::{Feature, Info};
 use crate::{
@@ -11,17 +11,17 @@ use std::path::Path;
 use wayword_core::{DVec3, PlatformError};
 use wayword_world::files;
 
-const HINT: &str = "docs/RECORDINGS.md tells how a feature's elements have to be called in meta/info.json";
-/// Words in the name of an element that make it something else than a place in the world.
+const HINT: &str = "docs/RECORDINGS.md lists the names in meta/info.json that elements of a pose need";
+/// Words in the name of an element that show that it is not a position in the world.
 const NO_PLACE: [&str; 18] = [
     "vel", "velocity", "speed", "acc", "accel", "linear", "angular", "force", "torque", "effort", "current", "delta",
     "goal", "target", "cmd", "command", "action", "error",
 ];
-/// Words in the name of a feature that is not taken for the robot's place unless the user names it.
+/// Words in the name of a feature that does not count as the robot's pose unless the user names it.
 const NO_ROBOT: [&str; 12] =
     ["action", "actions", "eef", "ee", "effector", "tcp", "tool", "hand", "gripper", "wrist", "arm", "object"];
 
-/// The feature that tells where the robot was, and which of its elements.
+/// The feature that says where the robot was, and its elements that do.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PoseFeature {
     pub(super) feature: String,
@@ -36,13 +36,13 @@ pub(super) struct PoseFeature {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Facing {
     Unknown,
-    /// An angle counter-clockwise from +x; times this it is in radians.
+    /// Index of an angle counter-clockwise from +x, and the factor that turns it into radians.
     Yaw(usize, f64),
-    /// x, y, z, w.
+    /// Indices of x, y, z, w.
     Quaternion([usize; 4]),
 }
 
-/// What an element of a feature is.
+/// The meaning of an element of a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Role {
     X,
@@ -50,16 +50,16 @@ enum Role {
     Z,
     Yaw,
     YawDeg,
-    /// Part of a quaternion: x, y, z, w.
+    /// A component of a quaternion: 0 to 3 for x, y, z, w.
     Q(usize),
 }
 
 impl PoseFeature {
-    /// Where the user says that poses are, else in the one feature that consists of x, y and a yaw and of nothing else; `None`
-    /// where there is no such feature, or several.
+    /// The feature that the user named, else the only feature that consists of x, y, a yaw and perhaps z; `None` where
+    /// there is no such feature, or several.
     ///
     /// # Errors
-    /// When the user names a feature that is not there or has no place in it.
+    /// When the user names a feature that does not exist or holds no position.
     pub(super) fn find(root: &Path, info: &Info, described: &Description) -> Result<Option<Self>, PlatformError> {
         let Some(named) = &described.poses else {
             let mut plain = info.features.iter().filter_map(|(key, feature)| Self::plain(key, feature));
@@ -72,18 +72,18 @@ impl PoseFeature {
             lists.map(|(key, _)| key.as_str()).collect::<Vec<_>>().join(", ")
         };
         let feature = info.features.get(named).filter(|feature| feature.width().is_some());
-        let feature = feature
-            .ok_or_else(|| wrong(format!("poses = {named:?}: is no list of fractions; such are {}", listed())))?;
+        let feature = feature.ok_or_else(|| {
+            wrong(format!("poses = {named:?} is not a list of floating-point numbers; such lists: {}", listed()))
+        })?;
         let place = Self::within(named, feature).map_err(|reason| wrong(format!("poses = {named:?}: {reason}")))?;
         if matches!(place.facing, Facing::Yaw(..)) && described.world.is_some_and(|world| world != World::ZUp) {
-            return Err(wrong(format!(
-                "poses = {named:?}: a yaw turns about z, so the world of the poses must be z-up"
-            )));
+            return Err(wrong(format!("poses = {named:?}: a yaw turns about z, so `world` must be z-up")));
         }
         Ok(Some(place))
     }
 
-    /// A feature that nobody named, if it is nothing but x, y, perhaps z, and a yaw, and not of a part of the robot.
+    /// The pose of a feature that the user did not name. `None` unless its elements are x, y, perhaps z, and a yaw, and
+    /// its name is not that of a command or of a part of the robot.
     fn plain(key: &str, feature: &Feature) -> Option<Self> {
         let place = Self::within(key, feature).ok()?;
         let elements = 3 + usize::from(place.z.is_some());
@@ -98,13 +98,13 @@ impl PoseFeature {
             let mut found = roles.iter().enumerate().filter(|(_, role)| **role == Some(wanted)).map(|(at, _)| at);
             match (found.next(), found.next()) {
                 (Some(first), Some(second)) => {
-                    Err(format!("both {:?} and {:?} may be meant", names[first], names[second]))
+                    Err(format!("both {:?} and {:?} may be the one", names[first], names[second]))
                 }
                 (first, _) => Ok(first),
             }
         };
         let (Some(x), Some(y)) = (at(Role::X)?, at(Role::Y)?) else {
-            return Err(format!("has no elements x and y, but {}", names.join(", ")));
+            return Err(format!("has no elements x and y; its elements: {}", names.join(", ")));
         };
         let quaternion = [at(Role::Q(0))?, at(Role::Q(1))?, at(Role::Q(2))?, at(Role::Q(3))?];
         let facing = match (at(Role::Yaw)?, at(Role::YawDeg)?, quaternion) {
@@ -112,19 +112,19 @@ impl PoseFeature {
             (Some(yaw), None, [None, None, None, None]) => Facing::Yaw(yaw, 1.0),
             (None, Some(yaw), [None, None, None, None]) => Facing::Yaw(yaw, 1_f64.to_radians()),
             (None, None, [None, None, None, None]) => Facing::Unknown,
-            _ => return Err(format!("where it faces is told twice or in part: {}", names.join(", "))),
+            _ => return Err(format!("the direction is given twice, or only in part: {}", names.join(", "))),
         };
         Ok(Self { feature: key.to_owned(), width: names.len(), x, y, z: at(Role::Z)?, facing })
     }
 
-    /// The elements that are needed, in the order in which [`PoseFeature::fix`] takes them.
+    /// Indices of the needed elements, in the order in which [`PoseFeature::fix`] takes them.
     pub(super) fn elements(&self) -> Vec<usize> {
         let facing = match self.facing {
             Facing::Unknown => Vec::new(),
             Facing::Yaw(at, _) => vec![at],
             Facing::Quaternion(at) => at.to_vec(),
         };
-        // A floor that is nowhere told is at 0.
+        // Without a z the floor is at 0.
         [self.x, self.y].into_iter().chain(self.z).chain(facing).collect()
     }
 
@@ -161,7 +161,7 @@ fn words(name: &str) -> impl Iterator<Item = String> {
     name.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase)
 }
 
-/// What an element is by its name: `x`, `base.x`, `pose_x_m`; `x.vel` is nothing of the kind.
+/// The meaning of an element by its name (`x`, `base.x`, `pose_x_m`); `None` for others, such as `x.vel`.
 fn role(name: &str) -> Option<Role> {
     let words: Vec<String> = words(name).collect();
     if words.iter().any(|word| NO_PLACE.contains(&word.as_str())) {
@@ -214,7 +214,8 @@ mod tests {
         let found = |key, names| find(&[(key, names)], None).unwrap().map(|place| place.feature);
         assert_eq!(found("observation.state", &["x", "y", "theta"]).as_deref(), Some("observation.state"));
         assert_eq!(found("odometry", &["base.x", "base.y", "base.z", "base.yaw"]).as_deref(), Some("odometry"));
-        // A command, speeds, an arm's hand, positions without a direction, joints beside: in doubt there is no pose.
+        // A command, speeds, an arm's hand, positions without a direction, other joints: where it is not certain, there
+        // is no pose.
         assert_eq!(found("action", &["x", "y", "theta"]), None);
         assert_eq!(found("observation.state", &["x.vel", "y.vel", "theta.vel"]), None);
         assert_eq!(found("observation.state.end_effector", &["x", "y", "yaw"]), None);
@@ -234,9 +235,9 @@ mod tests {
         assert_eq!(turned.elements(), [4, 5, 0, 1, 2, 3]);
         assert_eq!(state(&["x", "y"]).unwrap().unwrap().facing, Facing::Unknown);
         assert!(state(&["left_x", "right_x", "y"]).unwrap_err().contains("left_x"));
-        assert!(state(&["x", "y", "yaw", "qx"]).unwrap_err().contains("twice or in part"));
-        assert!(state(&["a", "b"]).unwrap_err().contains("no elements x and y, but a, b"));
-        assert!(find(&[("state", &["x"])], Some("pose")).unwrap_err().contains("such are state"));
+        assert!(state(&["x", "y", "yaw", "qx"]).unwrap_err().contains("twice, or only in part"));
+        assert!(state(&["a", "b"]).unwrap_err().contains("no elements x and y; its elements: a, b"));
+        assert!(find(&[("state", &["x"])], Some("pose")).unwrap_err().contains("such lists: state"));
     }
 
     #[test]

@@ -1,21 +1,22 @@
-//! Templates of paths, as `meta/info.json` holds them in the way of Python: `data/chunk-{episode_chunk:03d}/x.parquet`.
+//! Templates of file paths in `meta/info.json`, written as Python's format strings:
+//! `data/chunk-{episode_chunk:03d}/x.parquet`.
 
 use std::path::{Component, Path, PathBuf};
 
 /// Widest number, digits.
 const MAX_DIGITS: usize = 20;
 
-/// What stands for a placeholder.
+/// The value of a placeholder.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Value<'a> {
     Number(u64),
     Text(&'a str),
 }
 
-/// The path below a dataset's folder that a template makes of some values.
+/// Fills a template with values; returns the path below the dataset's folder.
 ///
 /// # Errors
-/// In words, when the template cannot be read, asks for another value, or leads out of the folder.
+/// In words, when the template cannot be read, needs another value, or leads out of the folder.
 pub(super) fn fill(template: &str, values: &[(&str, Value<'_>)]) -> Result<PathBuf, String> {
     let wrong = |reason: String| format!("the path {template:?} {reason}");
     let mut filled = String::new();
@@ -44,7 +45,7 @@ fn written(placeholder: &str, values: &[(&str, Value<'_>)]) -> Result<String, St
     let value = values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
     let value = value.ok_or_else(|| {
         let known: Vec<&str> = values.iter().map(|(known, _)| *known).collect();
-        format!("asks for {name:?}; known are {}", known.join(", "))
+        format!("needs {name:?}; known values: {}", known.join(", "))
     })?;
     let unknown = || format!("wants {name:?} in the format {format:?}, which is not known");
     match value {
@@ -53,7 +54,7 @@ fn written(placeholder: &str, values: &[(&str, Value<'_>)]) -> Result<String, St
         Value::Number(number) => {
             let digits = format.strip_suffix('d').unwrap_or(format);
             let width: usize = if digits.is_empty() { 0 } else { digits.parse().map_err(|_| unknown())? };
-            // Without the zero Python fills up with spaces, which no dataset has in its names.
+            // Without the zero Python pads with spaces, which no dataset has in its names.
             if width > MAX_DIGITS || (width > 0 && !digits.starts_with('0')) {
                 return Err(unknown());
             }

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use std::{fs, io::Read, path::PathBuf};
 use wayword_core::{DVec3, Image};
 
-/// Made by the genuine library: `fixtures/make_lerobot.py`.
+/// Made by LeRobot's own library: `fixtures/make_lerobot.py`.
 const DATASETS: [&str; 4] = ["v21_images", "v21_videos", "v30_images", "v30_videos"];
 const CAMERA: &str = "observation.images.front";
 
@@ -158,7 +158,7 @@ fn of_several_cameras_one_has_to_be_named() {
         Dataset::open(&root, described).map(|dataset| dataset.episodes.len()).map_err(|error| error.to_string())
     };
     assert_eq!(named(CAMERA), Ok(2));
-    assert!(named("wrist").unwrap_err().contains("no camera \"wrist\", but "));
+    assert!(named("wrist").unwrap_err().contains("no camera \"wrist\"; its cameras: "));
     assert!(named("observation.images.front2").unwrap_err().contains("videos/observation.images.front2"));
 }
 
@@ -178,7 +178,7 @@ fn a_dataset_that_contradicts_itself_is_refused() {
     let list = root.join("meta/episodes.jsonl");
     let text = fs::read_to_string(&list).unwrap();
     fs::write(&list, text.replace("\"length\": 7", "\"length\": 8")).unwrap();
-    assert!(recording(&root, 0).err().unwrap().contains("holds 7 rows of episode 0, not 8"));
+    assert!(recording(&root, 0).err().unwrap().contains("the number of rows of episode 0 is 7, not 8"));
     fs::write(&list, text.replace("\"episode_index\": 1", "\"episode_index\": 0")).unwrap();
     assert!(open(&root).err().unwrap().contains("episode 0 is listed twice"));
     fs::write(&list, text.replace("\"length\": 6", "\"length\": -6")).unwrap();
@@ -191,7 +191,7 @@ fn a_dataset_that_contradicts_itself_is_refused() {
 fn a_video_without_a_rows_picture_is_named() {
     let (_folder, root) = dataset("v21_videos");
     let videos = root.join("videos/chunk-000").join(CAMERA);
-    // The other episode is a picture shorter.
+    // The other episode has one picture less.
     fs::copy(videos.join("episode_000001.mp4"), videos.join("episode_000000.mp4")).unwrap();
     let error = recording(&root, 0).err().unwrap();
     assert!(error.contains("row 6 of the episode needs a picture at 1.200 s"), "{error}");

@@ -1,13 +1,14 @@
-//! Reads CDR, in which ROS 2 writes its messages (OMG DDSI-RTPS 2.5, section 10.2; DDS-XTypes 1.3, section 7.4.1).
+//! Reads CDR, the encoding of ROS 2 messages (OMG DDSI-RTPS 2.5, section 10.2; DDS-XTypes 1.3, section 7.4.1).
 //!
-//! Four bytes tell the byte order; each number after them lies at a multiple of its own size, counted from behind these four.
+//! The first four bytes give the byte order. Each number after them is aligned to its own size, counted from the end of
+//! these four.
 
-/// Bytes that tell how the rest is written.
+/// Bytes that say how the rest is written.
 const ENCAPSULATION_BYTES: usize = 4;
-/// With these a file of Zstandard begins (RFC 8878).
+/// The magic number of Zstandard (RFC 8878).
 const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// A message that is read from its front to its back. Errors say at which byte of the message.
+/// A message that is read from front to back. Errors give the byte of the message.
 pub(crate) struct Cdr<'a> {
     body: &'a [u8],
     at: usize,
@@ -18,11 +19,12 @@ impl<'a> Cdr<'a> {
     /// Begins to read a message.
     ///
     /// # Errors
-    /// When it is too short, or written in another way than plain CDR.
+    /// When it is too short, or not plain CDR.
     pub(crate) fn new(message: &'a [u8]) -> Result<Self, String> {
         let (head, body) = message.split_at_checked(ENCAPSULATION_BYTES).ok_or("byte 0: is too short for a message")?;
         if head == ZSTD {
-            let why = "each message is compressed by itself; write it again with `--compression-mode file` or `none`";
+            let why =
+                "each message is compressed by itself; write the bag again with `--compression-mode file` or `none`";
             return Err(format!("byte 0: {why} (`ros2 bag convert`)"));
         }
         match head[..2] {
@@ -47,7 +49,7 @@ impl<'a> Cdr<'a> {
         Ok(f64::from_le_bytes(self.number()?))
     }
 
-    /// So many numbers.
+    /// `COUNT` numbers.
     pub(crate) fn f64s<const COUNT: usize>(&mut self) -> Result<[f64; COUNT], String> {
         let mut numbers = [0.0; COUNT];
         for number in &mut numbers {
@@ -56,10 +58,10 @@ impl<'a> Cdr<'a> {
         Ok(numbers)
     }
 
-    /// A text; what is not UTF-8 in it is replaced.
+    /// A text; bytes that are not UTF-8 are replaced.
     pub(crate) fn text(&mut self) -> Result<String, String> {
         let bytes = self.bytes()?;
-        // The length counts the zero at the end, which some writers leave out of an empty text.
+        // The length includes the zero at the end, which some writers leave out of an empty text.
         Ok(String::from_utf8_lossy(bytes.strip_suffix(&[0]).unwrap_or(bytes)).into_owned())
     }
 
@@ -69,16 +71,16 @@ impl<'a> Cdr<'a> {
         self.take(usize::try_from(length).unwrap_or(usize::MAX))
     }
 
-    /// How many items a sequence has, each of at least `item_bytes` bytes.
+    /// The number of items of a sequence, each of at least `item_bytes` bytes.
     pub(crate) fn count(&mut self, item_bytes: usize) -> Result<usize, String> {
         let (count, at) = (self.u32()?, self.at);
         let room = (self.body.len() - self.at) / item_bytes.max(1);
         usize::try_from(count).ok().filter(|count| *count <= room).ok_or_else(|| {
-            format!("byte {}: says that {count} items follow, where at most {room} fit", ENCAPSULATION_BYTES + at - 4)
+            format!("byte {}: the number of items is {count}, but at most {room} fit", ENCAPSULATION_BYTES + at - 4)
         })
     }
 
-    /// A number's bytes, the lowest first.
+    /// A number's bytes, least significant first.
     fn number<const BYTES: usize>(&mut self) -> Result<[u8; BYTES], String> {
         let padding = self.at.wrapping_neg() % BYTES;
         self.take(padding)?;
@@ -94,7 +96,7 @@ impl<'a> Cdr<'a> {
         let rest = self.body.get(self.at..).unwrap_or_default();
         let taken = rest.get(..count).ok_or_else(|| {
             let at = ENCAPSULATION_BYTES + self.at;
-            format!("byte {at}: {count} bytes were expected, {} are left of the message", rest.len())
+            format!("byte {at}: the message ends too early (bytes expected: {count}, left: {})", rest.len())
         })?;
         self.at += count;
         Ok(taken)
@@ -132,7 +134,7 @@ mod tests {
     fn lengths_that_lie_and_other_ways_of_writing_are_refused() {
         assert!(Cdr::new(&[0, 3, 0, 0]).err().unwrap().contains("0x0003"));
         let long = [0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff, b'x'];
-        assert!(Cdr::new(&long).unwrap().text().unwrap_err().contains("4294967295 bytes were expected, 1 are left"));
+        assert!(Cdr::new(&long).unwrap().text().unwrap_err().contains("bytes expected: 4294967295, left: 1"));
         assert!(Cdr::new(&long).unwrap().count(8).unwrap_err().contains("at most 0 fit"));
         // ROS 2 writes an empty text with the length 1; others with 0.
         assert_eq!(Cdr::new(&[0, 1, 0, 0, 0, 0, 0, 0]).unwrap().text().unwrap(), "");

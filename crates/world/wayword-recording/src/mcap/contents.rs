@@ -1,7 +1,7 @@
-//! What an MCAP file holds: its topics, and where its messages are.
+//! Finds the topics of an MCAP file, and where its messages are.
 //!
-//! The summary at the end tells it. Where there is none, because the recorder crashed or was told to write none, the file is gone
-//! through once, up to where it breaks.
+//! The summary at the end of the file says both. A file may have no summary because its recorder crashed or was set to
+//! write none. Such a file is read through once, up to where it breaks off.
 
 use super::{
     found::{Found, RecordPlace},
@@ -18,28 +18,28 @@ use std::{
     ops::ControlFlow,
 };
 
-/// Bytes of a footer, of what stands before it, and of the file's last bytes.
+/// Bytes of a footer, of its record head, and of the magic bytes at the end of the file.
 const FOOTER_BYTES: u64 = 20 + 9 + MAGIC.len() as u64;
 
 /// What a file holds.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Contents {
-    /// By name.
+    /// Topics by name.
     pub(crate) topics: BTreeMap<String, Topic>,
-    /// Where messages are, in the order of the file.
+    /// The parts of the file that hold messages, in the order of the file.
     stretches: Vec<Stretch>,
-    /// Where and how the file ends before its end; then its stretch may.
+    /// Where and how the file breaks off, if it does. The same error is then expected when its stretch is read.
     pub(crate) broken: Option<String>,
 }
 
 /// A topic that has messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Topic {
-    /// `None` where it is not read here.
+    /// `None` where this kind cannot be read.
     pub(crate) kind: Option<MessageKind>,
     /// The name of its messages' type.
     pub(crate) schema: String,
-    /// How its messages are written: `cdr`, `ros1`, `protobuf`, `json`.
+    /// The encoding of its messages: `cdr`, `ros1`, `protobuf`, `json`.
     pub(crate) encoding: String,
     channels: BTreeSet<u16>,
 }
@@ -49,11 +49,11 @@ pub(crate) struct Topic {
 struct Stretch {
     from: u64,
     to: u64,
-    /// Whether a chunk has to be here, and whose messages are in it, where that is known.
+    /// `Some` where a chunk has to be here: the channels that have messages in it, empty where these are not listed.
     chunk: Option<BTreeSet<u16>>,
 }
 
-/// Channels, with their topics.
+/// Channels by id, with their topics.
 pub(crate) type Channels<'a> = BTreeMap<u16, (&'a str, MessageKind)>;
 
 /// A message that was found.
@@ -67,17 +67,17 @@ pub(crate) struct Message<'a> {
 }
 
 impl Contents {
-    /// Finds out what a file holds.
+    /// Reads which topics and messages a file has.
     ///
     /// # Errors
     /// When it cannot be read at all.
     pub(crate) fn of(file: &File) -> Result<Self, String> {
         let length = file.metadata().map_err(|error| error.to_string())?.len();
-        // A summary that is broken, or does not tell all, is no reason to give up.
+        // Where the summary is broken or incomplete, the file is read through instead.
         Self::told(file, length).map_or_else(|| Self::walked(file, length), Ok)
     }
 
-    /// What a file's summary tells; `None` where that is not all.
+    /// The contents by the file's summary; `None` where the summary is missing, broken or incomplete.
     fn told(file: &File, length: u64) -> Option<Self> {
         let footer_at = length.checked_sub(FOOTER_BYTES)?;
         let mut start = None;
@@ -109,14 +109,16 @@ impl Contents {
         Some(Self { topics, stretches, broken: None })
     }
 
-    /// What going through a file tells.
+    /// The contents by reading through the file.
     fn walked(file: &File, length: u64) -> Result<Self, String> {
         let from = MAGIC.len() as u64;
         let mut listing = Listing::default();
         let mut records = Records::new(file, from, length)?;
         let broken = match listing.hear(&mut records) {
             Ok(()) if records.reached() < length => None,
-            Ok(()) => Some(format!("byte {length}: the file has no end, as if its recorder had crashed")),
+            Ok(()) => Some(format!(
+                "byte {length}: the file breaks off without an end record, as after a crash of its recorder"
+            )),
             Err(why) => Some(why),
         };
         let stretches = vec![Stretch { from, to: records.reached(), chunk: None }];
@@ -130,11 +132,11 @@ impl Contents {
         wanted.flat_map(|(name, kind, channels)| channels.iter().map(move |id| (*id, (name, kind)))).collect()
     }
 
-    /// Hands out the messages of some channels in the order of the file, until somebody has enough. What is found wrong with one is
-    /// told with its place.
+    /// Hands out the messages of some channels in the order of the file, until `hear` stops it. Errors of a message
+    /// include its place.
     ///
     /// # Errors
-    /// When the file is broken, and nobody knew, or `hear` fails.
+    /// When the file is broken elsewhere than [`Contents::broken`] says, or `hear` fails.
     pub(crate) fn messages(
         &self,
         file: &File,
@@ -153,7 +155,7 @@ impl Contents {
             }
             Ok(ControlFlow::Continue(()))
         };
-        // A recorder may leave out which messages are in a chunk.
+        // A recorder may leave out the index of a chunk's messages.
         let may_hold = |channels: &BTreeSet<u16>| channels.is_empty() || wanted.keys().any(|id| channels.contains(id));
         for Stretch { from, to, chunk } in &self.stretches {
             if !chunk.as_ref().is_none_or(may_hold) {
@@ -174,20 +176,20 @@ impl Contents {
     }
 }
 
-/// What records say about the messages of a file.
+/// What the records of a file say about its messages.
 #[derive(Default)]
 struct Listing {
     /// Names, by id.
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
-    /// Channels of which there are messages.
+    /// Channels that have messages.
     spoken: BTreeSet<u16>,
     chunks: Vec<ChunkIndex>,
     counts: Option<Statistics>,
 }
 
 impl Listing {
-    /// Takes in what records say.
+    /// Takes in all records.
     fn hear(&mut self, records: &mut Records<'_>) -> Result<(), String> {
         let mut take = |found: Found<'_>| {
             match found.record()? {
@@ -217,7 +219,8 @@ impl Listing {
                 encoding: encoding.to_owned(),
                 channels: BTreeSet::new(),
             });
-            // Several nodes may write to a topic, but not in several languages.
+            // Several nodes may write to a topic, but channels with another type or encoding than the first are
+            // ignored.
             if topic.schema == schema && topic.encoding == encoding {
                 topic.channels.insert(*id);
             }

@@ -1,4 +1,4 @@
-//! A record that was found: where, and what it says.
+//! A record that was found: its place and its content.
 
 use mcap::records::{Record, op};
 use std::fmt;
@@ -7,9 +7,9 @@ use wayword_core::contain::decoded;
 /// Where a record begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RecordPlace {
-    /// Where in the file; of a record in a compressed chunk, where that chunk is.
+    /// Offset in the file; for a record in a compressed chunk, the offset of that chunk.
     pub(crate) file_at: u64,
-    /// Where in that chunk, once it is unpacked.
+    /// Offset in that chunk once it is unpacked.
     pub(crate) within: Option<u64>,
 }
 
@@ -27,25 +27,25 @@ impl fmt::Display for RecordPlace {
 pub(crate) struct Found<'a> {
     pub(crate) opcode: u8,
     pub(crate) place: RecordPlace,
-    /// Its body; of a message perhaps only the first bytes.
+    /// Its body; for a message perhaps only the first bytes.
     pub(crate) bytes: &'a [u8],
 }
 
 impl<'a> Found<'a> {
-    /// What it says.
+    /// Parses it.
     ///
     /// # Errors
-    /// When it is broken, with its place.
+    /// When it is broken; the error includes its place.
     pub(crate) fn record(&self) -> Result<Record<'a>, String> {
-        let parsed =
-            texts_fit(self.opcode, self.bytes).ok_or_else(|| "a length in the record leads out of it".to_owned());
+        let parsed = texts_fit(self.opcode, self.bytes)
+            .ok_or_else(|| "a length in the record is larger than the record".to_owned());
         let parse = || mcap::parse_record(self.opcode, self.bytes).map_err(|error| error.to_string());
         parsed.and_then(|()| decoded(parse)).map_err(|why| format!("{}: {why}", self.place))
     }
 }
 
-/// `None` where a text of a record leads out of it: `mcap` takes as much memory for a text as its length says, before it looks
-/// whether it is there.
+/// `None` where a text of a record is longer than the record. This is checked first because `mcap` takes as much memory
+/// for a text as its length says before it looks whether the bytes are there.
 fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
     let mut rest = body;
     match opcode {
@@ -57,14 +57,14 @@ fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
                 text(&mut metadata, 0)?;
             }
         }
-        // These have none.
+        // These have no texts.
         op::MESSAGE | op::STATISTICS | op::FOOTER => {}
         _ => return None,
     }
     Some(())
 }
 
-/// The bytes behind their number, which stands so many bytes further on.
+/// The bytes of a text: its length comes `further` bytes on, and the text follows.
 fn text<'a>(rest: &mut &'a [u8], further: usize) -> Option<&'a [u8]> {
     let (count, behind) = rest.get(further..)?.split_first_chunk()?;
     let (text, behind) = behind.split_at_checked(usize::try_from(u32::from_le_bytes(*count)).ok()?)?;

@@ -1,9 +1,9 @@
-//! The messages of ROS 2 that are read (`common_interfaces`: `sensor_msgs`, `geometry_msgs`, `nav_msgs`; `tf2_msgs`).
+//! The ROS 2 messages that can be read (`common_interfaces`: `sensor_msgs`, `geometry_msgs`, `nav_msgs`; `tf2_msgs`).
 
 use super::cdr::Cdr;
 use glam::{DQuat, DVec3};
 
-/// What a topic's messages are.
+/// The kind of a topic's messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum MessageKind {
     /// `sensor_msgs/msg/Image`.
@@ -12,7 +12,7 @@ pub(crate) enum MessageKind {
     Compressed,
     /// `sensor_msgs/msg/CameraInfo`.
     Lens,
-    /// `geometry_msgs/msg/PoseStamped`, and with covariance, which lies behind the pose.
+    /// `geometry_msgs/msg/PoseStamped`, or `PoseWithCovarianceStamped`, whose covariance comes after the pose.
     Pose,
     /// `nav_msgs/msg/Odometry`.
     Odometry,
@@ -21,9 +21,9 @@ pub(crate) enum MessageKind {
 }
 
 impl MessageKind {
-    /// The kind of a schema's name; `None` where it is not read here.
+    /// The kind for a schema's name; `None` where it cannot be read.
     pub(crate) fn of(schema: &str) -> Option<Self> {
-        // Some writers leave `msg` out, IDL has colons.
+        // Some writers leave out `msg`, and IDL has colons.
         match schema.replace("::", "/").replace("/msg/", "/").as_str() {
             "sensor_msgs/Image" => Some(Self::Raw),
             "sensor_msgs/CompressedImage" => Some(Self::Compressed),
@@ -43,8 +43,8 @@ impl MessageKind {
         matches!(self, Self::Pose | Self::Odometry | Self::Transforms)
     }
 
-    /// How much is read of a message while a file is gone through: all of a pose, and of a picture what tells its time, frame and
-    /// encoding.
+    /// Most bytes of a message that are read while the file is indexed: a whole pose, but of a picture only its time,
+    /// frame and encoding.
     pub(crate) fn most_bytes(self) -> u64 {
         if self.is_pose() { 16 << 20 } else { 4 << 10 }
     }
@@ -53,9 +53,9 @@ impl MessageKind {
 /// `std_msgs/msg/Header`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Head {
-    /// When it was so, nanoseconds; 0 where nobody said.
+    /// Time of the data, nanoseconds; 0 where it is not set.
     pub(crate) stamp_ns: i64,
-    /// In which frame, without the slash that older programs put before it.
+    /// Frame of the data, without the slash that older programs put before it.
     pub(crate) frame: String,
 }
 
@@ -88,14 +88,14 @@ impl PictureHead {
     }
 }
 
-/// `sensor_msgs/msg/Image`, behind its header.
+/// `sensor_msgs/msg/Image` after its header.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Raw<'a> {
     pub(crate) width_px: u32,
     pub(crate) height_px: u32,
     pub(crate) encoding: String,
     pub(crate) big_endian: bool,
-    /// From one row to the next.
+    /// Distance from one row to the next, bytes.
     pub(crate) row_bytes: u32,
     pub(crate) pixels: &'a [u8],
 }
@@ -110,7 +110,7 @@ impl<'a> Raw<'a> {
     }
 }
 
-/// `sensor_msgs/msg/CompressedImage`, behind its header: its format, and a file's bytes.
+/// `sensor_msgs/msg/CompressedImage` after its header: its format, and the bytes of a picture file.
 pub(crate) fn compressed(message: &[u8]) -> Result<(String, &[u8]), String> {
     let mut cdr = Cdr::new(message)?;
     head(&mut cdr)?;
@@ -121,7 +121,7 @@ pub(crate) fn compressed(message: &[u8]) -> Result<(String, &[u8]), String> {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Lens {
     pub(crate) head: Head,
-    /// Radians; `None` where the camera is not calibrated, or sees less than 10 degrees or more than 160.
+    /// Radians; `None` where the camera is not calibrated, or the angle is not from 10 to 160 degrees.
     pub(crate) horizontal_fov_rad: Option<f64>,
 }
 
@@ -137,7 +137,7 @@ impl Lens {
         let [focal_px, ..] = cdr.f64s::<9>()?;
         let widths = f64::from(width_px) / focal_px;
         let fov = match distortion.as_str() {
-            // A fisheye's pictures: equal angles lie equally far from each other.
+            // In a fisheye picture, equal angles are equal distances.
             "equidistant" | "fisheye" => widths,
             _ => 2.0 * libm::atan(widths / 2.0),
         };
@@ -150,14 +150,14 @@ impl Lens {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Placing {
     pub(crate) position: DVec3,
-    /// Of length 1.
+    /// Has length 1.
     pub(crate) rotation: DQuat,
 }
 
 impl Placing {
     pub(crate) const HERE: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
-    /// `None` where the numbers are no place or no rotation.
+    /// `None` where the numbers are not a position and a rotation.
     pub(crate) fn new(position: [f64; 3], rotation: [f64; 4]) -> Option<Self> {
         let (position, rotation) = (DVec3::from(position), DQuat::from_array(rotation));
         let length = rotation.length();
@@ -165,13 +165,13 @@ impl Placing {
         stands.then(|| Self { position, rotation: rotation / length })
     }
 
-    /// What is placed by `inner` in a frame that is placed by this.
+    /// The placing in the outer frame of something that `inner` places in the frame that `self` places.
     pub(crate) fn then(self, inner: Self) -> Self {
         let position = self.position + self.rotation * inner.position;
         Self { position, rotation: (self.rotation * inner.rotation).normalize() }
     }
 
-    /// On the straight way to another, and the short turn.
+    /// A placing between this and another: on the straight line and the short turn.
     pub(crate) fn towards(self, other: Self, share: f64) -> Self {
         Self {
             position: self.position.lerp(other.position, share),
@@ -180,17 +180,17 @@ impl Placing {
     }
 }
 
-/// Where something was: a pose, or a transform.
+/// Where a frame was: a pose, or a transform.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Placed {
-    /// When, and in which frame.
+    /// The time, and the frame in which it is placed.
     pub(crate) head: Head,
-    /// Which frame; `None` in a pose, which does not say.
+    /// The frame that is placed; `None` for a pose, which does not name it.
     pub(crate) what: Option<String>,
     pub(crate) placing: Placing,
 }
 
-/// What a message of poses holds; those that are no place are left out.
+/// The poses or transforms in a message; invalid ones are left out.
 pub(crate) fn placed(kind: MessageKind, message: &[u8]) -> Result<Vec<Placed>, String> {
     /// A header of 12 bytes at least, a text of 4, and 7 numbers.
     const LEAST_BYTES: usize = 12 + 4 + 7 * 8;

@@ -1,6 +1,6 @@
 //! ROS 2 recordings in MCAP files (`ros2 bag record`, Foxglove): pictures of one camera, and where it was.
 //!
-//! Nothing of a file stays in memory but where its pictures are, and its poses.
+//! Only the places of the pictures in the file, and the poses, stay in memory.
 
 mod cdr;
 mod contents;
@@ -42,7 +42,7 @@ use tree::{Clock, Times};
 use wayword_core::{DVec3, PlatformError, SceneId};
 use wayword_world::files;
 
-const HINT: &str = "give a file that `ros2 bag record --storage mcap` has written";
+const HINT: &str = "give a file that `ros2 bag record --storage mcap` wrote";
 
 /// An MCAP file.
 pub(crate) struct McapFile {
@@ -52,15 +52,15 @@ pub(crate) struct McapFile {
 }
 
 impl McapFile {
-    /// A file that is one by its name.
+    /// A file that is MCAP by its ending; its content is not checked yet.
     ///
     /// # Errors
-    /// When its name is none that a scene can have.
+    /// When its name cannot be the name of a scene.
     pub(crate) fn open(path: &Path, described: Description) -> Result<Self, PlatformError> {
         Ok(Self { path: path.to_owned(), scene: names::scene_of(path)?, described })
     }
 
-    /// Looks whether it is one by its first bytes, too.
+    /// Checks whether its first bytes are those of an MCAP file.
     fn check(&self) -> Result<(), PlatformError> {
         let mut begin = [0; MAGIC.len()];
         let read = File::open(&self.path).and_then(|mut file| file.read_exact(&mut begin));
@@ -69,7 +69,7 @@ impl McapFile {
         }
         let reason = match read {
             Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.to_string(),
-            _ => "byte 0: does not begin as an MCAP file does".to_owned(),
+            _ => "byte 0: does not begin like an MCAP file".to_owned(),
         };
         Err(kind::refusal(&self.path, "an MCAP file", (reason, HINT)))
     }
@@ -111,7 +111,7 @@ impl McapFile {
         Ok(Recording { reel: Box::new(pictures), track, horizontal_fov_rad, described: self.described.clone() })
     }
 
-    /// The topic of poses that a user has named.
+    /// The pose topic that the user named; `None` where the user named none.
     fn named_poses(&self, contents: &Contents) -> Result<Option<(&str, MessageKind)>, topics::Unclear> {
         let Some(named) = self.described.poses.as_deref() else { return Ok(None) };
         let kind = contents.topics.get(named).and_then(|topic| topic.kind).filter(|kind| kind.is_pose());
@@ -119,15 +119,15 @@ impl McapFile {
             let poses = contents.topics.iter().filter(|(_, topic)| topic.kind.is_some_and(MessageKind::is_pose));
             let poses = topics::listed(poses.map(|(name, _)| name.as_str()));
             let reason = format!(
-                "has no poses {named}; its topics of poses: {}",
+                "has no pose topic {named}; its pose topics: {}",
                 if poses.is_empty() { "none" } else { &poses }
             );
             (reason, "name one of these as `poses`, or leave it out")
         })
     }
 
-    /// Where the camera was, and the clock on which pictures and poses meet: what they say themselves, unless all of either say
-    /// nothing, or they never meet; then the recorder's.
+    /// Where the camera was, and the clock that pictures and poses share. This is the clock of their own stamps. It is
+    /// the recorder's clock instead if all stamps of either are missing, or if their time spans do not overlap.
     fn track(&self, shots: &[Shot], way: Option<&Way<'_>>, frame: &str) -> (Option<Track>, Clock) {
         let stamped = shots.iter().any(|shot| shot.times.on(Clock::Stamp).is_some());
         let usual = if stamped { Clock::Stamp } else { Clock::Log };
@@ -167,8 +167,8 @@ fn samples(placings: &[(i64, Placing)]) -> Vec<Sample> {
     placings.iter().map(sample).collect()
 }
 
-/// What pictures say their frame is should be the optical one (`sensor_msgs/msg/Image`); some say the camera's body. No camera
-/// looks straight up all the way, so one whose z axis does is a body.
+/// Which body the frame of the pictures is. By `sensor_msgs/msg/Image` it should be the optical frame, but some
+/// recorders name the camera's body. A camera does not look straight up, so a frame whose z axis points up is a body.
 fn body(placings: &[(i64, Placing)], frame: &str) -> Body {
     let upright = placings.first().is_some_and(|(_, placing)| (placing.rotation * Vector::Z).z > 0.8);
     if upright && !frame.contains("optical") { Body::Robot } else { Body::Optical }
@@ -198,13 +198,13 @@ impl Source for McapFile {
     }
 }
 
-/// A picture: when it was taken, and where in the file it is.
+/// A picture: its time, and its place in the file.
 struct Shot {
     times: Times,
     place: RecordPlace,
 }
 
-/// What the first message of each camera says, and of each lens.
+/// The head of the first message of each camera, and the first message of each lens.
 fn beginnings(file: &File, contents: &Contents) -> Result<(Heads, BTreeMap<String, Lens>), String> {
     let (mut heads, mut lenses) = (Heads::new(), BTreeMap::new());
     let wanted = contents.channels(|_, kind| kind.is_picture() || kind == MessageKind::Lens);
@@ -212,7 +212,7 @@ fn beginnings(file: &File, contents: &Contents) -> Result<(Heads, BTreeMap<Strin
     contents.messages(file, &wanted, &mut |Message { topic, kind, bytes, .. }| {
         if !missing.remove(topic) {
         } else if kind == MessageKind::Lens {
-            // A lens that cannot be read is one that nobody knows.
+            // A lens that cannot be read counts as not known.
             lenses.extend(Lens::read(bytes).ok().map(|lens| (topic.to_owned(), lens)));
         } else {
             heads.insert(topic.to_owned(), PictureHead::read(kind, bytes)?);
@@ -222,7 +222,7 @@ fn beginnings(file: &File, contents: &Contents) -> Result<(Heads, BTreeMap<Strin
     Ok((heads, lenses))
 }
 
-/// Where all pictures of a camera are, and all poses.
+/// The places of all pictures of a camera, and all poses.
 fn gathered(file: &File, contents: &Contents, camera: &str, frame: &str) -> Result<(Vec<Shot>, Poses), String> {
     let (mut shots, mut poses) = (Vec::new(), Poses::new(frame));
     let wanted = contents.channels(|topic, kind| kind.is_pose() || topic == camera);

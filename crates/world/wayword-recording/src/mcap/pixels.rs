@@ -1,14 +1,15 @@
-//! Pictures as ROS writes them (`sensor_msgs/include/sensor_msgs/image_encodings.hpp`), as RGB.
+//! Turns ROS pictures into RGB (encodings of `sensor_msgs/include/sensor_msgs/image_encodings.hpp`).
 
 use super::messages::{self, MessageKind, Raw};
 use crate::size;
 use wayword_core::Image;
 use wayword_world::files;
 
-/// Why a camera's messages are no pictures, by their encoding; `None` where they are.
+/// Why a camera's messages cannot be read as pictures, by their encoding; `None` where they can.
 pub(crate) fn unfit(kind: MessageKind, encoding: &str) -> Option<String> {
     let known = match kind {
-        // `16UC1; compressedDepth png`; without a word about what is in it, its first bytes tell.
+        // Depth is `16UC1; compressedDepth png`. Where the format does not say depth, the first bytes of the file
+        // decide later.
         MessageKind::Compressed => {
             !encoding.contains("compressedDepth") && !is_depth(encoding.split(';').next()?.trim())
         }
@@ -37,13 +38,13 @@ pub(crate) fn picture(kind: MessageKind, message: &[u8]) -> Result<Image, String
 /// How pixels lie in a row.
 #[derive(Clone, Copy)]
 enum Layout {
-    /// So many bytes per pixel, and which of them are red, green and blue.
+    /// Bytes per pixel, and which of them are red, green and blue.
     Plain { bytes: usize, rgb: [usize; 3] },
     /// 16 bits of grey.
     Grey16,
-    /// Two pixels in four bytes: where the first's Y lies, and U.
+    /// Two pixels in four bytes: offsets of the first Y and of U.
     Yuv422 { y: usize, u: usize },
-    /// One colour per pixel: in which column and row of each 2 x 2 red lies.
+    /// One colour per pixel: column and row of red in each block of 2 x 2.
     Bayer { red: [usize; 2] },
 }
 
@@ -51,7 +52,7 @@ impl Layout {
     fn of(encoding: &str) -> Option<Self> {
         Some(match encoding {
             "rgb8" => Self::Plain { bytes: 3, rgb: [0, 1, 2] },
-            // OpenCV's order, which `cv_bridge` writes without a name.
+            // `8UC3` has OpenCV's order: `cv_bridge` writes it without naming the colours.
             "bgr8" | "8UC3" => Self::Plain { bytes: 3, rgb: [2, 1, 0] },
             "rgba8" => Self::Plain { bytes: 4, rgb: [0, 1, 2] },
             "bgra8" | "8UC4" => Self::Plain { bytes: 4, rgb: [2, 1, 0] },
@@ -80,7 +81,7 @@ fn raw(raw: &Raw<'_>) -> Result<Image, String> {
     let layout = Layout::of(&raw.encoding).ok_or_else(|| format!("has the encoding {:?}", raw.encoding))?;
     let (width_px, height_px) = (raw.width_px, raw.height_px);
     if !size::is_possible(width_px, height_px) || width_px == 0 || height_px == 0 {
-        return Err(format!("has {width_px} x {height_px} pixels; 1 x 1 to 64 megapixels can be read"));
+        return Err(format!("has {width_px} x {height_px} pixels, but only 1 x 1 to 64 megapixels can be read"));
     }
     let (width, height, stride) = (width_px as usize, height_px as usize, raw.row_bytes as usize);
     let row_bytes = width * layout.bytes_per_pixel();
@@ -111,10 +112,10 @@ fn raw(raw: &Raw<'_>) -> Result<Image, String> {
     Image::new(width_px, height_px, rgb).map_err(|error| error.to_string())
 }
 
-/// A row of pixels that share their colour by two (ITU-R BT.601, studio range, as OpenCV's `COLOR_YUV2RGB_UYVY`).
+/// A row in which each two pixels share their colour (ITU-R BT.601, studio range, as OpenCV's `COLOR_YUV2RGB_UYVY`).
 fn yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
     for pair in row.chunks(4) {
-        // The last pixel of an odd row has its U and none of V: grey.
+        // The last pixel of an odd row has a U but no V, so it becomes grey.
         let chroma = |at: usize| if pair.len() == 4 { i32::from(pair[at]) - 128 } else { 0 };
         let (blue, red) = (chroma(u), chroma(u + 2));
         for y in pair.iter().skip(first).step_by(2) {
@@ -125,14 +126,14 @@ fn yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
     }
 }
 
-/// A row of a picture behind a Bayer filter: of each colour the mean of what the 3 x 3 pixels around have of it.
+/// A row of a Bayer picture: each colour of a pixel is the mean of that colour in the 3 x 3 pixels around it.
 fn bayer(rows: [&[u8]; 3], y: usize, [red_x, red_y]: [usize; 2], rgb: &mut Vec<u8>) {
     let width = rows[1].len();
     for x in 0..width {
         let (mut sums, mut counts) = ([0_u32; 3], [0_u32; 3]);
         for (row, dy) in rows.iter().zip([1, 0, 1]) {
             for column in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                // At the rim a row stands in for one that is not there: it has other colours, so it does not count.
+                // At the edge the row itself replaces the missing one. It has other colours, so it does not count.
                 let doubled = dy == 1 && std::ptr::eq(row.as_ptr(), rows[1].as_ptr());
                 if !doubled {
                     let off_red = [(column + red_x) % 2, (y + dy + red_y) % 2];

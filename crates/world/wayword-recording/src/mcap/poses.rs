@@ -1,4 +1,4 @@
-//! Where the camera was: by the tree of frames, odometry, or poses.
+//! Where the camera was, from the tree of frames, odometry, or poses.
 
 use super::{
     messages::{Head, MessageKind, Placed, Placing},
@@ -7,17 +7,17 @@ use super::{
 };
 use std::collections::BTreeMap;
 
-/// Words in the names of topics whose poses are wishes.
+/// Words in the names of topics whose poses are goals, not where the robot was.
 const WISHED: [&str; 4] = ["goal", "initialpose", "target", "plan"];
 const NAME_IT: &str = "write `poses = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
 
 /// All poses of a file.
 #[derive(Debug)]
 pub(crate) struct Poses {
-    /// What frame pictures say they are in.
+    /// The frame of the pictures.
     camera: String,
     tree: Tree,
-    /// Those that are not the tree's, by topic.
+    /// Odometry and poses, by topic.
     topics: BTreeMap<String, Moves>,
 }
 
@@ -25,16 +25,16 @@ pub(crate) struct Poses {
 #[derive(Debug)]
 struct Moves {
     kind: MessageKind,
-    /// What is placed, where that is told.
+    /// The frame that is placed, if the messages name it.
     what: Option<String>,
     edge: Edge,
 }
 
-/// Where the camera was, from its own frame, or from that of the robot which carries it, up to one that stands still.
+/// Edges from the camera's own frame, or from that of the robot that carries it, up to a frame that stands still.
 #[derive(Debug)]
 pub(crate) struct Way<'a> {
     edges: Vec<&'a Edge>,
-    /// Whether the camera's own frame is where it begins.
+    /// Whether it begins at the camera's own frame.
     pub(crate) of_camera: bool,
 }
 
@@ -61,7 +61,7 @@ impl Poses {
         }
     }
 
-    /// The way that is to be read: by the named topic, or the obvious one. `None` where nobody knows where the camera was.
+    /// The way by the named topic, or else by the obvious one. `None` where it is not known where the camera was.
     pub(crate) fn way(&self, named: Option<(&str, MessageKind)>) -> Result<Option<Way<'_>>, Unclear> {
         match named {
             Some((topic, MessageKind::Transforms)) => {
@@ -75,7 +75,7 @@ impl Poses {
 
     fn incomplete(&self, topic: &str) -> String {
         let above = self.tree.above(&self.camera).join(" in ");
-        format!("{topic} does not tell how the camera moved: its frame {above}, which never moves or is in nothing")
+        format!("{topic} does not say how the camera moved: its frame is {above}, which never moves or has no parent")
     }
 
     fn obvious(&self) -> Result<Option<Way<'_>>, Unclear> {
@@ -93,14 +93,14 @@ impl Poses {
                 [(_, moves)] => return Ok(Some(self.moved(moves))),
                 _ => {
                     let names = listed(found.iter().map(|(name, _)| name.as_str()));
-                    return Err((format!("holds several topics of poses: {names}"), NAME_IT));
+                    return Err((format!("has several pose topics: {names}"), NAME_IT));
                 }
             }
         }
         Ok(None)
     }
 
-    /// The way of what a topic tells of, from the camera's frame if it is known where that is on the robot.
+    /// The way of what a topic places. It begins at the camera's frame if the place of that on the robot is known.
     fn moved<'a>(&'a self, moves: &'a Moves) -> Way<'a> {
         let mounted = moves.what.as_ref().and_then(|what| self.tree.up_to(what));
         let of_camera = mounted.is_some();

@@ -1,7 +1,7 @@
-//! The records of a file that tell of messages, one after the other, those in chunks too (mcap.dev/spec).
+//! Reads the records of a file that concern messages, one after the other, also those in chunks (mcap.dev/spec).
 //!
-//! The crate `mcap` unpacks chunks, a record at a time. What is not compressed is stepped through here: of a picture only the first
-//! bytes are wanted while its time is looked for, and the crate reads every record whole.
+//! The crate `mcap` unpacks compressed chunks, a record at a time. Everything else is read here, because the crate
+//! reads every record whole, while only the first bytes of a picture are needed to find its time.
 
 use super::found::{Found, RecordPlace};
 use mcap::{
@@ -15,36 +15,36 @@ use std::{
 };
 use wayword_core::contained;
 
-/// Bytes of a record before its body: what it is, and how long.
+/// Bytes of a record before its body: its type and length.
 const HEAD_BYTES: u64 = 9;
 /// Bytes of a chunk's body before its records, where these are not compressed.
 const CHUNK_HEAD_BYTES: u64 = 40;
-/// Bytes of a message's body before what was sent.
+/// Bytes of a message's body before its payload.
 const MESSAGE_HEAD_BYTES: u64 = 22;
-/// No schema, channel or list of a chunk's messages is longer.
+/// Longest schema, channel or index of a chunk's messages.
 const MAX_RECORD_BYTES: u64 = 64 << 20;
-/// What is read from the file at once: a picture's beginning is short, and the rest may be passed over.
+/// Bytes that are read from the file at once: a picture's head is short, and the rest may be skipped.
 const BUFFER_BYTES: usize = 16 << 10;
-/// A chunk may become this large, and so many times larger than it is in the file.
+/// A chunk may unpack to the first number of bytes plus the second number times its size in the file.
 const MAX_UNPACKED: (u64, u64) = (256 << 20, 1000);
-/// No record is longer than its chunk, nor than the second number; a chunk may be tiny, but not what is held of it at once. The
-/// crate makes room for a whole record before its bytes are there, so the second number is that of the largest picture.
+/// The limit for a record is the size of its unpacked chunk, but within these bounds, bytes. The crate makes room for a
+/// whole record before its bytes are there, so the upper bound is that of the largest picture.
 const UNPACKED_RECORD: (u64, u64) = (64 << 10, 258 << 20);
 
-/// How many bytes are wanted of the messages of a channel.
+/// Most bytes that are wanted of a message, by channel.
 pub(crate) type Most<'a> = dyn Fn(u16) -> u64 + 'a;
 
-/// Who is handed records, and may have enough.
+/// Takes records, and can stop the reading.
 pub(crate) type Hear<'a> = dyn FnMut(Found<'_>) -> Result<ControlFlow<()>, String> + 'a;
 
 /// Records in a part of a file.
 pub(crate) struct Records<'a> {
     file: BufReader<&'a File>,
-    /// Where the record begins that is next, or the compressed chunk that is open.
+    /// Offset of the next record, or of the compressed chunk that is open.
     at: u64,
-    /// Where no more records begin.
+    /// No records begin from this offset on.
     end: u64,
-    /// Where the chunk ends that was entered last, if it is not compressed.
+    /// End of the chunk that was entered last, if it is not compressed.
     chunk_end: u64,
     packed: Option<Packed>,
     body: Vec<u8>,
@@ -58,7 +58,8 @@ impl<'a> Records<'a> {
         Ok(records)
     }
 
-    /// Goes to a record; to the beginning of its compressed chunk, unless that is open and not yet so far.
+    /// Goes to a record. For a record in a compressed chunk it goes to the start of that chunk, unless the chunk is
+    /// open and the record is still ahead.
     pub(crate) fn go(&mut self, to: RecordPlace) -> Result<(), String> {
         let ahead = |packed: &Packed| packed.from == to.file_at && to.within.is_some_and(|within| within >= packed.at);
         if !self.packed.as_ref().is_some_and(ahead) {
@@ -68,20 +69,21 @@ impl<'a> Records<'a> {
         Ok(())
     }
 
-    /// Enters the chunk that has to be here.
+    /// Enters the chunk that must be here.
     pub(crate) fn enter(&mut self) -> Result<(), String> {
         match self.head()? {
             (op::CHUNK, length) => self.open(length),
-            (opcode, _) => Err(format!("byte {}: a chunk was expected, not a record of type {opcode:#04x}", self.at)),
+            (opcode, _) => Err(format!("byte {}: expected a chunk, found a record of type {opcode:#04x}", self.at)),
         }
     }
 
-    /// Where the last record begins that was heard, or the chunk ends in which it is.
+    /// Offset of the next record, or the end of the compressed chunk that is open.
     pub(crate) fn reached(&self) -> u64 {
         self.packed.as_ref().map_or(self.at, |packed| packed.end)
     }
 
-    /// Hands out records up to the end of the data, or until somebody has enough, who goes on with [`Records::go`].
+    /// Hands out records up to the end of the data, or until `hear` stops it. The caller can go on with
+    /// [`Records::go`].
     ///
     /// # Errors
     /// When the file is broken, or `hear` fails.
@@ -111,12 +113,12 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// What the next record is, and how long its body.
+    /// Type of the next record, and length of its body.
     fn head(&mut self) -> Result<(u8, u64), String> {
         let head = self.exactly::<{ HEAD_BYTES as usize }>()?;
         let (opcode, length) = (head[0], u64_at(&head, 1));
         let end = if self.at < self.chunk_end { self.chunk_end } else { self.end };
-        // Of a chunk that was cut off something can be read.
+        // A chunk that was cut off can still be read in part.
         if opcode != op::CHUNK && length > end.saturating_sub(self.at + HEAD_BYTES) {
             return Err(format!("byte {}: a record of {length} bytes is cut off", self.at));
         }
@@ -129,14 +131,16 @@ impl<'a> Records<'a> {
         let end = from.saturating_add(HEAD_BYTES).saturating_add(length).min(self.end);
         let head = self.exactly::<{ CHUNK_HEAD_BYTES as usize }>()?;
         let is_packed = head[28..32] != [0; 4];
-        // Whatever is odd is left to the crate.
+        // The crate handles everything unusual.
         if !is_packed && u64_at(&head, 32).checked_add(CHUNK_HEAD_BYTES) == Some(length) {
             (self.at, self.chunk_end) = (from + HEAD_BYTES + CHUNK_HEAD_BYTES, end);
             return Ok(());
         }
         let (unpacked_bytes, packed_bytes) = (u64_at(&head, 16), end - from);
         if is_packed && unpacked_bytes > MAX_UNPACKED.0.saturating_add(packed_bytes.saturating_mul(MAX_UNPACKED.1)) {
-            return Err(format!("byte {from}: a chunk of {packed_bytes} bytes says that it holds {unpacked_bytes}"));
+            return Err(format!(
+                "byte {from}: a chunk of {packed_bytes} bytes claims to unpack to {unpacked_bytes} bytes"
+            ));
         }
         self.file.seek_relative(-((HEAD_BYTES + CHUNK_HEAD_BYTES) as i64)).map_err(|error| self.broken(&error))?;
         let record_bytes = unpacked_bytes.clamp(UNPACKED_RECORD.0, UNPACKED_RECORD.1) as usize;
@@ -146,7 +150,7 @@ impl<'a> Records<'a> {
         Ok(())
     }
 
-    /// Reads the first bytes of a body, as many as are wanted, and passes over the rest. Whether any are.
+    /// Reads the wanted first bytes of a body and skips the rest. Returns whether the record is wanted at all.
     fn body(&mut self, opcode: u8, length: u64, most: &Most<'_>) -> Result<bool, String> {
         self.body.clear();
         let begun = length.min(2);
@@ -160,7 +164,7 @@ impl<'a> Records<'a> {
     }
 
     fn append(&mut self, count: u64) -> Result<(), String> {
-        // Grows with what is really there, whatever a length says.
+        // Memory grows only with the bytes that are really there.
         match self.file.by_ref().take(count).read_to_end(&mut self.body) {
             Ok(read) if read as u64 == count => Ok(()),
             Ok(_) => Err(self.broken(&ErrorKind::UnexpectedEof.into())),
@@ -185,12 +189,12 @@ impl<'a> Records<'a> {
 /// A chunk that is unpacked while its records are read.
 struct Packed {
     reader: LinearReader,
-    /// Where it begins and ends in the file.
+    /// Its beginning and end in the file.
     from: u64,
     end: u64,
-    /// How much of it was not read yet.
+    /// Bytes of it that have not been read yet.
     left: u64,
-    /// Where in what is unpacked the next record begins.
+    /// Offset of the next record in the unpacked chunk.
     at: u64,
 }
 
@@ -207,7 +211,7 @@ impl Packed {
             match event.transpose().map_err(|error| format!("{place}: {error}"))? {
                 None => return Ok(ControlFlow::Continue(())),
                 Some(LinearReadEvent::ReadRequest(count)) => {
-                    // Nothing more, where the chunk ends too early: the reader knows what that means.
+                    // Where the chunk ends too early this is less, or 0; the reader reports that.
                     let count = usize::try_from(self.left).map_or(count, |left| left.min(count));
                     file.read_exact(self.reader.insert(count)).map_err(|error| format!("{place}: {error}"))?;
                     self.reader.notify_read(count);
@@ -226,7 +230,7 @@ impl Packed {
     }
 }
 
-/// How much is wanted of a record; `None` where it tells nothing of messages.
+/// Most bytes that are wanted of a record; `None` where it does not concern messages.
 fn wanted(opcode: u8, body: &[u8], most: &Most<'_>) -> Option<u64> {
     let id = body.first_chunk().copied().map_or(0, u16::from_le_bytes);
     match opcode {

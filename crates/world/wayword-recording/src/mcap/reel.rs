@@ -10,14 +10,14 @@ use wayword_world::files;
 /// Largest message of a picture: 64 megapixels of four bytes.
 const MAX_MESSAGE_BYTES: u64 = 257 << 20;
 
-/// Pictures that are read from the file when they are wanted.
+/// Pictures that are read from the file on demand.
 pub(crate) struct Pictures {
     pub(crate) file: PathBuf,
     pub(crate) topic: String,
     pub(crate) kind: MessageKind,
-    /// Where each picture is.
+    /// Place of each picture in the file.
     pub(crate) places: Vec<RecordPlace>,
-    /// When each was taken, after the first.
+    /// Time of each picture after the first, seconds.
     pub(crate) times_s: Vec<f64>,
 }
 
@@ -34,7 +34,8 @@ impl Reel for Pictures {
         let unreadable = |error: std::io::Error| files::wrong(&self.file, error.to_string(), HINT);
         let file = File::open(&self.file).map_err(unreadable)?;
         let length = file.metadata().map_err(unreadable)?.len();
-        // Pictures mostly lie one behind the other, and a compressed chunk can only be read from its front.
+        // One reader serves all pictures: they mostly follow each other, and a compressed chunk can only be read from
+        // its start.
         let mut records = Records::new(&file, 0, length).map_err(|why| files::wrong(&self.file, why, HINT))?;
         for &number in wanted {
             let place = self.places.get(number).ok_or_else(|| "there is no such picture".to_owned());
@@ -50,7 +51,7 @@ impl Reel for Pictures {
 
 impl Pictures {
     fn picture(&self, records: &mut Records<'_>, place: RecordPlace) -> Result<Image, String> {
-        let mut picture = Err("there is no message any more".to_owned());
+        let mut picture = Err("the message is no longer there".to_owned());
         records.go(place)?;
         let heard = records.each(&|_| MAX_MESSAGE_BYTES, &mut |found| {
             if found.place == place

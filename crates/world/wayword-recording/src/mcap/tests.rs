@@ -1,4 +1,5 @@
-//! Recordings that other programs wrote (`fixtures/make_mcap.py`), and broken and odd ones of our own.
+//! Tests with recordings that other programs wrote (`fixtures/make_mcap.py`), and with broken and odd ones that are
+//! made here.
 
 use super::*;
 use crate::reel::Recording;
@@ -53,7 +54,8 @@ fn check_colours(recording: &Recording, frames: &[usize]) {
     }
 }
 
-/// Holds a recording to the walk that all fixtures tell of, from `ahead_m` before the robot, `up_m` above the ground.
+/// Checks a recording against the path of all fixtures, seen from `ahead_m` before the robot and `up_m` above the
+/// ground.
 fn check_walk(recording: &Recording, frames: usize, [ahead_m, up_m]: [f64; 2]) {
     let times_s = recording.reel.times_s();
     assert_eq!(times_s.len(), frames);
@@ -84,7 +86,7 @@ fn what_other_programs_wrote_comes_back() {
     for (name, camera) in ALL {
         let recording = read(&fixture(name), Description::default()).unwrap();
         check_walk(&recording, 11, camera);
-        // Any of them, also backwards in the file.
+        // Any picture can be read, also backwards in the file.
         check_colours(&recording, &[9]);
         check_colours(&recording, &[0, 3, 10]);
         let fov_deg = recording.horizontal_fov_rad.map(|fov| fov.to_degrees().round());
@@ -103,14 +105,14 @@ fn the_summary_of_a_file_tells_what_going_through_it_tells() {
         let walked = Contents::of(&File::open(folder.path().join("made.mcap")).unwrap()).unwrap();
         assert_eq!(told.topics, walked.topics, "{name}");
         assert_eq!(places(&file, &told), places(&file, &walked), "{name}");
-        // Only the end of the summary is gone.
+        // Only the end of the summary is missing.
         assert_eq!(walked.broken, None, "{name}");
         assert!(told.broken.is_none(), "{name}: {:?}", told.broken);
     }
     assert!(chunks("odometry_lz4.mcap").len() > 2, "one chunk would show nothing");
 }
 
-/// Where all messages are that are read.
+/// The places of all messages that can be read.
 fn places(file: &File, contents: &Contents) -> Vec<(String, RecordPlace)> {
     let mut places = Vec::new();
     let heard = contents.messages(file, &contents.channels(|_, _| true), &mut |message| {
@@ -174,11 +176,14 @@ fn what_is_named_is_taken() {
     check_walk(&read(&path, named("/camera/color/image_raw", "/odom")).unwrap(), 11, [0.2, 1.0]);
     let error = |camera, poses| read(&path, named(camera, poses)).err().unwrap();
     let depth = error("/camera/depth/image", "");
-    assert!(depth.contains("the pictures of /camera/depth/image are \"16UC1\", which is depth"), "{depth}");
+    assert!(
+        depth.contains("the pictures of /camera/depth/image have the encoding \"16UC1\", which is depth"),
+        "{depth}"
+    );
     assert!(error("/cam", "").contains("has no camera /cam; its topics: /camera/color/camera_info"));
-    assert!(error("/odom", "").contains("/odom has messages nav_msgs/msg/Odometry as cdr, which are no pictures"));
-    assert!(error("", "/pose").contains("has no poses /pose; its topics of poses: /odom, /tf_static"));
-    assert!(error("", "/tf_static").contains("its frame camera_optical in base_link, which never moves"));
+    assert!(error("/odom", "").contains("/odom has no pictures, but nav_msgs/msg/Odometry as cdr"));
+    assert!(error("", "/pose").contains("has no pose topic /pose; its pose topics: /odom, /tf_static"));
+    assert!(error("", "/tf_static").contains("its frame is camera_optical in base_link, which never moves"));
 }
 
 #[test]
@@ -190,7 +195,7 @@ fn messages_that_are_compressed_by_themselves_are_told_apart() {
 #[test]
 fn what_is_no_mcap_file_is_refused_at_once() {
     for (bytes, told) in [
-        (&b"\x89MCAP"[..], "byte 0: does not begin as an MCAP file does"),
+        (&b"\x89MCAP"[..], "byte 0: does not begin like an MCAP file"),
         (b"#ROSBAG V2.0\n....", "is a ROS 1 bag, not an MCAP file"),
         (b"", "is empty"),
     ] {
@@ -200,7 +205,7 @@ fn what_is_no_mcap_file_is_refused_at_once() {
     assert!(bytes_read(MAGIC, Description::default()).1.err().unwrap().contains("has no messages"));
 }
 
-/// Messages by the Rust library: topic, schema, encoding, log time, bytes.
+/// A file that the Rust library writes, of messages: topic, schema, encoding, log time, bytes.
 fn made(messages: &[(&str, &str, &str, u64, Vec<u8>)]) -> Vec<u8> {
     let options = ::mcap::WriteOptions::new().compression(None).chunk_size(Some(1024));
     let mut writer = options.create(std::io::Cursor::new(Vec::new())).unwrap();
@@ -215,7 +220,7 @@ fn made(messages: &[(&str, &str, &str, u64, Vec<u8>)]) -> Vec<u8> {
     writer.into_inner().into_inner()
 }
 
-/// Writes CDR, the number's highest byte first.
+/// Writes CDR, most significant byte first.
 struct Out(Vec<u8>);
 
 impl Out {
@@ -255,14 +260,15 @@ const S: u64 = 1_000_000_000;
 
 #[test]
 fn pictures_and_poses_meet_on_a_clock_that_both_have() {
-    // Stamps of pictures and poses; the x at the second picture's time, which was logged at 12 s as the pose 2.0 was.
+    // Stamps of pictures and poses, and the expected x at the second picture's time. That picture was logged at 12 s,
+    // as the pose with x = 2.0 was.
     for (shot, posed, expected) in [
         ([100, 102], [100, 102], 2.0),
-        // Simulated time begins with 0: that picture has none.
+        // Simulated time begins with 0, so that picture counts as without a stamp.
         ([0, 2], [0, 2], 2.0),
         ([0, 0], [100, 102], 2.0),
         ([100, 102], [0, 0], 2.0),
-        // A camera's own clock.
+        // The camera has its own clock.
         ([100, 102], [9000, 9002], 2.0),
     ] {
         let bytes = made(&[
@@ -310,14 +316,14 @@ fn errors_name_what_is_there_and_what_to_do() {
     .into();
     for (error, expected) in errors.iter().zip([
         ": holds several cameras: /left/image, /right/image; write `camera = \"TOPIC\"`",
-        ": has no pictures that are read here; its topics: /video (foxglove.CompressedVideo as protobuf); record",
-        ": has no pictures that are read here; its topics: /image (sensor_msgs/Image as ros1); convert the ROS 1 bag",
+        ": has no pictures that can be read; its topics: /video (foxglove.CompressedVideo as protobuf); record",
+        ": has no pictures that can be read; its topics: /image (sensor_msgs/Image as ros1); convert the ROS 1 bag",
         ": message at byte ",
         ": message at byte ",
     ]) {
         assert!(error.starts_with(expected), "{error}");
     }
-    assert!(errors[3].contains("bytes were expected"), "{}", errors[3]);
+    assert!(errors[3].contains("bytes expected"), "{}", errors[3]);
     assert!(errors[4].contains("not as plain CDR"), "{}", errors[4]);
 }
 
@@ -333,7 +339,7 @@ fn a_picture_that_is_cut_off_is_told_by_its_number() {
 
 #[test]
 fn lengths_that_lie_take_no_memory() {
-    // A chunk that says that it becomes enormous, and a record that says it is.
+    // A chunk that claims an enormous length, and one that claims to unpack to an enormous length.
     let bytes = std::fs::read(fixture("odometry_lz4.mcap")).unwrap();
     let at = *chunks("odometry_lz4.mcap").first().unwrap();
     for (from, to) in [(at + 1, at + 9), (at + 9 + 16, at + 9 + 24)] {
@@ -351,7 +357,7 @@ fn a_damaged_chunk_in_a_file_with_a_summary_is_an_error_that_names_the_byte() {
     for name in ["odometry_lz4.mcap", "odometry_zstd.mcap"] {
         let whole = std::fs::read(fixture(name)).unwrap();
         let at = *chunks(name).last().unwrap();
-        // What it is, the name of its compression, and the first bytes of what it holds.
+        // Its type, the name of its compression, and the first bytes of its content.
         for damaged in [at, at + 9 + 32, at + 9 + 44] {
             let mut bytes = whole.clone();
             bytes[damaged] ^= 0x55;
@@ -362,7 +368,7 @@ fn a_damaged_chunk_in_a_file_with_a_summary_is_an_error_that_names_the_byte() {
     }
 }
 
-/// Reads all there is of a file that may be broken.
+/// Reads all of a file that may be broken.
 fn exhaust(bytes: &[u8]) {
     if let (_folder, Ok(recording)) = bytes_read(bytes, Description::default()) {
         let times_s = recording.reel.times_s();
@@ -377,11 +383,11 @@ fn exhaust(bytes: &[u8]) {
 #[test]
 fn a_text_that_is_longer_than_its_file_is_refused_before_it_takes_memory() {
     let record = |opcode: u8, body: &[u8]| [&[opcode][..], &(body.len() as u64).to_le_bytes(), body].concat();
-    // A schema whose name says that it has 1.7 GB.
+    // A schema whose name claims a length of 1.7 GB.
     let schema = record(3, &[&[1, 0][..], b"iense", &[0; 8]].concat());
     let (_folder, read) = bytes_read(&[b"\x89MCAP0\r\n".to_vec(), schema].concat(), Description::default());
     let error = read.err().unwrap();
-    assert!(error.contains("leads out of it"), "{error}");
+    assert!(error.contains("larger than the record"), "{error}");
 }
 
 proptest! {

@@ -1,4 +1,4 @@
-//! Which of a file's topics is the camera, and which the lens.
+//! Finds out which of a file's topics is the camera, and which the lens.
 
 use super::{
     contents::Contents,
@@ -10,12 +10,12 @@ use std::collections::BTreeMap;
 
 /// Most names that an error lists.
 const MAX_NAMES: usize = 20;
-/// What the names of topics have in them that are not what a person would see.
+/// Words in the names of topics whose pictures do not show what a person would see.
 const NO_VIEW: [&str; 9] = ["depth", "disparity", "infra", "thermal", "mask", "segment", "semantic", "label", "debug"];
-/// What those have in them that are.
+/// Words in the names of topics whose pictures do.
 const COLOUR: [&str; 3] = ["color", "colour", "rgb"];
 
-/// What is said at the beginning of the first message of a camera.
+/// The head of the first message of each camera, by topic.
 pub(crate) type Heads = BTreeMap<String, PictureHead>;
 
 /// Why there is no camera, and what to do.
@@ -24,7 +24,8 @@ pub(crate) type Unclear = (String, &'static str);
 const NAME_IT: &str = "write `camera = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
 const FOREIGN: &str =
     "record sensor_msgs/msg/Image or CompressedImage with ROS 2; or write the pictures to a folder, or to an MP4 file";
-const ROS_1: &str = "convert the ROS 1 bag with `rosbags-convert --src NAME.bag --dst NAME --dst-storage mcap --dst-typestore ros2_humble` (pip install rosbags)";
+const ROS_1: &str = "convert the ROS 1 bag with `rosbags-convert --src NAME.bag --dst NAME --dst-storage mcap \
+                     --dst-typestore ros2_humble` (pip install rosbags)";
 
 /// The camera's topic: the named one, or the obvious one.
 pub(crate) fn camera<'a>(contents: &'a Contents, heads: &Heads, named: Option<&str>) -> Result<&'a str, Unclear> {
@@ -33,16 +34,17 @@ pub(crate) fn camera<'a>(contents: &'a Contents, heads: &Heads, named: Option<&s
         .iter()
         .filter_map(|(name, topic)| {
             let kind = topic.kind.filter(|kind| kind.is_picture())?;
-            // One whose messages all lie behind a break has no head.
+            // A topic whose messages all come after a break in the file has no head.
             Some((name.as_str(), pixels::unfit(kind, &heads.get(name)?.encoding)))
         })
         .collect();
     if let Some(named) = named {
         return match cameras.iter().find(|(name, _)| *name == named) {
             Some((name, None)) => Ok(name),
-            Some((_, Some(why))) => {
-                Err((format!("the pictures of {named} are {why}"), "name another camera, or leave `camera` out"))
-            }
+            Some((_, Some(why))) => Err((
+                format!("the pictures of {named} have the encoding {why}"),
+                "name another camera, or leave `camera` out",
+            )),
             None => Err((not_there(contents, named), "name one of these, or leave `camera` out")),
         };
     }
@@ -56,7 +58,7 @@ pub(crate) fn camera<'a>(contents: &'a Contents, heads: &Heads, named: Option<&s
 
 fn not_there(contents: &Contents, named: &str) -> String {
     match contents.topics.get(named) {
-        Some(topic) => format!("{named} has messages {}, which are no pictures", told(topic)),
+        Some(topic) => format!("{named} has no pictures, but {}", told(topic)),
         None => format!("has no camera {named}; its topics: {}", listed(contents.topics.keys().map(String::as_str))),
     }
 }
@@ -72,13 +74,17 @@ fn none(contents: &Contents, cameras: &[(&str, Option<String>)]) -> Unclear {
     let hint = if contents.topics.values().any(|topic| topic.encoding == "ros1") { ROS_1 } else { FOREIGN };
     match topics.is_empty() {
         true => ("has no messages".to_owned(), "record it again, with a camera's topic"),
-        false => (format!("has no pictures that are read here; its topics: {}", topics.join(", ")), hint),
+        false => (format!("has no pictures that can be read; its topics: {}", topics.join(", ")), hint),
     }
 }
 
 fn told(topic: &Topic) -> String {
     let Topic { schema, encoding, .. } = topic;
-    if schema.is_empty() { format!("without a type, as {encoding}") } else { format!("{schema} as {encoding}") }
+    if schema.is_empty() {
+        format!("messages without a type, as {encoding}")
+    } else {
+        format!("{schema} as {encoding}")
+    }
 }
 
 pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
@@ -89,12 +95,13 @@ pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// The one camera among those that can be read: without what nobody would see, without doubles, by its colours.
+/// The one camera among those that can be read: the only one; else the only one without depth and the like and without
+/// doubles; else the only one of these with colour in its name.
 fn obvious<'a>(fit: &[&'a str]) -> Option<&'a str> {
     let only = |names: &[&'a str]| if let [name] = names { Some(*name) } else { None };
     let has = |name: &str, words: &[&str]| words.iter().any(|word| name.to_ascii_lowercase().contains(word));
     let seen: Vec<&str> = fit.iter().copied().filter(|name| !has(name, &NO_VIEW)).collect();
-    // The same pictures as files are a fraction of the bytes.
+    // The same pictures compressed are a fraction of the bytes.
     let doubled =
         |name: &str| seen.iter().any(|other| *other != name && other.strip_suffix("/compressed") == Some(name));
     let seen: Vec<&str> = seen.iter().copied().filter(|name| !doubled(name)).collect();
@@ -102,7 +109,7 @@ fn obvious<'a>(fit: &[&'a str]) -> Option<&'a str> {
     only(fit).or_else(|| only(&seen)).or_else(|| only(&colour))
 }
 
-/// What is known of a camera's lens: by the topic beside it, else by its frame if that is one lens only.
+/// A camera's lens: that of the topic beside it, else those with the same frame if all of them have one field of view.
 pub(crate) fn lens<'a>(lenses: &'a BTreeMap<String, Lens>, camera: &str, frame: &str) -> Option<&'a Lens> {
     let plain = camera.strip_suffix("/compressed").unwrap_or(camera);
     let beside = plain.rsplit_once('/').map_or("", |(parent, _)| parent);
@@ -125,7 +132,7 @@ mod tests {
         assert_eq!(obvious(&["/image_raw", "/image_raw/compressed"]), Some("/image_raw/compressed"));
         assert_eq!(obvious(&["/fisheye/image", "/front/rgb/image"]), Some("/front/rgb/image"));
         assert_eq!(obvious(&["/left/image", "/right/image"]), None);
-        // Whoever records nothing else wants it.
+        // The only camera is taken, whatever its name.
         assert_eq!(obvious(&["/thermal/image"]), Some("/thermal/image"));
         assert_eq!(obvious(&[]), None);
     }

@@ -3,21 +3,21 @@
 use super::messages::{Placed, Placing};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Frames that stand still, the better ones first (REP 105).
+/// Frames that stand still, the best first (REP 105).
 const STANDING: [&str; 3] = ["map", "odom", "world"];
-/// No robot has more frames.
+/// Most frames of a file: no robot has more.
 const MAX_FRAMES: usize = 100_000;
 
-/// On which clock times are read.
+/// The clock by which times are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Clock {
-    /// What messages say of themselves.
+    /// The stamps in the messages' headers.
     Stamp,
-    /// When the recorder had them.
+    /// When the recorder received them.
     Log,
 }
 
-/// Two times of one thing, nanoseconds.
+/// The two times of a message, nanoseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Times {
     pub(crate) stamp_ns: i64,
@@ -25,7 +25,7 @@ pub(crate) struct Times {
 }
 
 impl Times {
-    /// `None` where a message did not say.
+    /// The time on a clock; `None` where the stamp is 0.
     pub(crate) fn on(self, clock: Clock) -> Option<i64> {
         match clock {
             Clock::Stamp => Some(self.stamp_ns).filter(|stamp_ns| *stamp_ns != 0),
@@ -37,7 +37,7 @@ impl Times {
 /// How one frame moves in another.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Edge {
-    /// In which it is placed.
+    /// The frame in which it is placed.
     pub(crate) parent: String,
     /// Whether it never moves.
     pub(crate) fixed: bool,
@@ -49,7 +49,7 @@ impl Edge {
         !self.fixed && self.samples.len() > 1
     }
 
-    /// In the order of one clock; a single placing holds for all times.
+    /// The edge in the order of one clock; a single placing is valid at all times.
     pub(crate) fn on(&self, clock: Clock) -> Timed {
         if !self.moves() {
             return Timed {
@@ -65,7 +65,8 @@ impl Edge {
     }
 }
 
-/// Longest silence over which the way is taken to be straight, nanoseconds: as long as tf2 remembers.
+/// Longest time between two transforms between which the way is interpolated on a straight line, nanoseconds: as long
+/// as tf2 keeps transforms.
 const MAX_GAP_NS: i64 = 10_000_000_000;
 
 /// An edge on one clock.
@@ -75,8 +76,8 @@ pub(crate) struct Timed {
 }
 
 impl Timed {
-    /// Where the frame is at a time; between two placings that are near in time on the straight way. `None` before the first, after
-    /// the last, and where nothing was said for long.
+    /// Where the frame is at a time, interpolated between the two placings around it. `None` before the first, after
+    /// the last, and in gaps longer than [`MAX_GAP_NS`].
     fn at(&self, time_ns: i64) -> Option<Placing> {
         if !self.moves {
             return self.samples.first().map(|(_, placing)| *placing);
@@ -95,7 +96,7 @@ impl Timed {
     }
 }
 
-/// Where the first of a row of frames is in the last one, at each time at which one of them moved.
+/// Where the first frame of a chain is in the last one, at each time at which one of the chain moved.
 pub(crate) fn placings(chain: &[&Edge], clock: Clock) -> Vec<(i64, Placing)> {
     let chain: Vec<Timed> = chain.iter().map(|edge| edge.on(clock)).collect();
     let moving = chain.iter().filter(|edge| edge.moves);
@@ -106,13 +107,13 @@ pub(crate) fn placings(chain: &[&Edge], clock: Clock) -> Vec<(i64, Placing)> {
     times.into_iter().filter_map(|time_ns| Some((time_ns, at(time_ns)?))).collect()
 }
 
-/// Frames by name, each with the one in which it is placed.
+/// Frames by name, each with its parent.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Tree {
-    /// From whose frame upwards frames are of interest.
+    /// The camera's frame: only this and the frames above it are needed.
     camera: String,
     edges: BTreeMap<String, Edge>,
-    /// The only frames that are still of interest, once the way up to one that stands is known.
+    /// The only frames that are still needed, once the way up to one that stands still is known.
     kept: Option<BTreeSet<String>>,
 }
 
@@ -134,7 +135,7 @@ impl Tree {
             fixed,
             ..Edge::default()
         });
-        // A frame that was hung elsewhere in between: what was known first counts.
+        // Where a frame changes its parent, only the first parent counts.
         if edge.parent == placed.head.frame {
             edge.fixed = fixed;
             if fixed {
@@ -157,7 +158,7 @@ impl Tree {
         }
     }
 
-    /// A frame, the one it is placed in, and so on up to the root.
+    /// A frame, its parent, and so on up to the root.
     pub(crate) fn above<'a>(&'a self, frame: &'a str) -> Vec<&'a str> {
         let (mut above, mut seen) = (vec![frame], BTreeSet::from([frame]));
         while let Some(edge) = above.last().and_then(|frame| self.edges.get(*frame)) {
@@ -169,15 +170,15 @@ impl Tree {
         above
     }
 
-    /// The edges from the camera's frame up to another one; `None` where that does not lie above it.
+    /// The edges from the camera's frame up to another one; `None` where that is not above it.
     pub(crate) fn up_to(&self, frame: &str) -> Option<Vec<&Edge>> {
         let above = self.above(&self.camera);
         let to = above.iter().position(|above| *above == frame)?;
         above[..to].iter().map(|frame| self.edges.get(*frame)).collect()
     }
 
-    /// The edges from the camera's frame up to the best frame that stands still; up to the root, if any will do. `None` where
-    /// there is no such frame, or nothing on the way ever moves.
+    /// The edges from the camera's frame up to the best frame that stands still. With `any`, up to the root where there
+    /// is no such frame. `None` where there is no way, or nothing on it ever moves.
     pub(crate) fn way_up(&self, any: bool) -> Option<Vec<&Edge>> {
         let above = self.above(&self.camera);
         let best = above.iter().filter_map(|frame| Some((standing(frame)?, *frame))).min().map(|(_, frame)| frame);
@@ -186,7 +187,7 @@ impl Tree {
     }
 }
 
-/// Which of the frames that stand still a name means: `map`, `robot1/map`.
+/// Index in [`STANDING`] of the frame that a name means: `map`, `robot1/map`.
 fn standing(frame: &str) -> Option<usize> {
     let name = frame.rsplit('/').next().unwrap_or(frame);
     STANDING.iter().position(|standing| *standing == name)
@@ -248,7 +249,7 @@ mod tests {
         assert!(tree(&moving).way_up(false).is_none());
         assert!(tree(&moving).way_up(true).is_some());
         assert!(tree(&[("map", "cam", 1, 0.0, true)]).way_up(true).is_none());
-        // Two frames that are placed in each other end somewhere.
+        // Two frames that are placed in each other do not make an endless loop.
         let round = [("b", "cam", 1, 0.0, false), ("cam", "b", 1, 0.0, false), ("b", "cam", 2, 0.0, false)];
         assert!(tree(&round).way_up(false).is_none());
     }

@@ -3,7 +3,7 @@ use ::image::{Rgb, RgbImage};
 use std::sync::Mutex;
 use wayword_core::motion::Turn;
 
-/// Twelve pictures, each with its own pattern; 4 m north, then 4 m east where `poses` are there.
+/// Nine pictures, each with its own pattern: 4 m north, then 4 m east, with a pose file if `poses`.
 fn walk(poses: bool) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let mut csv = String::from("image,x,y,z,heading_deg\n");
@@ -86,7 +86,7 @@ fn stretches_keep_to_what_is_asked_for_and_to_the_seed() {
 #[test]
 fn no_path_leads_over_a_gap_in_the_track() {
     let folder = walk(true);
-    // Four metres to the north and one to the east without a pose, and then far away.
+    // Two metres north, then three pictures without a pose, then far away.
     let csv = "image,x,y,z,heading_deg\n0.png,0,0,0,0\n1.png,0,1,0,0\n2.png,0,2,0,0\n\
                6.png,20,4,0,90\n7.png,21,4,0,90\n8.png,22,4,0,90\n";
     std::fs::write(folder.path().join("poses.csv"), csv).unwrap();
@@ -101,10 +101,10 @@ fn no_path_leads_over_a_gap_in_the_track() {
     let graph = platform.graph(&scene).unwrap();
     assert!(graph.shortest_path(&id("6.png"), &id("8.png")).unwrap().is_some());
     assert!(graph.shortest_path(&id("2.png"), &id("6.png")).unwrap().is_none());
-    assert!(heard.lock().unwrap()[0].contains("1 gaps over which no path leads"), "{heard:?}");
+    assert!(heard.lock().unwrap()[0].contains("1 gap that no path crosses"), "{heard:?}");
 }
 
-/// Two good recordings and two that are none.
+/// Two good recordings and two that cannot be read.
 fn with_unreadable() -> tempfile::TempDir {
     let shelf = tempfile::tempdir().unwrap();
     for name in ["a", "b"] {
@@ -128,7 +128,7 @@ fn recordings_that_cannot_be_read_are_told_at_once_unless_others_are_meant() {
     let told = platform.check(&scenes.iter().collect()).unwrap_err().to_string();
     assert!(told.contains("2 of 4 recordings cannot be read") && told.contains("--scan"), "{told}");
     assert!(told.contains("1.jpg: is an HEIC picture") && told.contains("heif-convert"), "{told}");
-    assert!(told.contains("torn/1.png: is no picture that can be read"), "{told}");
+    assert!(told.contains("torn/1.png: cannot be decoded as a picture"), "{told}");
     platform.check(&scenes[..2].iter().collect()).unwrap();
     let alone = RecordingPlatform::open(&shelf.path().join("phone"), Arc::new(|_: &str| {})).unwrap();
     let told = alone.check(&scenes.iter().collect()).unwrap_err().to_string();
@@ -210,7 +210,7 @@ fn large_pictures_are_made_as_large_as_other_worlds_have_them() {
     let small = scaled(&large);
     assert_eq!((small.width_px(), small.height_px()), (640, 360));
     assert!(small.rgb().iter().all(|level| *level == 90));
-    // A telephone that was held upright.
+    // A phone that was held upright.
     let upright = scaled(&Image::new(720, 1280, vec![90; 1280 * 720 * 3]).unwrap());
     assert_eq!((upright.width_px(), upright.height_px()), (360, 640));
     assert_eq!(scaled(&upright), upright);

@@ -1,7 +1,8 @@
 use super::*;
 use std::f64::consts::FRAC_PI_2;
 
-/// A walk in a world with z up: its places, with a camera of OpenGL that looks along each step, tilted down by some radians.
+/// A path in a world with z up: its places, with an OpenGL camera that looks along each step, tilted down by some
+/// radians.
 fn walk(places: &[[f64; 3]], tilt_rad: f64) -> Vec<Sample> {
     let places: Vec<DVec3> = places.iter().map(|place| DVec3::from(*place)).collect();
     let mut samples = Vec::new();
@@ -18,12 +19,12 @@ fn walk(places: &[[f64; 3]], tilt_rad: f64) -> Vec<Sample> {
     samples
 }
 
-/// Through rooms: north, east, south, with 5 cm of bobbing.
+/// A path through rooms: north, east, south, with 5 cm of bobbing.
 fn level() -> Vec<Sample> {
     walk(&[[0.0, 0.0, 1.5], [0.0, 6.0, 1.55], [5.0, 6.0, 1.5], [5.0, 1.0, 1.55]], 0.2)
 }
 
-/// The same as somebody writes it down whose world has y up.
+/// The same poses in a world with y up.
 fn with_y_up(samples: Vec<Sample>) -> Vec<Sample> {
     let turn = |place: DVec3| DVec3::new(place.x, place.z, -place.y);
     let turned =
@@ -47,7 +48,7 @@ fn y_up_taken_for_z_up_is_refused_with_the_setting_that_mends_it() {
     let Some(Doubt::Misread(words)) = found(&samples, OPEN_GL) else { panic!("it is misread") };
     assert!(words.contains("Write world = \"y-up\" into a recording.toml"), "{words}");
     assert_eq!(found(&samples, Axes { world: World::YUp, ..OPEN_GL }), None);
-    // Who says so is believed.
+    // What the user set is not questioned.
     let described = Description { world: Some(World::ZUp), orientation: Some(Body::OpenGl), ..Description::default() };
     assert_eq!(doubt(&samples, OPEN_GL, &described), None);
 }
@@ -72,7 +73,7 @@ fn places_alone_that_keep_to_an_upright_plane_are_odd() {
     assert!(words.contains("write world = \"y-up\""), "{words}");
     assert_eq!(found(&unheld(level()), OPEN_GL), None);
     let described = Description { world: Some(World::ZUp), ..Description::default() };
-    assert_eq!(doubt(&unheld(with_y_up(level())), OPEN_GL, &described), None, "who says so is believed");
+    assert_eq!(doubt(&unheld(with_y_up(level())), OPEN_GL, &described), None, "what the user set is not questioned");
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn a_camera_on_its_head_is_odd_and_a_short_walk_is_not_judged() {
         let held = sample.held.map(|[x, y, z]| [-x, -y, z]);
         Sample { held, ..sample }
     });
-    // By an optical frame it would be upright, and look back: that is what the user is asked.
+    // Read as an optical frame it would be upright and look back, so the warning names that frame.
     let told = found(&upside_down.collect::<Vec<_>>(), OPEN_GL);
     assert!(matches!(&told, Some(Doubt::Odd(words)) if words.contains("orientation = \"optical\"")), "{told:?}");
     assert_eq!(found(&with_y_up(walk(&[[0.0, 0.0, 1.5], [0.0, 2.0, 1.5]], 0.2)), OPEN_GL), None);

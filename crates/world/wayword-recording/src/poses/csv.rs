@@ -23,12 +23,12 @@ enum Seat {
     Heading { column: usize, per_unit_rad: f64 },
 }
 
-/// With this EuRoC's names of positions begin.
+/// The beginning of EuRoC's names for positions.
 const EUROC_POSITION: &str = "p_rs_r_";
-const HEADER: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, `yaw_rad` or \
-                      `heading_deg` say where the camera looks";
+const HEADER: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, \
+                      `yaw_rad` or `heading_deg` say where the camera looks";
 
-/// Reads it.
+/// Reads the rows of a CSV file.
 pub(super) fn read(text: &str) -> Result<Rows, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let (_, header) = lines.next().ok_or("is empty")?;
@@ -43,10 +43,10 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
     Ok(Rows { usual: Axes::of(body), knows_above: !is_euroc, rows: rows.collect::<Result<_, _>>()? })
 }
 
-/// The cells of a line, up to one in quotes that holds what stands between cells: it shifts all that follow.
+/// The cells of a line, up to a quoted cell that contains the separator: all cells after it would be shifted.
 struct Cells<'a> {
     plain: Vec<&'a str>,
-    /// What the first cell that is not read holds, where there is one.
+    /// The separator that the first unread cell contains, if there is such a cell.
     held: Option<char>,
 }
 
@@ -62,13 +62,13 @@ impl<'a> Cells<'a> {
 
     fn get(&self, column: usize) -> Result<&'a str, String> {
         self.plain.get(column).copied().ok_or_else(|| match self.held {
-            Some(between) => format!("a cell in quotes holds {between:?}, which is not read"),
-            None => format!("only {} cells", self.plain.len()),
+            Some(between) => format!("a quoted cell contains {between:?}, which cannot be read"),
+            None => format!("has too few cells ({})", self.plain.len()),
         })
     }
 }
 
-/// A column's name as it is compared: `#timestamp [ns]` is `timestamp_ns`, `p_RS_R_x [m]` is `x`.
+/// A column's name in the form that is compared: `#timestamp [ns]` is `timestamp_ns`, `p_RS_R_x [m]` is `x`.
 fn name_of(cell: &str) -> String {
     let cell = cell.trim_start_matches('#').trim().to_ascii_lowercase();
     let (name, unit) = match cell.split_once('[') {

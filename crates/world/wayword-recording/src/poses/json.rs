@@ -1,4 +1,4 @@
-//! Poses as JSON: a list of poses of our own, or NeRF's `transforms.json`.
+//! Poses as JSON: Wayword's own list of poses, or NeRF's `transforms.json`.
 
 use super::rows::{Facing, Of, Row, Rows, seconds};
 use crate::axes::{Axes, Body};
@@ -22,7 +22,7 @@ struct Framed {
     transform_matrix: Vec<[f64; 4]>,
 }
 
-/// A pose of ours.
+/// A pose of Wayword's own format.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Posed {
@@ -40,12 +40,12 @@ struct Posed {
     heading_deg: Option<f64>,
 }
 
-const EXPECTED: &str = "expected `transforms.json`, or a list of {\"image\" or \"time_s\", \"position\": [x, y, z]} with \
-                        \"orientation\": [x, y, z, w], \"yaw_rad\" or \"heading_deg\"";
+const EXPECTED: &str = "expected `transforms.json`, or a list of {\"image\" or \"time_s\", \"position\": [x, y, z]} \
+                        with \"orientation\": [x, y, z, w], \"yaw_rad\" or \"heading_deg\"";
 
-/// Reads it.
+/// Reads the rows of a JSON file.
 pub(super) fn read(text: &str) -> Result<Rows, String> {
-    // An untagged enum tells nothing of what is wrong, so what is no JSON at all is told first.
+    // An untagged enum does not say what is wrong, so invalid JSON is reported first.
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     match PoseFile::deserialize(value).map_err(|_| EXPECTED.to_owned())? {
         PoseFile::Transforms { frames } => {

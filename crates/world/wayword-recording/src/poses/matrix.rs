@@ -4,7 +4,7 @@ use super::rows::{Facing, Of, Row, Rows, number, seconds};
 use crate::axes::{Axes, Body, World};
 use wayword_core::DVec3;
 
-/// Reads either; which one it is, its first line tells.
+/// Reads either; the first line decides which one it is.
 pub(super) fn read(text: &str) -> Result<Rows, String> {
     let lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
@@ -24,7 +24,11 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
         let row = if numbers.len() == expected { row(&numbers, rows.len()) } else { None };
         rows.push(row.ok_or_else(|| {
             let count = numbers.len();
-            format!("line {}: {count} numbers, not 8 (time x y z qx qy qz qw) or 12 (a 3 x 4 matrix)", at + 1)
+            let at = at + 1;
+            format!(
+                "line {at}: every line needs 8 numbers (time x y z qx qy qz qw), or every line 12 (a 3 x 4 matrix); \
+                 this one has {count}"
+            )
         })?);
     }
     let kitti = Axes { world: World::YDown, ..Axes::of(Body::Optical) };

@@ -1,4 +1,4 @@
-//! Poses that lie in a file beside pictures or a video.
+//! Poses in a file beside pictures or a video.
 
 mod csv;
 mod json;
@@ -18,15 +18,15 @@ use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 256 << 20;
 const HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
-/// Names under which the poses of a folder are looked for.
+/// Names of a folder's pose file, in the order in which they are looked for.
 const IN_FOLDER: [&str; 6] =
     ["poses.json", "poses.csv", "poses.tum", "poses.txt", "groundtruth.txt", "transforms.json"];
 
-/// The pose file of a folder, or of a file by its own name (`walk.csv` for `walk.mp4`), where there is one; or the one that the
-/// description names.
+/// The pose file that the description names, else that of a folder, or of a file by its name (`walk.csv` for
+/// `walk.mp4`); `None` where there is none.
 ///
 /// # Errors
-/// When the description names one that is not there.
+/// When the description names a file that does not exist.
 pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<PathBuf>, PlatformError> {
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
     if let Some(named) = &described.poses {
@@ -35,7 +35,7 @@ pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<Path
         return if plain && file.is_file() {
             Ok(Some(file))
         } else {
-            let reason = format!("poses = {named:?} names no file in the folder of the recording");
+            let reason = format!("poses = {named:?} is not a file in the recording's folder");
             Err(files::wrong(folder, reason, crate::describe::HINT))
         };
     }
@@ -47,10 +47,10 @@ pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<Path
     Ok(candidates.into_iter().find(|file| file.is_file()))
 }
 
-/// The track in a pose file, on the clock of pictures that were taken at `times_s` and are called `name`.
+/// The track in a pose file, on the clock of pictures that were taken at `times_s` and have the names `name`.
 ///
 /// # Errors
-/// When it cannot be read, or tells nothing of these pictures.
+/// When it cannot be read, or has no pose for any of these pictures.
 pub(crate) fn track(
     file: &Path,
     described: &Description,
@@ -71,22 +71,23 @@ pub(crate) fn track(
     let doubt = plausible::doubt(&read.samples(), axes, described);
     let rows = read.rows;
     if axes.world != World::ZUp && rows.iter().any(|row| matches!(row.facing, Facing::Yaw(_))) {
-        return Err(wrong("a yaw turns about z, so the world of its poses must be z-up".into()));
+        return Err(wrong("a yaw turns about z, so `world` must be z-up".into()));
     }
     if let Some(Doubt::Misread(reason)) = doubt {
         return Err(files::wrong(file, reason, crate::describe::HINT));
     }
     let none = if rows.is_empty() {
-        "holds no pose"
+        "holds no poses"
     } else {
-        "names pictures, or numbers of pictures, none of which is here, or no place at all"
+        "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid"
     };
     let track = on_clock(rows, axes, times_s, name).ok_or_else(|| wrong(none.into()))?;
     if !times_s.iter().any(|time_s| track.at(*time_s).is_some()) {
         let ((from, to), first, last) =
             (track.span_s(), times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));
         return Err(wrong(format!(
-            "has poses from {from} to {to} s, and the pictures were taken from {first} to {last} s: no pose belongs to a picture"
+            "has poses from {from} to {to} s, but the pictures were taken from {first} to {last} s: no picture has a \
+             pose"
         )));
     }
     Ok(match doubt {
@@ -95,7 +96,7 @@ pub(crate) fn track(
     })
 }
 
-/// Rows as fixes; those of pictures that are not there are left out.
+/// Rows as fixes; rows of pictures that do not exist are left out.
 fn on_clock(rows: Vec<rows::Row>, axes: Axes, times_s: &[f64], name: &dyn Fn(usize) -> String) -> Option<Track> {
     let by_name = rows.iter().any(|row| matches!(row.of, Of::Picture(_)));
     let mut named: Vec<(String, f64)> = Vec::new();

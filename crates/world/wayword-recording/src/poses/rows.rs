@@ -8,11 +8,11 @@ use crate::{
 use std::path::Path;
 use wayword_core::{DVec3, Heading};
 
-/// What a file says, and how its format usually means it.
+/// The poses of a file, and the axes that its format usually has.
 #[derive(Debug)]
 pub(super) struct Rows {
     pub(super) usual: Axes,
-    /// Whether what the body has above it is known: of EuRoC's sensor only what it has ahead is read.
+    /// Whether the body's up direction is known: for EuRoC's sensor only the direction ahead is.
     pub(super) knows_above: bool,
     pub(super) rows: Vec<Row>,
 }
@@ -77,7 +77,7 @@ impl Rows {
     }
 }
 
-/// What pictures are told apart by, whatever folder and ending a pose file gives them.
+/// The part of a picture's name that is compared, without the folder and ending that a pose file may give it.
 pub(super) fn stem(name: &str) -> String {
     let path = Path::new(name);
     let known = path
@@ -88,13 +88,14 @@ pub(super) fn stem(name: &str) -> String {
     stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// A number, or the words for what is wrong with it. Trackers write `nan` while they are lost; such a row is none in the end.
+/// A number, or the words for what is wrong with it. `nan` is accepted, because trackers write it while they are lost;
+/// such rows are dropped later.
 pub(super) fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().map_err(|_| format!("{:?} is no number", text.chars().take(40).collect::<String>()))
+    text.trim().parse().map_err(|_| format!("{:?} is not a number", text.chars().take(40).collect::<String>()))
 }
 
-/// A time by a number and the unit that its column names; without a unit, seconds, unless the number can only be a time of day in
-/// milliseconds, microseconds or nanoseconds.
+/// A time in seconds from a number and the unit in its column's name. Without a unit the number is in seconds, unless
+/// it is so large that it can only be a time since 1970 in milliseconds, microseconds or nanoseconds.
 pub(super) fn seconds(number: f64, unit: Option<&str>) -> f64 {
     let per_s = match unit {
         Some("ns") => 1e9,

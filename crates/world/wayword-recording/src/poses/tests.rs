@@ -75,17 +75,17 @@ fn what_is_wrong_is_told_with_its_line() {
     let usual = Description::default();
     for (name, text, told) in [
         ("poses.csv", "time,x\n1,2\n", "line 1: the header needs"),
-        ("poses.csv", "time,x,y\n1,2,here\n", "line 2: \"here\" is no number"),
-        ("poses.csv", "time,x,y\n1,2\n", "line 2: only 2 cells"),
-        ("poses.csv", "image,x,y\n\"0, or so.png\",1,2\n", "line 2: a cell in quotes holds ','"),
-        ("poses.csv", "time,note,x,y\n1,\"left, then right\",1,2\n", "line 2: a cell in quotes holds ','"),
-        ("poses.tum", "1 2 3\n", "line 1: 3 numbers, not 8"),
-        ("poses.tum", "1 0 0 0 0 0 0 1\n1 2 3\n", "line 2: 3 numbers"),
+        ("poses.csv", "time,x,y\n1,2,here\n", "line 2: \"here\" is not a number"),
+        ("poses.csv", "time,x,y\n1,2\n", "line 2: has too few cells (2)"),
+        ("poses.csv", "image,x,y\n\"0, or so.png\",1,2\n", "line 2: a quoted cell contains ','"),
+        ("poses.csv", "time,note,x,y\n1,\"left, then right\",1,2\n", "line 2: a quoted cell contains ','"),
+        ("poses.tum", "1 2 3\n", "line 1: every line needs 8 numbers"),
+        ("poses.tum", "1 0 0 0 0 0 0 1\n1 2 3\n", "line 2: every line needs 8 numbers"),
         ("poses.json", "[{\"position\": [0, 0, 0]}]", "pose 0: expected"),
         ("poses.json", "{", "line 1"),
         ("poses.json", "{}", "expected `transforms.json`"),
-        ("poses.tum", "", "holds no pose"),
-        ("poses.csv", "image,x,y\nother.png,1,2\n", "names pictures, or numbers of pictures, none of which is here"),
+        ("poses.tum", "", "holds no poses"),
+        ("poses.csv", "image,x,y\nother.png,1,2\n", "the pictures that it names or counts are not here"),
     ] {
         let error = read(name, text, 0.0, &usual).unwrap_err();
         assert!(error.contains(told), "{name} {text:?}: {error}");
@@ -122,7 +122,10 @@ fn a_pose_file_is_found_by_its_name_and_never_outside() {
     assert_eq!(beside(&folder.path().join("walk.mp4"), &usual).unwrap(), Some(folder.path().join("walk.csv")));
     for named in ["../secret.csv", "none.csv", "/etc/hostname"] {
         let described = Description { poses: Some(named.into()), ..Description::default() };
-        assert!(beside(&inside, &described).unwrap_err().to_string().contains("names no file"), "{named}");
+        assert!(
+            beside(&inside, &described).unwrap_err().to_string().contains("is not a file in the recording's folder"),
+            "{named}"
+        );
     }
 }
 
@@ -133,7 +136,8 @@ proptest! {
     }
 }
 
-/// A level walk around a corner, as a world with y up has it: `image,x,y,z` and, where wanted, a camera of OpenGL that looks along it.
+/// A level path around a corner in a world with y up: `image,x,y,z` and, if `is_held`, an OpenGL camera that looks
+/// along it.
 fn with_y_up(is_held: bool) -> String {
     let header = if is_held { "image,x,y,z,qx,qy,qz,qw" } else { "image,x,y,z" };
     // Ahead is -z, then +x: a quarter clockwise seen from above.
@@ -148,7 +152,7 @@ fn with_y_up(is_held: bool) -> String {
 fn a_level_walk_that_would_climb_is_refused_until_the_user_says_what_is_up() {
     let usual = Description::default();
     let error = read("poses.csv", &with_y_up(true), 0.0, &usual).unwrap_err();
-    assert!(error.contains("poses.csv") && error.contains("walk climbs straight up"), "{error}");
+    assert!(error.contains("poses.csv") && error.contains("path climbs straight up"), "{error}");
     assert!(error.contains("Write world = \"y-up\" and orientation = \"open-gl\" into a recording.toml"), "{error}");
     let meant = Description { world: Some(World::YUp), orientation: Some(crate::axes::Body::OpenGl), ..usual };
     let track = read("poses.csv", &with_y_up(true), 0.0, &meant).unwrap();

@@ -1,4 +1,4 @@
-//! AV1, decoded by rav1d: dav1d in Rust.
+//! AV1, decoded by rav1d, a port of dav1d to Rust.
 
 use super::{
     colour::{Chroma, Colour, Plane, Planes},
@@ -17,7 +17,7 @@ pub(super) struct Av1 {
 impl Av1 {
     pub(super) fn new(colour: Colour) -> Result<Self, String> {
         let mut settings = Settings::new();
-        // Pictures come out as soon as they can: with one thread and no delay nothing stays inside.
+        // With one thread and no delay, no picture stays in the decoder.
         settings.set_n_threads(1);
         settings.set_max_frame_delay(1);
         settings.set_frame_size_limit(MAX_PIXELS);
@@ -25,7 +25,7 @@ impl Av1 {
         Ok(Self { decoder, colour })
     }
 
-    /// Hands out what has come out of the decoder.
+    /// Hands out all pictures that the decoder has ready.
     fn drain(&mut self, out: &mut Out<'_>) -> Result<(), String> {
         loop {
             match self.decoder.get_picture() {
@@ -57,8 +57,10 @@ impl Decode for Av1 {
 }
 
 fn hand_out(picture: &Picture, container: Colour, out: &mut Out<'_>) -> Result<(), String> {
-    let sample =
-        picture.timestamp().and_then(|sample| usize::try_from(sample).ok()).ok_or("has a picture from nowhere")?;
+    let sample = picture
+        .timestamp()
+        .and_then(|sample| usize::try_from(sample).ok())
+        .ok_or("its decoder gave a picture that belongs to no sample")?;
     size_is_possible(picture.width(), picture.height())?;
     let shifts = match picture.pixel_layout() {
         PixelLayout::I400 => None,

@@ -1,16 +1,17 @@
 //! The boxes of which an MP4 file is made (ISO/IEC 14496-12, section 4.2).
 //!
-//! Read here and not by a crate, because little is needed of them and nothing may be believed: `re_mp4` 0.5 makes as many
-//! samples as a header of 20 bytes claims (four thousand million) and refuses a QuickTime file, which has no `ftyp`.
+//! Read here and not by a crate, because little of them is needed and no length may be trusted: `re_mp4` 0.5 makes as
+//! many samples as a header of 20 bytes claims (four thousand million) and refuses a QuickTime file, which has no
+//! `ftyp`.
 
-/// A box: what it is, and what is in it.
+/// A box: its kind and its content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Atom<'a> {
     pub(super) kind: [u8; 4],
     pub(super) body: &'a [u8],
 }
 
-/// The boxes in some bytes, up to what is no box: some writers end a list with zeros.
+/// The boxes in some bytes, up to the first bytes that are not a box: some writers end a list with zeros.
 pub(super) fn boxes(mut rest: &[u8]) -> impl Iterator<Item = Atom<'_>> {
     std::iter::from_fn(move || {
         let Header { kind, length, bytes } = Header::read(rest, rest.len() as u64)?;
@@ -26,7 +27,7 @@ pub(super) fn find<'a>(within: &'a [u8], kind: &[u8; 4]) -> Option<&'a [u8]> {
     boxes(within).find(|found| found.kind == *kind).map(|found| found.body)
 }
 
-/// The first box of a kind, which has to be there.
+/// The first box of a kind; an error where there is none.
 pub(super) fn need<'a>(within: &'a [u8], kind: &[u8; 4]) -> Result<&'a [u8], String> {
     find(within, kind).ok_or_else(|| format!("has no box `{}`", name(kind)))
 }
@@ -40,17 +41,17 @@ pub(super) fn name(kind: &[u8; 4]) -> String {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Header {
     pub(super) kind: [u8; 4],
-    /// Bytes of the header itself.
+    /// Length of the header itself, bytes.
     pub(super) length: usize,
-    /// Bytes of the whole box.
+    /// Length of the whole box, bytes.
     pub(super) bytes: u64,
 }
 
 impl Header {
-    /// Most bytes that a header has.
+    /// Longest header, bytes.
     pub(super) const MOST: usize = 16;
 
-    /// The header at the beginning of `start`; `left` bytes are left until the end of what holds the box.
+    /// The header at the beginning of `start`; what holds the box ends after `left` bytes.
     pub(super) fn read(start: &[u8], left: u64) -> Option<Self> {
         let mut fields = Fields::new(start);
         let short = fields.u32().ok()?;
@@ -75,7 +76,7 @@ impl<'a> Fields<'a> {
         Self { rest: bytes }
     }
 
-    /// Fields of a box that begins with its version and flags.
+    /// The fields, version and flags of a box that begins with the last two.
     pub(super) fn full(bytes: &'a [u8]) -> Result<(Self, u8, u32), String> {
         let mut fields = Self::new(bytes);
         let word = fields.u32()?;
@@ -123,7 +124,7 @@ impl<'a> Fields<'a> {
         if version == 0 { self.u32().map(u64::from) } else { self.u64() }
     }
 
-    /// A counted list of rows of `N` bytes. The count is believed as far as there are bytes.
+    /// A counted list of rows of `N` bytes. A count that is larger than the bytes allow is an error.
     pub(super) fn rows<const N: usize>(&mut self) -> Result<impl Iterator<Item = [u8; N]> + use<'a, N>, String> {
         let count = self.u32()? as usize;
         let bytes = count.checked_mul(N).ok_or("is too short")?;
@@ -131,7 +132,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Says in which box something was wrong.
+/// Adds the box in which something is wrong to a message.
 pub(super) fn within(kind: &'static str) -> impl Fn(String) -> String {
     move |reason| format!("box `{kind}` {reason}")
 }

@@ -1,4 +1,4 @@
-//! The codecs that are read.
+//! The codecs that can be read.
 
 use super::{
     av1::Av1,
@@ -7,7 +7,7 @@ use super::{
     h264::{self, H264},
 };
 
-/// A codec that is read, with what its decoder has to know.
+/// A codec that can be read, with what its decoder needs to know.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Codec {
     H264(h264::Setup),

@@ -1,5 +1,5 @@
-//! From the planes of a decoder to RGB, as the stream says (ITU-T H.273): integers only, so that every machine makes the same
-//! picture.
+//! Turns the planes of a decoder into RGB, as the stream says (ITU-T H.273). Only integers are used, so that every
+//! machine makes the same picture.
 
 use wayword_core::Image;
 
@@ -8,7 +8,7 @@ const ONE: f64 = 65536.0;
 /// `matrix_coefficients` that say nothing.
 const UNSPECIFIED: u32 = 2;
 
-/// What is said of a stream's colours; `None` is not said.
+/// What a stream or its container says of the colours; `None` where it says nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Colour {
     /// `matrix_coefficients` of H.273, table 4.
@@ -18,18 +18,18 @@ pub(super) struct Colour {
 }
 
 impl Colour {
-    /// A matrix as streams write it down.
+    /// A matrix as streams write it; `None` where it is unspecified.
     pub(super) fn coded(matrix: u32) -> Option<u32> {
         (matrix != UNSPECIFIED).then_some(matrix)
     }
 
-    /// What `self` says, and where it says nothing, `other`.
+    /// What `self` says, and what `other` says where `self` says nothing.
     pub(super) fn or(self, other: Self) -> Self {
         Self { matrix: self.matrix.or(other.matrix), full_range: self.full_range.or(other.full_range) }
     }
 
-    /// Weights of red and blue in the brightness. Where nothing is said, BT.601 is: so do ffmpeg, OpenCV and thereby LeRobot
-    /// write, whatever the size.
+    /// Weights of red and blue in the brightness. The default is BT.601, because ffmpeg, OpenCV and so LeRobot write it
+    /// at every picture size.
     fn weights(self) -> Result<(f64, f64), String> {
         match self.matrix.unwrap_or(6) {
             1 => Ok((0.2126, 0.0722)),
@@ -37,7 +37,7 @@ impl Colour {
             5 | 6 => Ok((0.299, 0.114)),
             7 => Ok((0.212, 0.087)),
             9 | 10 => Ok((0.2627, 0.0593)),
-            other => Err(format!("has colours of a kind that is not read (matrix {other} of H.273)")),
+            other => Err(format!("has colours of a kind that cannot be read (matrix {other} of H.273)")),
         }
     }
 }
@@ -46,7 +46,7 @@ impl Colour {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane<'a> {
     pub(super) bytes: &'a [u8],
-    /// Bytes from row to row.
+    /// Distance from one row to the next, bytes.
     pub(super) stride: usize,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Plane<'a> {
     }
 }
 
-/// Differences of colour, and by how many bits their planes are smaller.
+/// Planes of colour differences. A shift says by how many bits the plane is smaller in that direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chroma<'a> {
     pub(super) blue: Plane<'a>,
@@ -71,7 +71,7 @@ pub(super) struct Chroma<'a> {
 pub(super) struct Planes<'a> {
     pub(super) width_px: u32,
     pub(super) height_px: u32,
-    /// Bits of a number: 8 in one byte, more in two.
+    /// Bits of a sample: 8 are kept in one byte, more in two.
     pub(super) bits: u32,
     pub(super) brightness: Plane<'a>,
     /// `None` where all is grey.
@@ -125,7 +125,7 @@ impl Factors {
     }
 }
 
-/// The picture in RGB. Of colours that are shared by several pixels, each takes its own, as players do by default.
+/// The picture in RGB. Pixels that share a colour all get that colour without interpolation, as players do by default.
 pub(super) fn picture(planes: &Planes<'_>) -> Result<Image, String> {
     let factors = Factors::new(planes.colour, planes.bits)?;
     let mut rgb = vec![0; planes.width_px as usize * planes.height_px as usize * 3];
@@ -133,12 +133,12 @@ pub(super) fn picture(planes: &Planes<'_>) -> Result<Image, String> {
     for (y, row) in rows.enumerate() {
         let written =
             if planes.bits == 8 { line::<1>(planes, &factors, y, row) } else { line::<2>(planes, &factors, y, row) };
-        written.ok_or("its decoder gave fewer pixels than it said")?;
+        written.ok_or("its decoder gave fewer pixels than it announced")?;
     }
     Image::new(planes.width_px, planes.height_px, rgb).map_err(|error| error.to_string())
 }
 
-/// One row, of numbers of `BYTES` bytes; `None` where there are too few of them.
+/// Turns one row into RGB, from samples of `BYTES` bytes; `None` where there are too few samples.
 fn line<const BYTES: usize>(planes: &Planes<'_>, factors: &Factors, y: usize, rgb: &mut [u8]) -> Option<()> {
     let width = planes.width_px as usize;
     let brightness = planes.brightness.row(y, width * BYTES)?;
@@ -160,7 +160,7 @@ fn line<const BYTES: usize>(planes: &Planes<'_>, factors: &Factors, y: usize, rg
     Some(())
 }
 
-/// A number of one byte, or of two as this machine orders them.
+/// A sample of one byte, or of two in the byte order of this machine.
 fn number<const BYTES: usize>(row: &[u8], at: usize) -> i32 {
     match BYTES {
         1 => i32::from(row[at]),

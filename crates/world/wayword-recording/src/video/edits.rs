@@ -1,4 +1,4 @@
-//! Which pictures a player shows, in which order, and when: edit lists (ISO/IEC 14496-12, section 8.6.6).
+//! Which pictures a player shows, in which order, and when, by edit lists (ISO/IEC 14496-12, section 8.6.6).
 
 use super::{
     boxes::{Fields, find, within},
@@ -10,29 +10,29 @@ use super::{
 pub(super) struct Shown {
     /// Seconds from the start of the video.
     pub(super) time_s: f64,
-    /// Its place in the order of decoding.
+    /// Its index in the order of decoding.
     pub(super) sample: usize,
 }
 
 /// The part of a track that is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Edit {
-    /// How long nothing is shown first, ticks of the movie.
+    /// Time at the start during which nothing is shown, ticks of the movie.
     wait: u64,
-    /// What is shown begins here, ticks of the track.
+    /// Where in the track the shown part begins, ticks of the track.
     start: i64,
-    /// How long it is shown, ticks of the movie; 0 is until the end.
+    /// Length of the shown part, ticks of the movie; 0 means until the end.
     length: u64,
 }
 
-/// How many ticks a second has.
+/// Ticks per second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Clocks {
     pub(super) movie: u32,
     pub(super) track: u32,
 }
 
-/// Reads the edit list of a track; `None` where all is shown.
+/// Reads the edit list of a track; `None` where the whole track is shown.
 pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
     let Some(elst) = find(trak, b"edts").and_then(|edts| find(edts, b"elst")) else { return Ok(None) };
     let read = || -> Result<Vec<(u64, i64)>, String> {
@@ -48,30 +48,31 @@ pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
         match found {
             None if start < 0 => wait = wait.saturating_add(length),
             None => found = Some(Edit { wait, start, length }),
-            // What is empty at the end shows nothing.
+            // An empty piece at the end shows nothing.
             Some(_) if start < 0 => {}
-            Some(_) => return Err("is cut together of several pieces (box `elst`)".to_owned()),
+            Some(_) => return Err("has an edit list of several pieces (box `elst`), which cannot be read".to_owned()),
         }
     }
     Ok(found)
 }
 
-/// Length of a piece and where it starts, -1 for nothing.
+/// Length of a piece and where it starts; -1 for an empty piece.
 fn entry(row: &[u8], version: u8) -> Option<(u64, i64)> {
     let mut fields = Fields::new(row);
     let length = fields.long(version).ok()?;
     let start = if version == 0 { i64::from(fields.i32().ok()?) } else { fields.u64().ok()?.cast_signed() };
-    // Beyond 2^56 nothing could be subtracted any more.
+    // Larger numbers could overflow in the subtraction later.
     Some((length, start.clamp(-1, 1 << 56)))
 }
 
-/// The pictures that are shown, in the order in which they are.
+/// The pictures that are shown, in the order in which they are shown.
 pub(super) fn shown(samples: &[Sample], edit: Option<Edit>, clocks: Clocks) -> Vec<Shown> {
     let (movie, track) = (f64::from(clocks.movie), f64::from(clocks.track));
-    // Without a list, the first picture is the start: recorders that cut a stream count from when the stream began.
+    // Without an edit list the first picture is the start, because recorders that cut a stream count from when the
+    // stream began.
     let first = samples.iter().map(|sample| sample.shown).min().unwrap_or(0);
     let Edit { wait, start, length } = edit.unwrap_or(Edit { wait: 0, start: first, length: 0 });
-    // Lengths are rounded to the movie's ticks: what begins within the last of them begins after the end.
+    // Lengths are rounded to the movie's ticks, so a picture that begins within the last tick begins after the end.
     let end_s = if length == 0 { f64::INFINITY } else { (length as f64 - 1.0) / movie };
     let mut order: Vec<usize> = (0..samples.len()).collect();
     order.sort_by_key(|at| samples[*at].shown);

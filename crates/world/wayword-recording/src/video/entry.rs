@@ -1,4 +1,4 @@
-//! How a track's pictures are coded: its sample entry (ISO/IEC 14496-12, section 8.5.2).
+//! The sample entry of a track, which says how its pictures are coded (ISO/IEC 14496-12, section 8.5.2).
 
 use super::{
     boxes::{Atom, Fields, boxes, find, name, need, within},
@@ -7,7 +7,7 @@ use super::{
 
 /// Bytes of a `VisualSampleEntry` before its boxes.
 const BEFORE_BOXES: usize = 78;
-/// Codecs that people meet, with their names.
+/// Common codecs that cannot be read, with their names.
 const KNOWN: [(&[u8; 4], &str); 14] = [
     (b"hvc1", "HEVC (H.265)"),
     (b"hev1", "HEVC (H.265)"),
@@ -25,14 +25,14 @@ const KNOWN: [(&[u8; 4], &str); 14] = [
     (b"encv", "an encrypted form"),
 ];
 
-/// A codec, with what its decoder needs to know beforehand.
+/// A codec, with the settings that its decoder needs first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum NamedCodec {
     /// `AVCDecoderConfigurationRecord` (ISO/IEC 14496-15, section 5.3.3).
     H264(Vec<u8>),
     /// `AV1CodecConfigurationRecord` (AV1 in ISOBMFF, section 2.3).
     Av1,
-    /// One that is not read, by name.
+    /// A codec that cannot be read, by name.
     Other(String),
 }
 
@@ -51,9 +51,9 @@ pub(super) fn entry(stsd: &[u8]) -> Result<Entry, String> {
     let (mut fields, ..) = Fields::full(stsd)?;
     let count = fields.u32()?;
     if count != 1 {
-        return Err(format!("lists {count} ways of coding, and one is read"));
+        return Err(format!("lists {count} sample entries, but exactly one can be read"));
     }
-    let Atom { kind, body } = boxes(fields.rest()).next().ok_or("lists no way of coding")?;
+    let Atom { kind, body } = boxes(fields.rest()).next().ok_or("lists no sample entry")?;
     let mut fields = Fields::new(body);
     fields.bytes(24)?;
     let (width_px, height_px) = (fields.u16()?, fields.u16()?);
@@ -73,7 +73,7 @@ fn named(kind: &[u8; 4]) -> String {
         .map_or_else(|| format!("`{}`", name(kind)), |(_, name)| (*name).to_owned())
 }
 
-/// `colr`: ISO's `nclx` says the range, QuickTime's `nclc` does not.
+/// The colours in a `colr` box. ISO's `nclx` says the range, QuickTime's `nclc` does not.
 fn colour(within_entry: &[u8]) -> Result<Colour, String> {
     let Some(colr) = find(within_entry, b"colr") else { return Ok(Colour::default()) };
     let mut fields = Fields::new(colr);

@@ -1,4 +1,4 @@
-//! The pictures of an MP4 file, by their number in the order in which they are shown.
+//! The pictures of an MP4 file, numbered in the order in which they are shown.
 
 use super::{
     colour,
@@ -16,7 +16,7 @@ use std::{
 use wayword_core::{Image, PlatformError, contain::decoded};
 use wayword_world::files;
 
-/// Pictures that decoders hold back at most (ITU-T H.264, annex A.3.1).
+/// Most pictures that decoders hold back (ITU-T H.264, annex A.3.1).
 const MAX_HELD: usize = 17;
 
 /// One camera's pictures in an MP4 file.
@@ -28,11 +28,11 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Opens a file, reads which pictures it holds, and decodes none. `camera` is the number of the track as the file
-    /// counts them (`"1"`), needed only where there are several.
+    /// Opens a file and reads which pictures it holds, but decodes none. `camera` is the number of the track as the
+    /// file counts them (`"1"`); it is needed only where there are several.
     ///
     /// # Errors
-    /// When it is no MP4 file, is broken, has no such camera, or its pictures are in a codec that is not read.
+    /// When it is not an MP4 file, is broken, has no such camera, or its pictures are in a codec that cannot be read.
     pub(crate) fn open(file: &Path, camera: Option<&str>) -> Result<Self, PlatformError> {
         let mut opened = files::open(file, HINT)?;
         let movie = Movie::read(&mut opened, camera);
@@ -41,13 +41,13 @@ impl Film {
         Ok(Self { file: file.to_owned(), movie, times_s })
     }
 
-    /// When each picture is shown, seconds from the start of the video, not descending.
+    /// When each picture is shown, seconds from the start of the video, in ascending order (equal times may follow).
     pub(crate) fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    /// Hands out the wanted pictures: numbers into [`Film::times_s`], ascending and without repetition. Decodes from the key
-    /// picture before the first of them to the last, without the stretches in which none is wanted.
+    /// Hands out the wanted pictures: indices into [`Film::times_s`], ascending and without repetition. Decodes from
+    /// the key picture before the first of them to the last, but skips stretches without a wanted picture.
     ///
     /// # Errors
     /// When the file has changed or is broken there, or `take` fails.
@@ -68,7 +68,7 @@ impl Film {
         decoded(|| decoder.finish(&mut |sample, planes| desk.put(sample, planes))).map_err(wrong)?;
         desk.hand_over(take)?;
         match desk.missing() {
-            Some(number) => Err(wrong(format!("picture {number} (from 0) could not be decoded"))),
+            Some(number) => Err(wrong(format!("picture {number} (counted from 0) could not be decoded"))),
             None => Ok(()),
         }
     }
@@ -101,7 +101,7 @@ impl Film {
             }
             let key = self.key(file, *sample, fed)?;
             match runs.last_mut() {
-                // Nothing between can be left out.
+                // No sample between can be skipped.
                 Some(run) if key <= fed => run.end = sample + 1,
                 _ => runs.push(key..sample + 1),
             }
@@ -109,7 +109,7 @@ impl Film {
         Ok(runs)
     }
 
-    /// The last sample with which decoding can begin for the one wanted, or one at or before `fed`.
+    /// The last sample from which the wanted one can be decoded; `fed` where there is none after `fed`.
     fn key(&self, file: &mut File, wanted: usize, fed: usize) -> Result<usize, String> {
         for key in (fed..=wanted).rev().filter(|at| self.movie.samples[*at].is_key) {
             if self.movie.codec.can_begin_with(&self.sample(file, key)?) {
@@ -120,12 +120,12 @@ impl Film {
     }
 }
 
-/// Where decoded pictures lie until it is their turn.
+/// Keeps decoded pictures until it is their turn to be handed out.
 struct Desk<'a> {
     movie: &'a Movie,
-    /// Which are wanted: the number of each, by sample.
+    /// The numbers of the wanted pictures, by sample.
     numbers: BTreeMap<usize, usize>,
-    /// Wanted numbers that were not handed over, in order.
+    /// Wanted numbers that have not been handed over, in order.
     due: std::iter::Peekable<std::iter::Copied<std::slice::Iter<'a, usize>>>,
     done: BTreeMap<usize, Image>,
 }
@@ -137,7 +137,7 @@ impl<'a> Desk<'a> {
         Self { movie, numbers, due: wanted.iter().copied().peekable(), done: BTreeMap::new() }
     }
 
-    /// Takes what comes out of a decoder.
+    /// Takes a picture from a decoder.
     fn put(&mut self, sample: usize, planes: &colour::Planes<'_>) -> Result<(), String> {
         let Some(number) = self.numbers.get(&sample) else { return Ok(()) };
         if self.done.len() > MAX_HELD {
@@ -149,7 +149,7 @@ impl<'a> Desk<'a> {
         Ok(())
     }
 
-    /// Hands over those whose turn it is.
+    /// Hands over the pictures whose turn it is.
     fn hand_over(&mut self, take: &mut Take<'_>) -> Result<(), PlatformError> {
         while let Some(number) = self.due.peek() {
             let Some(picture) = self.done.remove(number) else { break };
@@ -159,7 +159,7 @@ impl<'a> Desk<'a> {
         Ok(())
     }
 
-    /// The first that has not come.
+    /// The first wanted number that has not been decoded.
     fn missing(&mut self) -> Option<usize> {
         self.due.peek().copied()
     }

@@ -1,4 +1,4 @@
-//! Samples of fragmented files, which recorders write so that a recording survives a loss of power (ISO/IEC 14496-12,
+//! Samples of fragmented files. Recorders write these so that a recording survives a loss of power (ISO/IEC 14496-12,
 //! section 8.8).
 
 use super::{
@@ -20,7 +20,7 @@ const LATER: u32 = 0x800;
 /// `sample_is_non_sync_sample` among a sample's flags.
 const NOT_A_KEY: u32 = 0x1_0000;
 
-/// What holds of a sample where its fragment says nothing else.
+/// Defaults for a sample where its fragment says nothing else.
 #[derive(Debug, Clone, Copy, Default)]
 struct Usual {
     duration: u32,
@@ -29,7 +29,7 @@ struct Usual {
 }
 
 impl Usual {
-    /// From `mvex` of a movie.
+    /// The defaults in `mvex` of a movie.
     fn of_movie(moov: &[u8], track: u32) -> Result<Self, String> {
         for trex in find(moov, b"mvex").into_iter().flat_map(boxes).filter(|found| found.kind == *b"trex") {
             let (mut fields, ..) = Fields::full(trex.body)?;
@@ -88,7 +88,7 @@ impl Fragments {
         };
         if let Some(tfdt) = find(traf, b"tfdt") {
             let (mut fields, version, _) = Fields::full(tfdt)?;
-            // Beyond 2^56 nothing could be added any more.
+            // Larger numbers could overflow in the additions later.
             let decoded = fields.long(version).map_err(within("tfdt"))?.min(1 << 56);
             self.decoded = decoded.cast_signed();
         }
@@ -105,7 +105,7 @@ impl Fragments {
         if flags & SIZES == 0 && usual.bytes == 0 {
             return Ok(());
         }
-        // A run without sizes claims bytes of the file, one with them has four for each sample.
+        // A run without sizes claims bytes of the file; a run with sizes has four bytes for each sample.
         believable(u64::from(count) + samples.len() as u64, 1, self.file_bytes)?;
         if flags & DATA_OFFSET != 0 {
             self.end = base.saturating_add_signed(i64::from(fields.i32()?));

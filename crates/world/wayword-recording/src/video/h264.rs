@@ -19,10 +19,10 @@ const START: [u8; 4] = [0, 0, 0, 1];
 const IDR: u8 = 5;
 const SPS: u8 = 7;
 
-/// What stands before the stream: `AVCDecoderConfigurationRecord` (ISO/IEC 14496-15, section 5.3.3.1).
+/// The settings before the stream: `AVCDecoderConfigurationRecord` (ISO/IEC 14496-15, section 5.3.3.1).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Setup {
-    /// How many bytes the length of a NAL unit has.
+    /// Bytes in which the length of a NAL unit is written.
     length_bytes: usize,
     /// Parameter sets, each after a start code.
     parameters: Vec<u8>,
@@ -30,7 +30,7 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    /// Reads an `avcC` box. What the container says of the `colour` holds where the stream says nothing.
+    /// Reads an `avcC` box. `colour` is what the container says; it counts where the stream says nothing.
     pub(super) fn read(record: &[u8], colour: Colour) -> Result<Self, String> {
         let (length_bytes, units) = taken_apart(record).map_err(within("avcC"))?;
         let mut setup = Self { length_bytes, parameters: Vec::new(), colour };
@@ -59,17 +59,18 @@ impl Setup {
             if unit.is_err() {
                 fields = Fields::new(&[]);
             }
-            Some(unit.map_err(|_| "holds a unit that is longer than itself".to_owned()))
+            Some(unit.map_err(|_| "holds a NAL unit that is longer than the sample".to_owned()))
         })
     }
 
-    /// Whether decoding can begin with a sample. Containers also mark pictures from which a stream only recovers.
+    /// Whether decoding can begin with a sample. The container's mark is not enough: it also marks pictures after which
+    /// the first pictures are still wrong.
     pub(super) fn can_begin_with(&self, sample: &[u8]) -> bool {
         self.units(sample).any(|unit| unit.is_ok_and(|unit| kind(unit) == IDR))
     }
 }
 
-/// How many bytes a length has, and the parameter sets.
+/// The bytes in which a length is written, and the parameter sets.
 fn taken_apart(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
     let mut fields = Fields::new(record);
     fields.bytes(4)?;
@@ -89,7 +90,7 @@ fn kind(unit: &[u8]) -> u8 {
     unit.first().map_or(0, |first| first & 31)
 }
 
-/// A parameter set of a stream that OpenH264 decodes within bounds.
+/// Reads a parameter set; an error where OpenH264 cannot decode the stream, or its pictures are too large.
 fn possible(unit: &[u8]) -> Result<Sps, String> {
     let sps = Sps::read(unit).ok_or("has a broken sequence parameter set")?;
     size_is_possible(sps.width_px, sps.height_px)?;
@@ -106,15 +107,15 @@ fn possible(unit: &[u8]) -> Result<Sps, String> {
 pub(super) struct H264 {
     setup: Setup,
     decoder: Decoder,
-    /// What was fed and has not come out, in the order in which it is shown: OpenH264 gives no times back, but pictures in
-    /// that order.
+    /// Samples that were fed and whose pictures have not come out, in the order in which they are shown. OpenH264 gives
+    /// no times back, but its pictures come in this order.
     inside: BTreeSet<(i64, usize)>,
     has_begun: bool,
 }
 
 impl H264 {
     pub(super) fn new(setup: &Setup) -> Result<Self, String> {
-        // Flushing after each picture would give them in the order of decoding, and lose some.
+        // Flushing after each picture would give the pictures in the order of decoding, and lose some.
         let config = DecoderConfig::new().flush_after_decode(Flush::NoFlush);
         let decoder = Decoder::with_api_config(OpenH264API::from_source(), config);
         let decoder = decoder.map_err(|error| format!("cannot be decoded: {error}"))?;
@@ -155,19 +156,23 @@ impl Decode for H264 {
         for decoded in &rest {
             hand_out(&mut self.inside, self.setup.colour, decoded, out)?;
         }
-        // Had one been lost, all that came after it would have had the name of another.
-        if self.inside.is_empty() { Ok(()) } else { Err(format!("lost {} pictures in decoding", self.inside.len())) }
+        // After a lost picture, all later ones would get the number of another picture.
+        if self.inside.is_empty() {
+            Ok(())
+        } else {
+            Err(format!("lost {} of its pictures in decoding", self.inside.len()))
+        }
     }
 }
 
-/// Hands a picture out under the name of the sample that is to be shown next.
+/// Hands out a picture as that of the sample that is shown next.
 fn hand_out(
     inside: &mut BTreeSet<(i64, usize)>,
     colour: Colour,
     decoded: &DecodedYUV<'_>,
     out: &mut Out<'_>,
 ) -> Result<(), String> {
-    let (_, sample) = inside.pop_first().ok_or("gives more pictures than it holds")?;
+    let (_, sample) = inside.pop_first().ok_or("its decoder gave more pictures than it was fed")?;
     let (width, height) = decoded.dimensions();
     let (stride, stride_blue, stride_red) = decoded.strides();
     let chroma = Chroma {

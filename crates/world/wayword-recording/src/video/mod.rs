@@ -36,10 +36,10 @@ pub(crate) struct FilmFile {
 }
 
 impl FilmFile {
-    /// The recording that an MP4 file is.
+    /// The recording in an MP4 file.
     ///
     /// # Errors
-    /// When its name is none that a scene can have.
+    /// When its name cannot be the name of a scene.
     pub(crate) fn open(path: &Path, described: Description) -> Result<Self, PlatformError> {
         Ok(Self { path: path.to_owned(), scene: scene_of(path)?, described })
     }

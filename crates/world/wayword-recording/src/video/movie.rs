@@ -1,4 +1,4 @@
-//! An MP4 file: its video tracks, and one of them chosen.
+//! Reads an MP4 file's video tracks and chooses one of them.
 
 use super::{
     boxes::{Fields, Header, boxes, find, need, within},
@@ -15,13 +15,13 @@ use std::{
     io::{Read, Seek, SeekFrom},
 };
 
-/// Most bytes of what says where pictures are: about 50 for each of [`tables::MAX_SAMPLES`].
+/// Most bytes of the boxes that say where pictures are: about 50 for each of [`tables::MAX_SAMPLES`].
 const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
 
 /// Most boxes of a file: two for each picture.
 const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 
-/// What to do about a file that is not read.
+/// What to do about a file that cannot be read.
 pub(super) const HINT: &str = crate::kind::ENCODE;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
 
@@ -50,7 +50,7 @@ impl Movie {
     }
 }
 
-/// Why a file is not read, and what to do.
+/// Why a file cannot be read, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Refusal {
     pub(super) reason: String,
@@ -63,7 +63,7 @@ impl From<String> for Refusal {
     }
 }
 
-/// What describes the pictures of a file.
+/// The boxes that describe the pictures of a file.
 struct Parts {
     moov: Vec<u8>,
     /// Each `moof`, and where it begins.
@@ -79,7 +79,7 @@ impl Parts {
             let Some(header) = header_at(file, start, file_bytes)? else { break };
             let end = start.saturating_add(header.bytes);
             if matches!(&header.kind, b"moov" | b"moof") {
-                // What is cut off is the last fragment of a recording that was broken off.
+                // This is the last fragment of a recording that was cut off.
                 if end > file_bytes {
                     break;
                 }
@@ -96,7 +96,7 @@ impl Parts {
             start = end;
         }
         let moov = moov.ok_or_else(|| {
-            "is no whole MP4 file: it has no box `moov`, which recorders write when they stop".to_owned()
+            "is not a complete MP4 file: it has no box `moov`, which recorders write when they stop".to_owned()
         })?;
         Ok(Self { moov, moofs })
     }
@@ -109,18 +109,18 @@ fn header_at(file: &mut File, start: u64, file_bytes: u64) -> Result<Option<Head
     Ok(Header::read(&bytes, left))
 }
 
-/// Bytes of a file; the caller has seen to it that there are so many.
+/// Bytes of a file. The caller has checked that the file has them.
 pub(super) fn bytes_at(file: &mut File, start: u64, count: u64) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let read = file.seek(SeekFrom::Start(start)).and_then(|_| file.take(count).read_to_end(&mut bytes));
     let read = read.map_err(|error| error.to_string())?;
     if (read as u64) < count {
-        return Err(format!("ends at byte {}, within what begins at byte {start}", start + read as u64));
+        return Err(format!("ends at byte {}, in the middle of what begins at byte {start}", start + read as u64));
     }
     Ok(bytes)
 }
 
-/// A track that holds pictures, as far as is needed to choose among several.
+/// A track that holds pictures, with what is needed to choose among several.
 struct VideoTrack<'a> {
     number: u32,
     trak: &'a [u8],
@@ -156,7 +156,7 @@ impl<'a> VideoTrack<'a> {
         let codec = match &self.entry.codec {
             entry::NamedCodec::H264(record) => Codec::H264(h264::Setup::read(record, self.entry.colour)?),
             entry::NamedCodec::Av1 => Codec::Av1(self.entry.colour),
-            entry::NamedCodec::Other(name) => return Err(format!("is in {name}, and H.264 and AV1 are read")),
+            entry::NamedCodec::Other(name) => return Err(format!("is in {name}, but only H.264 and AV1 can be read")),
         };
         let mut samples = tables::samples(self.stbl, file_bytes)?;
         let mut fragments = Fragments::new(&parts.moov, self.number, file_bytes)?;
@@ -183,23 +183,23 @@ impl<'a> VideoTrack<'a> {
     }
 }
 
-/// `mdhd` and `mvhd` begin alike: times, then ticks of a second.
+/// Ticks per second from `mdhd` or `mvhd`, which begin alike: times, then this number.
 fn ticks_per_s(header: &[u8]) -> Result<u32, String> {
     let (mut fields, version, _) = Fields::full(header)?;
     fields.bytes(if version == 0 { 8 } else { 16 })?;
     match fields.u32()? {
-        0 => Err("says that a second has no ticks".to_owned()),
+        0 => Err("says that a second has 0 ticks".to_owned()),
         ticks => Ok(ticks),
     }
 }
 
-/// The track that is meant.
+/// The track that the user named, else the only one.
 fn chosen<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<&'b VideoTrack<'a>, String> {
     let names = || tracks.iter().map(VideoTrack::described).collect::<Vec<_>>().join(", ");
     let wanted = camera.map(str::trim);
     let mut meant = tracks.iter().filter(|track| match wanted {
         Some(wanted) => track.number.to_string() == wanted,
-        // Pictures of the title and previews are no second camera.
+        // Cover pictures and previews do not count as a second camera.
         None => tracks.len() == 1 || !matches!(track.entry.codec, entry::NamedCodec::Other(_)),
     });
     match (meant.next(), meant.next(), wanted) {
@@ -210,7 +210,7 @@ fn chosen<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<
     }
 }
 
-/// Sees to it that all samples lie in the file. A fragmented file that was broken off is read as far as it goes.
+/// Checks that all samples lie in the file. A fragmented file that was cut off is read as far as it goes.
 fn whole(samples: &mut Vec<Sample>, file_bytes: u64, is_fragmented: bool) -> Result<(), String> {
     let outside = |sample: &Sample| sample.offset.saturating_add(u64::from(sample.bytes)) > file_bytes;
     let Some(first) = samples.iter().position(outside) else { return Ok(()) };
@@ -220,7 +220,7 @@ fn whole(samples: &mut Vec<Sample>, file_bytes: u64, is_fragmented: bool) -> Res
     }
     let offset = samples[first].offset;
     Err(format!(
-        "is cut off: of {} pictures, number {first} would lie at byte {offset}, and it has {file_bytes}",
+        "is cut off: picture {first} of {} should lie at byte {offset}, but the file has only {file_bytes} bytes",
         samples.len()
     ))
 }

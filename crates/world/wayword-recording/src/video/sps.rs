@@ -1,8 +1,8 @@
-//! What an H.264 stream says of itself: sequence parameter sets (ITU-T H.264, section 7.3.2.1.1 and annex E).
+//! Sequence parameter sets, in which an H.264 stream describes itself (ITU-T H.264, section 7.3.2.1.1 and annex E).
 //!
-//! `h264-reader` reads the bits and how colours are sampled. It would read a whole parameter set too, but it refuses those whose
-//! level is too low for their size, that are broken off behind the colours, or whose bytes could be a false start. Players show such
-//! videos all the same.
+//! `h264-reader` reads the bits and how colours are sampled. It could read a whole parameter set too, but it refuses
+//! those whose level is too low for their size, that are cut off after the colours, or whose bytes could be a false
+//! start. Players show such videos all the same.
 
 use super::colour::Colour;
 use h264_reader::{
@@ -11,13 +11,13 @@ use h264_reader::{
 };
 use wayword_core::contained;
 
-/// What matters stands in so many bytes.
+/// Most bytes of a unit that are read: all that matters comes before.
 const LONGEST: usize = 1 << 14;
 
 /// The part of a sequence parameter set that matters here.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Sps {
-    /// Coded, which may be a little more than is shown.
+    /// Size as coded, which may be a little larger than the shown picture.
     pub(super) width_px: u32,
     pub(super) height_px: u32,
     pub(super) chroma_format: ChromaFormat,
@@ -32,7 +32,7 @@ impl Sps {
     pub(super) fn read(unit: &[u8]) -> Option<Self> {
         let mut zeros = 0;
         let plain = unit.iter().skip(1).take(LONGEST).copied().filter(|byte| {
-            // Written against false starts (section 7.4.1).
+            // Bytes that were put in to avoid false starts (section 7.4.1).
             let is_put_in = zeros >= 2 && *byte == 3;
             zeros = if *byte == 0 { zeros + 1 } else { 0 };
             !is_put_in
@@ -63,7 +63,7 @@ fn parameters(bits: &mut impl BitRead) -> Result<Sps, SpsError> {
             bits.read_ue(edge)?;
         }
     }
-    // Sizes that overflow are refused for being too large. Parameters of use end where they are broken off.
+    // Sizes that overflow are refused later as too large. Usability parameters that are cut off count as absent.
     let pixels = |blocks: u32, px: u32| blocks.saturating_add(1).saturating_mul(px);
     let has_usability = bits.read_bit("vui_parameters_present_flag")?;
     Ok(Sps {

@@ -1,8 +1,9 @@
-//! Where the samples of a track are and when they are shown: the tables of `stbl` (ISO/IEC 14496-12, sections 8.6 and 8.7).
+//! The tables of `stbl`, which say where the samples of a track are and when they are shown (ISO/IEC 14496-12, sections
+//! 8.6 and 8.7).
 
 use super::boxes::{Fields, find, need, within};
 
-/// Most samples of a track: four days at 30 a second.
+/// Most samples of a track: nearly four days at 30 a second.
 pub(super) const MAX_SAMPLES: u64 = 10_000_000;
 
 /// One coded picture.
@@ -17,7 +18,7 @@ pub(super) struct Sample {
     pub(super) is_key: bool,
 }
 
-/// The samples that stand in a track's tables, in the order of decoding; none in a fragmented file.
+/// The samples in a track's tables, in the order of decoding; none in a fragmented file.
 pub(super) fn samples(stbl: &[u8], file_bytes: u64) -> Result<Vec<Sample>, String> {
     let sizes = sizes(need(stbl, b"stsz")?, file_bytes).map_err(within("stsz"))?;
     if sizes.len() == 0 {
@@ -31,12 +32,12 @@ pub(super) fn samples(stbl: &[u8], file_bytes: u64) -> Result<Vec<Sample>, Strin
         let is_key = keys.as_ref().is_none_or(|keys| keys.binary_search(&(at as u64 + 1)).is_ok());
         samples.push(Sample { offset, bytes: sizes.get(at), shown, is_key });
     }
-    // Nothing is coded in such a sample: the picture before stays.
+    // An empty sample codes no picture: the picture before stays.
     samples.retain(|sample| sample.bytes > 0);
     Ok(samples)
 }
 
-/// How long each sample is.
+/// The length of each sample, bytes.
 enum Sizes {
     All { bytes: u32, count: usize },
     Each(Vec<u32>),
@@ -74,12 +75,12 @@ fn sizes(stsz: &[u8], file_bytes: u64) -> Result<Sizes, String> {
 /// Refuses more samples than the file can hold.
 pub(super) fn believable(count: u64, bytes: u32, file_bytes: u64) -> Result<(), String> {
     if count > MAX_SAMPLES || count.saturating_mul(u64::from(bytes)) > file_bytes {
-        return Err(format!("claims {count} samples of {bytes} bytes or more, and the file has {file_bytes} bytes"));
+        return Err(format!("claims {count} samples of {bytes} bytes or more, but the file has {file_bytes} bytes"));
     }
     Ok(())
 }
 
-/// Where each sample begins: chunks lie at given places, the samples of a chunk one after another.
+/// Where each sample begins: chunks lie at listed offsets, and the samples of a chunk follow each other.
 fn offsets(stbl: &[u8], sizes: &Sizes) -> Result<Vec<u64>, String> {
     let chunks: Vec<u64> = match find(stbl, b"stco") {
         Some(stco) => {
@@ -92,7 +93,7 @@ fn offsets(stbl: &[u8], sizes: &Sizes) -> Result<Vec<u64>, String> {
         }
     };
     let (mut fields, ..) = Fields::full(need(stbl, b"stsc")?)?;
-    // First chunk of a run (counted from 1), and samples in each of its chunks.
+    // The first chunk of a run (counted from 1), and the number of samples in each of its chunks.
     let mut runs = fields.rows::<12>().map_err(within("stsc"))?.map(|row| (u64::from(word(&row, 0)), word(&row, 4)));
     let mut offsets = Vec::with_capacity(sizes.len());
     let (mut in_chunk, mut next) = (0, runs.next());
@@ -113,19 +114,23 @@ fn offsets(stbl: &[u8], sizes: &Sizes) -> Result<Vec<u64>, String> {
         }
     }
     if offsets.len() < sizes.len() {
-        return Err(format!("has {} samples, but places for {} of them (`stsc`, `stco`)", sizes.len(), offsets.len()));
+        return Err(format!(
+            "has {} samples, but offsets for only {} of them (`stsc`, `stco`)",
+            sizes.len(),
+            offsets.len()
+        ));
     }
     Ok(offsets)
 }
 
-/// When each sample is shown: when it is decoded, and how much later that is.
+/// When each sample is shown: the time at which it is decoded, plus its delay.
 fn shown(stbl: &[u8], count: usize) -> Result<Vec<i64>, String> {
     let (mut fields, ..) = Fields::full(need(stbl, b"stts")?)?;
     let lengths = runs(&mut fields).map_err(within("stts"))?;
     let mut later: Vec<(u32, i32)> = Vec::new();
     if let Some(ctts) = find(stbl, b"ctts") {
         let (mut fields, ..) = Fields::full(ctts)?;
-        // Version 0 says that these are unsigned, and writers put negative ones there nevertheless.
+        // In version 0 these are unsigned by the standard, but writers put negative numbers there.
         later = runs(&mut fields).map_err(within("ctts"))?.map(|(count, later)| (count, later.cast_signed())).collect();
     }
     let mut later = later.into_iter().flat_map(|(count, later)| std::iter::repeat_n(i64::from(later), count as usize));
@@ -136,22 +141,23 @@ fn shown(stbl: &[u8], count: usize) -> Result<Vec<i64>, String> {
         decoded += i64::from(length);
     }
     if shown.len() < count {
-        return Err(format!("has {count} samples, but times for {} of them (`stts`)", shown.len()));
+        return Err(format!("has {count} samples, but times for only {} of them (`stts`)", shown.len()));
     }
     Ok(shown)
 }
 
-/// How often, and what.
+/// Runs of equal values: how often, and the value.
 fn runs<'a>(fields: &mut Fields<'a>) -> Result<impl Iterator<Item = (u32, u32)> + use<'a>, String> {
     Ok(fields.rows::<8>()?.map(|row| (word(&row, 0), word(&row, 4))))
 }
 
-/// Four bytes of a row, which has them.
+/// Four bytes of a row at an offset that lies within it.
 fn word(row: &[u8], at: usize) -> u32 {
     Fields::new(row.get(at..).unwrap_or_default()).u32().unwrap_or(0)
 }
 
-/// The numbers, from 1, of the samples with which decoding can begin, ascending; `None` where it can with every one.
+/// The numbers (from 1) of the samples with which decoding can begin, ascending; `None` where it can begin with every
+/// sample.
 fn keys(stbl: &[u8]) -> Result<Option<Vec<u64>>, String> {
     let Some(stss) = find(stbl, b"stss") else { return Ok(None) };
     let (mut fields, ..) = Fields::full(stss)?;

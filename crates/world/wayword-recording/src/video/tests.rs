@@ -1,4 +1,4 @@
-//! Videos that ffmpeg made (`fixtures/make_video.py`): each picture tells its number in bars.
+//! Tests with videos that ffmpeg made (`fixtures/make_video.py`): each picture shows its number in bars.
 
 use super::{Film, FilmFile};
 use crate::{describe::Description, reel::Source};
@@ -32,7 +32,7 @@ fn is_white(picture: &Image, bar: usize, height: f64) -> bool {
     picture.rgb()[at] > 127
 }
 
-/// The number that the bars of a picture tell; both halves have to agree.
+/// The number that the bars of a picture show; both halves have to agree.
 fn told(picture: &Image) -> usize {
     let number = |height, white| (0..6).map(|bar| usize::from(is_white(picture, bar, height) == white) << bar).sum();
     let (above, below): (usize, usize) = (number(0.25, true), number(0.75, false));
@@ -40,7 +40,7 @@ fn told(picture: &Image) -> usize {
     above
 }
 
-/// Every picture tells its place, whichever are asked for.
+/// Checks that every picture shows its number, whichever pictures are wanted.
 fn holds(name: &str, count: usize, first: usize) {
     let film = film(name);
     assert_eq!(film.times_s().len(), count, "{name}");
@@ -94,14 +94,14 @@ fn other_containers_hold_the_same() {
 #[test]
 fn what_was_cut_off_without_coding_again_is_not_shown() {
     holds("cut.mp4", 24, 16);
-    // It was to begin at 1.55 s, and the next picture was at 1.6 s.
+    // The cut was at 1.55 s, and the next picture was at 1.6 s.
     near(film("cut.mp4").times_s(), tenths(24).map(|time_s| time_s + 0.05));
 }
 
 #[test]
 fn uneven_times_are_kept() {
     holds("uneven.mp4", 12, 0);
-    // As ffprobe tells them.
+    // As ffprobe lists them.
     near(film("uneven.mp4").times_s(), [0.0, 0.1, 0.2, 0.5, 0.6, 0.8, 1.1, 1.3, 1.4, 1.8, 1.9, 2.0]);
 }
 
@@ -120,7 +120,7 @@ fn a_phone_that_was_held_upright_is_shown_upright() {
     let turned = pictures(&film("turned.mp4"), &[5]).unwrap().remove(0).1;
     let lying = pictures(&film("baseline.mp4"), &[5]).unwrap().remove(0).1;
     assert_eq!((turned.width_px(), turned.height_px()), (64, 96));
-    // ffmpeg's rotate=90: what was on the left is above, and what was above is on the right.
+    // ffmpeg's rotate=90: the left becomes the top, and the top becomes the right.
     let pixel = |picture: &Image, x: u32, y: u32| picture.rgb()[((y * picture.width_px() + x) * 3) as usize];
     for (x, y) in [(0, 0), (10, 5), (95, 63), (40, 50)] {
         assert_eq!(pixel(&turned, 63 - y, x), pixel(&lying, x, y));
@@ -178,7 +178,7 @@ fn poses_beside_a_video_count_from_its_start() {
     assert!((fix.position.x - 1.2).abs() < 1e-3, "{fix:?}");
 }
 
-/// Opens a file of some bytes, and reads all its pictures.
+/// Opens a file with these bytes, and reads all its pictures.
 fn read(bytes: &[u8]) -> Result<usize, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("video.mp4");
@@ -191,7 +191,7 @@ fn read(bytes: &[u8]) -> Result<usize, String> {
 #[test]
 fn a_recording_that_was_broken_off_is_read_as_far_as_it_goes() {
     let whole = std::fs::read(fixture("fragmented.mp4")).unwrap();
-    // The index at the end is gone, and with it half of the last fragment.
+    // The index at the end and half of the last fragment are missing.
     let count = read(&whole[..whole.len() - 700]).unwrap();
     assert!((24..40).contains(&count), "{count}");
     let whole = std::fs::read(fixture("high.mp4")).unwrap();
@@ -242,7 +242,7 @@ proptest! {
     }
 }
 
-/// Files that are called .mp4 and are something else, as a person may have them.
+/// Files with the ending .mp4 that are something else, as users may have them.
 #[test]
 fn what_is_no_mp4_is_named_for_what_it_is() {
     let folder = tempfile::tempdir().unwrap();
@@ -251,7 +251,7 @@ fn what_is_no_mp4_is_named_for_what_it_is() {
         (&b""[..], "is empty"),
         (b"It is no video.\n", "is text"),
         (b"version https://git-lfs.github.com/spec/v1\n", "is a pointer of git-lfs"),
-        (webm, "is a WebM video, not an MP4 video; if players show it"),
+        (webm, "is a WebM video, not an MP4 video; if a video player shows it"),
         (b"\0\0\0\x08free\0\0\0\x08mdat", "it has no box `moov`"),
     ] {
         let file = folder.path().join("walk.mp4");

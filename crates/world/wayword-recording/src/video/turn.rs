@@ -1,11 +1,11 @@
-//! How a picture is to be turned before it is shown: phones film as they are held and write down how that was
-//! (ISO/IEC 14496-12, section 8.3.2, `matrix`).
+//! How a picture has to be turned before it is shown: phones do not turn their pictures, but write down how they were
+//! held (ISO/IEC 14496-12, section 8.3.2, `matrix`).
 
 use super::boxes::Fields;
 use wayword_core::Image;
 
-/// A turn by quarters, with or without a mirror: where a step to the right and one down in the coded picture lead in the shown
-/// one, as (right, down).
+/// A turn by quarters, with or without a mirror. The fields say where a step to the right and a step down in the coded
+/// picture lead in the shown one, as (right, down).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Turn {
     right: (i8, i8),
@@ -15,7 +15,7 @@ pub(super) struct Turn {
 impl Turn {
     pub(super) const NONE: Self = Self { right: (1, 0), down: (0, 1) };
 
-    /// From `tkhd`; a matrix that is no turn by quarters changes nothing.
+    /// Reads it from `tkhd`; a matrix that is not a turn by quarters changes nothing.
     pub(super) fn read(tkhd: &[u8]) -> Result<Self, String> {
         let (mut fields, version, _) = Fields::full(tkhd)?;
         // Times, number, duration; then layer, group, volume.
@@ -36,7 +36,7 @@ impl Turn {
         }
         let (width, height) = (coded.width_px() as usize, coded.height_px() as usize);
         let (shown_width, shown_height) = if self.right.0 == 0 { (height, width) } else { (width, height) };
-        // Turns have their transposes for inverses; where a step leads backwards, one starts from the far end.
+        // The inverse of a turn is its transpose; where a step leads backwards, counting starts from the far end.
         let (x, y) = (Axis::new(self.right, width), Axis::new(self.down, height));
         let mut rgb = Vec::with_capacity(coded.rgb().len());
         for shown_y in 0..shown_height {
@@ -85,11 +85,11 @@ mod tests {
     fn a_phone_that_was_held_upright_gives_upright_pictures() {
         const ONE: i32 = 1 << 16;
         assert_eq!(turned([ONE, 0, 0, ONE]), (3, vec![1, 2, 3]));
-        // A quarter clockwise: what was left is above.
+        // A quarter clockwise: the left becomes the top.
         assert_eq!(turned([0, ONE, -ONE, 0]), (1, vec![1, 2, 3]));
         assert_eq!(turned([0, -ONE, ONE, 0]), (1, vec![3, 2, 1]));
         assert_eq!(turned([-ONE, 0, 0, -ONE]), (3, vec![3, 2, 1]));
-        // What is no turn by quarters.
+        // Not turns by quarters.
         assert_eq!(turned([ONE, ONE, -ONE, ONE]), (3, vec![1, 2, 3]));
         assert_eq!(turned([0; 4]), (3, vec![1, 2, 3]));
     }

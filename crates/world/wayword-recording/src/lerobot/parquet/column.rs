@@ -1,4 +1,4 @@
-//! The values of a column in a group of rows, some rows at a time.
+//! The values of a column in a row group, some rows at a time.
 
 use super::pages::Pages;
 use parquet::{
@@ -15,10 +15,10 @@ use std::{
 };
 use wayword_core::contain::decoded;
 
-/// A column in a group of rows, and how far it was read.
+/// A column in a row group, and how far it has been read.
 pub(super) struct Column {
     reader: ColumnReader,
-    /// Values that pages announced since the last request.
+    /// Number of values that pages announced since the last request.
     announced: Arc<AtomicU64>,
     max_definition: i16,
 }
@@ -39,7 +39,7 @@ impl Column {
         Ok(Self { reader, announced, max_definition: chunk.column_descr().max_def_level() })
     }
 
-    /// The numbers of the next rows, at most so many; of none after the last.
+    /// The numbers of at most the next `rows` rows; empty after the last row.
     ///
     /// # Errors
     /// When the file is broken.
@@ -55,7 +55,7 @@ impl Column {
         }
     }
 
-    /// The bytes of the next row, if it has some; `None` after the last row.
+    /// The bytes of the next row, or `Some(None)` where it has none; `None` after the last row.
     ///
     /// # Errors
     /// When the file is broken.
@@ -68,7 +68,7 @@ impl Column {
         Ok(cells.next().map(|(_, value)| value))
     }
 
-    /// Passes over some rows, of a column that does not repeat; pages of which nothing is wanted are not unfolded.
+    /// Skips some rows of a column that does not repeat; skipped pages are not decompressed.
     ///
     /// # Errors
     /// When the file is broken.

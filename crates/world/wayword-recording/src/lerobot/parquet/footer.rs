@@ -1,8 +1,8 @@
-//! What a Parquet file says about itself, held against its length before and after the crate reads it.
+//! Reads the footer of a Parquet file, and checks it against the file's length before and after the crate reads it.
 //!
-//! The schema is a tree that is written down from the root on, each node with the number of its children (apache/parquet-format,
-//! `parquet.thrift`). The crate reserves memory for as many children as are announced, and recurses as deeply as they are nested.
-//! So the tree is built here, and the crate is handed it.
+//! The schema is a tree that is written from the root on, each node with the number of its children
+//! (apache/parquet-format, `parquet.thrift`). The crate reserves memory for as many children as a node announces, and
+//! recurses as deeply as they are nested. So the tree is built here and given to the crate.
 
 use super::{
     pages,
@@ -22,17 +22,17 @@ use wayword_core::contain::decoded;
 
 const MAGIC: &[u8; 4] = b"PAR1";
 const MAX_FOOTER_BYTES: u64 = 64 << 20;
-/// Most columns of a file with the groups that they are in, and deepest nesting of one.
+/// Most nodes of a schema (columns and their groups), and deepest nesting.
 const MAX_COLUMNS: u64 = 100_000;
 const MAX_NESTING: usize = 16;
-/// Most rows for each byte of a file. A dataset counts its rows in at least one column, which takes more than a bit for each; a
-/// file with more announces what it does not hold.
+/// Most rows for each byte of a file. A dataset numbers its rows in at least one column, which takes more than a bit
+/// for each row, so a file that announces more rows does not hold them.
 const MAX_ROWS_PER_BYTE: u64 = 16;
 
-/// Reads what a file says about itself.
+/// Reads the footer of a file.
 ///
 /// # Errors
-/// When it is no Parquet file, or contradicts itself or its length.
+/// When it is not a Parquet file, or contradicts itself or its length.
 pub(super) fn read(mut file: &File) -> Result<ParquetMetaData, String> {
     let wrong = |error: std::io::Error| error.to_string();
     let length = file.metadata().map_err(wrong)?.len();
@@ -42,11 +42,12 @@ pub(super) fn read(mut file: &File) -> Result<ParquetMetaData, String> {
     file.read_exact(&mut tail).map_err(wrong)?;
     let [a, b, c, d, magic @ ..] = tail;
     if magic != *MAGIC {
-        return Err(format!("byte {}: is no Parquet file, or only a part of one: it does not end in PAR1", end + 4));
+        return Err(format!("byte {}: is not a Parquet file, or only part of one: it does not end in PAR1", end + 4));
     }
     let size = u64::from(u32::from_le_bytes([a, b, c, d]));
     let start = end.checked_sub(size).filter(|_| size <= MAX_FOOTER_BYTES);
-    let start = start.ok_or_else(|| format!("byte {end}: a footer of {size} bytes in a file of {length}"))?;
+    let start =
+        start.ok_or_else(|| format!("byte {end}: claims a footer of {size} bytes in a file of {length} bytes"))?;
     file.seek(SeekFrom::Start(start)).map_err(wrong)?;
     let mut bytes = Vec::new();
     file.take(size).read_to_end(&mut bytes).map_err(wrong)?;
@@ -72,7 +73,7 @@ fn decode(footer: &[u8], file_bytes: u64) -> Result<ParquetMetaData, String> {
 fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
     let (mut rows, mut bytes) = (0_u64, 0_u64);
     for group in about.row_groups() {
-        let more = u64::try_from(group.num_rows()).map_err(|_| "a group of rows has no number of rows")?;
+        let more = u64::try_from(group.num_rows()).map_err(|_| "a row group has no valid number of rows")?;
         rows = rows.saturating_add(more);
         for chunk in group.columns() {
             let wrong = |reason: &str| format!("column {:?} {reason}", chunk.column_path().string());
@@ -80,21 +81,21 @@ fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
                 return Err(wrong("lies in another file"));
             }
             let place = pages::place(chunk).filter(|place| place.end <= file_bytes);
-            let place = place.ok_or_else(|| wrong("is to lie where the file has no bytes"))?;
+            let place = place.ok_or_else(|| wrong("lies outside the file"))?;
             bytes = bytes.saturating_add(place.end - place.start);
         }
     }
     if rows > file_bytes.saturating_mul(MAX_ROWS_PER_BYTE) {
-        return Err(format!("announces {rows} rows in {file_bytes} bytes"));
+        return Err(format!("claims {rows} rows in {file_bytes} bytes"));
     }
-    // Else a short file could have the same bytes unfolded again and again.
+    // Without this check a short file could make the program decompress the same bytes again and again.
     if bytes > file_bytes {
-        return Err(format!("announces columns of {bytes} bytes in all, in a file of {file_bytes}"));
+        return Err(format!("claims columns of {bytes} bytes in all, in a file of {file_bytes} bytes"));
     }
     Ok(())
 }
 
-/// The root of a footer's schema. What comes after it is passed over, so that it is known to end.
+/// The root of a footer's schema. All other fields are skipped, to check that the footer is well-formed up to its end.
 fn schema(footer: &[u8]) -> Result<Type, String> {
     let mut thrift = Thrift::new(footer);
     let (mut number, mut root) = (0, None);
@@ -119,14 +120,14 @@ fn schema(footer: &[u8]) -> Result<Type, String> {
 /// A schema that is being read.
 struct Tree<'t, 'a> {
     thrift: &'t mut Thrift<'a>,
-    /// That are still to be read.
+    /// Nodes that are still to be read.
     elements: u64,
-    /// Of all names from the root on, for every column: a descriptor keeps its own copy of them.
+    /// Bytes of all names from the root on, summed over the columns: each descriptor keeps its own copy of them.
     names_bytes: u64,
 }
 
 impl Tree<'_, '_> {
-    /// The next node with all that is below it. `depth` nodes are above it, whose names have `above_bytes`.
+    /// The next node with everything below it. `depth` nodes are above it, and their names have `above_bytes` bytes.
     fn node(&mut self, depth: usize, above_bytes: u64) -> Result<Type, String> {
         if depth > MAX_NESTING {
             return Err(format!("columns are nested more than {MAX_NESTING} deep"));
@@ -139,7 +140,7 @@ impl Tree<'_, '_> {
                 (1, thrift::I32) => physical = Some(physical_of(self.thrift.number()?)?),
                 (3, thrift::I32) => repetition = repetition_of(self.thrift.number()?)?,
                 (4, thrift::BYTES) => {
-                    name = std::str::from_utf8(self.thrift.bytes()?).map_err(|_| "a column's name is no text")?;
+                    name = std::str::from_utf8(self.thrift.bytes()?).map_err(|_| "a column's name is not text")?;
                 }
                 (5, thrift::I32) => children = self.thrift.number()?,
                 _ => self.thrift.pass(kind)?,
@@ -149,9 +150,9 @@ impl Tree<'_, '_> {
         if let (0, Some(physical), true) = (children, physical, depth > 0) {
             self.names_bytes += names_bytes;
             if self.names_bytes > MAX_FOOTER_BYTES {
-                return Err(format!("names of columns have more than {MAX_FOOTER_BYTES} bytes"));
+                return Err(format!("the names of columns take more than {MAX_FOOTER_BYTES} bytes"));
             }
-            // The length matters to values of a fixed length alone, which are not read here.
+            // The length only matters for values of a fixed length, which are not read here.
             let leaf = Type::primitive_type_builder(name, physical).with_repetition(repetition).with_length(0);
             return leaf.build().map_err(|error| error.to_string());
         }
@@ -168,7 +169,7 @@ fn repetition_of(number: i64) -> Result<Repetition, String> {
         0 => Ok(Repetition::REQUIRED),
         1 => Ok(Repetition::OPTIONAL),
         2 => Ok(Repetition::REPEATED),
-        other => Err(format!("a column has a repetition of kind {other}")),
+        other => Err(format!("a column has the unknown repetition type {other}")),
     }
 }
 
@@ -176,5 +177,5 @@ fn physical_of(number: i64) -> Result<Physical, String> {
     use Physical::{BOOLEAN, BYTE_ARRAY, DOUBLE, FIXED_LEN_BYTE_ARRAY, FLOAT, INT32, INT64, INT96};
     let kinds = [BOOLEAN, INT32, INT64, INT96, FLOAT, DOUBLE, BYTE_ARRAY, FIXED_LEN_BYTE_ARRAY];
     let kind = kinds.into_iter().find(|kind| *kind as i64 == number);
-    kind.ok_or_else(|| format!("a column holds values of kind {number}"))
+    kind.ok_or_else(|| format!("a column has values of the unknown type {number}"))
 }

@@ -1,8 +1,8 @@
-//! The pages of a column, unfolded within a bound.
+//! The pages of a column, decompressed to a limited size.
 //!
-//! The crate has a reader of pages as well. It takes as much memory as a page's header announces, up to 2 GiB, and unfolds gzip to any
-//! length; and five bytes of a broken header can keep it busy for minutes, where they announce a long list in a field that it passes
-//! over. So headers are read here, and pages are unfolded before the crate decodes them.
+//! The crate has a reader of pages as well, but it takes as much memory as a page's header announces, up to 2 GiB, and
+//! decompresses gzip to any length. Five bytes of a broken header can keep it busy for minutes if they announce a long
+//! list in a field that it skips. So headers are read and pages are decompressed here, before the crate decodes them.
 
 use super::thrift::{self, Thrift};
 use parquet::{
@@ -21,34 +21,36 @@ use std::{
     },
 };
 
-/// How much is read for a page's header: first what is enough for nearly all, then what is enough for one with long statistics.
+/// Bytes that are read for a page's header: the first number is enough for nearly all, the second for one with long
+/// statistics.
 const HEADER_BYTES: [u64; 2] = [1 << 9, 1 << 20];
-/// Pages may unfold to this much, bytes: writers close them at 1 MiB.
+/// A page may always decompress to this many bytes: writers close pages at 1 MiB.
 const USUAL_BYTES: usize = 8 << 20;
-/// And larger ones to this many times of what they are compressed.
+/// A larger page may decompress to this many times its compressed size.
 const MAX_RATIO: usize = 256;
-/// Values that the pages of a few rows may announce in any file, for each of its bytes, and at most. A page whose values are all the
-/// same takes a few bytes for any number of them, but there are other columns whose values are not. Each takes up to 12 bytes.
+/// Limits for the values that the pages of a few rows may announce: in any file, per byte of the file, and in all. A
+/// page of equal values takes a few bytes for any number of them, but a file also has columns with different values.
+/// Each value takes up to 12 bytes of memory.
 const USUAL_VALUES: u64 = 16 << 20;
 const MAX_VALUES_PER_BYTE: u64 = 64;
 const MOST_VALUES: u64 = 64 << 20;
 
-/// Where a column lies in its file; `None` where that cannot be.
+/// Where a column lies in its file; `None` where the numbers are impossible.
 pub(super) fn place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
     let data = chunk.data_page_offset();
-    // Some writers say 0 where there is no dictionary.
+    // Some writers write 0 where there is no dictionary.
     let start = chunk.dictionary_page_offset().filter(|at| (1..data).contains(at)).unwrap_or(data);
     let start = u64::try_from(start).ok()?;
     Some(start..start.checked_add(u64::try_from(chunk.compressed_size()).ok()?)?)
 }
 
-/// What stands before a page.
+/// The header of a page.
 struct Header {
-    /// 0 and 3 are values, in the first and second version's layout; 2 is a dictionary.
+    /// 0 is a page of values in the layout of version 1, 3 one of version 2; 2 is a dictionary.
     kind: i64,
-    /// Of the page in the file, bytes.
+    /// Length of the page in the file, bytes.
     stored: u64,
-    /// Fields of `parquet.thrift` from 1 on, for this kind.
+    /// Fields 1 to 6 of this kind of header in `parquet.thrift`.
     numbers: [i64; 6],
     folded: bool,
 }
@@ -63,7 +65,7 @@ impl Header {
             match (number, kind) {
                 (1, thrift::I32) => header.kind = thrift.number()?,
                 (3, thrift::I32) => {
-                    header.stored = u64::try_from(thrift.number()?).map_err(|_| "a page has no length")?;
+                    header.stored = u64::try_from(thrift.number()?).map_err(|_| "a page has no valid length")?;
                 }
                 (5 | 7 | 8, thrift::STRUCT) => header.read_numbers(&mut thrift)?,
                 _ => thrift.pass(kind)?,
@@ -84,14 +86,14 @@ impl Header {
         Ok(())
     }
 
-    /// A field of this kind's, a count or a length.
+    /// A field that is a count or a length.
     fn count(&self, field: usize) -> Result<u32, String> {
         let number = self.numbers[field - 1];
-        u32::try_from(number).map_err(|_| format!("{number} is no number of anything in a page"))
+        u32::try_from(number).map_err(|_| format!("a page has the invalid count {number}"))
     }
 
-    /// How values are encoded. Texts may also be encoded as differences from the last, but the crate takes memory for any number of
-    /// these that a page announces.
+    /// How values are encoded. Delta encodings of texts are refused, because the crate takes memory for any number of
+    /// texts that a page announces.
     fn encoding(&self, field: usize) -> Result<Encoding, String> {
         match self.numbers[field - 1] {
             0 => Ok(Encoding::PLAIN),
@@ -99,52 +101,56 @@ impl Header {
             5 => Ok(Encoding::DELTA_BINARY_PACKED),
             8 => Ok(Encoding::RLE_DICTIONARY),
             9 => Ok(Encoding::BYTE_STREAM_SPLIT),
-            other => Err(format!("values are encoded in way {other} of parquet.thrift, which is not read here")),
+            other => Err(format!("values have encoding {other} of parquet.thrift, which cannot be read")),
         }
     }
 }
 
-/// The pages of a column, in a group of rows.
+/// The pages of a column in a row group.
 pub(super) struct Pages {
     file: File,
-    /// What was not read of the column.
+    /// The bytes of the column that have not been read.
     place: Range<u64>,
-    /// Of the page at which this begins, if it has been read.
+    /// The header of the next page, if it has already been read.
     header: Option<Header>,
     codec: CompressionCodec,
-    /// Values of the pages that were read since this was last 0.
+    /// Number of values of the pages that were read since the counter was last 0.
     announced: Arc<AtomicU64>,
     max_announced: u64,
 }
 
 impl Pages {
-    /// The pages of a column. What they announce is added to `announced`.
+    /// The pages of a column. The numbers of values that they announce are added to `announced`.
     ///
     /// # Errors
-    /// When the column has no place, or the file cannot be read.
+    /// When the column has no valid place, or the file cannot be read.
     pub(super) fn new(file: File, chunk: &ColumnChunkMetaData, announced: Arc<AtomicU64>) -> Result<Self, String> {
-        let place = place(chunk).ok_or("has no place")?;
+        let place = place(chunk).ok_or("has no valid place in the file")?;
         let length = file.metadata().map_err(|error| error.to_string())?.len();
         let max_announced = length.saturating_mul(MAX_VALUES_PER_BYTE).clamp(USUAL_VALUES, MOST_VALUES);
         Ok(Self { file, place, header: None, codec: chunk.compression_codec(), announced, max_announced })
     }
 
-    /// The next page's header, and past it; `None` after the last page.
+    /// Reads the next page's header and moves past it; `None` after the last page.
     fn next_header(&mut self) -> Result<Option<Header>, String> {
         if let Some(header) = self.header.take() {
             return Ok(Some(header));
         }
         while !self.place.is_empty() {
-            let wrong = |reason: String| format!("byte {}: no header of a page: {reason}", self.place.start);
+            let wrong = |reason: String| format!("byte {}: not a page header: {reason}", self.place.start);
             let left = self.place.end - self.place.start;
             let short = Header::read(&self.bytes(left.min(HEADER_BYTES[0]))?);
             let read = short.or_else(|_| Header::read(&self.bytes(left.min(HEADER_BYTES[1]))?));
             let (header, length) = read.map_err(wrong)?;
             if header.stored > left - length {
-                return Err(wrong(format!("a page of {} bytes where {} are left", header.stored, left - length)));
+                return Err(wrong(format!(
+                    "a page of {} bytes, but the column has only {} left",
+                    header.stored,
+                    left - length
+                )));
             }
             self.place.start += length;
-            // To the crate a page without values is the end. Pages of other kinds hold none.
+            // The crate takes a page without values as the end, so it is skipped. Pages of other kinds hold no values.
             if header.kind == 2 || (matches!(header.kind, 0 | 3) && header.numbers[0] != 0) {
                 return Ok(Some(header));
             }
@@ -153,7 +159,7 @@ impl Pages {
         Ok(None)
     }
 
-    /// Some bytes from where the column has been read to.
+    /// The next bytes of the column.
     fn bytes(&self, count: u64) -> Result<Vec<u8>, String> {
         let wrong = |error: std::io::Error| format!("byte {}: {error}", self.place.start);
         let mut file = &self.file;
@@ -173,7 +179,7 @@ impl Pages {
         let num_values = header.count(1)?;
         if header.kind == 2 {
             let buf = unfolded(self.codec, stored, 0)?;
-            // An entry takes at least four bytes in all kinds of columns that are read here.
+            // An entry takes at least four bytes in every type of column that is read here.
             if num_values as usize > buf.len() / 4 {
                 return Err(format!("a dictionary of {num_values} entries in {} bytes", buf.len()));
             }
@@ -196,7 +202,7 @@ impl Pages {
             });
         }
         let (def_levels_byte_len, rep_levels_byte_len) = (header.count(5)?, header.count(6)?);
-        // Levels of the second version are not compressed.
+        // In version 2, levels are not compressed.
         let levels = usize::try_from(u64::from(def_levels_byte_len) + u64::from(rep_levels_byte_len));
         let levels = levels.ok().filter(|levels| *levels <= stored.len()).ok_or("levels are longer than their page")?;
         Ok(Page::DataPageV2 {
@@ -233,7 +239,8 @@ impl PageReader for Pages {
         self.header = self.next_header().map_err(ParquetError::General)?;
         let about = |header: &Header| {
             let values = header.count(1)? as usize;
-            // Rows are passed over in columns alone that do not repeat. There a page has as many rows as values, whatever it says.
+            // Rows are only skipped in columns that do not repeat. There a page has as many rows as values, whatever
+            // its header says.
             let num_rows = (header.kind == 3).then_some(values);
             let num_levels = (header.kind != 2).then_some(values);
             Ok(PageMetadata { num_rows, num_levels, is_dict: header.kind == 2 })
@@ -248,21 +255,21 @@ impl PageReader for Pages {
     }
 }
 
-/// A page's bytes as they were before they were compressed; those at the front were not.
+/// A page's decompressed bytes. The first `front` bytes are not compressed.
 fn unfolded(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Vec<u8>, String> {
     if codec == CompressionCodec::UNCOMPRESSED {
         return Ok(stored);
     }
     let (front, folded) = stored.split_at(front);
     let most = USUAL_BYTES.max(folded.len().saturating_mul(MAX_RATIO));
-    let too_long = || format!("{} bytes unfold to more than {most}", folded.len());
+    let too_long = || format!("{} bytes decompress to more than {most}", folded.len());
     let filled = |from: &mut dyn Read| {
         let mut unfolded = front.to_vec();
         from.take(most as u64 + 1).read_to_end(&mut unfolded).map_err(|error| error.to_string())?;
         if unfolded.len() - front.len() > most { Err(too_long()) } else { Ok(unfolded) }
     };
     match codec {
-        // Where all values are missing, there is nothing that was compressed.
+        // Where all values are missing, there are no compressed bytes.
         _ if folded.is_empty() => Ok(front.to_vec()),
         CompressionCodec::SNAPPY => {
             let length = snap::raw::decompress_len(folded).map_err(|error| error.to_string())?;
@@ -276,6 +283,6 @@ fn unfolded(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Ve
         }
         CompressionCodec::GZIP => filled(&mut flate2::read::MultiGzDecoder::new(folded)),
         CompressionCodec::ZSTD => filled(&mut zstd::Decoder::with_buffer(folded).map_err(|error| error.to_string())?),
-        other => Err(format!("is compressed with {other}, which is not read here")),
+        other => Err(format!("is compressed with {other}, which cannot be read")),
     }
 }

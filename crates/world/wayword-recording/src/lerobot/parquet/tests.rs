@@ -10,7 +10,7 @@ const FILES: [&str; 7] = [
     "pyarrow_none",
     "polars",
     "duckdb",
-    // Has neither lists nor pictures.
+    // This file has neither lists nor pictures.
     "fastparquet",
 ];
 const ROWS: u64 = 40;
@@ -80,12 +80,12 @@ fn lists_and_pictures_are_read_from_files_of_every_program() {
 fn columns_that_are_not_there_or_other_are_named() {
     let table = Table::open(&fixture("pyarrow_none")).unwrap();
     assert!(numbers(&table, "nothing", 0..1).unwrap_err().contains("has no column \"nothing\""));
-    assert!(numbers(&table, "state", 0..1).unwrap_err().contains("\"state\" is of another kind"));
-    assert!(table.lists("index", 0..1, 3, &[0]).unwrap_err().to_string().contains("another kind"));
+    assert!(numbers(&table, "state", 0..1).unwrap_err().contains("\"state\" is not of the expected type"));
+    assert!(table.lists("index", 0..1, 3, &[0]).unwrap_err().to_string().contains("expected type"));
     let error = table.lists("state", 5..7, 2, &[0]).unwrap_err().to_string();
-    assert!(error.contains("row 0 is no list of 2 numbers"), "{error}");
+    assert!(error.contains("row 0 is not a list of 2 numbers"), "{error}");
     let error = table.lists("state", 5..7, 4, &[0]).unwrap_err().to_string();
-    assert!(error.contains("row 0 is no list of 4 numbers"), "{error}");
+    assert!(error.contains("row 0 is not a list of 4 numbers"), "{error}");
 }
 
 #[test]
@@ -120,13 +120,13 @@ fn node(name: &str, repetition: i64, children: i64) -> Vec<u8> {
     [vec![0x15, 2, 0x25], int(repetition), name, vec![0x15], int(children), vec![0]].concat()
 }
 
-/// Where a column of some bytes lies: behind the file's first four.
+/// Where a column of some bytes lies: after the file's first four bytes.
 fn chunk(codec: i64, bytes: i64) -> Vec<u8> {
     let about = [vec![0x1c, 0x15, 2, 0x19, 5, 0x19, 8, 0x15], int(codec), vec![0x16, 2, 0x16, 2, 0x16], int(bytes)];
     [vec![0x26, 0], about.concat(), vec![0x26, 8, 0, 0]].concat()
 }
 
-/// A file with groups of rows that all lie in the same bytes.
+/// A file with row groups that all use the same bytes.
 fn file(schema: &[Vec<u8>], chunk: &[u8], rows: &[i64], pages: &[u8]) -> Vec<u8> {
     let group = |rows: &i64| [&[0x19, 0x1c], chunk, &[0x16, 0, 0x16], &int(*rows), &[0]].concat();
     let groups: Vec<u8> = rows.iter().flat_map(group).collect();
@@ -135,7 +135,7 @@ fn file(schema: &[Vec<u8>], chunk: &[u8], rows: &[i64], pages: &[u8]) -> Vec<u8>
     [b"PAR1", pages, &footer, &(footer.len() as u32).to_le_bytes(), b"PAR1"].concat()
 }
 
-/// A page of some kind with its header, that of values in the first version's layout if `kind` is 0, a dictionary if it is 2.
+/// A page with its header: values in the layout of version 1 if `kind` is 0, a dictionary if it is 2.
 fn page(kind: i64, values: i64, encoding: i64, bytes: &[u8]) -> Vec<u8> {
     let begins = [vec![0x15], int(kind), vec![0x15, 2, 0x15], int(bytes.len() as i64)].concat();
     let about = [vec![if kind == 0 { 0x2c } else { 0x4c }, 0x15], int(values), vec![0x15], int(encoding)].concat();
@@ -143,7 +143,7 @@ fn page(kind: i64, values: i64, encoding: i64, bytes: &[u8]) -> Vec<u8> {
     [&begins, &about, levels, &[0, 0], bytes].concat()
 }
 
-/// What is read of a file with a column `x`: its numbers, if they do not repeat.
+/// Reads the column `x` of a file: its numbers, or the first element of its lists if it repeats.
 fn read_x(bytes: &[u8]) -> Result<Vec<f64>, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("x.parquet");
@@ -168,7 +168,7 @@ fn a_schema_that_does_not_close_is_refused() {
     assert!(read(&[node("schema", 0, 2), node("x", 0, 0)]).contains("fewer columns"));
     assert!(read(&[node("schema", 0, 0), node("x", 0, 0)]).contains("more columns"));
     assert!(read(&vec![node("x", 1, 1); 100]).contains("nested more than 16 deep"));
-    // What is announced is not reserved.
+    // No memory is reserved for announced children.
     assert!(read(&[node("schema", 0, i64::from(i32::MAX)), node("x", 0, 0)]).contains("fewer columns"));
     assert!(read(&[node("schema", 0, i64::MAX)]).contains("fewer columns"));
 }
@@ -178,10 +178,10 @@ fn more_than_a_file_can_hold_is_refused() {
     let schema = [node("schema", 0, 1), node("x", 0, 0)];
     let read = |bytes: i64, rows: &[i64]| read_x(&file(&schema, &chunk(0, bytes), rows, &[0; 64])).unwrap_err();
     assert!(read(64, &[i64::MAX, 1]).contains("rows in "));
-    assert!(read(64, &[-1]).contains("no number of rows"));
-    assert!(read(64, &[1; 9]).contains("announces columns of 576 bytes in all"));
+    assert!(read(64, &[-1]).contains("no valid number of rows"));
+    assert!(read(64, &[1; 9]).contains("claims columns of 576 bytes in all"));
     for bytes in [500, i64::MAX, -1] {
-        assert!(read(bytes, &[1]).contains("column \"x\" is to lie where the file has no bytes"));
+        assert!(read(bytes, &[1]).contains("column \"x\" lies outside the file"));
     }
 }
 
@@ -189,7 +189,7 @@ fn more_than_a_file_can_hold_is_refused() {
 fn a_file_that_was_put_together_by_hand_is_read() {
     let numbers = [[7, 0, 0, 0], [8, 0, 0, 0]].concat();
     assert_eq!(with_pages(0, 0, &page(0, 2, 0, &numbers)), Ok(vec![7.0, 8.0]));
-    // A page without values is passed over.
+    // A page without values is skipped.
     let pages = [page(0, 1, 0, &numbers[..4]), page(0, 0, 0, &[]), page(0, 1, 0, &numbers[4..])];
     assert_eq!(with_pages(0, 0, &pages.concat()), Ok(vec![7.0, 8.0]));
     let entries = [page(2, 2, 0, &numbers), page(0, 2, 8, &[1, 3, 2])].concat();
@@ -201,11 +201,11 @@ fn a_page_that_is_to_become_too_large_is_refused() {
     let gigabyte = [0x80, 0x80, 0x80, 0x80, 4, 0, 0];
     let error = with_pages(0, 1, &page(0, 2, 0, &gigabyte)).unwrap_err();
     assert!(error.contains("column \"x\": at row 0 or soon after it"), "{error}");
-    assert!(error.contains("7 bytes unfold to more than 8388608"), "{error}");
+    assert!(error.contains("7 bytes decompress to more than 8388608"), "{error}");
     let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     gzip.write_all(&vec![0; 20 << 20]).unwrap();
     let error = with_pages(0, 2, &page(0, 2, 0, &gzip.finish().unwrap())).unwrap_err();
-    assert!(error.contains("unfold to more than 8388608"), "{error}");
+    assert!(error.contains("decompress to more than 8388608"), "{error}");
     assert!(with_pages(0, 4, &page(0, 2, 0, &[0; 9])).unwrap_err().contains("is compressed with BROTLI"));
 }
 
@@ -216,11 +216,11 @@ fn what_a_page_announces_must_be_there() {
     assert!(with_pages(0, 0, &page(0, 2, 8, &[1, 3, 2])).unwrap_err().contains("is broken"));
     assert!(with_pages(0, 0, &page(0, 2, 0, &[0; 7])).unwrap_err().contains("at row 0"));
     assert!(with_pages(0, 0, &page(0, 1, 0, &[0; 4])).unwrap_err().contains("ends before row 1"));
-    assert!(with_pages(0, 0, &page(0, 2, 6, &[0; 8])).unwrap_err().contains("encoded in way 6 of parquet.thrift"));
-    // Field 9 is a list of 2^31 - 1 fractions, which nobody needs.
+    assert!(with_pages(0, 0, &page(0, 2, 6, &[0; 8])).unwrap_err().contains("have encoding 6 of parquet.thrift"));
+    // Field 9 is a list of 2^31 - 1 floating-point numbers, which is not needed.
     let header = [0x15, 0, 0x15, 2, 0x15, 8, 0x69, 0xf7, 0xff, 0xff, 0xff, 0xff, 7];
-    assert!(with_pages(0, 0, &header).unwrap_err().contains("2147483647 elements are to follow in 0 bytes"));
-    // Two runs, of a list that goes on and of values that are not there: a few bytes for any number of them.
+    assert!(with_pages(0, 0, &header).unwrap_err().contains("2147483647 elements should follow in 0 bytes"));
+    // Two runs, of a list that goes on and of missing values: a few bytes for any number of values.
     let run = [5, 0, 0, 0, 0xfe, 0xff, 0xff, 0xff, 0x0f];
     let lists = [&run[..], &[1], &run, &[0]].concat();
     let error = with_pages(2, 0, &page(0, i64::from(i32::MAX), 0, &lists)).unwrap_err();

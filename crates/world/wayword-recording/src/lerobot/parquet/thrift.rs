@@ -1,4 +1,4 @@
-//! Thrift's compact protocol, in which Parquet writes what it says about itself. Nothing is kept of what is passed over.
+//! Thrift's compact protocol, in which Parquet writes its metadata. Skipped values take no memory.
 
 /// Kinds of values.
 pub(super) const TRUE: u8 = 1;
@@ -21,14 +21,15 @@ impl<'a> Thrift<'a> {
         Self { rest: bytes }
     }
 
-    /// What has not been read.
+    /// The bytes that have not been read.
     pub(super) const fn rest(&self) -> &'a [u8] {
         self.rest
     }
 
     fn take(&mut self, count: u64) -> Result<&'a [u8], String> {
         let taken = usize::try_from(count).ok().and_then(|count| self.rest.split_at_checked(count));
-        let (taken, rest) = taken.ok_or_else(|| format!("{count} bytes are to follow where {} do", self.rest.len()))?;
+        let (taken, rest) =
+            taken.ok_or_else(|| format!("{count} bytes should follow, but only {} do", self.rest.len()))?;
         self.rest = rest;
         Ok(taken)
     }
@@ -66,32 +67,33 @@ impl<'a> Thrift<'a> {
         let header = self.byte()?;
         let count = if header >> 4 == 15 { self.varint()? } else { u64::from(header >> 4) };
         if count > self.rest.len() as u64 {
-            return Err(format!("{count} elements are to follow in {} bytes", self.rest.len()));
+            return Err(format!("{count} elements should follow in {} bytes", self.rest.len()));
         }
         Ok((count, header & 0x0f))
     }
 
-    /// The kind of the next field of a struct, whose number follows on that of the last; `None` after the last.
+    /// The kind of the next field of a struct; `None` after the last. `number` is that of the last field and becomes
+    /// that of this one.
     pub(super) fn field(&mut self, number: &mut i16) -> Result<Option<u8>, String> {
         let header = self.byte()?;
         if header & 0x0f == 0 {
             return Ok(None);
         }
         *number = match header >> 4 {
-            0 => i16::try_from(self.number()?).map_err(|_| "a field has no number")?,
+            0 => i16::try_from(self.number()?).map_err(|_| "a field has no valid number")?,
             step => number.saturating_add(i16::from(step)),
         };
         Ok(Some(header & 0x0f))
     }
 
-    /// Passes over a field's value.
+    /// Skips a field's value.
     pub(super) fn pass(&mut self, kind: u8) -> Result<(), String> {
         self.pass_within(kind, 0)
     }
 
     fn pass_within(&mut self, kind: u8, depth: usize) -> Result<(), String> {
         match kind {
-            // A truth is in the kind itself.
+            // The value of a boolean field is in the kind itself.
             TRUE | FALSE => Ok(()),
             3 => self.byte().map(drop),
             4..=6 => self.varint().map(drop),
@@ -99,7 +101,7 @@ impl<'a> Thrift<'a> {
             BYTES => self.bytes().map(drop),
             LIST | 10 if depth < MAX_DEPTH => {
                 let (count, kind) = self.list()?;
-                // In a list a truth is a byte.
+                // In a list a boolean is a byte.
                 let kind = if matches!(kind, TRUE | FALSE) { 3 } else { kind };
                 (0..count).try_for_each(|_| self.pass_within(kind, depth + 1))
             }
@@ -110,7 +112,7 @@ impl<'a> Thrift<'a> {
                 }
                 Ok(())
             }
-            other => Err(format!("a value of kind {other}, which is not known there")),
+            other => Err(format!("a value has kind {other}, which is not known or nested too deeply")),
         }
     }
 }
