@@ -1,4 +1,4 @@
-//! What every format's items come to: a path to walk, and what is said about it.
+//! The item that every format's reader returns: a path and its instructions.
 
 use crate::item;
 use serde_json::{Map, Value};
@@ -11,36 +11,37 @@ pub struct Episode {
     pub id: String,
     /// Name of its path, which several items may share: `path_id`, VLN-CE's `trajectory_id`.
     pub path_id: String,
-    /// Where it lies.
+    /// The scene that its path lies in.
     pub scene: SceneId,
     /// Nodes of the viewpoint graph, from start to goal. Empty where the path has none (VLN-CE, continuous platforms).
     pub viewpoints: Vec<ViewpointId>,
-    /// Positions on the floor (not the eye's), world frame, metres, from start to goal. Only VLN-CE has them; empty elsewhere.
+    /// Positions on the floor (not the eye's), world frame, metres, from start to goal. Only VLN-CE has them; empty
+    /// elsewhere.
     pub floor_positions: Vec<DVec3>,
-    /// What Habitat is told of the scene and of the distance; only VLN-CE's writer asks.
+    /// What a VLN-CE file says to Habitat of the scene and the distance. Only VLN-CE's writer uses it.
     pub in_habitat: InHabitat,
-    /// How the walker looks before the first hop. `None` where the file does not say.
+    /// Which way the agent looks before the first hop. `None` where the file does not say.
     pub start_heading: Option<Heading>,
     /// The object of the closing task, where the item has one (REVERIE).
     pub target_object: Option<ObjectId>,
-    /// The part of the dataset it belongs to ("train", "val_seen"), where the item itself says so.
+    /// The part of the dataset that it belongs to ("train", "val_seen"), where the item itself says so.
     pub split: Option<String>,
-    /// What is said about the path; empty where nothing is yet.
+    /// The path's instructions; empty where it has none yet.
     pub instructions: Vec<String>,
-    /// Fields that the format's field list does not name, in the order of the file. Written back where the loaders bear
-    /// them (R2R, REVERIE, RxR).
+    /// Fields that the format does not name, in the order of the file. Written back where the loaders accept them (R2R,
+    /// REVERIE, RxR).
     pub extra: Map<String, Value>,
-    /// Known fields as the file spelt them, so that what was not changed is written as it was read (a heading of 7.0, an id
-    /// in quotes).
+    /// Known fields as the file spelt them. An unchanged field is written as it was read (a heading of 7.0, an id in
+    /// quotes).
     pub(crate) as_read: Map<String, Value>,
 }
 
-/// What a world knows of an item that Habitat needs: everything has a default.
+/// What a platform knows of an item that Habitat needs. Every field has a default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct InHabitat {
-    /// VLN-CE's `scene_id`: the scene's file below the folder of scenes. `mp3d/SCENE/SCENE.glb` where it is left out.
+    /// VLN-CE's `scene_id`: the scene's file below the folder of scenes. `mp3d/SCENE/SCENE.glb` where it is `None`.
     pub scene_id: Option<String>,
-    /// What has to be put there first, in words, where that is not the file of a dataset.
+    /// What the user has to put there first, in words, where it is not a dataset's file.
     pub scene_needs: Option<String>,
     /// Shortest distance on foot from start to goal over the scene's navmesh, metres.
     pub geodesic_m: Option<f64>,
@@ -66,8 +67,8 @@ impl Episode {
         }
     }
 
-    /// The item of a path, named as the path is; its viewpoints are the frames' where each frame has one. Where the motion
-    /// is unknown the item has neither viewpoints (the frames' names are pictures') nor a heading.
+    /// The item of a path, with the path's name. It has viewpoints where each frame has one. Where the motion is
+    /// unknown, it has neither viewpoints (the frames' names are those of pictures) nor a heading.
     #[must_use]
     pub fn from_path(path: &Path, instructions: Vec<String>) -> Self {
         let frames = if path.motion.is_known() { &path.frames[..] } else { &[] };
@@ -81,8 +82,9 @@ impl Episode {
         }
     }
 
-    /// With positions on the floor, which lies `eye_height_m` below the eyes of the path's frames (a camera's height over
-    /// the floor: about 1.5 m in Matterport3D). VLN-CE needs them. A path whose motion is unknown has none.
+    /// The item with positions on the floor, which VLN-CE needs. The floor lies `eye_height_m` below the eyes of the
+    /// path's frames (a camera's height over the floor: about 1.5 m in Matterport3D). A path whose motion is unknown
+    /// has none.
     #[must_use]
     pub fn on_floor_of(mut self, path: &Path, eye_height_m: f64) -> Self {
         let frames = path.frames.iter().filter(|_| path.motion.is_known());
@@ -97,7 +99,7 @@ impl Episode {
         (!self.floor_positions.is_empty()).then(|| hops.sum())
     }
 
-    /// A known field as it is to be written: as it was read where that still means the same, else anew.
+    /// The value to write for a known field: the one that was read where it still means the same, else a new one.
     pub(crate) fn field(&self, key: &str, still_means: impl Fn(&Value) -> bool, anew: impl FnOnce() -> Value) -> Value {
         self.as_read.get(key).filter(|value| still_means(value)).cloned().unwrap_or_else(anew)
     }
@@ -107,7 +109,7 @@ impl Episode {
         self.field(key, |value| item::name_of(value).as_deref() == Some(name), || item::value_of(name))
     }
 
-    /// The heading in radians; 0 where the item has none, since every loader demands one.
+    /// The heading in radians; 0 where the item has none, because every loader needs one.
     pub(crate) fn heading_field(&self) -> Value {
         let heading = self.start_heading.unwrap_or(Heading::NORTH);
         let same = |value: &Value| value.as_f64().and_then(|rad| Heading::new(rad).ok()) == Some(heading);

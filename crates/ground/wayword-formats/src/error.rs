@@ -8,7 +8,7 @@ use std::{
 /// A dataset file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FormatError {
-    /// The file system would not.
+    /// The operating system could not open, read or write the file.
     #[error("{}: cannot {doing} it: {source}", file.display())]
     Io {
         /// Which file.
@@ -41,9 +41,9 @@ pub struct WrongItem {
     pub file: PathBuf,
     /// Where in the file.
     pub place: ItemPlace,
-    /// The item's own id, where that could be read.
+    /// The item's own id, where it could be read.
     pub id: Option<String>,
-    /// The field, with the way into it (`path[3]`).
+    /// The field, with the index or key within it (`path[3]`).
     pub field: String,
     /// What is wrong with it.
     pub problem: String,

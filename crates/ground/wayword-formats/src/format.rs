@@ -1,4 +1,4 @@
-//! Which format a file is in.
+//! The formats, and how a file's format is recognised.
 
 use crate::{Episode, FormatError, input, jsonl, r2r, reverie, rxr, strict::Strict, vlnce};
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
@@ -44,7 +44,7 @@ impl Format {
     /// Reads a file of this format.
     ///
     /// # Errors
-    /// As the format's own `read`.
+    /// The same as the format's own `read`.
     pub fn read(self, file: &Path) -> Result<Vec<Episode>, FormatError> {
         match self {
             Self::R2r => r2r::read(file),
@@ -70,34 +70,37 @@ impl fmt::Display for Format {
     }
 }
 
-/// Reads a file of whatever format.
+/// Reads a file of any of the formats.
 ///
 /// # Errors
-/// When its format is not known, or as the format's own `read`.
+/// When its format is not recognised, and when the format's own `read` fails.
 pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     detect(file)?.read(file)
 }
 
-/// Tells a file's format by what its beginning holds: a list whose first item has an object (`objId`), or an `id` that begins with
-/// its `path_id`, is REVERIE, any other list R2R; a line with `instruction_id` is RxR, one with `format` Wayword's; `episodes` or
-/// `instruction_vocab` is VLN-CE.
+/// Recognises a file's format by its beginning:
+///
+/// - a list is REVERIE where its first item has an object (`objId`) or an `id` that begins with its `path_id`, else
+///   R2R;
+/// - an object or line with `instruction_id` is RxR, with `format` Wayword's, with `episodes` or `instruction_vocab`
+///   VLN-CE.
 ///
 /// # Errors
 /// When it cannot be read, or its beginning is none of these.
 pub fn detect(file: &Path) -> Result<Format, FormatError> {
     let mut parser = input::parser(file)?;
     let told = RefCell::new(None);
-    // An error is what stopping early looks like, too: what counts is what was told before.
+    // Stopping early is an error as well, so only what was found before it counts.
     let read = (&mut parser).deserialize_any(Beginning(&told));
     let format = told.take();
     format.ok_or_else(|| {
         let why = read.err().map_or_else(|| "it is empty".to_owned(), |error| error.to_string());
-        let problem = format!("its beginning is that of no known format: {why}");
+        let problem = format!("its beginning does not fit any known format: {why}");
         FormatError::document(file, problem, "give a file in one of the formats r2r, reverie, rxr, vlnce, wayword")
     })
 }
 
-/// Looks at the first item of a list, or the first telling key of an object.
+/// Looks at the first item of a list, or at an object's keys up to the first that decides.
 struct Beginning<'a>(&'a RefCell<Option<Format>>);
 
 impl<'de> Visitor<'de> for Beginning<'_> {

@@ -1,6 +1,6 @@
 //! Habitat's frame: y up, and an agent that has not turned looks along -z.
 //!
-//! Habitat's Matterport3D scenes are Matterport's turned onto their back: habitat (x, y, z) = Matterport (x, z, -y).
+//! Habitat's Matterport3D scenes are Matterport's own with other axes: habitat (x, y, z) = Matterport (x, z, -y).
 
 use wayword_core::{DVec3, Heading};
 
@@ -16,21 +16,21 @@ pub fn wayword_from_habitat(position: DVec3) -> DVec3 {
     DVec3::new(position.x, -position.z, position.y)
 }
 
-/// The rotation (x, y, z, w) of an agent that looks along a heading. Habitat turns counter-clockwise about +y, a heading
-/// clockwise about the same axis.
+/// The rotation (x, y, z, w) of an agent that looks along a heading. Habitat's angles grow counter-clockwise about +y,
+/// headings clockwise about the same axis.
 #[must_use]
 pub fn habitat_from_heading(heading: Heading) -> [f64; 4] {
     let half = heading.rad() / 2.0;
     [0.0, -libm::sin(half), 0.0, libm::cos(half)]
 }
 
-/// The heading of an agent with a rotation (x, y, z, w) in Habitat's frame. `None` where that is not of length 1, or the agent
-/// looks straight up or down.
+/// The heading of an agent with a rotation (x, y, z, w) in Habitat's frame. `None` where the rotation's length is not
+/// 1, or the agent looks straight up or down.
 #[must_use]
 pub fn heading_from_habitat(rotation: [f64; 4]) -> Option<Heading> {
     let [x, y, z, w] = rotation;
     let length = (x * x + y * y + z * z + w * w).sqrt();
-    // Files hold few digits.
+    // Files have few digits.
     if !(0.99..1.01).contains(&length) {
         return None;
     }

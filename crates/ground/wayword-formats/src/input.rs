@@ -1,4 +1,4 @@
-//! Files in: bounded, unzipped where they are gzip, item by item.
+//! Reads files item by item, with bounds, and unzips gzip.
 
 use crate::{FormatError, Item, ItemPlace, WrongItem, limits, strict::Strict, tokens::Tokens};
 use flate2::bufread::MultiGzDecoder;
@@ -13,17 +13,18 @@ use std::{
 };
 
 const TOO_LARGE: &str = "it is larger than 1 GiB";
-const NOT_JSON: &str = "fetch the file again, or mend it there";
+const NOT_JSON: &str = "fetch the file again, or correct it there";
 
-/// Most bytes that are read of a file at a time.
+/// Most bytes of a file that are read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
-/// Most other fields of an object around a list of items.
+/// Most other fields in an object that has the list of items in a field.
 const FIELDS_AROUND: usize = 20;
 
-/// Opens a file; gzip is told by its first bytes, not by its name. The mark that Windows' editors put before UTF-8 is left out.
+/// Opens a file. It recognises gzip by the first bytes, not by the name, and skips the byte order mark that Windows
+/// editors put before UTF-8.
 pub(crate) fn open(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     let failed = |source| FormatError::io(file, "open", source);
-    // Whoever opens a pipe waits until somebody writes into it, so this is asked first.
+    // Opening a pipe waits until something writes into it, so this is checked first.
     let meta = fs::metadata(file).map_err(failed)?;
     if !meta.is_file() {
         let what = if meta.is_dir() { "a folder" } else { "a pipe or a device" };
@@ -35,13 +36,13 @@ pub(crate) fn open(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     }
     let mut plain = BufReader::with_capacity(BUFFER_BYTES, opened);
     let is_gzip = plain.fill_buf().map_err(|source| FormatError::io(file, "read", source))?.starts_with(&[0x1f, 0x8b]);
-    // The file may grow while it is read, and gzip may hold a thousand times its size.
+    // The file may grow while it is read, and gzip may expand to a thousand times its size.
     let input: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(plain)) } else { Box::new(plain) };
     let input = BufReader::with_capacity(BUFFER_BYTES, Bounded { inner: input, left: limits::FILE_BYTES });
     without_mark(file, input)
 }
 
-/// A text without the mark of its encoding.
+/// The text without its byte order mark.
 fn without_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
     let mut start = Vec::new();
     input.by_ref().take(3).read_to_end(&mut start).map_err(|source| FormatError::io(file, "read", source))?;
@@ -54,7 +55,6 @@ fn without_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dy
     }
 }
 
-/// Reads a file that is one JSON value.
 type Parser = serde_json::Deserializer<IoRead<BufReader<Tokens<Box<dyn BufRead>>>>>;
 
 /// A parser for a file that is one JSON value.
@@ -63,7 +63,7 @@ pub(crate) fn parser(file: &Path) -> Result<Parser, FormatError> {
     Ok(serde_json::Deserializer::from_reader(BufReader::with_capacity(BUFFER_BYTES, tokens)))
 }
 
-/// A reader that fails, rather than ends, where too much comes out of it.
+/// A reader that fails, rather than ends, after `left` bytes.
 struct Bounded<R> {
     inner: R,
     left: u64,
@@ -77,7 +77,7 @@ impl<R: Read> Read for Bounded<R> {
     }
 }
 
-/// Reads a file that is one JSON list of objects, and hands on each.
+/// Reads a file that is one JSON list of objects, and passes each to `take`.
 pub(crate) fn each_item(
     file: &Path,
     mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
@@ -85,7 +85,7 @@ pub(crate) fn each_item(
     each_value(file, |place, value| take(Item::new(file, place, value)?))
 }
 
-/// Reads a file that is one JSON list of anything, and hands on each with its place.
+/// Reads a file that is one JSON list of any values, and passes each to `take` with its place.
 pub(crate) fn each_value(
     file: &Path,
     mut take: impl FnMut(ItemPlace, Value) -> Result<(), FormatError>,
@@ -96,8 +96,8 @@ pub(crate) fn each_value(
     read.map_err(|error| items.explain(&error))
 }
 
-/// Reads a file that is a JSON object of which one field is the list of items; hands on each of these and returns the other
-/// fields.
+/// Reads a file that is a JSON object with the list of items in one field. Passes each item to `take` and returns the
+/// other fields.
 pub(crate) fn each_item_in(
     file: &Path,
     field: &'static str,
@@ -111,7 +111,7 @@ pub(crate) fn each_item_in(
     read.map_err(|error| items.explain(&error))
 }
 
-/// Reads a file with one JSON object per line, and hands on each; empty lines are skipped.
+/// Reads a file with one JSON object per line, and passes each to `take`. Empty lines are skipped.
 pub(crate) fn each_line(
     file: &Path,
     mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
@@ -127,7 +127,7 @@ pub(crate) fn each_line(
         }
         if line.len() > limits::LINE_BYTES || number > limits::ITEMS {
             let problem =
-                format!("line {number}: the line or the number of lines is beyond every dataset of the field");
+                format!("line {number}: the line is longer than 16 MiB, or there are more than 1,000,000 lines");
             return Err(FormatError::document(file, problem, "write one JSON object per line; split huge files"));
         }
         if !line.trim_ascii().is_empty() {
@@ -148,7 +148,7 @@ fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<Item<'a>,
     Item::new(file, ItemPlace::Line(number), value)
 }
 
-/// `serde_json`'s message without its own account of the place.
+/// `serde_json`'s message without the line and column at its end.
 fn bare(error: &serde_json::Error) -> String {
     let text = error.to_string();
     text.rfind(" at line ").map_or(text.clone(), |end| text[..end].to_owned())
@@ -163,10 +163,10 @@ fn broken(file: &Path, place: ItemPlace, field: String, problem: String) -> Form
 
 type Take<'a> = &'a mut dyn FnMut(ItemPlace, Value) -> Result<(), FormatError>;
 
-/// Reads a JSON list without ever holding more than one of its items as JSON.
+/// Reads a JSON list with at most one of its items in memory as JSON.
 pub(crate) struct Items<'a> {
     file: &'a Path,
-    /// The way to what is wrong within an item.
+    /// The field within an item at which reading failed (`path[3]`).
     field: RefCell<String>,
     progress: RefCell<ListProgress<'a>>,
 }
@@ -184,13 +184,13 @@ impl<'a> Items<'a> {
         Self { file, field: RefCell::default(), progress: progress.into() }
     }
 
-    /// What a failure of the parser was about: an item that was refused, or JSON that is none.
+    /// The error behind a failure of the parser: an item was refused, or the JSON is wrong.
     pub(crate) fn explain(&self, error: &serde_json::Error) -> FormatError {
         let mut progress = self.progress.borrow_mut();
         if let Some(refused) = progress.refused.take() {
             return refused;
         }
-        // Of what the file system or a bound ended, `serde_json` does not know the place.
+        // `serde_json` does not know the place where the file system or a bound ended the reading.
         let place = || format!(" (line {}, column {})", error.line(), error.column());
         let problem = bare(error) + &if error.is_io() { String::new() } else { place() };
         if progress.inside {

@@ -1,4 +1,4 @@
-//! One item of a file, and its fields as what they should be.
+//! One item of a file, and its fields with their types checked.
 
 use crate::{FormatError, ItemPlace, WrongItem, limits};
 use serde::de::DeserializeOwned;
@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use std::path::Path;
 use wayword_core::{DVec3, Heading, ObjectId, SceneId, ViewpointId};
 
-/// An object of a dataset file. Fields are taken out of it; what nobody took is kept as unknown.
+/// An object of a dataset file. A reader takes the fields that it knows; the others are kept as unknown fields.
 pub(crate) struct Item<'a> {
     file: &'a Path,
     place: ItemPlace,
@@ -23,7 +23,7 @@ impl<'a> Item<'a> {
         Ok(Self { file, place, id: None, fields })
     }
 
-    /// Errors from here on name this id.
+    /// Sets the id that errors name from here on.
     pub(crate) fn call(&mut self, id: &str) {
         self.id = Some(id.to_owned());
     }
@@ -32,7 +32,7 @@ impl<'a> Item<'a> {
         self.file
     }
 
-    /// What nobody took, in the order of the file.
+    /// The fields that were not taken, in the order of the file.
     pub(crate) fn rest(self) -> Map<String, Value> {
         self.fields
     }
@@ -40,10 +40,10 @@ impl<'a> Item<'a> {
     /// Takes a field that must be there.
     pub(crate) fn take(&mut self, field: &str) -> Result<Value, FormatError> {
         let value = self.take_optional(field);
-        value.ok_or_else(|| self.wrong(field, "it is missing", "the format demands it"))
+        value.ok_or_else(|| self.wrong(field, "it is missing", "add it, because the format requires it"))
     }
 
-    /// A field that is left where it is.
+    /// A field, without taking it.
     pub(crate) fn look(&self, field: &str) -> Option<&Value> {
         self.fields.get(field)
     }
@@ -72,13 +72,13 @@ impl<'a> Item<'a> {
         value.as_str().ok_or_else(|| self.expected(field, "a text", value, "put it in quotes"))
     }
 
-    /// A name of a path or an item: a whole number or a text that is safe as a file name.
+    /// The name of a path or an item: a whole number, or a text that is safe as a file name.
     pub(crate) fn name(&self, field: &str, value: &Value) -> Result<String, FormatError> {
         const WHAT: &str =
             "a whole number, or a text without path separators and control characters of at most 128 bytes";
         let name =
             name_of(value).filter(|name| SceneId::new(name.as_str()).is_ok() && name.len() <= limits::NAME_BYTES);
-        name.ok_or_else(|| self.expected(field, WHAT, value, "names become file names later"))
+        name.ok_or_else(|| self.expected(field, WHAT, value, "change it, because names become file names later"))
     }
 
     pub(crate) fn scene(&self, field: &str, value: &Value) -> Result<SceneId, FormatError> {
@@ -107,7 +107,7 @@ impl<'a> Item<'a> {
         Ok(DVec3::new(x, y, z))
     }
 
-    /// So many finite numbers.
+    /// `N` finite numbers.
     pub(crate) fn numbers<const N: usize>(&self, field: &str, value: &Value) -> Result<[f64; N], FormatError> {
         let list = self.list(field, value, N)?;
         let numbers = list.iter().enumerate().map(|(index, value)| self.finite(&format!("{field}[{index}]"), value));
@@ -116,17 +116,17 @@ impl<'a> Item<'a> {
             .map_err(|_| self.wrong(field, format!("expected {N} numbers, found {}", list.len()), "write all of them"))
     }
 
-    /// Anything that serde can read.
+    /// Any type that serde can read.
     pub(crate) fn parsed<T: DeserializeOwned>(&self, field: &str, value: Value) -> Result<T, FormatError> {
         serde_json::from_value(value)
-            .map_err(|error| self.wrong(field, error.to_string(), "docs/FORMATS.md tells what it should be"))
+            .map_err(|error| self.wrong(field, error.to_string(), "docs/FORMATS.md says what it should be"))
     }
 
     pub(crate) fn list<'v>(&self, field: &str, value: &'v Value, most: usize) -> Result<&'v [Value], FormatError> {
         let list = value.as_array().ok_or_else(|| self.expected(field, "a list", value, "put it in brackets"))?;
         if list.len() > most {
             let problem = format!("it has {} entries, more than {most}", list.len());
-            return Err(self.wrong(field, problem, "no dataset of the field has so many; split it"));
+            return Err(self.wrong(field, problem, "split it: no dataset of the field has that many"));
         }
         Ok(list)
     }
@@ -160,7 +160,7 @@ impl<'a> Item<'a> {
     }
 }
 
-/// A name as text, where the value is one: datasets write some as numbers.
+/// A name as text, where the value is a name. Datasets write some names as numbers.
 pub(crate) fn name_of(value: &Value) -> Option<String> {
     match value {
         Value::String(text) => Some(text.clone()),
@@ -169,7 +169,7 @@ pub(crate) fn name_of(value: &Value) -> Option<String> {
     }
 }
 
-/// A name as datasets write it: a number where it is one.
+/// A name as datasets write it: as a number where it is one.
 pub(crate) fn value_of(name: &str) -> Value {
     match name.parse::<u64>() {
         Ok(number) if number.to_string() == name => number.into(),
@@ -177,7 +177,7 @@ pub(crate) fn value_of(name: &str) -> Value {
     }
 }
 
-/// A value as an error tells it: short.
+/// A value in short, for an error.
 fn told(value: &Value) -> String {
     match value {
         Value::Array(list) => format!("a list of {}", list.len()),

@@ -1,8 +1,8 @@
-//! Wayword's own format: JSON Lines, one instruction each, whatever platform its path lies on.
+//! Wayword's own format for paths of any platform: JSON Lines, one instruction each.
 //!
-//! A line has `format` ("wayword/1"), `platform`, `split`, `path` (a core path with its frames) and the fields of a core
-//! instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`. `path_id` names the path in its dataset, where several
-//! items may share it. Unknown fields are kept.
+//! A line has `format` ("wayword/1"), `platform`, `split`, `path` (a core path with its frames) and the fields of a
+//! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`. `path_id` names the path in its
+//! dataset, where several items may share it. Unknown fields are kept.
 
 use crate::{Episode, FormatError, Item, input, item, limits, output, tally::Tally};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -13,9 +13,9 @@ use std::{
 };
 use wayword_core::{Instruction, Path, SceneId};
 
-/// What `format` says.
+/// The value of `format`.
 const FORMAT: &str = "wayword/1";
-/// Says which path of a dataset an item lies on.
+/// The field that says which path of a dataset an item lies on.
 const PATH_ID: &str = "path_id";
 
 /// One instruction for one path.
@@ -24,10 +24,10 @@ pub struct Record {
     format: &'static str,
     /// Name of the platform that the path lies on.
     pub platform: String,
-    /// The part of the dataset it belongs to, where that was decided.
+    /// The part of the dataset that it belongs to, where that is decided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub split: Option<Split>,
-    /// What the instruction is about.
+    /// The path that the instruction is about.
     pub path: Path,
     /// The instruction with its evidence.
     #[serde(flatten)]
@@ -41,14 +41,14 @@ pub struct Record {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Split {
-    /// To learn from.
+    /// For training.
     Train,
-    /// To be judged on.
+    /// For evaluation.
     Val,
 }
 
 impl Split {
-    /// Its name, as files have it.
+    /// The name that files use.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -65,8 +65,8 @@ impl Record {
         Self { format: FORMAT, platform: platform.into(), split: None, path, instruction, extra: Map::new() }
     }
 
-    /// Name of its path in the dataset that it was made over, where several items may lie on one path: its field `path_id`, else
-    /// the path's own name.
+    /// The name of its path in the dataset that it was made over, where several items may share a path: its field
+    /// `path_id`, or else the path's own name.
     #[must_use]
     pub fn path_id(&self) -> String {
         self.extra.get(PATH_ID).and_then(item::name_of).unwrap_or_else(|| self.path.id.clone())
@@ -76,8 +76,8 @@ impl Record {
 /// Reads a file of records, plain or gzip.
 ///
 /// # Errors
-/// When it cannot be read, is not JSON, a line lacks a field or has it wrong, the same instruction comes twice, two paths of a
-/// platform have one id, or a scene is in both splits.
+/// When the file cannot be read or is not JSON, a field of a line is missing or wrong, an instruction is given twice,
+/// two paths of a platform have the same id, or a scene is in both splits.
 pub fn read(file: &FilePath) -> Result<Vec<Record>, FormatError> {
     merge(&[file])
 }
@@ -85,7 +85,7 @@ pub fn read(file: &FilePath) -> Result<Vec<Record>, FormatError> {
 /// Reads several files, of several platforms, as one; each record keeps its split.
 ///
 /// # Errors
-/// As [`read`], for all files together.
+/// The same as for [`read`], for all files together.
 pub fn merge<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<Record>, FormatError> {
     let mut records: Vec<Record> = Vec::new();
     let mut seen = Seen::default();
@@ -107,8 +107,8 @@ pub fn merge<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<Record>, FormatError
 /// Writes records; gzip where the name ends in `.gz`.
 ///
 /// # Errors
-/// When the same instruction comes twice, two paths of a platform have one id, a scene is in both splits, or the file cannot be
-/// written.
+/// When an instruction is given twice, two paths of a platform have the same id, a scene is in both splits, or the file
+/// cannot be written.
 pub fn write(file: &FilePath, records: &[Record]) -> Result<(), FormatError> {
     let mut seen = Seen::default();
     for (index, record) in records.iter().enumerate() {
@@ -118,7 +118,7 @@ pub fn write(file: &FilePath, records: &[Record]) -> Result<(), FormatError> {
     output::write_file(file, |out| output::write_lines(out, records))
 }
 
-/// The items of records: one per path, in their order, with all that is said about it.
+/// The items of records: one per path, in their order, each with all its instructions.
 #[must_use]
 pub fn episodes(records: &[Record]) -> Vec<Episode> {
     let mut episodes: Vec<Episode> = Vec::new();
@@ -160,14 +160,15 @@ fn take_path(item: &mut Item<'_>) -> Result<Path, FormatError> {
     if frames.is_empty() {
         return Err(item.wrong("path.frames", "it is empty", "a path has at least one frame"));
     }
-    // One by one, so that an error can say which.
+    // One by one, so that an error can name the frame.
     for (index, frame) in frames.iter().enumerate() {
         item.parsed::<wayword_core::Frame>(&format!("path.frames[{index}]"), frame.clone())?;
     }
     item.parsed("path", path)
 }
 
-/// Byte ranges and frame numbers are used as indices later, so they are held to the text and the path here.
+/// Takes the instruction. It checks byte ranges and frame numbers against the text and the path, because they are used
+/// as indices later.
 fn take_instruction(item: &mut Item<'_>, frames: usize) -> Result<Instruction, FormatError> {
     let text = item.take("text")?;
     let instruction = Instruction {
@@ -182,11 +183,11 @@ fn take_instruction(item: &mut Item<'_>, frames: usize) -> Result<Instruction, F
     let (mentions, findings) = (&instruction.mentions, &instruction.findings);
     if let Some(index) = mentions.iter().position(|mention| !fits(mention.span) || mention.frame >= frames) {
         let field = format!("mentions[{index}]");
-        return Err(item.wrong(&field, "it leads out of the text or the path", "spans are byte ranges of the text"));
+        return Err(item.wrong(&field, "it points outside the text or the path", "spans are byte ranges of the text"));
     }
     if let Some(index) = findings.iter().position(|finding| finding.span.is_some_and(|span| !fits(span))) {
         let field = format!("findings[{index}].span");
-        return Err(item.wrong(&field, "it leads out of the text", "spans are byte ranges of the text"));
+        return Err(item.wrong(&field, "it points outside the text", "spans are byte ranges of the text"));
     }
     Ok(instruction)
 }
@@ -196,7 +197,7 @@ fn take_parsed<T: DeserializeOwned>(item: &mut Item<'_>, field: &str) -> Result<
     item.parsed(field, value)
 }
 
-/// What a dataset holds so far, to find what cannot be in it together.
+/// The dataset's records so far, to find those that cannot be in it together.
 #[derive(Default)]
 struct Seen {
     paths: BTreeMap<(String, String), usize>,
@@ -214,17 +215,17 @@ impl Seen {
     fn check(&self, earlier: &[Record], record: &Record) -> Result<(), Clash> {
         let same_name = self.paths.get(&path_key(record)).and_then(|index| earlier.get(*index));
         if same_name.is_some_and(|other| other.path != record.path) {
-            let problem = format!("an earlier record has another path of the name {:?}", record.path.id);
-            return Err(Clash { field: "path", problem, hint: "merge runs whose paths have names of their own" });
+            let problem = format!("an earlier record has a different path with the name {:?}", record.path.id);
+            return Err(Clash { field: "path", problem, hint: "merge only runs whose paths have different names" });
         }
         if self.texts.contains(&text_key(record)) {
-            let problem = format!("path {:?} has this very instruction already", record.path.id);
+            let problem = format!("path {:?} already has the same instruction", record.path.id);
             return Err(Clash { field: "text", problem, hint: "leave one of the two out" });
         }
         let other = self.splits.get(&scene_key(record));
         if record.split.is_some() && other.is_some() && other != record.split.as_ref() {
             let problem = format!("scene {} is in train and in val", record.path.scene);
-            return Err(Clash { field: "split", problem, hint: "split the records anew, by scene" });
+            return Err(Clash { field: "split", problem, hint: "split the records again, by scene" });
         }
         Ok(())
     }

@@ -1,9 +1,9 @@
 //! Readers and writers of the field's dataset formats: R2R, REVERIE, RxR, VLN-CE and Wayword's own JSONL.
 //!
-//! Files are untrusted: sizes and counts are bounded, ids cannot name a folder, and what is wrong is refused with file, item
-//! and field. What is written is written whole or not at all.
+//! Files are untrusted. Sizes and counts are bounded, ids cannot name a folder, and an error names file, item and
+//! field. A file is written completely or not at all.
 //!
-//! Architecture invariant: nothing here knows a platform, a model or a network.
+//! Architecture invariant: nothing here depends on a platform, a model or a network.
 
 mod episode;
 mod error;

@@ -1,4 +1,4 @@
-//! What R2R, REVERIE and RxR share: paths over Matterport3D's viewpoint graphs.
+//! The fields that R2R, REVERIE and RxR share: paths over Matterport3D's viewpoint graphs.
 
 use crate::{Episode, FormatError, Item, item};
 use serde_json::{Map, Value};
@@ -29,13 +29,13 @@ pub(crate) fn take_path(item: &mut Item<'_>, id: &str) -> Result<Episode, Format
 /// The nodes of a path, as they are written.
 pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, FormatError> {
     if episode.viewpoints.is_empty() {
-        let problem = format!("the path of item {:?} names no viewpoints, which this format demands", episode.id);
+        let problem = format!("the path of item {:?} names no viewpoints, and this format requires them", episode.id);
         return Err(FormatError::document(file, problem, "write it as vlnce or wayword"));
     }
     Ok(episode.viewpoints.iter().map(wayword_core::ViewpointId::as_str).collect())
 }
 
-/// The fields that no format knows; known fields win where both have a name.
+/// Adds the unknown fields. Where a known field has the same name, that one stays.
 pub(crate) fn add_extra(fields: &mut Map<String, Value>, episode: &Episode) {
     for (key, value) in &episode.extra {
         if !fields.contains_key(key) {
@@ -44,11 +44,11 @@ pub(crate) fn add_extra(fields: &mut Map<String, Value>, episode: &Episode) {
     }
 }
 
-/// Under which an item keeps the name of a path that had to be numbered.
+/// The field in which an item keeps the name of a path that had to be numbered.
 pub(crate) const PATH_NAME: &str = "path_name";
 
-/// The numbers under which a file's paths are written: the field's evaluators read a path's name back with `int()`, so a path
-/// whose name is none (`house-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
+/// The numbers of a file's paths. The field's evaluators read a path's name back with `int()`. So a path whose name is
+/// not a number (`house-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
 pub(crate) struct PathNumbers {
     numbers: Numbers,
     given: BTreeMap<String, u64>,

@@ -1,4 +1,4 @@
-//! Files out: whole or not at all.
+//! Writes files, completely or not at all.
 
 use crate::FormatError;
 use flate2::{Compression, write::GzEncoder};
@@ -10,14 +10,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes a file beside its place and then moves it there, so that a reader never sees half of it; gzip where the name ends
-/// in `.gz`.
+/// Writes a file beside its place and then moves it there, so that a reader never sees half of it. The file is gzip
+/// where its name ends in `.gz`.
 pub(crate) fn write_file(file: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FormatError> {
     let beside = beside(file)?;
     let written = write_to(&beside, file.extension().is_some_and(|ending| ending == "gz"), fill)
         .and_then(|()| fs::rename(&beside, file));
     written.map_err(|source| {
-        // The first failure is the one to tell; a file that cannot be removed either is left.
+        // The first failure is the one to report. If the file cannot be removed either, it is left.
         let _ = fs::remove_file(&beside);
         FormatError::io(file, "write", source)
     })
@@ -45,7 +45,7 @@ fn write_to(file: &Path, gzip: bool, fill: impl FnOnce(&mut dyn Write) -> io::Re
     plain.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
 }
 
-/// Writes a JSON list with one item per line, which differs line by line where two versions differ.
+/// Writes a JSON list with one item per line, so that two versions can be compared line by line.
 pub(crate) fn write_list<T: Serialize>(out: &mut dyn Write, items: impl IntoIterator<Item = T>) -> io::Result<()> {
     let mut before = "[\n";
     for item in items {
@@ -65,7 +65,8 @@ pub(crate) fn write_lines<T: Serialize>(out: &mut dyn Write, items: impl IntoIte
     Ok(())
 }
 
-/// Writes what a format has no room for beside it, one JSON object per line: `<name>.provenance.jsonl`. Returns its name.
+/// Writes `<name>.provenance.jsonl` beside a dataset, with what its format has no room for: one JSON object per line.
+/// Returns the file's name.
 ///
 /// # Errors
 /// When the file cannot be written.

@@ -1,6 +1,6 @@
 //! R2R: a path and usually three instructions.
 //!
-//! Fields: `distance`, `scan`, `path_id`, `path`, `heading`, `instructions`. `distance` is carried along as unknown fields are.
+//! Fields: `distance`, `scan`, `path_id`, `path`, `heading`, `instructions`. `distance` is kept as unknown fields are.
 
 use crate::{Episode, FormatError, input, matterport, output, tally::Tally};
 use matterport::PathNumbers;
@@ -10,7 +10,7 @@ use std::{collections::BTreeMap, path::Path};
 /// Reads an R2R file, plain or gzip.
 ///
 /// # Errors
-/// When it cannot be read, is not JSON, or an item lacks a field, has it wrong, or has a `path_id` that was given before.
+/// When the file cannot be read or is not JSON, a field of an item is missing or wrong, or a `path_id` is given twice.
 pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = Tally::default();
@@ -27,9 +27,10 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 
 /// Writes an R2R file.
 ///
-/// R2R has one item per path, and its loaders name an instruction by path and place. So items on one path with one heading
-/// (REVERIE's, for several objects) become one item with all their instructions; where the heading differs, the later item
-/// gets a path number of its own. A path whose name is not a number gets one, and keeps its name in `path_name`.
+/// R2R has one item per path, because its loaders name an instruction by its path and its place in the item. So items
+/// on one path with the same heading (REVERIE's, for several objects) become one item with all their instructions.
+/// Where the heading differs, the later item gets its own path number. A path whose name is not a number gets one, and
+/// keeps its name in `path_name`.
 ///
 /// # Errors
 /// When a path names no viewpoints, or the file cannot be written.
@@ -57,7 +58,7 @@ pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
 fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
     let mut fields = Map::new();
     if let Some(length_m) = episode.floor_length_m().filter(|_| !episode.extra.contains_key("distance")) {
-        // To the centimetre, as R2R has it.
+        // To the centimetre, as in R2R.
         fields.insert("distance".to_owned(), ((length_m * 100.0).round() / 100.0).into());
     }
     fields.insert("scan".to_owned(), episode.scene.as_str().into());

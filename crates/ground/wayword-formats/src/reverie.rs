@@ -1,7 +1,7 @@
 //! REVERIE: a path, the object at its end, and short instructions that name a task on it.
 //!
 //! Fields: `id` ("path_objId"), `scan`, `path_id`, `path`, `objId`, `heading`, `instructions`. The first release adds
-//! `distance`, `ix` and `instructions_l` (R2R's text); they are carried along as unknown fields are.
+//! `distance`, `ix` and `instructions_l` (R2R's text); they are kept as unknown fields are.
 
 use crate::{Episode, FormatError, input, item, matterport, output, tally::Tally};
 use matterport::PathNumbers;
@@ -11,14 +11,14 @@ use std::path::Path;
 /// Reads a REVERIE file of either release, plain or gzip.
 ///
 /// # Errors
-/// When it cannot be read, is not JSON, or an item lacks a field, has it wrong, or has an id that was given before.
+/// When the file cannot be read or is not JSON, a field of an item is missing or wrong, or an id is given twice.
 pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = Tally::default();
     input::each_item(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "id")?;
         tally.claim(&item, "id", &episode)?;
-        // Test splits and free targets have none.
+        // Items of test splits, and those with a free target, have no object.
         if let Some(object) = item.take_optional("objId") {
             episode.target_object = Some(item.object("objId", &object)?);
             episode.remember("objId", object);
@@ -33,11 +33,11 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 
 /// Writes a REVERIE file (2022 release; fields of the first release are kept where an item has them).
 ///
-/// An item's id is "path_objId", or "path" where it has no target; a path whose name is not a number gets one, and keeps its
-/// name in `path_name`.
+/// An item's id is "path_objId", or "path" where it has no target. A path whose name is not a number gets one, and
+/// keeps its name in `path_name`.
 ///
 /// # Errors
-/// When a path names no viewpoints, two items come to the same id, or the file cannot be written.
+/// When a path names no viewpoints, two items would have the same id, or the file cannot be written.
 pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     let mut numbers = PathNumbers::new(episodes);
     let mut ids = std::collections::BTreeSet::new();
@@ -45,7 +45,8 @@ pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     for episode in episodes {
         let item = fields(file, episode, &mut numbers)?;
         if !ids.insert(item.get("id").map(Value::to_string)) {
-            let problem = format!("two items come to the id of {:?}, which is a path and its object", episode.id);
+            let problem =
+                format!("item {:?} has the same path and object as another, so both get the same id", episode.id);
             return Err(FormatError::document(file, problem, "put instructions for one path and object into one item"));
         }
         items.push(item);

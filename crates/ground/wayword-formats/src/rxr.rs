@@ -8,13 +8,14 @@ use matterport::{Numbers, PathNumbers, number_of};
 use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};
 
-/// Known fields that are carried along with the text that they belong to.
+/// Known fields that are kept as long as the text is the one that was read.
 const OF_THE_TEXT: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
 
 /// Reads a file of guide annotations.
 ///
 /// # Errors
-/// When it cannot be read, is not JSON, or a line lacks a field, has it wrong, or has an `instruction_id` that was given before.
+/// When the file cannot be read or is not JSON, a field of a line is missing or wrong, or an `instruction_id` is given
+/// twice.
 pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = Tally::default();
@@ -34,7 +35,7 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
     Ok(episodes)
 }
 
-/// Fields that model-made annotations may lack.
+/// Takes the fields that annotations by a model may lack.
 fn take_text_fields(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), FormatError> {
     for field in OF_THE_TEXT {
         let Some(value) = item.take_optional(field) else { continue };
@@ -44,7 +45,7 @@ fn take_text_fields(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), Fo
             "language" => drop(item.text(field, &value)?),
             _ => timed_words(item, field, &value)?,
         }
-        // The times of a word take ten times as much memory as values than as text.
+        // Timed words take ten times as much memory as JSON values as they do as text.
         let value = if field == "timed_instruction" { value.to_string().into() } else { value };
         episode.remember(field, value);
     }
@@ -65,9 +66,9 @@ fn timed_words(item: &Item<'_>, field: &str, value: &Value) -> Result<(), Format
 /// Writes guide annotations, one line per instruction; gzip where the name ends in `.gz`.
 ///
 /// A text that is not the one that was read gets `language` "en-US", the `annotator_id` 0 (no annotator wrote it), an
-/// `edit_distance` of 0 (nothing was transcribed) and words without times, as some of RxR's own words are. Instructions get new
-/// numbers where an item has several, or its id is no number or was used before. A path whose name is not a number gets one,
-/// and keeps its name in `path_name`. Where an item knows no split, it is "train".
+/// `edit_distance` of 0 (nothing was transcribed) and words without times, like some of RxR's own words. Instructions
+/// get new numbers where an item has several, or where its id is not a number or is used already. A path whose name is
+/// not a number gets one, and keeps its name in `path_name`. An item without a split gets "train".
 ///
 /// # Errors
 /// When a path names no viewpoints, or the file cannot be written.

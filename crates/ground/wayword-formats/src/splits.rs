@@ -1,15 +1,15 @@
-//! Which scenes are learnt from, and which are kept for judging.
+//! The split of scenes into those for training and those for evaluation.
 
 use crate::jsonl::{Record, Split};
 use rand::RngCore;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::SceneId;
 
-/// Puts every scene into one of the two splits, and every record where its scene is.
+/// Puts every scene into one of the two splits, and every record into the split of its scene.
 ///
-/// Of each platform's scenes the share `val_share` (0 to 1, rounded) is for `val`; at least one scene is in each split where the
-/// platform has two and the share is neither 0 nor 1. The choice depends on the seed and the names of the scenes, not on the
-/// order of the records, and a scene that is added later moves few others.
+/// The share `val_share` (0 to 1, rounded) of each platform's scenes is for `val`. Each split has at least one scene
+/// where the platform has two and the share is neither 0 nor 1. The choice depends on the seed and the names of the
+/// scenes, not on the order of the records, and a scene that is added later moves few others.
 pub fn split(records: &mut [Record], val_share: f64, seed: u64) {
     let val = val_scenes(records, val_share, seed);
     for record in records {
@@ -22,7 +22,7 @@ fn val_scenes(records: &[Record], val_share: f64, seed: u64) -> BTreeMap<String,
     let mut drawn: BTreeMap<String, BTreeSet<(u64, SceneId)>> = BTreeMap::new();
     for record in records {
         let (platform, scene) = (&record.platform, &record.path.scene);
-        // Drawn by a generator: the derived seeds themselves are too much alike where names are.
+        // A generator draws the number, because the derived seeds themselves are too similar where the names are.
         let lot = wayword_core::rng(seed, &["split", platform, scene.as_str()]).next_u64();
         drawn.entry(platform.clone()).or_default().insert((lot, scene.clone()));
     }

@@ -1,5 +1,5 @@
-//! JSON as `serde_json` reads it, but a key given twice is refused, the size of a value is bounded, and an error knows the
-//! way into the value at which it happened.
+//! JSON as `serde_json` reads it, with three differences: a key that is given twice is refused, the size of a value is
+//! bounded, and an error says at which field of the value it happened.
 
 use crate::limits;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -10,7 +10,8 @@ use std::{
     fmt::{self, Write as _},
 };
 
-/// Reads one value. Where that fails, the text becomes the way into it, as `path[3]`; it stays empty at its root.
+/// Reads one value. Where that fails, the text becomes the field at which it failed, such as `path[3]`; it stays empty
+/// at the root.
 #[derive(Clone, Copy)]
 pub(crate) struct Strict<'f>(pub(crate) &'f RefCell<String>);
 
@@ -41,10 +42,12 @@ fn field(path: &Path) -> String {
     field
 }
 
-/// Reads a part of a value, which may have so many more, and so many more bytes of text.
+/// Reads a part of a value.
 #[derive(Clone, Copy)]
 struct Part<'l> {
+    /// How many more JSON values the whole value may have.
     left: &'l Cell<usize>,
+    /// How many more bytes of text it may have.
     bytes: &'l Cell<usize>,
     is_twice: bool,
 }
@@ -64,7 +67,7 @@ impl<'de> DeserializeSeed<'de> for Part<'_> {
         if self.is_twice {
             return Err(D::Error::custom("it is given twice"));
         }
-        let left = self.left.get().checked_sub(1).ok_or_else(|| D::Error::custom("it has too many parts"))?;
+        let left = self.left.get().checked_sub(1).ok_or_else(|| D::Error::custom("it has more than 200,000 values"))?;
         self.left.set(left);
         deserializer.deserialize_any(self)
     }

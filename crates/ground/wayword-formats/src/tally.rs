@@ -1,10 +1,10 @@
-//! What a file has given so far: names that may be given once, and how much of it is held in memory.
+//! Counts what was read of a file so far: names that may be given only once, and the values that are kept in memory.
 
 use crate::{Episode, FormatError, Item, limits};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// What a file has given so far.
+/// What was read of a file so far.
 #[derive(Default)]
 pub(crate) struct Tally {
     names: BTreeSet<String>,
@@ -12,24 +12,24 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    /// Refuses a name that was given before; the field's loaders would silently drop one of the two.
+    /// Refuses a name that was given before, because the field's loaders would silently drop one of the two items.
     pub(crate) fn claim(&mut self, item: &Item<'_>, field: &str, episode: &Episode) -> Result<(), FormatError> {
         if self.names.insert(episode.id.clone()) {
             return Ok(());
         }
         let problem = format!("{:?} was given to an earlier item", episode.id);
-        Err(item.wrong(field, problem, "give each item a name of its own"))
+        Err(item.wrong(field, problem, "give each item its own name"))
     }
 
-    /// An episode with the fields that nobody took.
+    /// An episode with the fields that were not taken.
     pub(crate) fn finish(&mut self, mut episode: Episode, item: Item<'_>) -> Result<Episode, FormatError> {
         let lists = episode.viewpoints.len() + episode.floor_positions.len() + episode.instructions.len();
         episode.extra = self.rest(item, lists + values_in(&episode.as_read))?;
         Ok(episode)
     }
 
-    /// The fields that nobody took; `kept` is the number of values that were taken and are held. A short value takes up to
-    /// thirty times its length in the file.
+    /// The fields that were not taken; `kept` is the number of values that were taken and are kept in memory. A short
+    /// value takes up to thirty times its length in the file.
     pub(crate) fn rest(&mut self, item: Item<'_>, kept: usize) -> Result<Map<String, Value>, FormatError> {
         let file = item.file();
         let rest = item.rest();
@@ -46,7 +46,7 @@ fn values_in(map: &Map<String, Value>) -> usize {
     map.values().map(values).sum()
 }
 
-/// An object counts for eight, since one takes as much memory as that many numbers even where it is short.
+/// An object counts as eight values, because even a short one takes as much memory as eight numbers.
 fn values(value: &Value) -> usize {
     match value {
         Value::Array(list) => 1 + list.iter().map(values).sum::<usize>(),

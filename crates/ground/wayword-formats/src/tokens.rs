@@ -1,5 +1,5 @@
-//! JSON whose texts and numbers are bounded while it is read: `serde_json` takes up to three times the memory of a text before
-//! anybody sees it.
+//! JSON whose texts and numbers are bounded while it is read, because `serde_json` takes up to three times the memory
+//! of a text before it returns it.
 
 use crate::limits;
 use std::io::{self, Read};
@@ -19,7 +19,7 @@ impl<R> Tokens<R> {
         Self { inner, length: 0, in_text: false, is_escaped: false, is_over: false }
     }
 
-    /// Takes in a byte; whether what it belongs to is still short enough.
+    /// Takes in a byte. Returns whether the text or number that it belongs to is still short enough.
     fn take(&mut self, byte: u8) -> bool {
         self.length += 1;
         match byte {
@@ -42,7 +42,7 @@ impl<R: Read> Read for Tokens<R> {
         for (at, byte) in buffer[..count].iter().enumerate() {
             if !self.take(*byte) {
                 self.is_over = true;
-                // What comes before is handed on, so that the error tells the item.
+                // The bytes before are passed on, so that the error can name the item.
                 return if at == 0 { self.read(buffer) } else { Ok(at) };
             }
         }

@@ -1,12 +1,14 @@
 //! VLN-CE: episodes in Habitat's frame, with a vocabulary.
 //!
 //! `{episodes, instruction_vocab: {word_list}}`; an episode has `episode_id`, `trajectory_id`, `scene_id`
-//! ("mp3d/SCAN/SCAN.glb"), `start_position`, `start_rotation` (x, y, z, w), `goals` (`position`, `radius`), `reference_path`,
-//! `instruction` (`instruction_text`, `instruction_tokens`) and `info`. Its loader builds an episode from exactly these keys and
-//! crashes on any other, so none is written, and unknown fields of a file that was read are lost.
+//! ("mp3d/SCAN/SCAN.glb"), `start_position`, `start_rotation` (x, y, z, w), `goals` (`position`, `radius`),
+//! `reference_path`, `instruction` (`instruction_text`, `instruction_tokens`) and `info`. Its loader builds an episode
+//! from exactly these keys and crashes on any other. So no other key is written, and unknown fields of a file that was
+//! read are lost.
 //!
-//! Positions are turned into the world frame on the way in and back on the way out. They lie on the floor, where a Matterport3D
-//! viewpoint is the camera, about 1.5 m above: whoever writes gives floor positions ([`Episode::floor_positions`]).
+//! The reader converts positions to the world frame, and the writer converts them back. They lie on the floor. A
+//! Matterport3D viewpoint is the camera, about 1.5 m above it, so the caller gives floor positions
+//! ([`Episode::floor_positions`]).
 
 use crate::{
     Episode, FormatError, Item,
@@ -22,20 +24,20 @@ use std::{
 };
 use wayword_core::{DVec3, SceneId};
 
-/// How near to the goal counts as there, metres (VLN-CE's own).
+/// Within this distance of the goal an agent has arrived, metres (VLN-CE's own value).
 const GOAL_RADIUS_M: f64 = 3.0;
 
-/// What a VLN-CE file holds.
+/// The contents of a VLN-CE file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset {
-    /// Its episodes, with one instruction each when they were read.
+    /// Its episodes. After reading, each has one instruction.
     pub episodes: Vec<Episode>,
-    /// The words that their tokens stand for. A trained agent knows the numbers of one vocabulary only, so keep it.
+    /// The words of their tokens. Keep it, because a trained agent knows the numbers of one vocabulary only.
     pub vocabulary: Vocabulary,
 }
 
 impl Dataset {
-    /// Episodes with a vocabulary of their own words.
+    /// Episodes, with a vocabulary made from their words.
     #[must_use]
     pub fn of(episodes: Vec<Episode>) -> Self {
         let texts = episodes.iter().flat_map(|episode| &episode.instructions);
@@ -46,7 +48,8 @@ impl Dataset {
 /// Reads a VLN-CE file, plain or gzip.
 ///
 /// # Errors
-/// When it cannot be read, is not JSON, or an episode lacks a field, has it wrong, or has an `episode_id` that was given before.
+/// When the file cannot be read or is not JSON, a field of an episode is missing or wrong, or an `episode_id` is given
+/// twice.
 pub fn read(file: &Path) -> Result<Dataset, FormatError> {
     let mut episodes = Vec::new();
     let mut tokens = BTreeMap::new();
@@ -54,7 +57,7 @@ pub fn read(file: &Path) -> Result<Dataset, FormatError> {
     let mut rest = input::each_item_in(file, "episodes", |mut item| {
         let episode = take_episode(&mut item, &mut tokens)?;
         tally.claim(&item, "episode_id", &episode)?;
-        // Unknown fields cannot be written back, so they are not kept either.
+        // Unknown fields cannot be written back, so they are not kept.
         let episode = tally.finish(episode, item)?;
         episodes.push(Episode { extra: Map::new(), ..episode });
         Ok(())
@@ -94,13 +97,13 @@ fn take_episode(item: &mut Item<'_>, tokens: &mut BTreeMap<String, Vec<u64>>) ->
     Ok(episode)
 }
 
-/// The scene that a path to its mesh names: the file's name without its ending.
+/// The scene of a mesh file: the file's name without its ending.
 fn scene_of(item: &Item<'_>, value: &Value) -> Result<SceneId, FormatError> {
     const HINT: &str = "VLN-CE writes mp3d/SCAN/SCAN.glb";
     let text = item.text("scene_id", value)?;
     let outside = text.starts_with('/') || text.split('/').any(|part| part == "..");
     if outside || text.contains('\\') {
-        return Err(item.wrong("scene_id", "it leads out of the folder of scenes", HINT));
+        return Err(item.wrong("scene_id", "it points outside the folder of scenes", HINT));
     }
     SceneId::new(bare_scene(text)).map_err(|error| item.wrong("scene_id", error.to_string(), HINT))
 }
@@ -118,7 +121,7 @@ fn take_positions(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), Form
     let rotation = item.take("start_rotation")?;
     let heading = heading_from_habitat(item.numbers("start_rotation", &rotation)?);
     episode.start_heading = Some(heading.ok_or_else(|| {
-        item.wrong("start_rotation", "it is no rotation with a heading", "write a quaternion of length 1 as x, y, z, w")
+        item.wrong("start_rotation", "it gives no heading", "write a quaternion of length 1 as x, y, z, w")
     })?);
     let goals = item.take("goals")?;
     let goal_floors = goal_positions(item, &goals)?;
@@ -145,7 +148,7 @@ fn positions(item: &Item<'_>, field: &str, value: &Value) -> Result<Vec<DVec3>, 
     list.iter().enumerate().map(|(index, value)| item.position(&format!("{field}[{index}]"), value)).collect()
 }
 
-/// Test splits have no goals.
+/// The positions of the goals; none in test splits.
 fn goal_positions(item: &Item<'_>, value: &Value) -> Result<Vec<DVec3>, FormatError> {
     if value.is_null() {
         return Ok(Vec::new());
@@ -172,7 +175,7 @@ fn take_instruction(
             let field = "instruction.instruction_tokens";
             let numbers = item.list(field, numbers, limits::INSTRUCTION_BYTES)?.iter().map(Value::as_u64);
             let numbers = numbers.collect::<Option<Vec<_>>>();
-            let wrong = || item.wrong(field, "expected whole numbers", "leave them out to have them counted anew");
+            let wrong = || item.wrong(field, "expected whole numbers", "leave them out, and Wayword makes new ones");
             tokens.insert(text.clone(), numbers.ok_or_else(wrong)?);
         }
     }
@@ -182,13 +185,13 @@ fn take_instruction(
 
 /// Writes a VLN-CE file, one episode per instruction; gzip where the name ends in `.gz`.
 ///
-/// An episode is named by its item's id, or by `ID_0`, `ID_1`, ... where the item has several instructions. Where the path is not
-/// the one that was read, its goal is its last position (radius 3 m), and `info.geodesic_distance` is the distance over the scene's
-/// navmesh where the item has it, else the length of the path; `info.geodesic_distance_over` says which. What does not fit into
-/// the format belongs into a sidecar ([`crate::write_sidecar`]).
+/// An episode's name is its item's id, or `ID_0`, `ID_1`, ... where the item has several instructions. Where the path
+/// is not the one that was read, its goal is its last position (radius 3 m), and `info.geodesic_distance` is the
+/// distance over the scene's navmesh where the item has it, else the length of the path; `info.geodesic_distance_over`
+/// says which. What does not fit into the format belongs in a sidecar ([`crate::write_sidecar`]).
 ///
 /// # Errors
-/// When an item has no floor positions, two episodes come to the same id, or the file cannot be written.
+/// When an item has no floor positions, two episodes would have the same id, or the file cannot be written.
 pub fn write(file: &Path, dataset: &Dataset) -> Result<(), FormatError> {
     let mut ids = BTreeSet::new();
     let mut episodes = Vec::new();
@@ -199,7 +202,7 @@ pub fn write(file: &Path, dataset: &Dataset) -> Result<(), FormatError> {
                 _ => format!("{}_{index}", episode.id).into(),
             };
             if !ids.insert(id.to_string()) {
-                let problem = format!("two episodes come to the id {id}");
+                let problem = format!("two episodes would have the same id {id}");
                 return Err(FormatError::document(file, problem, "put instructions for one path into one item"));
             }
             let mut fields = Map::new();
@@ -221,12 +224,12 @@ pub fn write(file: &Path, dataset: &Dataset) -> Result<(), FormatError> {
 
 fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) -> Result<(), FormatError> {
     let (Some(start), Some(goal)) = (episode.floor_positions.first(), episode.floor_positions.last()) else {
-        let problem = format!("item {:?} has no floor positions, which this format demands", episode.id);
+        let problem = format!("item {:?} has no floor positions, and this format requires them", episode.id);
         return Err(FormatError::document(file, problem, "write it as r2r, reverie, rxr or wayword"));
     };
     let path: Value = episode.floor_positions.iter().map(|position| habitat_value(*position)).collect();
     let read_path = episode.as_read.get("reference_path");
-    // Where the file had no path, the one made of its start and goal is taken for it.
+    // Where the file had no path, the path from its start to its goal counts as the one that was read.
     let same_path = read_path.is_some_and(|as_read| as_read.is_null() || *as_read == path);
     let scene = &episode.scene;
     let heading = episode.start_heading.unwrap_or(wayword_core::Heading::NORTH);
@@ -248,7 +251,7 @@ fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) ->
     Ok(())
 }
 
-/// What may be said beside the format's own fields: loaders take any key there.
+/// The field `info`, in which loaders accept any key.
 fn info(episode: &Episode) -> Value {
     let (length_m, over) = match episode.in_habitat.geodesic_m {
         Some(geodesic_m) => (Some(geodesic_m), "navmesh"),

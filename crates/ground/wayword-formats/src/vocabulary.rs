@@ -1,8 +1,8 @@
-//! Words as the numbers that VLN-CE's agents read.
+//! Words as numbers for VLN-CE's agents.
 
 use std::collections::BTreeMap;
 
-/// VLN-CE's agents read so many tokens; shorter texts are filled up with `<pad>`.
+/// The number of tokens that VLN-CE's agents read. Shorter texts are filled up with `<pad>`.
 const TOKENS: usize = 200;
 const PAD: &str = "<pad>";
 const UNKNOWN: &str = "<unk>";
@@ -16,8 +16,8 @@ pub struct Vocabulary {
 }
 
 impl Vocabulary {
-    /// A vocabulary from its word list. Where one word is listed twice, the later place counts, as in Habitat's `VocabDict`.
-    /// `<pad>` and `<unk>` are added at the end where they lack.
+    /// A vocabulary from its word list. Where a word is listed twice, the later place counts, as in Habitat's
+    /// `VocabDict`. `<pad>` and `<unk>` are added at the end where the list lacks them.
     #[must_use]
     pub fn new(mut words: Vec<String>) -> Self {
         for special in [PAD, UNKNOWN] {
@@ -36,15 +36,15 @@ impl Vocabulary {
         Self::new([PAD.to_owned(), UNKNOWN.to_owned()].into_iter().chain(words).collect())
     }
 
-    /// Its words, each at the place that is its token.
+    /// Its words; each word's index is its token.
     #[must_use]
     pub fn words(&self) -> &[String] {
         &self.words
     }
 
-    /// A text's 200 tokens: lower case, words of letters and digits (with inner `'` and `-`) and each mark of punctuation
-    /// except commas and question marks, which are left out; what comes after the 200th is cut. A text whose tokens were read
-    /// with this vocabulary keeps them.
+    /// A text's 200 tokens, in lower case. A token is a word of letters and digits (with inner `'` and `-`), or a
+    /// punctuation mark other than commas and question marks, which are left out. What comes after the 200th token is
+    /// cut. A text whose tokens were read with this vocabulary keeps them.
     #[must_use]
     pub fn tokens(&self, text: &str) -> Vec<u64> {
         if let Some(tokens) = self.tokens_as_read.get(text) {

@@ -1,5 +1,5 @@
-//! Generated instructions for paths of any platform, written in each format: read back by the field's own loaders, where a
-//! Python is at hand to play them.
+//! Generated instructions for paths of any platform, written in each format. Where Python is available, copies of the
+//! field's own loaders read them back.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking, and says what it skipped")]
 
@@ -32,7 +32,8 @@ fn episode(id: &str, object: Option<&str>, texts: &[&str]) -> Episode {
     Episode::from_path(&path, texts.iter().map(|text| (*text).to_owned()).collect()).on_floor_of(&path, EYE_HEIGHT_M)
 }
 
-/// A path with a number for a name, as Matterport3D's have, and two with names, as a house's have; four instructions.
+/// A path whose name is a number, as in Matterport3D, and two with other names, as in a house; four instructions
+/// together.
 fn episodes() -> Vec<Episode> {
     let mut plain = episode("0", Some("66"), &["Turn left and walk to the plant.", "Go on, then stop by the plant."]);
     plain.extra.insert("provenance".into(), json!({"writer": "rules"}));
@@ -62,7 +63,7 @@ fn written(format: Format, episodes: &[Episode]) -> Value {
 #[test]
 fn the_fields_own_loaders_read_what_is_written() {
     if Command::new("python3").arg("--version").output().is_err() {
-        println!("skipped: there is no python3 to play the field's loaders");
+        println!("skipped: there is no python3 to run the field's loaders");
         return;
     }
     let loaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/field_loaders.py");
@@ -89,7 +90,7 @@ fn a_loader_that_meets_an_unknown_key_of_an_episode_would_crash_so_the_check_doe
     let loaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/field_loaders.py");
     match Command::new("python3").arg(loaders).arg("vlnce").arg(&file).output() {
         Ok(output) => assert!(String::from_utf8_lossy(&output.stderr).contains("TypeError")),
-        Err(_) => println!("skipped: there is no python3 to play the field's loaders"),
+        Err(_) => println!("skipped: there is no python3 to run the field's loaders"),
     }
 }
 
@@ -134,7 +135,7 @@ fn reverie_refuses_two_items_of_one_id() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("export.json");
     let twice = [episode("7", Some("1"), &["one"]), episode("7", Some("1"), &["two"])];
-    assert!(reverie::write(&file, &twice).unwrap_err().to_string().contains("two items come to the id"));
+    assert!(reverie::write(&file, &twice).unwrap_err().to_string().contains("has the same path and object as another"));
     assert!(!file.exists());
 }
 

@@ -92,7 +92,7 @@ class InstructionData:
 
 
 class Episode:
-    """Habitat's episode class: a key that is no attribute raises TypeError."""
+    """Habitat's episode class: a key that is not an attribute raises TypeError."""
 
     def __init__(
         self,

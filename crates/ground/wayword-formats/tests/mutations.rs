@@ -1,4 +1,4 @@
-//! A thousand damaged files per reader: each is read or refused with the file's name, and none brings the reader down.
+//! A thousand damaged files per reader: each is read or refused with the file's name, and none makes the reader crash.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -49,7 +49,7 @@ const ALL: [Damage; 10] = [
     Damage::ItemTwice,
 ];
 
-/// Fields of which a damaged item must be refused: ids, and what every item needs.
+/// Fields that every item needs. An item that has one of them wrong must be refused.
 fn needed(format: Format) -> &'static [&'static str] {
     match format {
         Format::R2r => &["/path_id", "/scan", "/path", "/heading", "/instructions"],
@@ -121,7 +121,7 @@ fn damaged(format: Format, damage: Damage, dice: &mut Dice) -> (Vec<u8>, bool) {
             let swaps = [json!(true), json!({}), json!([]), json!(-1.5), json!([[[]]]), json!("\u{0}")];
             let place = dice.pick(needed(format));
             let swap = dice.pick(&swaps);
-            // No text, number or list of instructions is missing where the swap is empty.
+            // These swaps are valid values in some of the fields.
             let may_pass = swap == json!([])
                 || (swap == json!(-1.5) && place == "/heading")
                 || place == "/style"
@@ -185,7 +185,7 @@ fn survives(format: Format) {
                 assert_clear(&error, &file);
             }
         }
-        // Whatever it is taken for, it must not bring the reader down either.
+        // Whatever format it is taken for, the reader must not crash.
         let _ = read(&file);
     }
     assert!(refused > 700, "only {refused} of 1,000 were refused");

@@ -1,4 +1,4 @@
-//! The field's own files come back as they were, where they are at hand (`WAYWORD_DATA`).
+//! The field's own files, where they are available (`WAYWORD_DATA`), are written as they were read.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking, and says what it skipped")]
 
@@ -10,7 +10,7 @@ fn data(file: &str) -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
     let file = std::env::var_os("WAYWORD_DATA").map_or_else(beside, PathBuf::from).join(file);
     if !file.is_file() {
-        println!("skipped: {} is not here; set WAYWORD_DATA to the folder that holds it", file.display());
+        println!("skipped: there is no {}; set WAYWORD_DATA to the folder that has it", file.display());
         return None;
     }
     Some(file)
@@ -27,7 +27,7 @@ fn comes_back(file: &str, items: usize, read: Read, write: Write) {
     let Some(file) = data(file) else { return };
     let episodes = read(&file).unwrap();
     assert_eq!(episodes.len(), items);
-    assert_eq!(wayword_formats::read(&file).unwrap(), episodes, "the format was not told from the content");
+    assert_eq!(wayword_formats::read(&file).unwrap(), episodes, "the format was not recognised by the content");
     let folder = tempfile::tempdir().unwrap();
     let copy = folder.path().join("copy.json");
     write(&copy, &episodes).unwrap();

@@ -97,7 +97,7 @@ fn what_cannot_be_in_one_dataset_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &[1, 1]);
     let twice = jsonl::merge(&[&file, &file]).unwrap_err().to_string();
-    assert!(twice.contains("line 1 (id p0): field \"text\": path \"p0\" has this very instruction already"), "{twice}");
+    assert!(twice.contains("line 1 (id p0): field \"text\": path \"p0\" already has the same instruction"), "{twice}");
 
     let mut records = jsonl::read(&file).unwrap();
     records[0].split = Some(Split::Train);
@@ -109,7 +109,7 @@ fn what_cannot_be_in_one_dataset_is_refused() {
     records[1].path.id = records[0].path.id.clone();
     records[1].path.frames.truncate(1);
     let other = jsonl::write(&file, &records).unwrap_err().to_string();
-    assert!(other.contains("another path of the name \"p0\""), "{other}");
+    assert!(other.contains("a different path with the name \"p0\""), "{other}");
     assert_eq!(jsonl::read(&file).unwrap().len(), 2, "a refused write touched the file");
 }
 

@@ -1,4 +1,4 @@
-//! What a refusal says: file, item, field, and what to do.
+//! An error names the file, the item and the field, and says what to do.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -40,13 +40,12 @@ fn a_refusal_names_file_item_and_field() {
     );
     assert_eq!(
         refusal_of(Format::Vlnce, "/start_rotation", json!([0, 0, 0, 0])),
-        "data.json: item 1 (id 1): field \"start_rotation\": it is no rotation with a heading; write a quaternion of length 1 \
-         as x, y, z, w"
+        "data.json: item 1 (id 1): field \"start_rotation\": it gives no heading; write a quaternion of length 1 as x, y, z, w"
     );
     assert_eq!(
         refusal_of(Format::Wayword, "/path/frames/1/pose/heading", Value::Null),
-        "data.json: line 2 (id house-1): field \"path.frames[1]\": invalid type: null, expected f64; docs/FORMATS.md tells what \
-         it should be"
+        "data.json: line 2 (id house-1): field \"path.frames[1]\": invalid type: null, expected f64; docs/FORMATS.md says \
+         what it should be"
     );
 }
 
@@ -57,7 +56,8 @@ fn json_that_is_none_is_refused_where_it_breaks() {
     assert_eq!(
         refusal(Format::R2r, "data.json", &text.as_bytes()[..at]),
         format!(
-            "data.json: item 2: field \"heading\": EOF while parsing a value (line 1, column {at}); fetch the file again, or mend it there"
+            "data.json: item 2: field \"heading\": EOF while parsing a value (line 1, column {at}); fetch the file again, \
+             or correct it there"
         )
     );
     let twice = text.replacen("\"scan\":", "\"scan\":\"x\",\"scan\":", 1);
@@ -77,7 +77,7 @@ fn evidence_that_leads_out_of_its_text_or_path_is_refused() {
         [("/mentions/0/span", json!([12, 999])), ("/mentions/0/span", json!([16, 12])), ("/mentions/0/frame", json!(2))]
     {
         let text = refusal_of(Format::Wayword, field, value);
-        assert!(text.contains("field \"mentions[0]\": it leads out of the text or the path"), "{text}");
+        assert!(text.contains("field \"mentions[0]\": it points outside the text or the path"), "{text}");
     }
 }
 
@@ -140,7 +140,7 @@ fn limits_on_texts_and_lists_hold() {
     let many = refusal_of(Format::R2r, "/instructions", json!(vec!["x"; 1_001]));
     assert!(many.contains("it has 1001 entries"), "{many}");
     let parts = refusal_of(Format::R2r, "/distance", json!(vec![0; 200_001]));
-    assert!(parts.contains("it has too many parts"), "{parts}");
+    assert!(parts.contains("it has more than 200,000 values"), "{parts}");
     let line = refusal(Format::Rxr, "data.jsonl", &vec![b' '; (16 << 20) + 2]);
     assert!(line.contains("line 1"), "{line}");
 }
@@ -160,7 +160,7 @@ fn a_gzip_bomb_ends_at_the_limit_of_a_line() {
 fn a_file_of_more_than_a_gibibyte_is_not_even_read() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("huge.json");
-    // Sparse: it takes no room on the disk.
+    // Sparse: it takes no space on the disk.
     std::fs::File::create(&file).unwrap().set_len((1 << 30) + 1).unwrap();
     assert!(read(&file).unwrap_err().to_string().contains("it is larger than 1 GiB"));
 }
@@ -172,7 +172,7 @@ fn what_is_no_dataset_is_told_so() {
     for text in ["", "hello", "[]", "[1]", "{\"a\": 1}", "{\"a\": 1"] {
         std::fs::write(&file, text).unwrap();
         let error = detect(&file).unwrap_err().to_string();
-        assert!(error.contains("notes.txt: its beginning is that of no known format"), "{text:?}: {error}");
+        assert!(error.contains("notes.txt: its beginning does not fit any known format"), "{text:?}: {error}");
     }
     assert!(detect(folder.path()).unwrap_err().to_string().contains("is not a file but a folder"));
     assert!(detect(&folder.path().join("none")).unwrap_err().to_string().contains("cannot open it"));

@@ -1,4 +1,4 @@
-//! What is read and written again is what it was.
+//! A file that is read and written again is the same.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

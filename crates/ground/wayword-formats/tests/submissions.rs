@@ -1,4 +1,4 @@
-//! Submissions: what is written comes back, and what is wrong is told in full.
+//! Submissions: what is written can be read again, and the reader reports all problems.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -20,7 +20,7 @@ fn in_file<T>(contents: impl AsRef<[u8]>, look: impl FnOnce(&Path) -> T) -> T {
     look(&file)
 }
 
-/// All of a file with which nothing is wrong.
+/// All items of a file without problems.
 fn whole(file: &Path) -> Vec<Submitted> {
     let Reading { submitted, flawed, problems, is_whole } = read(file);
     assert!(problems.told.is_empty() && flawed.is_empty() && is_whole, "{problems:?} {flawed:?}");
@@ -198,7 +198,7 @@ proptest! {
     }
 }
 
-/// A thousand damaged files: each is read or refused with the file's name, and none brings the reader down.
+/// A thousand damaged files: each is read or refused with the file's name, and none makes the reader crash.
 #[test]
 fn the_reader_survives_damage() {
     let mut dice = wayword_core::rng(20_260_102, &["submission"]);

@@ -1,9 +1,9 @@
-//! Trajectories as the evaluators of R2R and REVERIE take them.
+//! Submissions: trajectories as the evaluators of R2R and REVERIE take them.
 //!
-//! A JSON list of `{instr_id, trajectory: [[viewpoint, heading, elevation], ...], predObjId}`, as `tasks/R2R/eval.py` of
-//! Matterport3DSimulator and `tasks/REVERIE/eval_release.py` of REVERIE read it. `predObjId` is REVERIE's, and may be null or
-//! absent. Entries without directions are read too: a bare viewpoint, or a list of viewpoints that were walked one after
-//! another, as VLN-DUET keeps them.
+//! A JSON list of `{instr_id, trajectory: [[viewpoint, heading, elevation], ...], predObjId}`, as `tasks/R2R/eval.py`
+//! of Matterport3DSimulator and `tasks/REVERIE/eval_release.py` of REVERIE read it. `predObjId` is REVERIE's, and may
+//! be null or absent. Entries without directions are read too: a bare viewpoint, or a list of consecutive viewpoints,
+//! as VLN-DUET writes them.
 
 mod problems;
 mod reading;
@@ -16,37 +16,37 @@ use serde_json::{Value, json};
 use std::path::Path;
 use wayword_core::{Heading, ObjectId, ViewpointId};
 
-/// What was handed in for one instruction.
+/// One submitted trajectory, for one instruction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Submitted {
     /// The instruction's name, as [`instr_id`] makes it.
     pub instr_id: String,
     /// Where the agent stood and looked, from the start; never empty where it was read from a file.
     pub trajectory: Vec<Posed>,
-    /// The object that is taken for the target (`predObjId`).
+    /// The object that the agent takes for the target (`predObjId`).
     pub object: Option<ObjectId>,
 }
 
-/// A place, and where the agent looked.
+/// A viewpoint, and which way the agent looked there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posed {
-    /// The place.
+    /// Where the agent stood.
     pub viewpoint: ViewpointId,
-    /// Direction in the plane; north where the file names none.
+    /// Direction in the horizontal plane; north where the file gives none.
     pub heading: Heading,
-    /// Radians, positive upwards; 0 where the file names none.
+    /// Radians, positive upwards; 0 where the file gives none.
     pub elevation_rad: f64,
 }
 
-/// The name by which submissions call the instruction at a place of an item: R2R's `{path_id}_{place}`, REVERIE's
+/// The name of an instruction in submissions, from its item and its place there: R2R's `{path_id}_{place}`, REVERIE's
 /// `{path_id}_{objId}_{place}`.
 #[must_use]
 pub fn instr_id(episode: &Episode, place: usize) -> String {
     format!("{}_{place}", episode.id)
 }
 
-/// Writes a submission, gzip where the name ends in `.gz`. Each item has `predObjId`, which is null where no object was named:
-/// REVERIE's evaluator demands the field, and R2R's overlooks it.
+/// Writes a submission, gzip where the name ends in `.gz`. Each item has `predObjId`, which is null where the agent
+/// named no object, because REVERIE's evaluator needs the field. R2R's ignores it.
 ///
 /// # Errors
 /// When the file cannot be written.

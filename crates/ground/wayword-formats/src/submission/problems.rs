@@ -1,13 +1,13 @@
-//! Everything that is wrong with a submission, instead of the first thing.
+//! All problems of a submission, and not only the first.
 
 use crate::{FormatError, limits};
 
-/// What is wrong with a file, in its order; the first thousand, and how many more there are.
+/// The problems of a file, in its order: the first thousand, and the number of the others.
 #[derive(Debug, Default)]
 pub struct Problems {
-    /// What is told one by one.
+    /// The problems that are listed one by one.
     pub told: Vec<FormatError>,
-    /// How many more there are.
+    /// The number of the others.
     pub untold: usize,
 }
 
@@ -26,7 +26,7 @@ impl Problems {
         }
     }
 
-    /// The value, where there is one; the problem is kept.
+    /// The value, where there is one; else the problem is kept.
     pub(super) fn good<T>(&mut self, found: Result<T, FormatError>) -> Option<T> {
         found.map_err(|problem| self.add(problem)).ok()
     }

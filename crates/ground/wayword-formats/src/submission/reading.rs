@@ -1,4 +1,4 @@
-//! A submission as it is read: item by item, and on after what is wrong.
+//! Reads a submission item by item, and does not stop at the first problem.
 
 use super::{Posed, Problems, Submitted};
 use crate::{FormatError, Item, input, item, limits};
@@ -6,24 +6,25 @@ use serde_json::Value;
 use std::{collections::BTreeSet, path::Path};
 use wayword_core::{Heading, ViewpointId};
 
-/// An item's name is its episode's with the place of the instruction behind it.
+/// An item's name is its episode's, followed by the place of the instruction.
 const INSTR_ID_BYTES: usize = limits::NAME_BYTES + 21;
 
-/// What could be read of a submission, and what is wrong with the rest.
+/// What could be read of a submission, and its problems.
 #[derive(Debug)]
 pub struct Reading {
-    /// The items with which nothing is wrong, in the order of the file.
+    /// The items without a problem, in the order of the file.
     pub submitted: Vec<Submitted>,
-    /// The names of the other items, where they have one of their own, in the order of the file.
+    /// The names of the other items, where they have a name that no earlier item has, in the order of the file.
     pub flawed: Vec<String>,
-    /// Everything that is wrong: an item that lacks a field or has it wrong, or a name that was given before; and why the file
-    /// could not be read further, where it could not.
+    /// All problems: a field that is missing or wrong, a name that is given twice, and why the reader could not read
+    /// the file to its end.
     pub problems: Problems,
-    /// Whether the file was read to its end. Not where it is no JSON, a field comes twice, or it is too large.
+    /// Whether the file was read to its end. It was not where it is not JSON, a field is given twice, or it is too
+    /// large.
     pub is_whole: bool,
 }
 
-/// Reads a submission, plain or gzip, and on after what is wrong.
+/// Reads a submission, plain or gzip, with all its problems.
 #[must_use]
 pub fn read(file: &Path) -> Reading {
     let mut reader = Reader::default();
@@ -74,7 +75,7 @@ impl Reader {
     }
 
     fn name(&mut self, item: &mut Item<'_>) -> Option<String> {
-        const WHAT: &str = "the name of an instruction, as 4332_0";
+        const WHAT: &str = "the name of an instruction, such as 4332_0";
         const HINT: &str = "write the item's id, an underscore, and the place of the instruction in the item";
         let field = "instr_id";
         let value = self.problems.good(item.take(field))?;
@@ -89,7 +90,7 @@ impl Reader {
             return Some(name);
         }
         let twice = "it was given to an earlier item";
-        self.problems.add(item.wrong(field, twice, "hand in one trajectory for each instruction"));
+        self.problems.add(item.wrong(field, twice, "give one trajectory for each instruction"));
         None
     }
 
@@ -110,7 +111,7 @@ impl Reader {
     }
 }
 
-/// What an entry of a trajectory stands for: a place, with or without directions, or several places.
+/// The places that an entry of a trajectory gives: one, with or without directions, or several.
 fn poses(item: &Item<'_>, field: &str, entry: &Value) -> Result<Vec<Posed>, FormatError> {
     const WHAT: &str = "[viewpoint, heading, elevation]";
     const HINT: &str = "write the viewpoint's id in quotes, and both angles in radians";

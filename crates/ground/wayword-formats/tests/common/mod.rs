@@ -1,4 +1,4 @@
-//! Small datasets of our own, one per format, as JSON values.
+//! Small datasets for the tests, one per format, as JSON values.
 
 #![allow(clippy::unwrap_used, dead_code, reason = "a test fails by panicking; not every test uses all of this")]
 
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use wayword_formats::{Format, FormatError, jsonl, r2r, reverie, rxr, vlnce};
 
-/// What every item of a format has, in a file of three.
+/// Three items of a format, with the fields that every item has.
 pub(crate) fn items(format: Format) -> Vec<Value> {
     (0..3).map(|n| item(format, n)).collect()
 }
@@ -51,7 +51,7 @@ fn item(format: Format, n: u64) -> Value {
     }
 }
 
-/// The file that holds some items.
+/// The text of a file with these items.
 pub(crate) fn text(format: Format, items: &[Value]) -> String {
     let lines = items.iter().map(|item| format!("{item}\n")).collect();
     match format {
