@@ -1,4 +1,4 @@
-//! The vocabulary of questions and answers: closed lists that steer how they are read.
+//! The vocabulary of questions and answers: closed word lists by which they are read.
 
 crate::data::lists! {
     "words/answers.txt";

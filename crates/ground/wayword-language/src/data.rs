@@ -1,21 +1,22 @@
-//! The one reader of the word lists in `words/`.
+//! The reader of the word lists in `words/`.
 //!
-//! In every file a line that begins with `#` is a comment. Tables have a row a line, with bars between columns and commas between
-//! names. Closed lists have their name in brackets, and then words between spaces or runs of words between commas.
+//! In every file a line that begins with `#` is a comment. Tables have one row per line, with bars between columns and
+//! commas between names. A closed list has its name in brackets, and then words separated by spaces, or phrases
+//! separated by commas.
 
 use std::sync::LazyLock;
 
 /// A closed list of words.
 pub type Words = LazyLock<Vec<&'static str>>;
-/// A closed list of runs of words.
+/// A closed list of phrases.
 pub type Phrases = LazyLock<Vec<Vec<&'static str>>>;
 
-/// The lines of a file that are no comments.
+/// The lines of a file that are not comments or empty.
 pub(crate) fn lines(file: &'static str) -> impl Iterator<Item = &'static str> {
     file.lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty())
 }
 
-/// The columns of a row of a table, the last ones empty where the row ends early.
+/// The columns of a table's row. Columns that the row lacks are empty.
 pub(crate) fn columns<const N: usize>(row: &'static str) -> [&'static str; N] {
     let mut columns = row.split('|').map(str::trim);
     std::array::from_fn(|_| columns.next().unwrap_or_default())
@@ -26,14 +27,14 @@ pub(crate) fn names(column: &'static str) -> impl Iterator<Item = &'static str> 
     column.split(',').map(str::trim).filter(|name| !name.is_empty())
 }
 
-/// The words of a closed list, whatever the case of its name; none where the file has no such list.
+/// The words of a closed list; none where the file has no list of this name. The case of the name does not matter.
 pub(crate) fn words(file: &'static str, name: &str) -> Vec<&'static str> {
     let body =
         lines(file).skip_while(|line| !list_name(line).is_some_and(|list| list.eq_ignore_ascii_case(name))).skip(1);
     body.take_while(|line| list_name(line).is_none()).flat_map(str::split_whitespace).collect()
 }
 
-/// The runs of words of a closed list. One may go on in the next line.
+/// The phrases of a closed list. A phrase may continue in the next line.
 pub(crate) fn phrases(file: &'static str, name: &str) -> Vec<Vec<&'static str>> {
     let words = words(file, name);
     let runs = words.split_inclusive(|word| word.ends_with(','));
@@ -45,7 +46,7 @@ pub(crate) fn list_name(line: &'static str) -> Option<&'static str> {
     line.strip_prefix('[')?.strip_suffix(']')
 }
 
-/// Makes a static of each closed list of a file, and holds the names to those in the file.
+/// Makes a static of each closed list of a file, and a test that the names are those of the file.
 macro_rules! lists {
     ($file:literal; words: $($words:ident),*; phrases: $($phrases:ident),*;) => {
         const LISTS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/", $file));

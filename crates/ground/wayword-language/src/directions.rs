@@ -1,4 +1,4 @@
-//! The vocabulary by which an instruction is taken apart and its directions are swapped.
+//! The vocabulary by which an instruction is split into parts and its directions are swapped.
 
 crate::data::lists! {
     "words/directions.txt";

@@ -1,4 +1,4 @@
-//! Texts as words and sentences, with their places.
+//! Texts as words and sentences, with byte ranges.
 
 use crate::reading::vocabulary as v;
 
@@ -25,13 +25,13 @@ impl Token {
     }
 }
 
-/// Abbreviations, whose full stop ends no sentence.
+/// Abbreviations whose full stop does not end a sentence.
 const ABBREVIATIONS: [&str; 9] = ["approx", "appr", "ca", "vs", "mr", "mrs", "ms", "dr", "prof"];
-/// Abbreviations that may stand last in a sentence too: there a capital follows, or nothing.
+/// Abbreviations that may also end a sentence. If they do, a capital follows, or nothing.
 const LAST_ABBREVIATIONS: [&str; 10] = ["etc", "ft", "yd", "yds", "cm", "deg", "incl", "excl", "max", "min"];
 
-/// The words and marks of a text. An apostrophe within a word belongs to it, and so does the point of a number. A full stop
-/// that ends no sentence ("approx.", "e.g.", "J. Smith") is left out.
+/// The words and marks of a text. An apostrophe within a word belongs to the word, and the point within a number to the
+/// number. A full stop that does not end a sentence ("approx.", "e.g.", "J. Smith") is left out.
 #[must_use]
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut tokens = Vec::new();
@@ -67,7 +67,7 @@ fn ends_in_digit(text: &str) -> bool {
     text.ends_with(|c: char| c.is_ascii_digit())
 }
 
-/// Whether the full stop right behind a word ends a sentence, and not just an abbreviation.
+/// Whether the full stop right after a word ends a sentence, and not only an abbreviation.
 fn is_full_stop(text: &str, [from, to]: [usize; 2]) -> bool {
     let word = &text[from..to];
     let behind = &text[to + 1..];
@@ -75,7 +75,7 @@ fn is_full_stop(text: &str, [from, to]: [usize; 2]) -> bool {
     let goes_on = next.starts_with(char::is_lowercase) || next.starts_with(|c: char| c.is_ascii_digit() || c == ',');
     let is_in = |list: &[&str]| list.iter().any(|short| short.eq_ignore_ascii_case(word));
     let is_letter = word.chars().count() == 1 && word.starts_with(char::is_alphabetic);
-    // "E.g.", "a.m.": letters with a stop behind each.
+    // "E.g.", "a.m.": letters with a full stop after each.
     let mut letters = behind.chars();
     let one_follows = letters.next().is_some_and(char::is_alphabetic) && letters.next() == Some('.');
     let in_a_row = one_follows || (text[..from].ends_with('.') && goes_on);
@@ -83,7 +83,7 @@ fn is_full_stop(text: &str, [from, to]: [usize; 2]) -> bool {
     !(is_short || is_letter && (in_a_row || is_initial(word, next)))
 }
 
-/// Whether a letter is an initial by what follows: a name, and not the next sentence ("room B. Turn left").
+/// Whether a letter is an initial: a name follows, and not the next sentence ("room B. Turn left").
 fn is_initial(letter: &str, next: &str) -> bool {
     let name: String = next.chars().take_while(|c| c.is_alphanumeric()).collect();
     let begins_sentence = [&v::WALKING, &v::TURNING, &v::ADVERBS, &v::DETERMINERS, &v::BREAKERS, &v::FUNCTION]
@@ -106,13 +106,13 @@ pub fn capital(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Number of words in a text, as people count them: what stands between spaces and is not a mark alone.
+/// Number of words in a text, as people count them: parts between spaces, without lone marks.
 #[must_use]
 pub fn word_count(text: &str) -> usize {
     text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
 }
 
-/// Number of sentences: runs of words up to a full stop, exclamation or question mark, or the end.
+/// Number of sentences: words up to a full stop, exclamation or question mark, or the end.
 #[must_use]
 pub fn sentence_count(text: &str) -> usize {
     tokens(text).split(Token::ends_sentence).filter(|sentence| sentence.iter().any(Token::is_word)).count()

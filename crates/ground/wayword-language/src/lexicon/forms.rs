@@ -1,12 +1,12 @@
-//! Forms of a name: with its article, in the singular and the plural, with a number.
+//! Forms of a name: with its article, singular and plural, with a number.
 
 use super::normal_word;
 use crate::text::words;
 
-/// Numbers in words, from two on; the last stand for any greater one.
+/// Numbers in words, from two on. The last two mean any greater number.
 pub const COUNTS: [&str; 7] = ["two", "three", "four", "five", "six", "several", "many"];
 
-/// Names that are plurals and still one thing.
+/// Plural names that mean one thing.
 const ONE_THING: [&str; 8] = ["stairs", "steps", "drawers", "clothes", "blinds", "drums", "weights", "toiletries"];
 
 /// A name without the article before it.
@@ -24,7 +24,7 @@ pub fn singular(name: &str) -> String {
     }
 }
 
-/// Whether a name is said of several things: "chairs", but not "stairs".
+/// Whether a name means several things: "chairs" does, "stairs" does not.
 #[must_use]
 pub fn says_several(name: &str) -> bool {
     words(name).last().is_some_and(|last| normal_word(last) != *last && !ONE_THING.contains(&last.as_str()))

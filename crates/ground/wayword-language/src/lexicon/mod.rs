@@ -1,4 +1,4 @@
-//! What things and rooms are called, and which names mean the same.
+//! The names of things and rooms, and which names mean the same.
 
 mod forms;
 mod normal;

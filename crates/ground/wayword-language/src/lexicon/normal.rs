@@ -1,13 +1,13 @@
-//! One spelling for the many of a name.
+//! The normal spelling of a name, by which names are compared.
 
-/// A name in one spelling: lower case, words separated by one space, each in the singular, without punctuation.
+/// A name in normal spelling: lower case, words separated by one space, each in the singular, without punctuation.
 #[must_use]
 pub fn normal(name: &str) -> String {
     let words = name.split(|c: char| !c.is_alphanumeric() && !matches!(c, '\'' | '’')).filter(|word| !word.is_empty());
     words.map(normal_word).collect::<Vec<_>>().join(" ")
 }
 
-/// Plurals that the rules below take for those of other words.
+/// Plurals for which the rules below give a wrong singular.
 const IRREGULAR: [(&str, &str); 7] = [
     ("shelves", "shelf"),
     ("knives", "knife"),
@@ -27,7 +27,7 @@ const IN_CHE: [&str; 6] = ["niche", "cache", "quiche", "creche", "brioche", "por
 
 /// One word in lower case and in the singular.
 ///
-/// Wrong for some words, but wrong in the same way for a text and for a label, which is all that comparing needs.
+/// It is wrong for some words, but in the same way for a text and for a label, and comparing needs no more than that.
 #[must_use]
 pub fn normal_word(word: &str) -> String {
     let word = word.to_lowercase();

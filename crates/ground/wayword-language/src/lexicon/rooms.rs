@@ -7,11 +7,11 @@ use std::{collections::BTreeMap, sync::LazyLock};
 const LIST: &str = include_str!("../words/rooms.txt");
 
 struct Rooms {
-    /// Normal name to the line it stands on.
+    /// The line of each name, by its normal spelling.
     line_of: BTreeMap<String, usize>,
-    /// First name of each line.
+    /// The first name of each line.
     names: Vec<&'static str>,
-    /// Lines that people do not keep apart from each line.
+    /// For each line, the lines of rooms that people confuse with it.
     taken_for: Vec<Vec<usize>>,
 }
 
@@ -34,7 +34,7 @@ fn line(name: &str) -> Option<usize> {
     ROOMS.line_of.get(&normal(name)).copied()
 }
 
-/// The usual name of a room, where `name` is one.
+/// The usual name of a room; `None` where `name` is not a room's.
 #[must_use]
 pub fn room_name(name: &str) -> Option<&'static str> {
     line(name).map(|line| ROOMS.names[line])
@@ -46,7 +46,7 @@ pub fn is_room(normal_name: &str) -> bool {
     ROOMS.line_of.contains_key(normal_name)
 }
 
-/// Whether two names may mean the same room: the same line, or rooms that people do not keep apart.
+/// Whether two names may mean the same room: they are on one line of the list, or of rooms that people confuse.
 #[must_use]
 pub fn same_room(a: &str, b: &str) -> bool {
     match (line(a), line(b)) {

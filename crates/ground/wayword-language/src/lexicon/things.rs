@@ -6,9 +6,9 @@ use std::{collections::BTreeMap, sync::LazyLock};
 
 const LIST: &str = include_str!("../words/objects.txt");
 
-/// What one can do with a thing; the writer's tasks go by it.
+/// What one can do with a thing. The writer chooses tasks by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(missing_docs)] // Each name says what it is.
+#[allow(missing_docs)] // The names explain themselves.
 pub enum Class {
     Seat,
     Surface,
@@ -56,7 +56,7 @@ pub struct Thing {
     pub name: &'static str,
     /// What one can do with it.
     pub class: Class,
-    /// 3: a landmark seen from afar, 0: never a landmark.
+    /// From 0 (never a landmark) to 3 (a landmark that is seen from afar).
     pub salience: u8,
     parent: Option<&'static str>,
 }
@@ -136,7 +136,8 @@ fn named(normal_name: &str) -> Option<&'static Thing> {
     THINGS.by_name.get(normal_name).map(|at| &THINGS.things[*at])
 }
 
-/// The thing that a name means: the whole name's, else that of its longest tail that is known ("old oak table" is a table).
+/// The thing that a name means: that of the whole name, or else of its longest known ending ("old oak table" is a
+/// table).
 #[must_use]
 pub fn thing(name: &str) -> Option<&'static Thing> {
     let name = normal(name);
@@ -147,8 +148,8 @@ fn tails(name: &str) -> impl Iterator<Item = &str> {
     std::iter::once(name).chain(name.match_indices(' ').map(move |(at, _)| &name[at + 1..]))
 }
 
-/// What a name means, from the most special to the most general: "dining chair" is a dining chair and a chair. A name
-/// that the lexicon does not know means itself, and its last word.
+/// The kinds of thing that a name means, the most specific first: "dining chair" is a dining chair and a chair. A name
+/// that the lexicon does not have means itself and its last word.
 #[must_use]
 pub fn kinds(name: &str) -> Vec<String> {
     let name = normal(name);
@@ -168,7 +169,7 @@ fn parent(thing: &Thing) -> Option<&'static Thing> {
     named(&normal(thing.parent?))
 }
 
-/// Whether two names may mean the same thing: the more special kind of one is a kind of the other.
+/// Whether two names may mean the same thing: the most specific kind of one is a kind of the other.
 #[must_use]
 pub fn agree(a: &str, b: &str) -> bool {
     let (a, b) = (kinds(a), kinds(b));

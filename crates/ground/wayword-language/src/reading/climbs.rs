@@ -1,15 +1,15 @@
-//! Stairs and floors.
+//! Stairs and storeys.
 
 use super::{Event, Floor, Link, What, links::link, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
 use wayword_core::Climb;
 
-/// The climbs and floors of a text.
+/// The climbs and storeys that a text names.
 pub(super) fn climbs_and_floors(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
     let before_climb = tokens.runs_before(|word| v::BEFORE_CLIMB.contains(&word));
     let text = Text { tokens, clauses, before_climb };
     let mut events: Vec<Event> = Vec::new();
-    // The climbs that the clause has told: a handful, for a climb is told once in a clause.
+    // The climbs found in this clause. They are few, because each is counted once in a clause.
     let mut told: Vec<What> = Vec::new();
     for at in 0..tokens.len() {
         if at > 0 && clauses[at] != clauses[at - 1] {
@@ -74,7 +74,7 @@ impl<'a> Text<'a> {
         self.tokens.before(at)
     }
 
-    /// The climb that is told at a token, or the place up or down the stairs.
+    /// The climb that a token means, or the place up or down the stairs.
     fn climb(&self, at: usize) -> Option<What> {
         if self.describes_stairs(at) {
             return None;
@@ -93,7 +93,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// "The stairs leading up to the bedroom", "the stairs going up": nobody need climb them.
+    /// "The stairs leading up to the bedroom", "the stairs going up": the agent need not climb them.
     fn describes_stairs(&self, at: usize) -> bool {
         let Some(before) = self.before_climb(at) else { return false };
         match self.word(before) {
@@ -103,7 +103,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// What stands before a word of climbing, without adverbs.
+    /// The token before a word of climbing, with adverbs skipped.
     fn before_climb(&self, at: usize) -> Option<usize> {
         self.before_climb[at].checked_sub(1)
     }
@@ -124,7 +124,7 @@ impl<'a> Text<'a> {
         };
         let phrase: Vec<&str> = (at + 1 + to..at + 7).take_while(in_phrase).map(|at| self.word(at)).collect();
         let end = phrase.iter().position(|word| is_floor(word) || (to == 0 && is_stairs(word)))?;
-        // A floor's height is many steps, and so is a flight.
+        // A storey's height is many steps, and so is a flight.
         let few = phrase[..end].iter().any(|word| v::FEW.contains(word)) && matches!(phrase[end], "steps" | "stairs");
         Some(if few { Way::Steps } else { Way::Flight })
     }
@@ -137,7 +137,7 @@ impl<'a> Text<'a> {
         taken.then_some(Way::Flight)
     }
 
-    /// Whether somebody is told to climb, and not that a place lies up or down there.
+    /// Whether the words are a command to climb, and do not say that a place is upstairs or downstairs.
     fn commands(&self, at: usize) -> bool {
         let Some(before) = self.before_climb(at) else { return true };
         let name = normal_word(self.word(before));
@@ -146,7 +146,7 @@ impl<'a> Text<'a> {
         !is_place || is_stairs(self.word(before)) || link(self.tokens, self.clauses, before) == Link::Along
     }
 
-    /// The same for "upstairs" and "downstairs", which tell a place wherever no verb of going stands before them.
+    /// The same for "upstairs" and "downstairs". Without a verb of going before them, they name a place.
     fn commands_upstairs(&self, at: usize) -> bool {
         let name = normal_word(self.word(at + 1));
         if is_thing(&name) || is_room(&name) {
@@ -158,7 +158,7 @@ impl<'a> Text<'a> {
         v::CLIMBING.contains(&before) || joined
     }
 
-    /// A floor that begins at a token, and its last token: "level 2", "second floor", "top floor".
+    /// A storey that is named from this token on, and its last token: "level 2", "second floor", "top floor".
     fn floor(&self, at: usize) -> Option<(Floor, usize)> {
         let is_numbered = |at: usize| v::floor_number(self.word(at));
         let (number, last) = if is_floor(self.word(at)) {
@@ -167,7 +167,7 @@ impl<'a> Text<'a> {
         } else if self.word(at) == "top" && is_floor(self.word(at + 1)) {
             (None, at + 1)
         } else {
-            // "Up one floor" and "two floors up" tell how many, and not which.
+            // "Up one floor" and "two floors up" say how many, and not which.
             let is_one = matches!(self.word(at + 1), "floor" | "level" | "story" | "storey");
             (Some(is_numbered(at).filter(|_| is_one && self.word(at) != "one")?), at + 1)
         };

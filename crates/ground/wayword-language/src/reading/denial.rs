@@ -1,8 +1,8 @@
-//! What a text says not to do, and not to be there.
+//! Denials: what an instruction says not to do, or says is not there.
 
 use super::tokens::Tokens;
 
-/// For each token, whether it stands behind a "not" of its clause: "do not turn right", "without going up the stairs".
+/// For each token, whether it follows a "not" of its clause: "do not turn right", "without going up the stairs".
 pub(super) fn denied(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
     let mut denied = false;
     let mut clause = 0;

@@ -1,4 +1,4 @@
-//! What a long text costs: counted in looks at its tokens, because time depends on the machine.
+//! Tests of what a long text costs. They count looks at its tokens, because time depends on the machine.
 
 use super::{read, vocabulary as v};
 use std::{cell::Cell, collections::BTreeSet};
@@ -12,15 +12,15 @@ pub(super) fn look() {
     LOOKS.with(|looks| looks.set(looks.get() + 1));
 }
 
-/// The looks that it takes to read a text.
+/// The number of looks that reading a text takes.
 fn looks(text: &str) -> usize {
     LOOKS.with(|looks| looks.set(0));
     let _ = read(text, &BTreeSet::new());
     LOOKS.with(Cell::get)
 }
 
-/// What stands in a text over and over: each word that steers the reading, by itself and before what it steers, and what a
-/// reader of one part leaves to that of another.
+/// The parts to repeat: each word that steers the reading, alone and before the words that it steers, and phrases that
+/// several readers look at.
 fn repeated() -> BTreeSet<String> {
     let lists = [
         &v::WALKING,
@@ -56,7 +56,8 @@ fn repeated() -> BTreeSet<String> {
     pairs.chain(more.map(str::to_owned)).collect()
 }
 
-/// Holds a text that repeats a part to growth in proportion: twice as many more take twice as many looks more.
+/// Checks that the looks grow in proportion to how often a part is repeated: 40 more repetitions take twice as many
+/// more looks as 20 more do.
 #[track_caller]
 fn grows_in_proportion(text: impl Fn(usize) -> String) {
     let [few, more, many] = [20, 40, 80].map(|times| looks(&text(times)));

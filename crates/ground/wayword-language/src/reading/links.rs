@@ -1,4 +1,4 @@
-//! How a place hangs in its sentence: what the words before it say of it.
+//! How a place is linked to its sentence by the words before it.
 
 use super::{Link, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, normal_word};
@@ -6,9 +6,9 @@ use crate::lexicon::{is_room, normal_word};
 /// How far before a place its preposition may stand, words.
 const REACH: usize = 7;
 
-/// How the place that begins at a token hangs in its sentence.
+/// How the place that begins at a token is linked to its sentence.
 pub(super) fn link(tokens: Tokens<'_>, clauses: &[usize], from: usize) -> Link {
-    // In the order of reading backwards, up to the beginning of the clause.
+    // Read backwards, up to the beginning of the clause.
     let clause = clauses[from.min(clauses.len() - 1)];
     let in_clause = (0..from).rev().take_while(|at| tokens.is_word(*at) && clauses[*at] == clause);
     let words: Vec<&str> = in_clause.take(REACH).map(|at| tokens.word(at)).collect();
@@ -26,11 +26,11 @@ pub(super) fn link(tokens: Tokens<'_>, clauses: &[usize], from: usize) -> Link {
         "to" if v::BESIDE.contains(&before) => Link::Beside,
         "to" | "into" | "onto" | "toward" | "towards" | "until" | "till" => Link::Goal,
         "from" if said_across() => Link::Beside,
-        // "The end of the hallway" is in it, "the door of the kitchen" may be seen from without.
+        // "The end of the hallway" is in it, but "the door of the kitchen" may be seen from outside.
         "of" if !matches!(before, "out" | "inside" | "end" | "middle" | "center" | "centre" | "top" | "bottom") => {
             Link::Beside
         }
-        // "The bathroom in the hallway" is off it, "the bedroom across the hallway" beyond it.
+        // "The bathroom in the hallway" is beside it, "the bedroom across the hallway" is beyond it.
         "in" | "at" | "on" | "across" if is_room(&normal_word(before)) => Link::Beside,
         "in" | "inside" | "within" | "at" | "on" | "upon" | "from" | "of" | "that" | "which" => Link::Within,
         "past" | "through" | "down" | "along" | "across" | "up" | "around" | "after" => Link::Along,

@@ -1,7 +1,8 @@
-//! Reads an instruction as the checker sees it: landmarks, rooms, turns, climbs and floors in the order of the text, and
-//! the closing task.
+//! Reads an instruction for the checks: landmarks, rooms, turns, climbs and storeys in the order of the text, and the
+//! closing task.
 //!
-//! The reader knows nothing of any writer: it takes the words of people, of models and of our own writer alike.
+//! The reader does not depend on who wrote the text: it reads texts of people, of models and of Wayword's own writer in
+//! the same way.
 
 mod climbs;
 mod denial;
@@ -23,7 +24,7 @@ use wayword_core::{Climb, Side};
 /// What an instruction says, in the order of its text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Everything that can be held against a path.
+    /// Everything that can be compared with a path.
     pub events: Vec<Event>,
     /// The closing task, where the text ends in one.
     pub task: Option<Task>,
@@ -36,9 +37,9 @@ pub struct Event {
     pub what: What,
     /// Its byte range in the text.
     pub span: [usize; 2],
-    /// The clause that it stands in, counted over the whole text.
+    /// The number of its clause, counted over the whole text.
     pub clause: usize,
-    /// The text says not to do it, or that it is not so: "do not turn right".
+    /// Whether the text says not to do it, or that it is not so: "do not turn right".
     pub denied: bool,
 }
 
@@ -53,22 +54,22 @@ pub enum What {
     Climb(Climb),
     /// A command to go up or down a few steps, fewer than a flight.
     Steps(Climb),
-    /// A place that lies up or down the stairs ("the bedroom upstairs"), wherever the walker starts.
+    /// A place that lies up or down the stairs ("the bedroom upstairs"), wherever the agent starts.
     Storey(Climb),
-    /// A floor.
+    /// A storey that the text names.
     Floor(Floor),
     /// A command to walk on ("walk straight ahead").
     Onward,
 }
 
-/// A floor in a text.
+/// A storey that a text names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Floor {
-    /// Its number, the lowest being 1; none for the top floor.
+    /// Its number, the lowest being 1; `None` for the top storey.
     pub number: Option<u32>,
-    /// The walk comes from there: "from the second floor", "start on level 1".
+    /// Whether the path comes from there: "from the second floor", "start on level 1".
     pub leaves: bool,
-    /// It only tells where something leads: "the stairs leading to the second floor".
+    /// Whether the text only says that something leads there: "the stairs leading to the second floor".
     pub aside: bool,
 }
 
@@ -81,28 +82,28 @@ pub struct Place {
     pub is_thing: bool,
     /// Whether the name can be a room's.
     pub is_room: bool,
-    /// How it hangs in its sentence.
+    /// How it is linked to its sentence.
     pub link: Link,
-    /// The side of the walker on which it is said to be ("on your left").
+    /// The side of the agent on which it is said to be ("on your left").
     pub side: Option<Side>,
     /// The colour that it is said to have.
     pub colour: Option<String>,
-    /// It follows a turn that happens at, by or after it ("turn left at the sofa").
+    /// Whether it follows a turn that happens at, by or after it ("turn left at the sofa").
     pub tells_turn: bool,
 }
 
-/// How a place hangs in its sentence.
+/// How a place is linked to its sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Link {
-    /// No word says so: "leave the kitchen", "the kitchen is on your left".
+    /// No word links it: "leave the kitchen", "the kitchen is on your left".
     Plain,
-    /// The walker gets there: "to", "into", "enter".
+    /// The agent gets there: "to", "into", "enter".
     Goal,
-    /// Something is there, or the walker is: "in", "at", "from", "of".
+    /// Something is there, or the agent is: "in", "at", "from", "of".
     Within,
-    /// Something lies beside it, and nobody need go there: "next to", "across from", "with".
+    /// Something lies beside it, and the agent need not go there: "next to", "across from", "with".
     Beside,
-    /// The walker goes past or through it: "past", "down".
+    /// The agent goes past or through it: "past", "down".
     Along,
 }
 
@@ -115,7 +116,7 @@ pub struct Task {
     pub object: Option<usize>,
 }
 
-/// Reads a text. `known` holds names, in normal spelling, that the lexicon may lack: those of the evidence.
+/// Reads a text. `known` has the evidence's names in normal spelling, because the lexicon may lack them.
 #[must_use]
 pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     let tokens = text::tokens(text);
@@ -138,7 +139,7 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
 }
 
 impl Reading {
-    /// What the text claims: everything but what it says not to do or not to be so.
+    /// The reading without what the text denies: only what it claims.
     #[must_use]
     pub fn claims(mut self) -> Self {
         if let Some(task) = &mut self.task {
@@ -150,8 +151,8 @@ impl Reading {
     }
 }
 
-/// The number of the clause that each token stands in. Commas, full stops and "then" begin new ones, and so does an "and"
-/// that a verb follows: "the lounge and the bedroom" are in one clause.
+/// The number of each token's clause. Commas, full stops and "then" begin a new clause, and so does an "and" before a
+/// verb. "The lounge and the bedroom" is in one clause.
 #[must_use]
 pub fn clauses(tokens: &[Token]) -> Vec<usize> {
     let tokens = Tokens::of(tokens);
@@ -168,7 +169,7 @@ pub fn clauses(tokens: &[Token]) -> Vec<usize> {
     (0..tokens.len()).map(number).collect()
 }
 
-/// Marks the places that say where the turn before them happens.
+/// Marks the places at which the turn before them happens.
 fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
     let is_connection =
         |at: &usize| matches!(tokens.word(*at), "at" | "by" | "near" | "after" | "past" | "when" | "once");
@@ -177,7 +178,7 @@ fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
         let (from, to) = (tokens.first_from(from), tokens.first_from(to));
         connections.get(connections.partition_point(|at| *at < from)).is_some_and(|at| *at < to)
     };
-    // The clause and the end of the last thing told that is no place, where it is a turn.
+    // The clause and the end of the last event that is not a place, if it is a turn.
     let mut turn = None;
     for event in events {
         match (&mut event.what, turn) {

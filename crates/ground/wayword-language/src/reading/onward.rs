@@ -1,8 +1,9 @@
-//! Commands to walk on, whatever lies there.
+//! Commands to walk on that name no place.
 
 use super::{Event, What, tokens::Tokens, vocabulary as v};
 
-/// "Walk straight ahead", "continue through the hallway": what nobody does who stays where they are.
+/// "Walk straight ahead", "continue through the hallway": commands that an agent does not follow by staying where it
+/// is.
 pub(super) fn onward(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
     let word = |at: usize| tokens.word(at);
     let on = |verb: usize| {

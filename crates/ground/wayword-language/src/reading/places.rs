@@ -14,7 +14,7 @@ struct Found {
     is_room: bool,
 }
 
-/// The places of a text; tokens within `taken` spans are left alone.
+/// The places of a text. Tokens within `taken` spans are skipped.
 pub(super) fn places(
     tokens: Tokens<'_>,
     clauses: &[usize],
@@ -28,8 +28,8 @@ pub(super) fn places(
         let next = if free[at] { named(tokens, at, known).or_else(|| unnamed(tokens, at, known)) } else { None };
         at = next.as_ref().map_or(at + 1, |place| place.to);
         let Some(mut place) = next else { continue };
-        // "the kitchen table": what stands right before a place only tells which one it is.
-        // A basement does not: it is a floor.
+        // "The kitchen table": a place right before another only says which one the other is. A basement does not,
+        // because it is a storey.
         let is_floor = |before: &Found| before.is_room && room_name(&before.name) == Some("basement");
         let tells_which = |before: &mut Found| before.to == place.from && !is_floor(before);
         if let Some(mut before) = found.pop_if(tells_which).filter(|before| !before.is_room && !place.is_room) {
@@ -52,7 +52,7 @@ pub(super) fn places(
     found.into_iter().map(event).collect()
 }
 
-/// For each token, whether it lies in none of these spans.
+/// For each token, whether it is outside all of these spans.
 fn free(tokens: Tokens<'_>, taken: &[[usize; 2]]) -> Vec<bool> {
     let mut free = vec![true; tokens.len()];
     for span in taken {
@@ -76,14 +76,15 @@ fn named(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Foun
     })
 }
 
-/// Words that are names elsewhere but not here: "step" and "turn back" of walking, "light blue", "water the plant".
+/// Whether words that can be a name are not one here: "step" and "turn back" of walking, "light blue", "water the
+/// plant".
 fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
     let word = |at: usize| tokens.word(at);
     if length > 1 {
         return false;
     }
     let after_determiner = at > 0 && (v::DETERMINERS.contains(&word(at - 1)) || v::ADJECTIVES.contains(&word(at - 1)));
-    // "The upper floor" is no floor to look at.
+    // "The upper floor" is a storey, and not a floor that one sees.
     let storey = word(at) == "floor"
         && ((at > 0 && v::STOREYS.contains(&word(at - 1)))
             || (at > 1 && word(at - 1) == "a" && matches!(word(at - 2), "up" | "down")));
@@ -130,7 +131,7 @@ fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
     (verb_like && !after_determiner) || (word(at) == "light" && before_noun && !after_determiner) || shade || storey
 }
 
-/// A noun phrase that no name covers: "the shiny gizmo".
+/// A noun phrase that begins at a token and has no known name: "the shiny gizmo".
 fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Found> {
     let word = |at: usize| tokens.word(at);
     let is_article = matches!(word(at), "the" | "a" | "an");
@@ -138,7 +139,7 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
         return None;
     }
     let ends = |end: usize| {
-        // "After this enter the hall", "on your left soon": no noun.
+        // "After this enter the hall", "on your left soon": not a noun.
         let first = word(end);
         let is_other = v::WALKING.contains(&first) || v::TURNING.contains(&first) || first.ends_with("ing");
         let is_verb = !is_article && end == at + 1 && (is_other || matches!(first, "left" | "right"));
@@ -151,7 +152,7 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
     while to < at + 5 && !ends(to) {
         to += 1;
     }
-    // A named place right behind means that these are its adjectives.
+    // Before a named place, these words are its adjectives.
     let ends_in_name = tokens.is_word(to) && named(tokens, to, known).is_some();
     let last = word(to - 1);
     let tells_nothing = v::ABSTRACT.contains(&normal_word(last).as_str())
@@ -165,7 +166,7 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
     Some(Found { from: at + 1, to, name, is_thing: true, is_room: false })
 }
 
-/// "A picture of two horses": the horses are on it and not there.
+/// "A picture of two horses": the horses are in the picture and not at the place.
 fn is_depicted(tokens: Tokens<'_>, at: usize) -> bool {
     let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens.word(at));
     word(1) == "of" && thing(&normal_word(word(2))).is_some_and(|thing| thing.class == Class::WallArt)
@@ -177,14 +178,14 @@ fn begins_noun(tokens: Tokens<'_>, at: usize) -> bool {
     if !matches!(word, "this" | "that" | "these" | "those") {
         return v::DETERMINERS.contains(&word) || v::COUNTING.contains(&word);
     }
-    // "The door that leads on", "this takes you to the hall": these stand for a noun.
+    // "The door that leads on", "this takes you to the hall": here the word replaces a noun.
     let before = tokens.before(at);
     let begins_clause =
         matches!(before, "where" | "when" | "until" | "till" | "while" | "as" | "if" | "that" | "which" | "and" | "so");
     !begins_clause && (v::BREAKERS.contains(&before) || v::WALKING.contains(&before))
 }
 
-/// The colours that are told among the adjectives before a place.
+/// The colours among the adjectives before a place.
 struct Colours<'a> {
     tokens: Tokens<'a>,
     /// For each token, the last colour in the run of adjectives that ends with it.

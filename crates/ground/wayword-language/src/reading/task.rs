@@ -3,7 +3,7 @@
 use super::{Event, Task, What, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
 
-/// The task that ends a text: the last clause with a verb, where that verb is not one of walking.
+/// The task that ends a text: the last clause with a verb, if that verb is not one of walking.
 pub(super) fn closing_task(tokens: Tokens<'_>, events: &[Event]) -> Option<Task> {
     let behind_adverbs = behind_adverbs(tokens);
     let mut starts = (0..tokens.len())
@@ -20,12 +20,12 @@ pub(super) fn closing_task(tokens: Tokens<'_>, events: &[Event]) -> Option<Task>
     Some(Task { verb, object })
 }
 
-/// For each token, the first one from there on that is no adverb: a verb stands behind the adverbs of its clause.
+/// For each token, the first one from there on that is not an adverb, because a verb follows the adverbs of its clause.
 pub(super) fn behind_adverbs(tokens: Tokens<'_>) -> Vec<usize> {
     tokens.ends_of_runs(|word| v::ADVERBS.contains(&word))
 }
 
-/// Where the verb of a clause stands, given the first token behind its adverbs; `None` where the clause has none.
+/// The token of a clause's verb, given the first token after its adverbs; `None` where the clause has no verb.
 pub(super) fn verb_at(tokens: Tokens<'_>, at: usize) -> Option<usize> {
     let word = |at: usize| tokens.word(at);
     let first = tokens.get(at).filter(|token| token.is_word())?.word.as_str();
@@ -62,7 +62,7 @@ fn is_walking(tokens: Tokens<'_>, at: usize) -> bool {
             !(v::DETERMINERS.contains(&word(at + 1)) || matches!(word(at + 1), "me" | "on" | "off" | "all")) || turns()
         }
         "move" => !(v::DETERMINERS.contains(&word(at + 1)) || word(at + 1) == "all"),
-        // "find the lamp" is a task, "you find yourself in a hall" is none.
+        // "Find the lamp" is a task, "you find yourself in a hall" is not.
         "find" => word(at + 1) == "your" || word(at + 1) == "yourself",
         verb => v::WALKING.contains(&verb),
     }

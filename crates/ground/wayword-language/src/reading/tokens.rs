@@ -1,7 +1,7 @@
-//! The tokens of a text as the readers look at them: one by one, or as runs of words that are skipped.
+//! The tokens of a text as the readers use them: one by one, or as runs of words that are skipped.
 //!
-//! No reader walks over the same words from every token that it looks at: a long text would take the square of its length.
-//! What stands before or behind a run of words is worked out once for all tokens. `growth` counts the looks.
+//! No reader goes over the same words again from every token, because a long text would then take the square of its
+//! length. The tokens before or after a run of words are found once for all tokens. `growth` counts the looks.
 
 use crate::text::Token;
 
@@ -18,40 +18,40 @@ impl<'a> Tokens<'a> {
         self.0.len()
     }
 
-    /// The token at a place, none behind the end.
+    /// The token at an index; `None` after the end.
     pub(super) fn get(self, at: usize) -> Option<&'a Token> {
         #[cfg(test)]
         super::growth::look();
         self.0.get(at)
     }
 
-    /// The word or mark at a place, nothing behind the end.
+    /// The word or mark at an index; empty after the end.
     pub(super) fn word(self, at: usize) -> &'a str {
         self.get(at).map_or("", |token| token.word.as_str())
     }
 
-    /// The word or mark right before a place, nothing before the first.
+    /// The word or mark right before an index; empty before the first.
     pub(super) fn before(self, at: usize) -> &'a str {
         at.checked_sub(1).map_or("", |before| self.word(before))
     }
 
-    /// Whether a word, and no mark, stands at a place.
+    /// Whether the token at an index is a word, and not a mark.
     pub(super) fn is_word(self, at: usize) -> bool {
         self.get(at).is_some_and(Token::is_word)
     }
 
-    /// The bytes from one token to another.
+    /// The byte range from one token to another.
     pub(super) fn span(self, first: usize, last: usize) -> [usize; 2] {
         [self.0[first].span[0], self.0[last].span[1]]
     }
 
-    /// The first token that begins at a byte or behind it.
+    /// The first token that begins at a byte or after it.
     pub(super) fn first_from(self, byte: usize) -> usize {
         self.0.partition_point(|token| token.span[0] < byte)
     }
 
-    /// For each token, where the run of words begins that stand right before it and may be skipped: the token itself where
-    /// there are none.
+    /// For each token, the first of the words right before it that may be skipped; the token itself where there are
+    /// none.
     pub(super) fn runs_before(self, may: impl Fn(&str) -> bool) -> Vec<usize> {
         let mut from = 0;
         let start = |at: usize| {

@@ -50,7 +50,7 @@ struct About {
     last: usize,
 }
 
-/// A text, and for each of its tokens where the run of words before it begins that may stand between a verb and a turn.
+/// A text, and for each of its tokens the start of the run of words before it that may come between a verb and a turn.
 struct Text<'a> {
     tokens: Tokens<'a>,
     before_about: Vec<usize>,
@@ -87,7 +87,7 @@ impl<'a> Text<'a> {
             "u" if next == "turn" => by_itself(at + 1),
             "uturn" => by_itself(at),
             "face" if at > 0 && self.word(at - 1) == "about" => by_itself(at),
-            // "Turn around the corner" is no turn around.
+            // "Turn around the corner" does not mean to turn around.
             "around" if !matches!(next, "the" | "a" | "an" | "this" | "that") => verb(),
             "180" => {
                 let is_noun = [next, self.word(at + 2)].contains(&"turn");
@@ -102,14 +102,14 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// The side to which a turn goes that is told at a token, and its verb, where it has one.
+    /// The side of the turn that a token means, and its verb, where it has one.
     fn side(&self, at: usize, told_before: bool) -> Option<(Side, Option<usize>)> {
         let side = side_word(self.word(at))?;
         let after = self.word(at + 1);
         if after == "turn" || (after == "hand" && self.word(at + 2) == "turn") {
             return Some((side, None));
         }
-        // What stands right before the side, without the words that may come between.
+        // The starts of the runs of words that may come between a verb and the side.
         let (from, far) = (self.before_side[at], self.before_side_of_turn[at]);
         let turning = far.checked_sub(1).filter(|verb| self.turns(*verb, far..at));
         if self.tells_a_place(at, turning) || (side == Side::Right && self.is_adverb(at, turning, told_before)) {
@@ -122,14 +122,14 @@ impl<'a> Text<'a> {
         is_turn.then_some((side, turning))
     }
 
-    /// Whether the word at `verb` is one of turning, with these words between it and the side.
+    /// Whether the word at `verb` is a verb of turning, with these words between it and the side.
     fn turns(&self, verb: usize, mut between: std::ops::Range<usize>) -> bool {
         let word = self.word(verb);
         v::TURNING.contains(&word)
             || (matches!(word, "round" | "rounding") && between.any(|at| self.word(at) == "corner"))
     }
 
-    /// "The left wall", "left of the sofa": the side tells which thing is meant, or where it is.
+    /// "The left wall", "left of the sofa": the side says which thing is meant, or where it is.
     fn tells_a_place(&self, at: usize, turning: Option<usize>) -> bool {
         let after = self.word(at + 1);
         if matches!(after, "of" | "side" | "hand" | "wall" | "corner" | "most") {
@@ -154,11 +154,11 @@ impl<'a> Text<'a> {
         of_a_noun || unknown_noun
     }
 
-    /// "Right before the sofa", "walk right up to the table": no side.
+    /// "Right before the sofa", "walk right up to the table": not a side.
     fn is_adverb(&self, at: usize, turning: Option<usize>, told_before: bool) -> bool {
         let after = self.word(at + 1);
         let before = self.tokens.before(at);
-        // "Left, then right past the sofa" goes on with turns; "stop, then right after the sofa" does not.
+        // In "left, then right past the sofa" a second turn follows; in "stop, then right after the sofa" none does.
         let directly = !v::BEFORE_SIDE.contains(&before) || (matches!(before, "and" | "then") && !told_before);
         matches!(after, "away" | "now")
             || (after == "around" && turning.is_some())
@@ -174,7 +174,7 @@ impl<'a> Text<'a> {
                 || skipped.all(|word| matches!(word, "immediately" | "slightly" | "slight" | "then" | "back")))
     }
 
-    /// ", then left", "and left.", "Left at the sofa": a side that makes a clause of its own.
+    /// ", then left", "and left.", "Left at the sofa": a side that is a clause by itself.
     fn stands_alone(&self, from: usize, at: usize, told_before: bool) -> bool {
         let skipped: Vec<&str> = (from..at).map(|at| self.word(at)).collect();
         let joined = skipped.iter().any(|word| matches!(*word, "and" | "then" | "but"));
@@ -183,7 +183,7 @@ impl<'a> Text<'a> {
         let to = skipped.contains(&"to");
         let ends = self.tokens.get(at + 1).is_none_or(|token| !token.is_word() && token.word != ")")
             || v::AFTER_SIDE.contains(&self.word(at + 1));
-        // "On your left and right": no turn where the side before was none.
+        // "On your left and right": not a turn where the side before was not one.
         let lists_sides = joined && !told_before && from > 0 && side_word(self.word(from - 1)).is_some();
         if lists_sides {
             return false;
@@ -191,7 +191,7 @@ impl<'a> Text<'a> {
         told_before && (again || (joined && !to) || (begins && !to)) || (ends && (joined || (begins && !to)))
     }
 
-    /// "Take the hallway left": a side behind a way that is taken.
+    /// "Take the hallway left": a side after a way that is taken.
     fn follows_a_way(&self, at: usize) -> bool {
         let ends =
             self.tokens.get(at + 1).is_none_or(|token| !token.is_word()) || v::AFTER_SIDE.contains(&self.word(at + 1));

@@ -1,4 +1,4 @@
-//! Closed lists of words that steer the reading of an instruction.
+//! Closed word lists that steer the reading of an instruction.
 
 crate::data::lists! {
     "words/reading.txt";
@@ -6,7 +6,7 @@ crate::data::lists! {
     phrases:;
 }
 
-/// The number that an ordinal or a numeral says: that of a floor.
+/// The number of a storey, from an ordinal or a numeral.
 pub(super) fn floor_number(word: &str) -> Option<u32> {
     const NUMBERS: [[&str; 2]; 12] = [
         ["one", "first"],
