@@ -1,26 +1,26 @@
-//! Lays what a text says, in its order, along the walk.
+//! Maps what a text says, in its order, to the frames and moves of the path.
 //!
-//! A place is laid on a frame that shows it, a turn on a move (or a bend of up to three) that makes it. Places may not go
-//! back, each turn needs a move of its own after the last one's, and a turn and the places around it must be near each
-//! other. The search fails only where no reading of the text fits.
+//! A place is mapped to a frame that shows it, a turn to a move that makes it, or to a bend of up to three moves. The
+//! frames of places never go back. Each turn needs a move of its own, after the last move of the turn before. A turn
+//! and the places around it must be near each other. The search fails only where no mapping fits.
 
 use crate::evidence::Evidence;
 use wayword_core::{Side, motion};
 
-/// Something to lay along the walk.
+/// A statement of the text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
     /// A place, and the frames that show it, ascending.
     Place(Vec<usize>),
     /// A turn.
     Turn(Side),
-    /// A walk, however short.
+    /// Going on, however short the way.
     Onward,
-    /// Something that holds no place in the order.
+    /// Something that has no place in the order.
     Free,
 }
 
-/// How far a text has got: the frame of its last place, the frame of its last turn, and the first move that is left.
+/// How far a text has got: the frame of its last place, the frame of its last turn, and the first move after that turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Progress {
     place: usize,
@@ -28,7 +28,7 @@ struct Progress {
     next_move: usize,
 }
 
-/// How far it has got, from which of the layer before, and the frame of the step between them.
+/// A state, the state of the layer before that it came from, and the frame of the step between them.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
     state: Progress,
@@ -36,8 +36,8 @@ struct Reached {
     frame: Option<usize>,
 }
 
-/// The frame of each step, where all of them can be laid along the walk; else the first step at which none of the ways to
-/// lay those before it can go on.
+/// The frame of each step, where all of them can be mapped to the path; else the first step at which no mapping of the
+/// steps before it can go on.
 pub(super) fn align(steps: &[Step], evidence: &Evidence) -> Result<Vec<Option<usize>>, usize> {
     let bends = Bends::of(evidence);
     let start = Reached { state: Progress { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
@@ -63,15 +63,15 @@ pub(super) fn align(steps: &[Step], evidence: &Evidence) -> Result<Vec<Option<us
     Ok(frames)
 }
 
-/// Those states that no other one dominates, least first. A state dominates another where neither its place nor its turn
+/// The states that no other one dominates, least first. A state dominates another where neither its place nor its turn
 /// nor its next move is later.
 ///
-/// Nothing is lost with a dominated state: a step asks for frames and moves that are not before these three numbers, so
-/// whatever may follow the dominated state may follow the other too, and what it leaves there dominates again what it would
-/// have left here. What is kept is a handful, however long the text and the walk are; all states together would be as many
-/// as the square of the walk's length.
+/// Dropping a dominated state loses nothing. A step only asks for frames and moves that are not before these three
+/// numbers, so whatever can follow the dominated state can follow the other one too, and the states that come of it
+/// dominate again. However long the text and the path are, a handful of states is kept; all of them would be as many as
+/// the square of the path's length.
 fn undominated(mut reached: Vec<Reached>) -> Vec<Reached> {
-    // Whoever dominates a state comes before it.
+    // A state that dominates another one comes before it.
     reached.sort_by_key(|reached| reached.state);
     let mut kept: Vec<Reached> = Vec::new();
     for one in reached {
@@ -102,7 +102,8 @@ fn after(state: Progress, step: &Step, bends: &Bends) -> Vec<(Progress, Option<u
             frames.get(first).map(|frame| (Progress { place: *frame, ..state }, Some(*frame))).into_iter().collect()
         }
         Step::Turn(side) => {
-            // A place that is told before a turn may already be seen from the frame of the turn, a hop ahead of itself.
+            // A place that the text names before a turn may be a hop ahead, because it can be seen from the frame of
+            // the turn.
             let from = state.next_move.max(state.place.saturating_sub(1));
             let turned = |(first, last): (usize, usize)| Progress { turn: first, next_move: last + 1, ..state };
             bends.soonest(*side, from).into_iter().map(|bend| (turned(bend), Some(bend.0))).collect()
@@ -115,7 +116,7 @@ struct Bends {
     left: Vec<(usize, usize)>,
     right: Vec<(usize, usize)>,
     around: Vec<(usize, usize)>,
-    /// Whether the walk goes anywhere at all.
+    /// Whether the path goes anywhere at all.
     moves: bool,
 }
 
@@ -135,7 +136,8 @@ impl Bends {
         }
     }
 
-    /// Those to a side, from a move on, that begin before every other has ended: the later ones leave a text no more to say.
+    /// The turns to a side, from a move on, that begin before every other one has ended. A later turn never lets the
+    /// text go farther.
     fn soonest(&self, side: Side, from: usize) -> Vec<(usize, usize)> {
         let all = match side {
             Side::Left => &self.left,
@@ -148,7 +150,7 @@ impl Bends {
     }
 }
 
-/// Whether moves that turn by so many degrees, positive right, make a turn to a side.
+/// Whether moves that turn by these degrees (positive right) make a turn to a side.
 fn is_turn(side: Side, bend: &[f64]) -> bool {
     let sign = if side == Side::Left { -1.0 } else { 1.0 };
     let total = bend.iter().sum::<f64>() * sign;
@@ -173,7 +175,7 @@ mod tests {
         Evidence { frames: Vec::new(), moves, motion: Motion::Known, source: Source::Nothing }
     }
 
-    /// Every way to lay the steps, without any bound.
+    /// Tries every mapping of the steps, without any bound.
     fn fits(steps: &[Step], state: Progress, turns_deg: &[f64]) -> bool {
         let Some((step, rest)) = steps.split_first() else { return true };
         let moves = turns_deg.len();

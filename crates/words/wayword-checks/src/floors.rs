@@ -1,4 +1,4 @@
-//! Floors and stairs.
+//! Storeys and stairs.
 
 use super::{finding, or_pass};
 use crate::evidence::Evidence;
@@ -35,7 +35,7 @@ fn stepped(climb: Climb, evidence: &Evidence) -> Verdict {
     holds(evidence.steps(climb), evidence)
 }
 
-/// A climb that the moves do not make is wrong where there are moves.
+/// A climb that the moves do not make is wrong where the motion is known.
 fn holds(climbs: bool, evidence: &Evidence) -> Verdict {
     match (climbs, evidence.motion) {
         (true, _) => Verdict::Pass,
@@ -44,7 +44,7 @@ fn holds(climbs: bool, evidence: &Evidence) -> Verdict {
     }
 }
 
-/// "The bedroom upstairs" tells a place to somebody who stands anywhere.
+/// "The bedroom upstairs" is right for a path that ends upstairs, wherever it starts.
 fn storey(climb: Climb, evidence: &Evidence) -> Verdict {
     let ends_there = match evidence.frames.last().and_then(|frame| frame.level) {
         Some(level) => (level >= 2) == (climb == Climb::Up),
@@ -54,7 +54,7 @@ fn storey(climb: Climb, evidence: &Evidence) -> Verdict {
     if ends_there { Verdict::Pass } else { climbed(climb, evidence) }
 }
 
-/// The floors that a text tells, in the order of the walk.
+/// The storeys that a text names, in the order of the path.
 fn told(reading: &Reading) -> Vec<(&Event, Floor)> {
     let mut told: Vec<(&Event, Floor)> = Vec::new();
     for event in &reading.events {
@@ -70,15 +70,15 @@ fn told(reading: &Reading) -> Vec<(&Event, Floor)> {
     told
 }
 
-/// What is wrong with the floors of a text: they are passed in their order, and the walk ends on the last one that is told
-/// as a goal.
+/// What is wrong with the storeys of a text. The path has to pass them in their order, and to end on the last one where
+/// the text names that as the goal.
 fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32>]) -> Option<Finding> {
     let wrong = |verdict: Verdict, (event, floor): &(&Event, Floor)| {
-        let name = floor.number.map_or("the top floor".to_owned(), |number| format!("floor {number}"));
+        let name = floor.number.map_or("the top storey".to_owned(), |number| format!("storey {number}"));
         let touched = floor.number.is_some_and(|number| levels.contains(&Some(number)));
         let reason = match (verdict, touched) {
-            (Verdict::Fail, true) => format!("the path is on {name}, but not then"),
-            (Verdict::Fail, false) => format!("the path does not touch {name}"),
+            (Verdict::Fail, true) => format!("the path is on {name}, but not at this point of the text"),
+            (Verdict::Fail, false) => format!("the path is never on {name}"),
             _ => format!("the program cannot check whether the path is on {name}"),
         };
         finding(Check::Floors, verdict, reason, Some(event.span))
@@ -92,7 +92,7 @@ fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32
         };
         at + 1 == told.len() && !floor.leaves && !goes_on()
     };
-    // Whether the levels allow the floors; what is not known allows all.
+    // The first storey of the text that no frame from there on allows.
     let first_off = |allows: &dyn Fn(Option<u32>, Floor) -> bool| {
         let mut from = 0;
         told.iter().enumerate().position(|(at, (_, floor))| {
@@ -107,7 +107,7 @@ fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32
     let possible = |level: Option<u32>, floor: Floor| match (level, floor.number) {
         (None, _) => true,
         (Some(level), Some(number)) => level == number,
-        // There may be higher ones that the path does not touch, but none that it does.
+        // The building may have higher storeys than the path, but a storey below the path's highest is not the top one.
         (Some(level), None) => Some(level) == highest,
     };
     if let Some(at) = first_off(&possible) {

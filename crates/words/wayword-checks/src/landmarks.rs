@@ -21,11 +21,11 @@ pub(super) struct Places {
 pub(super) struct Shown {
     /// The frames that show it.
     pub(super) frames: Vec<usize>,
-    /// The frames of which nobody knows whether they show it.
+    /// The frames of which it is not known whether they show it.
     pub(super) unknown: Vec<usize>,
 }
 
-/// Checks each place of a text but the object of a task that has a check of its own.
+/// Checks each place of a text. Whether the object of a task (`object`) is there is left to the check of the task.
 pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<usize>) -> Places {
     let (mut findings, mut all_shown) = (Vec::new(), Vec::new());
     let seen = Seen::of(evidence);
@@ -49,14 +49,14 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<u
         findings.push(finding(
             Check::Landmarks,
             Verdict::Unverified,
-            "nothing is known of what is seen along the path",
+            "the program does not know what can be seen along the path",
             None,
         ));
     }
     Places { findings: or_pass(Check::Landmarks, findings), shown: all_shown }
 }
 
-/// What is wrong with where a place is told to be: nowhere along the path, or on another side.
+/// What is wrong with where the text puts a place: it is nowhere along the path, or on another side.
 fn presence(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict, String)> {
     if shown.frames.is_empty() {
         let verdict = absent(place, evidence);
@@ -74,12 +74,12 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdic
     Some((wrong_unless_elsewhere(shown), reason))
 }
 
-/// The verdict on what is wrong wherever a place is seen: it may be right where nobody knows what is seen.
+/// The verdict on a place that is wrong wherever it is seen. It may still be right where it is not known what is seen.
 fn wrong_unless_elsewhere(shown: &Shown) -> Verdict {
     if shown.unknown.is_empty() { Verdict::Fail } else { Verdict::Unverified }
 }
 
-/// What is wrong with the colour that a place is told with.
+/// What is wrong with the colour that the text gives a place.
 fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict, String)> {
     let told = place.colour.as_ref()?;
     let things =
@@ -101,8 +101,8 @@ fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict,
     }
 }
 
-/// Evidence by the names of what is seen: a path shows a few dozen names over and over, and each place of a text is held
-/// against every one of them once.
+/// The evidence, sorted by name. A path shows a few dozen names over and over, so each place of a text is compared with
+/// each name once.
 struct Seen<'a> {
     evidence: &'a Evidence,
     frames_of_things: BTreeMap<&'a str, Vec<usize>>,
@@ -148,11 +148,11 @@ fn at_the_end(place: &Place, evidence: &Evidence) -> Shown {
     Shown { frames: if is_seen { vec![last] } else { Vec::new() }, unknown: Vec::new() }
 }
 
-/// What it means that no frame shows a place.
+/// The verdict where no frame shows a place.
 fn absent(place: &Place, evidence: &Evidence) -> Verdict {
     let thing_denied = place.is_thing && evidence.denies_thing(&place.name);
-    // What lies next to a path need not lie on it.
+    // A room that the text calls near to something need not be on the path.
     let room_denied = place.is_room && evidence.denies_room(&place.name) && place.link != Link::Beside;
-    // A name that means either is denied where one of them is.
+    // A name that may mean a thing or a room fails only where the thing is denied.
     if thing_denied || (room_denied && !place.is_thing) { Verdict::Fail } else { Verdict::Unverified }
 }

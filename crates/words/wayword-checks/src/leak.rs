@@ -8,15 +8,15 @@ use wayword_language::{
     text::{Token, tokens},
 };
 
-/// A run of this many words that a text shares with a reference is a copy, unless it is a stock phrase ("at the end of the"):
-/// one of words alone that everybody needs.
+/// A run of this many words that a text shares with a reference is a copy, unless it is a stock phrase ("at the end of
+/// the"): one that has only words that every text needs.
 pub const SHARED_RUN: usize = 5;
 
 pub(super) fn leak(text: &str, references: &[String]) -> Finding {
     match shared_run(text, references) {
         None => pass(Check::Leak),
         Some(span) => {
-            let reason = format!("{:?} stands in a reference text too", &text[span[0]..span[1]]);
+            let reason = format!("{:?} is in a reference text too", &text[span[0]..span[1]]);
             finding(Check::Leak, Verdict::Fail, reason, Some(span))
         }
     }

@@ -1,7 +1,7 @@
-//! Holds a text against the evidence of its path. Works on the words alone, whoever wrote them.
+//! Checks a text against the evidence of its path. It reads the words alone, whoever wrote them.
 //!
-//! [`Evidence`] says what is known of a path, from labels or from captions. Each check is a file here; `align` lays a text along
-//! the walk for those that ask where it speaks of what.
+//! [`Evidence`] says what is known of a path, from labels or from captions. Each check is a file here. `align` maps the
+//! statements of a text to the frames of the path, for the checks that need their order.
 //!
 //! Architecture invariant: nothing here knows a writer, a prompt or a plan.
 
@@ -33,7 +33,7 @@ pub use leak::{SHARED_RUN, shared_run};
 pub struct Subject<'a> {
     /// What is known of the path.
     pub evidence: &'a Evidence,
-    /// The style that the text is to keep to.
+    /// The style that the text has to follow.
     pub style: &'a Style,
     /// The object that its task has to be about, where one was given.
     pub target: Option<&'a Target>,
@@ -44,12 +44,12 @@ pub struct Subject<'a> {
 pub struct Checked {
     /// Every check's outcome; a check that failed several times has several findings.
     pub findings: Vec<Finding>,
-    /// What the text speaks of, tied to its frames.
+    /// The landmarks, rooms, turns, storeys and target that the text mentions, each with its frame.
     pub mentions: Vec<Mention>,
 }
 
 impl Checked {
-    /// All checks together.
+    /// The verdict of all checks together.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         Verdict::of(&self.findings)
@@ -66,7 +66,7 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
     if ends_in_task {
         findings.push(task::task(&reading, subject.evidence, subject.target));
     }
-    // Where no task is asked for, the object of one is a landmark like any other.
+    // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
     let places = landmarks::landmarks(&reading, subject.evidence, object);
     findings.extend(places.findings);
@@ -78,8 +78,8 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
     Checked { mentions: mentions(&reading, &walk.frames), findings }
 }
 
-/// Checks a text that was written here. It is held to more than anybody's: where nobody knows how the walker moved, whatever
-/// it tells of that was made up, while a stranger may have been there.
+/// Checks a text that this program wrote. It is stricter than [`check`]: where the motion is unknown, the writer made
+/// up any turn, side, storey or distance that the text names, while somebody else may have seen the place.
 #[must_use]
 pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
     let mut checked = check(text, subject);
@@ -96,7 +96,7 @@ pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
     checked
 }
 
-/// The names of everything that is known along a path: the reader has to recognise them.
+/// The names of all objects that are known along a path. The reader has to recognise them.
 fn names(evidence: &Evidence) -> BTreeSet<String> {
     let things = evidence.frames.iter().flat_map(|frame| frame.things.iter().map(|thing| normal(&thing.name)));
     things.filter(|name| !name.is_empty()).collect()
@@ -121,7 +121,7 @@ fn pass(check: Check) -> Finding {
     Finding { check, verdict: Verdict::Pass, reason: String::new(), span: None }
 }
 
-/// A check that found something wrong, or nothing to hold it against.
+/// A check that found something wrong, or that has no evidence to decide it by.
 fn finding(check: Check, verdict: Verdict, reason: impl Into<String>, span: Option<[usize; 2]>) -> Finding {
     Finding { check, verdict, reason: reason.into(), span }
 }

@@ -1,4 +1,4 @@
-//! What a text tells of a motion that nobody knows.
+//! What a text says about a motion that is not known.
 
 use super::finding;
 use std::collections::BTreeSet;
@@ -8,15 +8,16 @@ use wayword_language::{
     text::{Token, tokens},
 };
 
-/// Words that count what is walked.
+/// Words that count how far one walks.
 const COUNTS: &[&str] =
     &["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "twenty", "few", "several"];
-/// Units of what is walked.
+/// Units of how far one walks.
 const UNITS: &[&str] = &[
     "m", "metre", "metres", "meter", "meters", "ft", "foot", "feet", "yard", "yards", "pace", "paces", "step", "steps",
 ];
 
-/// Turns, sides, stairs, floors and distances, even where the text denies them: who says "do not turn left" knows of a turn.
+/// Turns, sides, stairs, storeys and distances, even where the text denies them: "do not turn left" claims to know of a
+/// turn.
 pub(super) fn made_up(text: &str, known: &BTreeSet<String>) -> Vec<Finding> {
     let events = read(text, known).events;
     let tokens = tokens(text);
@@ -24,23 +25,23 @@ pub(super) fn made_up(text: &str, known: &BTreeSet<String>) -> Vec<Finding> {
     let on = tokens
         .iter()
         .filter(|token| token.word == "straight")
-        .map(|token| ((Check::Turns, "which way it goes"), token.span));
-    let distances = distances(&tokens).map(|span| ((Check::Turns, "how far it goes"), span));
+        .map(|token| ((Check::Turns, "which way the path goes"), token.span));
+    let distances = distances(&tokens).map(|span| ((Check::Turns, "how far the path goes"), span));
     let all = told.chain(on).chain(distances);
     all.map(|((check, what), span)| {
         let words = text.get(span[0]..span[1]).unwrap_or_default();
-        let reason = format!("{words:?}: nobody knows {what}; tell the way by rooms and things alone");
+        let reason = format!("{words:?}: it is not known {what}; describe the way by rooms and objects alone");
         finding(check, Verdict::Fail, reason, Some(span))
     })
     .collect()
 }
 
-/// What one has to know of a motion to say so, and the check that holds it against the path where that is known.
+/// What an author has to know of the motion to say so, and the check that decides it where the motion is known.
 fn told(event: &Event) -> Option<(Check, &'static str)> {
     match &event.what {
-        What::Turn(_) => Some((Check::Turns, "how the walk turns")),
-        What::Climb(_) | What::Steps(_) => Some((Check::Floors, "whether it goes up or down")),
-        What::Storey(_) | What::Floor(_) => Some((Check::Floors, "on which floor it is")),
+        What::Turn(_) => Some((Check::Turns, "how the path turns")),
+        What::Climb(_) | What::Steps(_) => Some((Check::Floors, "whether the path goes up or down")),
+        What::Storey(_) | What::Floor(_) => Some((Check::Floors, "on which storey the path is")),
         What::Place(place) => place.side.map(|_| (Check::Landmarks, "on which side of the walker that is")),
         What::Onward => None,
     }

@@ -1,4 +1,4 @@
-//! Landmarks and turns in the order of the walk.
+//! Landmarks and turns in the order of the path.
 
 use super::{
     align::{Step, align},
@@ -17,7 +17,7 @@ pub(super) struct Order {
     pub(super) frames: Vec<Option<usize>>,
 }
 
-/// Checks the order of places by themselves, then that of turns among them.
+/// Checks the order of the places first, then the order of the turns among them.
 pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> Order {
     let sequence = in_order_of_walk(&reading.events);
     let asides = asides(reading);
@@ -41,7 +41,7 @@ pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> 
         Err(at) => {
             let reason = match places {
                 Verdict::Fail => "it comes too late in the text: the path passed it before",
-                _ => "the path passed it before, and nobody knows whether it does again",
+                _ => "the path passed it before, and the program cannot check whether it does again",
             };
             (vec![finding(Check::Order, places, reason, span(at)), turns_alone(reading, evidence)], None)
         }
@@ -60,7 +60,7 @@ pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> 
     Order { findings, frames }
 }
 
-/// Lays steps along the walk. What does not fit is wrong only where it does not fit with what nobody knows either.
+/// Maps steps to the path. What does not fit fails only where it would not fit either if the unknown frames showed it.
 fn lay(certain: &[Step], possible: &[Step], evidence: &Evidence) -> (Verdict, Result<Vec<Option<usize>>, usize>) {
     let laid = align(certain, evidence);
     let verdict = match &laid {
@@ -78,10 +78,10 @@ fn places_alone(steps: &[Step]) -> Vec<Step> {
         .collect()
 }
 
-/// For each event, whether it is a place that only tells where another place of its clause, or the task's object, is.
+/// For each event, whether it is a place that only says where another place of its clause, or the task's object, is.
 fn asides(reading: &Reading) -> Vec<bool> {
     let object = reading.task.as_ref().and_then(|task| task.object);
-    // What the clause has told before: its number, whether a place, and whether a goal.
+    // The clause's number, whether it has named a place so far, and whether it has named a goal.
     let (mut clause, mut tells_place, mut tells_goal) = (0, false, false);
     let is_aside = |(at, event): (usize, &Event)| {
         if event.clause != clause {
@@ -90,7 +90,7 @@ fn asides(reading: &Reading) -> Vec<bool> {
         let What::Place(place) = &event.what else { return false };
         let tells_where = match place.link {
             Link::Within | Link::Beside => tells_place,
-            // "To the bathroom past the kitchen": the goal is told first, and reached last.
+            // "To the bathroom past the kitchen": the goal is named first, and reached last.
             Link::Along => tells_goal,
             Link::Plain | Link::Goal => false,
         };
@@ -111,7 +111,7 @@ fn turn_reason(steps: &[Step], at: usize) -> &'static str {
     }
 }
 
-/// Turns by themselves, where the places are out of order anyway.
+/// The turns alone, where the places are out of order anyway.
 fn turns_alone(reading: &Reading, evidence: &Evidence) -> Finding {
     let turns: Vec<&Event> =
         reading.events.iter().filter(|event| matches!(event.what, What::Turn(_) | What::Onward)).collect();
@@ -122,7 +122,7 @@ fn turns_alone(reading: &Reading, evidence: &Evidence) -> Finding {
     }
 }
 
-/// A text no turn of which is wrong. Where nobody knows how the walker moved, none is right either.
+/// The finding on a text without a wrong turn: where the motion is unknown, its turns are unverified.
 fn no_wrong_turn(reading: &Reading, evidence: &Evidence) -> Finding {
     let first = reading.events.iter().find(|event| matches!(event.what, What::Turn(_)));
     match first.filter(|_| !evidence.motion.is_known()) {
@@ -148,7 +148,7 @@ fn step(event: &Event, shown: Vec<usize>, evidence: &Evidence) -> Step {
     }
 }
 
-/// The events in the order in which the walk meets them: a place that tells where a turn happens comes before that turn.
+/// The events in the order in which the path meets them: a place that says where to turn comes before that turn.
 fn in_order_of_walk(events: &[Event]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..events.len()).collect();
     for at in 1..events.len() {

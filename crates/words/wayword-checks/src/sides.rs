@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 use wayword_core::Side;
 use wayword_language::{lexicon::agree, reading::Place};
 
-/// Whether a direction from the heading (radians, positive right) is on a side as people tell it: roughly, and not ahead.
+/// Whether a direction from the heading (radians, positive right) is on a side, as people use the word: roughly, and
+/// not straight ahead.
 pub(super) fn lies_on(side: Side, turn_rad: f64) -> bool {
     let deg = turn_rad.to_degrees();
     match side {
@@ -26,14 +27,14 @@ pub(super) fn word(side: Side) -> &'static str {
     }
 }
 
-/// The side with which a place is told, where it lies there in none of the given frames.
+/// The side that the text gives a place, where the place is on that side in none of the given frames.
 pub(super) fn wrong_side(place: &Place, frames: &[usize], evidence: &Evidence) -> Option<Side> {
     let side = place.side?;
     let turns: Vec<f64> = frames.iter().flat_map(|at| turns_to(place, *at, evidence)).collect();
     (!turns.is_empty() && !turns.iter().any(|turn_rad| lies_on(side, *turn_rad))).then_some(side)
 }
 
-/// Whether nobody knows where a side of the walker is: a picture's left need not be the walker's.
+/// Whether the side of a place cannot be checked: without poses, a picture's left need not be the walker's.
 pub(super) fn is_unknown(place: &Place, evidence: &Evidence) -> bool {
     place.side.is_some() && !evidence.motion.is_known()
 }

@@ -34,14 +34,14 @@ pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Targe
         let reason = format!("the program cannot check on which side of the walker {name:?} is");
         return finding(Check::Task, Verdict::Unverified, reason, Some(span));
     }
-    // Where the very object is known, a side is told of it and of no namesake.
+    // Where the target's id is known, the side is the target's and not that of another object of its name.
     let meant = alike.iter().filter(|thing| {
         target.is_none_or(|target| thing.object.as_ref().is_none_or(|object| *object == target.object))
     });
     let mut turns = meant.filter_map(|thing| thing.turn_rad).peekable();
     let is_known = turns.peek().is_some();
     match place.side.filter(|side| is_known && !turns.any(|turn_rad| lies_on(*side, turn_rad))) {
-        Some(side) => fail(format!("{name:?} is not on the {} of somebody who arrives", word(side)), Some(span)),
+        Some(side) => fail(format!("{name:?} is not on the {} when one arrives", word(side)), Some(span)),
         None => pass(Check::Task),
     }
 }

@@ -4,7 +4,8 @@ use super::{Subject, check, check_own};
 use crate::evidence::{Evidence, FrameEvidence, SeenThing, Source};
 use wayword_core::{Check, Constraints, Motion, Move, Style, Verdict};
 
-/// A frame in a room (none where nobody knows it), with things (`None` where nobody knows them), on a floor.
+/// A frame in a room (empty where it is not known), with things (`None` where they are not known), on a storey (0 where
+/// it is not known).
 fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
     let seen = |name: &&str| SeenThing { name: (*name).to_owned(), object: None, colour: None, turn_rad: None };
     FrameEvidence {
@@ -15,7 +16,7 @@ fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
     }
 }
 
-/// A walk along frames, with a turn (degrees) and a rise (metres) before each but the first.
+/// The evidence of a path: frames, with a turn (degrees) and a rise (metres) before each but the first.
 fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
     let step = |(deg, rise_m): &(f64, f64)| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: *rise_m };
     let knows = frames.iter().any(|frame| !frame.rooms.is_empty() || frame.knows_things);
@@ -38,7 +39,7 @@ fn style(ends_in_task: bool) -> Style {
     Style { name: "any".into(), references: Vec::new(), constraints }
 }
 
-/// What a text about a path fails, or where it fails nothing, what is unverified about it.
+/// The verdict on a text, with the checks that it fails, or where it fails none, those that are unverified.
 fn told(text: &str, evidence: &Evidence) -> (Verdict, Vec<Check>) {
     told_in(text, evidence, &style(false))
 }
@@ -73,7 +74,7 @@ fn the_object_of_a_task_that_nobody_asked_for_is_a_landmark() {
     passes("Walk to the bedroom and clean the lamp.", &path);
     fails(Check::Landmarks, "Walk to the bedroom and clean the piano.", &path);
     fails(Check::Order, "Walk to the bedroom and clean the sofa.", &path);
-    // Where a task is asked for, its own check speaks about its object, and nobody else does.
+    // Where a task is asked for, only the check of the task speaks about its object.
     let task = told_in("Walk to the bedroom and clean the piano", &path, &style(true));
     assert_eq!(task, (Verdict::Fail, vec![Check::Task]));
 }
@@ -149,13 +150,13 @@ fn what_only_tells_where_a_goal_is_holds_no_place_in_the_order() {
     fails(Check::Order, "Go to the bathroom and walk past the sofa.", &path);
 }
 
-/// Along a level walk on one floor.
+/// A level path on one storey.
 fn flat(level: u32) -> Evidence {
     let frames = vec![frame("hallway", Some(&[]), level), frame("bathroom", Some(&["sink"]), level)];
     walk(frames, &[(0.0, 0.0)])
 }
 
-/// From one floor to the next by stairs.
+/// A path from one storey to the next by stairs.
 fn by_stairs(from: u32, to: u32) -> Evidence {
     let rise_m = if to > from { 3.0 } else { -3.0 };
     let frames = vec![frame("hallway", Some(&[]), from), frame("bathroom", Some(&["sink"]), to)];
@@ -173,7 +174,7 @@ fn who_is_told_to_climb_has_to_climb() {
     passes("Walk up two steps and stop in the bathroom.", &low);
     fails(Check::Floors, "Walk up the stairs and stop in the bathroom.", &low);
     fails(Check::Floors, "Walk up two steps and stop in the bathroom.", &flat(1));
-    // A place that lies upstairs is there for somebody who stands upstairs already.
+    // A text may say "upstairs" of a place when the walker is upstairs already.
     passes("Go to the bathroom upstairs.", &flat(2));
     passes("Go to the bathroom downstairs.", &flat(1));
     fails(Check::Floors, "Go to the bathroom upstairs.", &flat(1));
@@ -222,7 +223,7 @@ fn nobody_walks_on_where_the_path_goes_nowhere() {
     passes("Stop at the sink.", &standing);
 }
 
-/// The way to the bedroom as a video shows it.
+/// The path to the bedroom as a video shows it: without poses.
 fn on_video() -> Evidence {
     let mut path = to_the_bedroom();
     path.frames.iter_mut().for_each(|frame| frame.level = None);
@@ -300,7 +301,7 @@ fn a_text_of_our_own_tells_nothing_of_an_unknown_motion() {
     ] {
         assert_eq!(own(text, &video), [], "{text}");
     }
-    // Each check has one outcome: what was said of the same words before is gone.
+    // Each check has one outcome: the finding before about the same words is gone.
     let checked = check_own("Turn left to the bed.", Subject { evidence: &video, style: &style(false), target: None });
     let turns = checked.findings.iter().filter(|finding| finding.check == Check::Turns);
     assert_eq!(turns.map(|finding| finding.verdict).collect::<Vec<_>>(), [Verdict::Fail]);

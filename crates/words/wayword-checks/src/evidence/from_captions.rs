@@ -1,10 +1,11 @@
-//! Evidence from what was seen and told.
+//! Evidence from captions.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
 use wayword_core::{Look, Observation, Path, Where, Witness};
 
 impl Evidence {
-    /// Evidence from captions, one observation per frame of the path. `None` where no caption tells of anything.
+    /// Evidence from captions, one observation per frame of the path. `None` where no caption names a room or an
+    /// object.
     #[must_use]
     pub fn from_captions(path: &Path, observations: &[Observation]) -> Option<Self> {
         let frames: Vec<FrameEvidence> = path
@@ -12,7 +13,7 @@ impl Evidence {
             .iter()
             .zip(observations)
             .map(|(frame, seen)| {
-                // Somebody who names the room and no object has looked; somebody who says nothing may not have.
+                // A witness that names the room and no object has looked; one that says nothing may not have.
                 let has_looked = |look: &Look| look.caption.room.is_some() || !look.caption.sightings.is_empty();
                 let knows_things = !seen.looks.is_empty() && seen.looks.iter().all(has_looked);
                 let mut evidence = FrameEvidence { knows_things, ..FrameEvidence::default() };

@@ -4,8 +4,8 @@ use super::{Evidence, FrameEvidence, SeenThing, Source};
 use wayword_core::{Path, View};
 
 impl Evidence {
-    /// Evidence from ground truth: `panoramas` holds, for each frame, the views all around it. `None` where the platform
-    /// knows nothing of any of them.
+    /// Evidence from ground truth: `panoramas` holds, for each frame, the views all around it. `None` where the
+    /// platform has ground truth for none of them.
     #[must_use]
     pub fn from_labels(path: &Path, panoramas: &[Vec<View>]) -> Option<Self> {
         let known = panoramas.iter().flatten().any(|view| view.ground_truth().is_some());

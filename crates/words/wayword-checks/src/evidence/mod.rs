@@ -1,4 +1,4 @@
-//! What a text about a path can be held against.
+//! What a text about a path is checked against.
 
 mod from_captions;
 mod from_labels;
@@ -13,7 +13,7 @@ pub struct Evidence {
     pub frames: Vec<FrameEvidence>,
     /// The moves between them; none where the motion is unknown.
     pub moves: Vec<Move>,
-    /// Whether anything is known of how the walker moved: without it, that there is no move says nothing.
+    /// Whether it is known how the walker moved. Where it is not, an empty list of moves says nothing.
     pub motion: Motion,
     /// Who vouches for it.
     pub source: Source,
@@ -22,11 +22,11 @@ pub struct Evidence {
 /// What is known to be seen from one frame, all around.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FrameEvidence {
-    /// The room, or the rooms where witnesses differ; empty where nobody knows.
+    /// The room, or the rooms where witnesses differ; empty where it is not known.
     pub rooms: Vec<String>,
     /// Objects.
     pub things: Vec<SeenThing>,
-    /// Whether somebody told the objects: without it, that there are none says nothing.
+    /// Whether the objects are known. Where they are not, an empty list of objects says nothing.
     pub knows_things: bool,
     /// The storey, the lowest being 1.
     pub level: Option<u32>,
@@ -37,7 +37,7 @@ pub struct FrameEvidence {
 pub struct SeenThing {
     /// Its name.
     pub name: String,
-    /// Its id, where labels vouch for it.
+    /// Its id, where it comes from labels.
     pub object: Option<ObjectId>,
     /// Its colour, where that is known.
     pub colour: Option<String>,
@@ -50,9 +50,9 @@ pub struct SeenThing {
 pub enum Source {
     /// The platform's ground truth.
     Labels,
-    /// What was seen and told in captions.
+    /// Captions of what was seen.
     Captions,
-    /// Nobody: only the path itself is known.
+    /// Nothing: only the path itself is known.
     Nothing,
 }
 
@@ -68,7 +68,7 @@ impl Source {
     }
 }
 
-/// The lowest step that is told as one, metres.
+/// The lowest rise that counts as a step, metres.
 const STEP_M: f64 = 0.1;
 
 impl Evidence {
@@ -79,27 +79,27 @@ impl Evidence {
         Self { frames, moves: path.moves(), motion: path.motion, source }
     }
 
-    /// Evidence of a path about whose sights nobody says anything: turns and floors alone can be checked.
+    /// Evidence of a path without labels and captions: only turns and storeys can be checked.
     #[must_use]
     pub fn of_path_alone(path: &Path) -> Self {
         Self::of(path, vec![FrameEvidence::default(); path.frames.len()], Source::Nothing)
     }
 
-    /// Whether a thing of that name, which no frame shows, is nowhere along the path: the objects of every frame are known,
-    /// and whoever told them could have named it.
+    /// For a thing that no frame shows: whether it is certainly nowhere along the path. That is so where the objects of
+    /// every frame are known, and the witnesses could have named it.
     #[must_use]
     pub fn denies_thing(&self, name: &str) -> bool {
         self.frames_without_things().is_empty() && self.could_name(name)
     }
 
-    /// The same of the last frame alone.
+    /// The same for the last frame alone.
     #[must_use]
     pub fn denies_thing_at_end(&self, name: &str) -> bool {
         self.frames.last().is_some_and(|frame| frame.knows_things) && self.could_name(name)
     }
 
-    /// Whether the witnesses could have named a thing of that name. Most leave doors and walls out: where they name none at
-    /// all, they deny none.
+    /// Whether the witnesses could have named a thing of that name. Most leave out doors and walls: where they name
+    /// none at all, that denies none.
     fn could_name(&self, name: &str) -> bool {
         let class = thing(name).map(|thing| thing.class);
         let left_out = matches!(class, Some(Class::Fabric | Class::Door));
@@ -108,8 +108,9 @@ impl Evidence {
             && (!left_out || things.any(|seen| thing(&seen.name).map(|thing| thing.class) == class))
     }
 
-    /// Whether a room of that name, in which no frame lies, is nowhere along the path: the room of every frame is known.
-    /// A basement or an attic is a floor, and its rooms have names of their own; no basement is above the lowest floor.
+    /// For a room in which no frame lies: whether it is certainly nowhere along the path. That is so where the room of
+    /// every frame is known. A basement or an attic is a storey, and its rooms have names of their own, so known rooms
+    /// do not rule it out; only a path above the lowest storey rules out a basement.
     #[must_use]
     pub fn denies_room(&self, name: &str) -> bool {
         match room_name(name) {
@@ -119,13 +120,13 @@ impl Evidence {
         }
     }
 
-    /// The frames of which nobody told the objects.
+    /// The frames whose objects are not known.
     #[must_use]
     pub fn frames_without_things(&self) -> Vec<usize> {
         self.frames_where(|frame| !frame.knows_things)
     }
 
-    /// The frames of which nobody told the room.
+    /// The frames whose room is not known.
     #[must_use]
     pub fn frames_without_room(&self) -> Vec<usize> {
         self.frames_where(|frame| frame.rooms.is_empty())
@@ -147,7 +148,7 @@ impl Evidence {
         (0..self.frames.len()).filter(|at| holds(&self.frames[*at])).collect()
     }
 
-    /// The frames from which a climb begins that gains or loses a flight of stairs. Small rises add up.
+    /// The frames at which a flight of stairs begins, up or down. Small rises add up.
     #[must_use]
     pub fn frames_with_climb(&self, climb: Climb) -> Vec<usize> {
         let climbs = |at: &usize| self.flight_from(*at, climb).is_some();
@@ -161,7 +162,7 @@ impl Evidence {
         self.moves.iter().any(|step| step.rise_m * way >= STEP_M)
     }
 
-    /// The frames on a flight of stairs that is climbed either way, its foot and its head among them.
+    /// The frames on a flight of stairs in either direction, with those at its foot and its head.
     #[must_use]
     pub fn frames_on_stairs(&self) -> Vec<usize> {
         let flights = [Climb::Up, Climb::Down].into_iter().flat_map(|climb| {
@@ -170,7 +171,8 @@ impl Evidence {
         flights.flatten().collect()
     }
 
-    /// The last move of the flight that begins with a move, where it gains or loses enough from there.
+    /// The last move of the flight of stairs that begins at a move; `None` where it does not climb enough in that
+    /// direction.
     fn flight_from(&self, first: usize, climb: Climb) -> Option<usize> {
         motion::flight(&self.moves, first).filter(|(_, way)| *way == climb).map(|(last, _)| last)
     }
