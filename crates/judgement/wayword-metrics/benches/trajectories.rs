@@ -25,7 +25,7 @@ fn places() -> impl Iterator<Item = [usize; 3]> {
     (0..width * depth * floors).map(move |n| [n % width, n / width % depth, n / width / depth])
 }
 
-/// Floors of rooms that open onto each other, and stairs in one corner.
+/// Storeys of rooms that open onto each other, and stairs in one corner.
 fn building() -> ViewpointGraph {
     let mut graph = ViewpointGraph::default();
     let mut rng = rng(7, &["building"]);

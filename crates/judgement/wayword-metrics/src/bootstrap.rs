@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_core::rng;
 
-/// Most resamples that are drawn; more change no digit that anyone reads.
+/// Most resamples that are drawn; more would change no digit that is shown.
 const MOST_RESAMPLES: usize = 100_000;
 
 /// A mean with its interval.
@@ -73,7 +73,7 @@ impl Sum {
     }
 }
 
-/// A quantile of sorted values, in between where it falls in between.
+/// A quantile of sorted values, interpolated where it falls between two.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let below = sorted[at.floor() as usize];

@@ -1,7 +1,8 @@
-//! Figures about instructions and trajectories, each with its interval and with what it has to be read beside.
+//! Figures about instructions and trajectories, each with its interval and the figures to compare it with.
 //!
-//! Architecture invariant: nothing here reads a file, runs a model or knows a platform beyond the graph that it hands out; vectors
-//! come from the caller. What is computed is kept ([`Atlas`]), and the same input gives the same figures.
+//! Architecture invariant: nothing here reads a file, runs a model or knows a platform beyond the graph that the
+//! platform gives; vectors come from the caller. Distances are computed once and kept ([`Atlas`]), and the same input
+//! gives the same figures.
 
 mod bootstrap;
 mod mcnemar;

@@ -1,15 +1,15 @@
-//! McNemar's test of two ways on the same items.
+//! McNemar's test of two methods on the same items.
 
 use serde::{Deserialize, Serialize};
 
-/// How two ways differ on the items where one succeeds and the other does not.
+/// How two methods differ on the items where one succeeds and the other does not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct McNemar {
     /// Items on which the first alone succeeds.
     pub only_first: usize,
     /// Items on which the second alone succeeds.
     pub only_second: usize,
-    /// Two-sided p of the exact binomial test. It takes items for independent.
+    /// Two-sided p of the exact binomial test. It treats items as independent.
     pub p: f64,
 }
 
@@ -29,8 +29,8 @@ impl McNemar {
 
 /// The probability of at most `most` heads of `coins` fair coins, for `most` up to half of them.
 ///
-/// The greatest term, that of `most` heads, is built up in logarithms: as a number it would be lost beyond 1,074 coins, and the
-/// count of its cases beyond 1,029. The others are shares of it.
+/// The greatest term, that of `most` heads, is computed by logarithms: as a number it would vanish beyond 1,074 coins,
+/// and the count of its cases would overflow beyond 1,029. The other terms are shares of it.
 fn lower_tail(coins: usize, most: usize) -> f64 {
     let greatest_ln: f64 = (0..most).map(|heads| ((coins - heads) as f64 / (heads + 1) as f64).ln()).sum::<f64>()
         - coins as f64 * std::f64::consts::LN_2;

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::rng;
 
-/// With so many others each item is compared for the anchor of chance.
+/// How many other items each item is compared with, for the anchor of random pairs.
 const OTHERS: usize = 10;
 
 /// What is said about one item.
@@ -14,11 +14,11 @@ const OTHERS: usize = 10;
 pub struct Said<'a> {
     /// The path that it is about: items of one path are not independent.
     pub cluster: String,
-    /// A vector per text. All vectors of a comparison have as many numbers.
+    /// A vector per text. All vectors of a comparison have the same length.
     pub vectors: Vec<&'a [f32]>,
 }
 
-/// How chance is drawn.
+/// How intervals and random pairs are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drawing {
     /// Resamples of the intervals.
@@ -36,8 +36,9 @@ pub struct Similarity {
     pub figure: Option<Estimate>,
     /// The same between two texts of B on the same item: what two people reach. `None` where no item has two.
     pub same_item: Option<Estimate>,
-    /// The same between a text of B on the item and one on an item of another path, drawn at random: what is reached without
-    /// having seen anything. Its interval knows the paths of the first text alone. `None` where there is a single path.
+    /// The same between a text of B on the item and one on an item of another path, drawn at random: what a text
+    /// reaches whose author has seen nothing of the path. Its interval takes only the path of the first text into
+    /// account. `None` where there is a single path.
     pub random_pairs: Option<Estimate>,
     /// Items that A alone has.
     pub only_in_a: usize,
@@ -47,7 +48,8 @@ pub struct Similarity {
     pub single_in_b: usize,
 }
 
-/// Compares A with B, item by item. Both anchors are taken over the common items, so that all three figures are about the same.
+/// Compares A with B, item by item. Both anchors are taken over the common items, so that all three figures are about
+/// the same items.
 ///
 /// An item's figure is the mean cosine over all pairs of texts, the set's the mean over items (the average pairwise cosine of
 /// arXiv 2403.11487). Intervals draw paths. Items without a text count as absent.
@@ -92,7 +94,8 @@ fn at_random<'a>(items: &[(&str, &'a Said<'_>)], seed: u64) -> Vec<(&'a str, f64
     for (_, said) in items {
         paths.entry(&said.cluster).or_default().push(said);
     }
-    // In the order of their paths, an item of another path is one before its own path's first or after their last.
+    // Items are in the order of their paths, so an item of another path is before the first or after the last of its
+    // own path.
     let mut first = BTreeMap::new();
     let mut ordered: Vec<&Said<'_>> = Vec::with_capacity(items.len());
     for (path, of_path) in &paths {

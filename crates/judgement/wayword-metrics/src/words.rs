@@ -1,12 +1,12 @@
-//! Which words two texts share: what is left of similarity where there is no model.
+//! Which words two texts share: similarity without a model.
 
 use wayword_core::{ModelError, TextEncoder, seed};
 
-/// How many places words are hashed to.
+/// How many slots words are hashed to.
 const PLACES: u64 = 1024;
 
-/// Counts of words, hashed: no model. Texts that say the same in other words are far apart for it, so its figures are not those
-/// of a sentence encoder and can only be held against each other.
+/// Hashed counts of words, without a model. Texts that say the same in other words are far apart, so its figures are
+/// not those of a sentence encoder and can only be compared with each other.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Words;
 
@@ -21,7 +21,7 @@ impl TextEncoder for Words {
 }
 
 fn vector(text: &str) -> Vec<f32> {
-    // A place of its own for texts without words: a vector has length 1.
+    // Texts without words have a slot of their own, because every vector has length 1.
     let mut counts = vec![0.0f32; PLACES as usize + 1];
     let lower = text.to_lowercase();
     for word in lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()) {

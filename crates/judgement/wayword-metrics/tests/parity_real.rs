@@ -1,6 +1,7 @@
-//! Our figures against another evaluator's on real buildings, where both are at hand: `WAYWORD_DATA` names the folder of the data
-//! (`../shared/data` beside the repository is tried without it), and `WAYWORD_PARITY` a file of JSON lines, each with `scan`,
-//! `reference`, `object`, `trajectory`, `named` and the `expected` figures, named and nested as in `Score`.
+//! Our figures against another evaluator's on real buildings, where both are available: `WAYWORD_DATA` names the folder
+//! of the data (`../shared/data` beside the repository is tried without it), and `WAYWORD_PARITY` a file of JSON lines,
+//! each with `scan`, `reference`, `object`, `trajectory`, `named` and the `expected` figures, named and nested as in
+//! `Score`.
 
 #![allow(
     clippy::unwrap_used,
@@ -21,7 +22,7 @@ use wayword_core::{Platform, SceneId};
 use wayword_metrics::{Atlas, Demand, Distances, Score, Trajectory, score};
 use wayword_platforms::Matterport;
 
-/// How often the figures are timed: other programs' work makes single times tell little.
+/// How often the figures are timed, because a single time says little while other programs run.
 const PASSES: usize = 9;
 
 fn platform() -> Option<Matterport> {
@@ -48,7 +49,7 @@ fn an_atlas_knows_every_building_and_computes_it_once() {
     let Some(platform) = platform() else { return };
     let atlas = Atlas::new(&platform);
     let scenes = platform.scenes().unwrap();
-    // Reading the graphs is the platform's time, and it keeps them.
+    // The platform reads the graphs here and keeps them, so that the times below are without that.
     let graphs: Vec<_> = scenes.iter().map(|scene| platform.graph(scene).unwrap()).collect();
     let timed = |of: &dyn Fn() -> Vec<Arc<Distances>>| {
         let before = Instant::now();

@@ -29,7 +29,7 @@ impl<'a> Atlas<'a> {
         if let Some(known) = self.scenes().get(scene) {
             return Ok(Arc::clone(known));
         }
-        // The lock is not held meanwhile: others shall find what is known.
+        // The lock is not held meanwhile, so that other threads can look up known scenes.
         let computed = Arc::new(Distances::new(&*self.platform.graph(scene)?));
         Ok(Arc::clone(self.scenes().entry(scene.clone()).or_insert(computed)))
     }

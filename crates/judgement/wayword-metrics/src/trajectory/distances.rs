@@ -29,8 +29,8 @@ impl Distances {
         Self { places, roads, metres }
     }
 
-    /// The length of the shortest way from one viewpoint to another, metres; `None` where there is no way, or where the scene
-    /// does not know one of them.
+    /// The length of the shortest way from one viewpoint to another, metres; `None` where there is no way, or where the
+    /// scene lacks one of them.
     #[must_use]
     pub fn metres(&self, a: &ViewpointId, b: &ViewpointId) -> Option<f64> {
         let metres = self.between(self.place(a)?, self.place(b)?);
@@ -50,7 +50,7 @@ impl Distances {
         ends.is_some_and(|(a, b)| self.joins(a, b))
     }
 
-    /// Where a viewpoint stands in the other functions' figures.
+    /// The number of a viewpoint, for the other functions.
     pub(super) fn place(&self, viewpoint: &ViewpointId) -> Option<usize> {
         self.places.find(viewpoint)
     }
@@ -65,7 +65,7 @@ impl Distances {
     }
 }
 
-/// The edges of all places in one row: those of place `n` stand from `first[n]` to `first[n + 1]`.
+/// The edges of all places in one row: those of place `n` are from `first[n]` to `first[n + 1]`.
 #[derive(Debug, Clone)]
 struct Roads {
     first: Vec<usize>,
@@ -74,7 +74,7 @@ struct Roads {
 }
 
 impl Roads {
-    /// An edge that is too long for a number is none: sums over it would mean nothing.
+    /// An edge of infinite length is left out, because sums over it would mean nothing.
     fn new(graph: &ViewpointGraph, places: &Places) -> Self {
         let mut ends: Vec<(usize, usize, f64)> = graph
             .edges()
@@ -91,7 +91,8 @@ impl Roads {
         &self.to[self.first[place]..self.first[place + 1]]
     }
 
-    /// Writes the distances from `start` into a row that holds infinity everywhere. The frontier comes and goes empty.
+    /// Writes the distances from `start` into a row that is infinite everywhere. The frontier is empty before and
+    /// after.
     fn walk_all(&self, start: usize, row: &mut [f64], frontier: &mut BinaryHeap<Reached>) {
         row[start] = 0.0;
         frontier.push(Reached { metres: 0.0, place: start });
@@ -110,7 +111,7 @@ impl Roads {
     }
 }
 
-/// A place on the frontier; the nearest is the greatest, because a heap gives out its greatest.
+/// A place on the frontier; the nearest is the greatest, because a heap pops its greatest.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
     metres: f64,

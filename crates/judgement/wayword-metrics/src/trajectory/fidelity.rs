@@ -2,10 +2,11 @@
 
 use super::{Distances, invalid::Located};
 
-/// What distances from the path are measured by, metres: `threshold` in VLN-DUET's `map_nav_src/r2r/eval_utils.py`.
+/// The scale for distances from the path, metres: `threshold` in VLN-DUET's `map_nav_src/r2r/eval_utils.py`.
 const THRESHOLD_M: f64 = 3.0;
 
-/// The distance of each viewpoint of a trajectory to each of the annotated path. All figures but lengths are made of these.
+/// The distance of each viewpoint of a trajectory to each of the annotated path. All figures except lengths are
+/// computed from these.
 pub(super) struct Apart {
     /// Metres, infinite where there is no way; a row for each viewpoint of the trajectory.
     metres: Vec<f64>,
@@ -34,7 +35,8 @@ impl Apart {
 
     /// Normalised dynamic time warping (Ilharco et al. 2019, arXiv 1907.05446).
     pub(super) fn ndtw(&self) -> f64 {
-        // The least cost of warping what was taken so far onto each start of the path; before all stands the empty start.
+        // The least cost of warping the viewpoints so far onto each beginning of the path. The empty beginning comes
+        // first.
         let mut costs = vec![f64::INFINITY; self.on_path];
         let mut before_all = 0.0;
         for row in self.rows() {
@@ -66,7 +68,7 @@ impl Apart {
     }
 }
 
-/// The lesser of two distances. They are never NaN, and not to care for that is one instruction instead of three.
+/// The lesser of two distances. They are never NaN; without a check for that it is one instruction instead of three.
 fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }

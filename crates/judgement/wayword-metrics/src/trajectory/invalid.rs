@@ -3,13 +3,13 @@
 use super::{Demand, Distances, Trajectory};
 use wayword_core::ViewpointId;
 
-/// Something about a trajectory, or about what is demanded of it, that allows no figure. Steps count from 0, the start.
+/// A problem of a trajectory, or of its demand, that keeps it from being scored. Steps count from 0, the start.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Invalid {
     /// It holds no viewpoint.
-    #[error("the trajectory is empty: list its viewpoints from the start on, and the start alone for one who stays")]
+    #[error("the trajectory is empty: list its viewpoints from the start on, or only the start if the agent stays")]
     Empty,
-    /// It starts elsewhere.
+    /// It does not start where its episode does.
     #[error("the trajectory starts at {found}: it has to start where its episode does, at {expected}")]
     Start {
         /// Its first viewpoint.
@@ -20,7 +20,7 @@ pub enum Invalid {
     /// A viewpoint that the scene does not have.
     #[error("viewpoint {viewpoint} (step {step} of the trajectory) is not in the scene's graph: check the scene")]
     Unknown {
-        /// Where it stands.
+        /// Its step.
         step: usize,
         /// Its name.
         viewpoint: ViewpointId,
@@ -30,7 +30,7 @@ pub enum Invalid {
         "there is no edge from {from} to {to} (step {step} of the trajectory): list every viewpoint that is passed"
     )]
     NoEdge {
-        /// Where the second one stands.
+        /// The step of the second one.
         step: usize,
         /// The first one.
         from: ViewpointId,
@@ -38,12 +38,12 @@ pub enum Invalid {
         to: ViewpointId,
     },
     /// An episode without a path.
-    #[error("the episode has no annotated path: nothing can be held against it")]
+    #[error("the episode has no annotated path to compare the trajectory with")]
     NoReference,
     /// A viewpoint of the episode's path that the scene does not have.
     #[error("viewpoint {viewpoint} (step {step} of the episode's path) is not in the scene's graph: check the scene")]
     UnknownInReference {
-        /// Where it stands.
+        /// Its step.
         step: usize,
         /// Its name.
         viewpoint: ViewpointId,
@@ -58,7 +58,7 @@ pub fn problems(distances: &Distances, demand: &Demand, trajectory: &Trajectory)
 
 /// A trajectory and the path that is demanded, as places of the scene.
 pub(super) struct Located {
-    /// Where the trajectory leads through; never empty.
+    /// The places of the trajectory; never empty.
     pub(super) taken: Vec<usize>,
     /// The annotated path; never empty, and its start is that of `taken`.
     pub(super) reference: Vec<usize>,
@@ -84,7 +84,7 @@ impl Located {
             }
         }
         for (at, hop) in taken.windows(2).enumerate() {
-            // An unknown viewpoint is told above; its hops would say nothing more.
+            // An unknown viewpoint is reported above; its hops would add nothing.
             let is_told = hop.contains(&NOWHERE);
             if !is_told && hop[0] != hop[1] && !distances.joins(hop[0], hop[1]) {
                 let [from, to] = [at, at + 1].map(|step| trajectory.viewpoints[step].clone());
@@ -95,7 +95,8 @@ impl Located {
     }
 }
 
-/// In the stead of a viewpoint that the scene does not have. No place is that, and nothing that holds one leaves this file.
+/// The place of a viewpoint that the scene does not have. No real place has this number, and none of these leaves this
+/// file.
 const NOWHERE: usize = usize::MAX;
 
 fn places(

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
 
-/// What counts as success. Named wherever a figure is.
+/// What counts as success. Every figure is shown with its rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
@@ -42,12 +42,12 @@ pub struct Demand {
     pub visible_from: Option<BTreeSet<ViewpointId>>,
 }
 
-/// What somebody handed in.
+/// A trajectory to score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     /// Every viewpoint, from the start; a stay is the same one again. Never empty.
     pub viewpoints: Vec<ViewpointId>,
-    /// The object that is taken for the target.
+    /// The object that the agent takes for the target.
     pub object: Option<ObjectId>,
 }
 
@@ -154,8 +154,8 @@ impl Metric {
 }
 
 impl Score {
-    /// A figure by its name; what needs a success goes by `rule`. `None` where the trajectory has none: a goal that cannot be
-    /// reached, an episode without an object, a rule that cannot be applied.
+    /// A figure by its name. Figures that depend on success use `rule`. `None` where the trajectory has none: a goal
+    /// that cannot be reached, an episode without an object, a rule that cannot be applied.
     #[must_use]
     pub fn get(&self, metric: Metric, rule: Rule) -> Option<f64> {
         let outcome = match rule {

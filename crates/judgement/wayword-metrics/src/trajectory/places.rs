@@ -4,8 +4,8 @@ use wayword_core::ViewpointId;
 
 /// The viewpoints of a scene, numbered in the order of their names.
 ///
-/// Names are looked up more often than anything else is done here: searching their first bytes as numbers is quicker than hashing
-/// whole names, and nobody can choose names that make it slow.
+/// Looking up names is the most frequent operation here. Searching their first bytes as numbers is quicker than hashing
+/// whole names, and no choice of names can make it slow.
 #[derive(Debug, Clone)]
 pub(super) struct Places {
     /// The first bytes of each name, as a number that sorts as they do.

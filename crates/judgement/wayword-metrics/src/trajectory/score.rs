@@ -12,20 +12,21 @@ const SUCCESS_M: f64 = 3.0;
 
 /// The figures of a trajectory, or all that keeps it from having any.
 ///
-/// SR, OSR, NE, TL and SPL by distance are R2R's (`tasks/R2R/eval.py`; SPL as Anderson et al. 2018 define it), SR, OSR, SPL by
-/// visibility, RGS and RGSPL are REVERIE's (`tasks/REVERIE/eval_release.py`), nDTW, SDTW and CLS are those of VLN-DUET
-/// (`map_nav_src/r2r/eval_utils.py`). Where they say nothing:
+/// SR, OSR, NE, TL and SPL by distance are R2R's (`tasks/R2R/eval.py`; SPL as Anderson et al. 2018 define it), SR, OSR,
+/// SPL by visibility, RGS and RGSPL are REVERIE's (`tasks/REVERIE/eval_release.py`), nDTW, SDTW and CLS are those of
+/// VLN-DUET (`map_nav_src/r2r/eval_utils.py`). Where they leave a case open:
 ///
-/// - The start is the goal and nobody moves: the references divide zero by zero; here such a success weighs 1. Who moves though
-///   the start is the goal has SPL 0, as there.
-/// - The goal cannot be reached from the start: the references fail; here there are no errors, no success by distance, and
-///   every SPL and RGSPL is 0, because no way is the shortest.
-/// - Neither the annotated path nor the trajectory moves: CLS divides zero by zero in the reference; here it is 1. An annotated
-///   path with a hop that nobody can make has nDTW and CLS 0.
+/// - The start is the goal and the agent stays: the references divide zero by zero; here such a success weighs 1. An
+///   agent that moves although the start is the goal has SPL 0, as there.
+/// - The goal cannot be reached from the start: the references fail; here there are no errors, no success by distance,
+///   and every SPL and RGSPL is 0, because there is no shortest path.
+/// - Neither the annotated path nor the trajectory moves: CLS divides zero by zero in the reference; here it is 1. An
+///   annotated path with a hop that cannot be made has nDTW and CLS 0.
 /// - The same viewpoint twice in a row is a stay: it adds no length, and to nDTW what any other viewpoint adds.
 ///
 /// # Errors
-/// Each problem of the trajectory, when it does not start at the episode's start, or is no way over the scene's graph.
+/// Each problem of the trajectory, when it does not start at the episode's start, or does not follow the edges of the
+/// scene's graph.
 pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Result<Score, Vec<Invalid>> {
     let located = Located::new(distances, demand, trajectory)?;
     let apart = Apart::new(distances, &located);

@@ -27,7 +27,7 @@ pub(super) fn graph(points: &[[f64; 2]], edges: &[(usize, usize)]) -> ViewpointG
     graph
 }
 
-/// Places of which some may stand on one another, and edges that need not hold them together.
+/// Places, some of which may coincide, and edges that need not connect them all.
 pub(super) fn any_graph() -> impl Strategy<Value = ViewpointGraph> {
     let points = prop::collection::vec((0..6u8, 0..6u8), 1..14);
     let edges = prop::collection::vec((0..14usize, 0..14usize), 0..30);
@@ -50,7 +50,7 @@ fn walk(graph: &ViewpointGraph, start: usize, choices: &[usize]) -> Vec<Viewpoin
     taken
 }
 
-/// A graph, what is demanded on it, and a trajectory that may be scored. Now and then the goal is where nobody can go.
+/// A graph, what is demanded on it, and a trajectory that may be scored. Sometimes the goal cannot be reached.
 pub(super) fn any_case() -> impl Strategy<Value = (ViewpointGraph, Demand, Trajectory)> {
     let choices = || prop::collection::vec(0..20usize, 0..12);
     let seen = prop::collection::btree_set(0..14usize, 0..8);

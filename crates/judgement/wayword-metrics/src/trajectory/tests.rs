@@ -4,7 +4,7 @@ use super::{
 };
 use proptest::prelude::*;
 
-/// Five places in a row, 2 m apart, and a sixth that nobody can reach.
+/// Five places in a row, 2 m apart, and a sixth that cannot be reached.
 fn corridor() -> Distances {
     let points = [[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [6.0, 0.0], [8.0, 0.0], [0.0, 9.0]];
     Distances::new(&graph(&points, &[(0, 1), (1, 2), (2, 3), (3, 4)]))

@@ -1,11 +1,11 @@
-//! Cases whose figures somebody else computed.
+//! Cases whose figures another program computed.
 
 use serde_json::Value;
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
 use wayword_metrics::{Demand, Score, Trajectory};
 
-/// How far figures may lie apart that are sums in another order.
+/// How far figures may differ that are sums in another order.
 const TOLERANCE: f64 = 1e-9;
 
 pub(crate) fn viewpoints<'a, C: FromIterator<ViewpointId>>(ids: impl IntoIterator<Item = &'a Value>) -> C {
@@ -25,7 +25,7 @@ pub(crate) fn trajectory(case: &Value) -> Trajectory {
     Trajectory { viewpoints: viewpoints(case["trajectory"].as_array().unwrap()), object: object(&case["named"]) }
 }
 
-/// Holds every figure that is expected against its namesake, and every figure against an expectation.
+/// Asserts that the figures are the expected ones, no more and no less.
 pub(crate) fn assert_agrees(score: &Score, expected: &Value, case: &str) {
     let found = serde_json::to_value(score).unwrap();
     assert_same(&found, expected, case);
