@@ -1,4 +1,5 @@
-//! How long shortest paths take over a viewpoint graph like a building's: 200 viewpoints on three floors, about 2 m apart.
+//! How long shortest paths take over a viewpoint graph like a building's: 200 viewpoints on three storeys, about 2 m
+//! apart.
 
 #![allow(clippy::expect_used, clippy::print_stdout, missing_docs, reason = "a benchmark may fail and print")]
 
@@ -7,17 +8,18 @@ use rand::Rng;
 use std::hint::black_box;
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId, rng};
 
-/// Viewpoints of a floor, along x and y.
+/// Viewpoints of a storey, along x and y.
 const FLOOR: [usize; 2] = [11, 6];
 const FLOORS: usize = 3;
-/// Two landings, each of which is in the middle of a flight.
+/// Two landings, each in the middle of a flight.
 const LANDINGS: usize = 2;
 
 fn name(floor: usize, x: usize, y: usize) -> ViewpointId {
     ViewpointId::new(format!("{floor}-{x}-{y}")).expect("a plain name")
 }
 
-/// Three floors of rooms: neighbours on a floor are joined unless there is a wall between them, and stairs join the floors.
+/// Three storeys of rooms. Neighbours on a storey are joined unless there is a wall between them, and stairs join the
+/// storeys.
 fn building() -> ViewpointGraph {
     let mut graph = ViewpointGraph::default();
     let mut rng = rng(7, &["building"]);

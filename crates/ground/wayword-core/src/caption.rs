@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 /// A view in words, with the evidence behind them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Caption {
-    /// One or two sentences; holds no object that was denied.
+    /// One or two sentences. They name no object that was denied.
     pub text: String,
-    /// The room, where one was told.
+    /// The room, where one was named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub room: Option<String>,
     /// What was said to be there, not to be there, or not known.
     pub sightings: Vec<Sighting>,
     /// The whole dialogue.
     pub transcript: Vec<Exchange>,
-    /// Who wrote the text, where that is another than the run's summariser: it failed, or there was nothing to sum up.
+    /// Who wrote the text, where the run's summariser did not: it failed, or there was nothing to summarise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
@@ -75,7 +75,7 @@ impl Where {
         }
     }
 
-    /// The direction of its middle from that of a view so wide, radians, positive right.
+    /// The direction of its middle from that of a view of this width, radians, positive right.
     #[must_use]
     pub fn turn_rad(self, horizontal_fov_rad: f64) -> f64 {
         match self {
@@ -85,7 +85,8 @@ impl Where {
         }
     }
 
-    /// The third of a view so wide in which a direction lies, `off_rad` from the view's own, positive right.
+    /// The third of a view of this width in which a direction lies. The direction is `off_rad` from the view's own,
+    /// positive right.
     #[must_use]
     pub fn at(off_rad: f64, horizontal_fov_rad: f64) -> Self {
         let sixth = horizontal_fov_rad / 6.0;
@@ -106,7 +107,7 @@ pub struct Exchange {
     pub question: String,
     /// What was answered; empty where no answer could be used.
     pub answer: String,
-    /// Why it was asked a second time, in other words, where it was.
+    /// Why the question was asked again in other words, where it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub trouble: Option<Trouble>,
 }
@@ -123,9 +124,9 @@ impl Exchange {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Trouble {
-    /// There is none.
+    /// There is no answer.
     Empty,
-    /// It is the question.
+    /// It repeats the question.
     Echo,
     /// It says the same words over and over.
     Loop,

@@ -1,4 +1,4 @@
-//! Other people's decoders: a panic of theirs on a broken file ends what they were doing, and nothing else.
+//! Third-party decoders: when one panics on a broken file, only its own work ends.
 
 use std::{
     cell::Cell,
@@ -9,9 +9,9 @@ thread_local! {
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 }
 
-/// Runs somebody else's code on bytes that nobody vouches for; `None` where it panicked.
+/// Runs third-party code on untrusted bytes; `None` where it panicked.
 ///
-/// What it was given is not to be used after that, unless it was only read.
+/// After a panic, do not use what `work` could change. What it only read can still be used.
 pub fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     DEPTH.set(DEPTH.get() + 1);
     let done = catch_unwind(AssertUnwindSafe(work));
@@ -19,15 +19,16 @@ pub fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     done.ok()
 }
 
-/// Runs somebody else's decoder, whose panics on broken input become a refusal.
+/// Runs a third-party decoder. Its panics on broken input become an error.
 ///
 /// # Errors
-/// In words, when it refuses what it was given, or panicked.
+/// In words, when the decoder refuses its input or panics.
 pub fn decoded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
 }
 
-/// Whether this thread runs what is contained. A program's panic hook says nothing then: there is an answer without a panic's words.
+/// Whether this thread runs contained code. If so, the program's panic hook prints nothing, because the caller reports
+/// the failure itself.
 #[must_use]
 pub fn is_contained() -> bool {
     DEPTH.get() > 0

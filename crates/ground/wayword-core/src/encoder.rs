@@ -1,4 +1,4 @@
-//! Texts and views as numbers that can be compared.
+//! Models that compare texts and views.
 
 use crate::{ModelError, ObjectId, View};
 
@@ -9,10 +9,10 @@ pub trait TextEncoder: Send + Sync {
     /// `provider/model`.
     fn name(&self) -> &str;
 
-    /// One vector of length 1 per text, in their order, all with as many numbers.
+    /// One vector of length 1 per text, in their order. All vectors have the same number of dimensions.
     ///
     /// # Errors
-    /// When the model fails; nothing is answered in part.
+    /// When the model fails. Then no text has a vector.
     fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError>;
 }
 
@@ -23,12 +23,13 @@ pub trait Grounder: Send + Sync {
     /// `provider/model`, or `labels`.
     fn name(&self) -> &str;
 
-    /// One result per view, in their order: a score for each phrase, in their order. A higher one fits better; scores of the
-    /// same grounder can be compared between views and phrases. A view that fails does not fail the others.
+    /// One result per view, in their order: a score for each phrase, in their order. A higher score is a better fit,
+    /// and scores of the same grounder can be compared between views and phrases. A view that fails does not fail the
+    /// others.
     fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>>;
 
-    /// The object in these views that a phrase fits best; `None` for a grounder that cannot tell objects apart, and where there is
-    /// none.
+    /// The object in these views that a phrase fits best; `None` where no object fits, or where the grounder cannot
+    /// tell objects apart.
     ///
     /// # Errors
     /// When the model fails.

@@ -1,21 +1,21 @@
-//! How a failure is dealt with.
+//! The kinds of failure.
 
 use serde::{Deserialize, Serialize};
 
-/// What a failure asks of whoever met it. A text that fails a check is no failure: it was judged.
+/// What can be done about a failure. A text that fails a check is not a failure: the check did its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Failure {
     /// Something that was asked for is not there: the user can supply it.
     Missing,
-    /// Something is there and cannot be used. Trying again gives the same.
+    /// Something is there and cannot be used. Trying again gives the same result.
     Broken,
-    /// The world or the service went away while it was in use. Trying again may do better.
+    /// The platform or the service went away while it was in use. Trying again may succeed.
     Lost,
 }
 
 impl Failure {
-    /// The name, as files have it.
+    /// The name that files use.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

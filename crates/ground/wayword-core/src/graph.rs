@@ -32,25 +32,25 @@ pub struct Route {
     pub length_m: f64,
 }
 
-/// Why a graph cannot be built or walked as asked.
+/// Why a graph cannot be built or walked as the caller asked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GraphError {
-    /// Two nodes of one name.
+    /// Two nodes have one name.
     #[error("viewpoint {0} is listed twice")]
     Twice(ViewpointId),
-    /// A position that is no place.
+    /// A position is not finite.
     #[error("viewpoint {0} has a position that is not finite")]
     NotFinite(ViewpointId),
-    /// A name that the graph does not hold.
+    /// The graph has no viewpoint of this name.
     #[error("viewpoint {0} is not in the graph")]
     Unknown(ViewpointId),
-    /// Two viewpoints in a row without an edge.
+    /// Two consecutive viewpoints have no edge.
     #[error("there is no edge from viewpoint {0} to {1}")]
     NoEdge(ViewpointId, ViewpointId),
 }
 
 impl ViewpointGraph {
-    /// Adds a node; `position` is the eye's (metres, world frame), `level` its storey, the lowest being 1.
+    /// Adds a node. `position` is the eye's (metres, world frame), `level` its storey, the lowest being 1.
     ///
     /// # Errors
     /// When the name is taken or the position not finite.
@@ -136,7 +136,7 @@ impl ViewpointGraph {
         names
     }
 
-    /// The distance over the graph from one node to every node that can be reached, metres.
+    /// The distances over the graph from one node to every node that can be reached, metres.
     ///
     /// # Errors
     /// When the node is not in the graph.
@@ -160,10 +160,10 @@ impl ViewpointGraph {
         }))
     }
 
-    /// The frames of a walk over the given nodes.
+    /// The frames of a path over the given nodes.
     ///
     /// # Errors
-    /// When a node is unknown or two nodes in a row have no edge (the same node twice is a stay).
+    /// When a node is unknown or two consecutive nodes have no edge (the same node twice is a stay).
     pub fn walk(&self, viewpoints: &[ViewpointId], start: Option<Heading>) -> Result<Vec<crate::Frame>, GraphError> {
         for pair in viewpoints.windows(2) {
             let (a, b) = (self.node(&pair[0])?, self.node(&pair[1])?);

@@ -1,4 +1,4 @@
-//! Ground that people walk on, where a world knows more of it than its viewpoints.
+//! Walkable ground, where a platform knows more of it than its viewpoints.
 
 use glam::DVec3;
 use serde::Serialize;
@@ -7,13 +7,13 @@ use std::fmt;
 /// The shortest way on foot between two places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Way {
-    /// Places on the ground from start to end, with every one at which the way bends: between two of them the walk is straight.
+    /// Positions on the ground: the start, every bend, and the end. Between two of them the way is straight.
     pub corners: Vec<DVec3>,
     /// Its length, metres.
     pub length_m: f64,
 }
 
-/// Ground that hangs together: nobody walks from one island to another.
+/// A connected part of the ground. No way leads from one island to another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Island {
     /// Its number; 0 is the largest.
@@ -24,7 +24,7 @@ pub struct Island {
     pub height_m: f64,
     /// What is over most of it.
     pub cover: Cover,
-    /// Whether random walks keep to it.
+    /// Whether random paths use it.
     pub is_walked: bool,
 }
 
@@ -36,7 +36,7 @@ pub enum Cover {
     Ceiling,
     /// The open sky.
     Sky,
-    /// The open sky, and rooms below: it is a roof.
+    /// The open sky, with rooms below: it is a roof.
     OnRoof,
     /// A ceiling under which nobody can stand upright.
     Low,

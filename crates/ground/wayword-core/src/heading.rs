@@ -30,7 +30,7 @@ pub enum Side {
     Left,
 }
 
-/// The four directions of a panorama that is told by the compass; north is +y.
+/// The four directions of a panorama by the compass; north is +y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Compass {
@@ -62,7 +62,7 @@ impl Heading {
         Self(if rad >= TAU { 0.0 } else { rad })
     }
 
-    /// The direction from one position to another, or `None` where the two lie (nearly) above one another.
+    /// The direction from one position to another, or `None` where one lies (nearly) above the other.
     #[must_use]
     pub fn towards(from: DVec3, to: DVec3) -> Option<Self> {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
@@ -128,7 +128,7 @@ impl From<Heading> for f64 {
 }
 
 impl Side {
-    /// All four, in the order of a panorama told relative to the heading.
+    /// All four, in the order of a panorama relative to the heading.
     pub const ALL: [Self; 4] = [Self::Ahead, Self::Right, Self::Behind, Self::Left];
 
     /// How far to turn from the heading to look there, radians, positive right.

@@ -1,6 +1,7 @@
 //! Names of things that come from outside: scenes, viewpoints and objects.
 //!
-//! They become file names and HTML attributes later, so what could leave a folder or break a line is refused at the door.
+//! They become file names and HTML attributes later. A name that could lead to another folder or break a line is
+//! therefore refused when it is read.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -44,7 +45,7 @@ macro_rules! id_type {
             /// Accepts `text` as an id.
             ///
             /// # Errors
-            /// When it is empty, over [`MAX_ID_BYTES`], or holds a path separator or a control character.
+            /// When it is empty, longer than [`MAX_ID_BYTES`], or holds a path separator or a control character.
             pub fn new(text: impl Into<String>) -> Result<Self, InvalidId> {
                 validated($kind, text.into()).map(Self)
             }

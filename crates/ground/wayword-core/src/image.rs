@@ -1,4 +1,4 @@
-//! Pixels, without any codec.
+//! Pixels. Decoding and encoding are not done here.
 
 /// An 8-bit sRGB image.
 #[derive(Clone, PartialEq, Eq)]
@@ -21,7 +21,7 @@ impl Image {
     /// An image from `width_px * height_px * 3` bytes, rows from the top, RGB.
     ///
     /// # Errors
-    /// When the buffer's length is another.
+    /// When the buffer has another length.
     pub fn new(width_px: u32, height_px: u32, rgb: Vec<u8>) -> Result<Self, WrongPixelCount> {
         if rgb.len() as u64 == u64::from(width_px) * u64::from(height_px) * 3 {
             Ok(Self { width_px, height_px, rgb })

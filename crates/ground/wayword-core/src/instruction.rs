@@ -1,20 +1,20 @@
-//! What the program is for: an instruction, tied to its evidence.
+//! An instruction, with links to its evidence.
 
 use crate::{Finding, Verdict};
 use serde::{Deserialize, Serialize};
 
-/// Longest text of an instruction, bytes: of one that a dataset holds, and of one that a model writes. An instruction is a few
-/// sentences; what is longer is refused unread.
+/// Longest text of an instruction, bytes, whether it comes from a dataset or from a model. An instruction is a few
+/// sentences. A longer text is refused unread.
 pub const LONGEST_TEXT_BYTES: usize = 20_000;
 
-/// A wayfinding instruction with where it came from and what was found when it was checked.
+/// A wayfinding instruction, its provenance, and the findings of its checks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Instruction {
     /// Its words.
     pub text: String,
     /// Name of the style it is written in.
     pub style: String,
-    /// The parts of the text that evidence stands behind, in the order of the text.
+    /// The parts of the text that have evidence, in the order of the text.
     pub mentions: Vec<Mention>,
     /// All checks together.
     pub verdict: Verdict,
@@ -31,7 +31,7 @@ pub struct Mention {
     pub span: [usize; 2],
     /// What they speak of.
     pub kind: MentionKind,
-    /// The frame whose evidence stands behind them.
+    /// The frame that has the evidence.
     pub frame: usize,
 }
 
@@ -45,7 +45,7 @@ pub enum MentionKind {
     Room,
     /// A turn.
     Turn,
-    /// A floor or stairs.
+    /// A storey or stairs.
     Floor,
     /// The object of the closing task.
     Target,
@@ -64,7 +64,7 @@ pub struct Provenance {
     pub summariser: String,
     /// Who wrote the text.
     pub writer: String,
-    /// What the checks held it against (`labels`, `captions`).
+    /// What the checks compared it with (`labels`, `captions`).
     pub checked_against: String,
     /// The run's seed.
     pub seed: u64,
@@ -75,7 +75,7 @@ pub struct Provenance {
     pub prompts_hash: Option<String>,
     /// How often it was written again because a check failed.
     pub repairs: u32,
-    /// The writer whose texts all failed their checks, where another finished for it.
+    /// The writer whose texts all failed their checks, where another writer finished for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished_for: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! What a platform knows to be visible.
+//! Ground-truth labels: the objects that a platform knows to be visible.
 
 use crate::{Heading, ObjectId};
 use glam::DVec3;
@@ -15,7 +15,8 @@ pub struct Label {
     pub heading: Heading,
     /// Elevation of that ray, radians, up positive.
     pub elevation_rad: f64,
-    /// Box in the view's image, pixels: x, y of the upper left corner, width, height. `None` where only a bearing is known.
+    /// Box in the view's image, pixels: x, y of the upper left corner, width, height. `None` where only the direction
+    /// is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub box_px: Option<[f64; 4]>,
     /// Distance from the eye, metres.

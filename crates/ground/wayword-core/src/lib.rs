@@ -1,10 +1,11 @@
-//! The words that every layer of Wayword shares: ids, poses, headings, paths, views, labels, captions, instructions, styles,
-//! and the traits between two layers.
+//! The types that every layer of Wayword shares: ids, poses, headings, paths, views, labels, captions, instructions,
+//! styles, and the traits between two layers.
 //!
-//! **World frame**: right-handed, metres, z up. A heading is in radians, 0 along +y, clockwise seen from above. Elevation
-//! is positive upwards. Adapters convert at their edge.
+//! **World frame**: right-handed, metres, z up. A heading is in radians, 0 along +y, clockwise seen from above.
+//! Elevation is positive upwards. Each platform converts its own frame to this one.
 //!
-//! Architecture invariant: nothing here reads a file, a clock or a network, and nothing knows a model or a platform.
+//! Architecture invariant: nothing here reads a file, a clock or a network, or depends on a particular model or
+//! platform.
 
 pub mod caption;
 pub mod contain;

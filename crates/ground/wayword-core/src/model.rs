@@ -1,4 +1,4 @@
-//! Language models: what they are told, what they say, and how they fail.
+//! Language models: requests, replies and failures.
 
 use crate::{Failure, Image};
 use serde::{Deserialize, Serialize};
@@ -8,11 +8,11 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// What the model is to be.
+    /// The program, which says how the model is to behave.
     System,
-    /// The one who wants something.
+    /// Who asks the model.
     User,
-    /// The model itself, earlier.
+    /// The model itself, in an earlier reply.
     Assistant,
 }
 
@@ -27,32 +27,32 @@ pub struct Message {
     pub image: Option<Arc<Image>>,
 }
 
-/// How a model draws its words.
+/// How a model samples its words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sampling {
-    /// 0 for the likeliest words.
+    /// 0 gives the likeliest words.
     pub temperature: f64,
     /// Most tokens of the reply.
     pub max_tokens: u32,
-    /// Seed, for models that take one.
+    /// Seed, for models that accept one.
     pub seed: u64,
 }
 
-/// Everything that a model is told at once.
+/// Everything that one call sends to a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// The conversation so far; the last message is the user's.
     pub messages: Vec<Message>,
-    /// How the reply is drawn.
+    /// How the reply is sampled.
     pub sampling: Sampling,
-    /// Tells equal requests apart that are to be answered anew; 0 for the first.
+    /// Number of this request among equal ones that each need a new answer; 0 for the first.
     pub replicate: u32,
 }
 
 /// What a model said.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reply {
-    /// Its words, without any thinking aloud that the service marks as such.
+    /// Its words, without any reasoning that the service marks as such.
     pub text: String,
     /// Why it ended.
     pub finish: Finish,
@@ -68,7 +68,7 @@ pub enum Finish {
     Length,
 }
 
-/// Gives words for words.
+/// Answers text with text.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait LanguageModel: Send + Sync {
@@ -79,20 +79,20 @@ pub trait LanguageModel: Send + Sync {
     fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>>;
 }
 
-/// A mind could not do what it was asked.
+/// A role could not do what it was asked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModelError {
-    /// The view lacks what this mind looks at.
-    #[error("{mind} needs {needs}, and this view has none: {hint}")]
+    /// The view lacks what this role looks at.
+    #[error("{name} needs {needs}, and this view has none: {hint}")]
     NothingToSee {
-        /// Which mind.
-        mind: String,
+        /// Who: `labels`, or the model's name.
+        name: String,
         /// Labels, or an image.
         needs: &'static str,
         /// What to do.
         hint: &'static str,
     },
-    /// This one request came to nothing, after every attempt that made sense. Others, and this one later, may do better.
+    /// This request failed after every sensible attempt. Other requests may succeed, and so may this one later.
     #[error("{model}: {reason}")]
     Failed {
         /// `provider/model`.
@@ -100,7 +100,7 @@ pub enum ModelError {
         /// What happened.
         reason: String,
     },
-    /// The service that was asked did not answer, however often it was tried.
+    /// The service did not answer, although it was tried several times.
     #[error("{model}: {reason}")]
     Lost {
         /// `provider/model`.
@@ -108,8 +108,8 @@ pub enum ModelError {
         /// What happened.
         reason: String,
     },
-    /// Nothing more can be asked for now: a budget is spent, a key is refused, the user has interrupted. What was answered is
-    /// kept.
+    /// No more requests are possible for now: a budget is spent, a key is refused, or the user has interrupted. The
+    /// answers so far are kept.
     #[error("{reason}\nhint: {hint}")]
     Stopped {
         /// Why.
@@ -128,7 +128,7 @@ impl Message {
 }
 
 impl ModelError {
-    /// How it is dealt with, where it does not end the run.
+    /// Its kind of failure, where it does not end the run.
     #[must_use]
     pub fn failure(&self) -> Failure {
         match self {

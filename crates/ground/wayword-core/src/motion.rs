@@ -1,29 +1,29 @@
-//! What happens between two frames of a path, and the words that such motion bears.
+//! What happens between two frames of a path, and the words for it.
 
 use crate::{Pose, heading::Side};
 use serde::{Deserialize, Serialize};
 
-/// Whether anything is known of how the walker moved.
+/// Whether a path's frames have poses.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
-    /// The frames' poses are those of the walk.
+    /// The frames' poses are those of the path.
     #[default]
     Known,
-    /// The frames are in the order of the walk and nothing else is known: their poses stand for nothing. No turn, distance,
-    /// length, floor or map may be told of such a path.
+    /// Only the order of the frames is known, and their poses mean nothing. The program states no turn, distance,
+    /// length or storey of such a path and draws no map of it.
     Unknown,
 }
 
 impl Motion {
-    /// Whether poses mean something.
+    /// Whether the frames' poses mean something.
     #[must_use]
     pub fn is_known(&self) -> bool {
         *self == Self::Known
     }
 
-    /// Whether a walk over so many frames goes anywhere. Of an unknown motion only that is known which the frames tell: one
-    /// alone is where it begins and ends.
+    /// Whether a path with this number of frames goes anywhere. Without poses the program knows only the number of
+    /// frames: one alone is both start and end.
     #[must_use]
     pub fn goes_anywhere(self, moves: &[Move], frames: usize) -> bool {
         match self {
@@ -33,7 +33,7 @@ impl Motion {
     }
 }
 
-/// From one frame to the next: first a turn on the spot, then a walk.
+/// From one frame to the next: first a turn on the spot, then a straight walk.
 ///
 /// The first move of a path holds the opening turn, from the episode's heading to the first hop.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -46,25 +46,25 @@ pub struct Move {
     pub rise_m: f64,
 }
 
-/// A turn as people tell it.
+/// A turn as people describe it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Turn {
-    /// Under [`SLIGHT_DEG`]: not worth a word.
+    /// Under [`SLIGHT_DEG`]: too small to mention.
     Straight,
     /// Between [`SLIGHT_DEG`] and [`FULL_DEG`] to the left.
     SlightLeft,
     /// Between [`SLIGHT_DEG`] and [`FULL_DEG`] to the right.
     SlightRight,
-    /// From [`FULL_DEG`] on, to the left.
+    /// At least [`FULL_DEG`], to the left.
     Left,
-    /// From [`FULL_DEG`] on, to the right.
+    /// At least [`FULL_DEG`], to the right.
     Right,
-    /// From [`AROUND_DEG`] on, either way.
+    /// At least [`AROUND_DEG`], either way.
     Around,
 }
 
-/// Whether a walk goes up, down or stays on the floor.
+/// Whether a move goes up, goes down or stays level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Climb {
@@ -76,22 +76,23 @@ pub enum Climb {
     Down,
 }
 
-/// From here on a change of direction is worth a word, degrees.
+/// The smallest change of direction that an instruction mentions, degrees.
 pub const SLIGHT_DEG: f64 = 30.0;
-/// From here on a turn is told without "slightly", degrees.
+/// The smallest turn that is named without "slightly", degrees.
 pub const FULL_DEG: f64 = 55.0;
-/// From here on a turn is told as turning around, degrees.
+/// The smallest turn that is called turning around, degrees.
 pub const AROUND_DEG: f64 = 150.0;
-/// From here on a rise is stairs and not a door sill, metres.
+/// The smallest rise that is stairs and not a door sill, metres.
 pub const CLIMB_M: f64 = 0.5;
 
-/// From here on "turn around" is no mistake where others tell it, degrees. We say it from [`AROUND_DEG`] on only; people
-/// say it as soon as they end up looking back more than sideways.
+/// The smallest turn for which "turn around" is not a mistake in a third-party text, degrees. People say it as soon as
+/// they end up looking back more than sideways. Wayword itself says it only from [`AROUND_DEG`] on.
 pub const AROUND_AT_LEAST_DEG: f64 = 120.0;
-/// From here on a bend over several moves may be told as one turn, degrees: no single move of it need be one, and together
-/// they have to be a clear one.
+/// The smallest bend over several moves that may be called one turn, degrees. No single move of it need be a turn, but
+/// together they must be a clear one.
 pub const BEND_DEG: f64 = 60.0;
-/// Least turn of each move of such a bend, degrees: less is walking straight, and a bend has no straight stretch.
+/// Least turn of each move of such a bend, degrees. Less than that is walking straight, and a bend has no straight
+/// stretch.
 pub const BEND_STEP_DEG: f64 = 10.0;
 /// Longest such bend, moves: a corner is rounded in two or three hops between viewpoints.
 pub const BEND_MOVES: usize = 3;
@@ -120,10 +121,11 @@ impl Move {
     }
 }
 
-/// Rises of less than this are the floor's, metres.
+/// Rises of less than this are unevenness of the floor, metres.
 const FLAT_M: f64 = 0.05;
 
-/// The flight of stairs that begins with a move: its last move, and which way it goes. Rises of one direction add up.
+/// The flight of stairs that begins with a move: its last move, and whether it goes up or down. Rises in one direction
+/// add up.
 #[must_use]
 pub fn flight(moves: &[Move], first: usize) -> Option<(usize, Climb)> {
     let way = moves.get(first)?.rise_m.signum();
@@ -136,7 +138,7 @@ pub fn flight(moves: &[Move], first: usize) -> Option<(usize, Climb)> {
 }
 
 impl Turn {
-    /// The word for a turn of so many radians, positive right.
+    /// The word for a turn of `turn_rad` radians, positive right.
     #[must_use]
     pub fn from_rad(turn_rad: f64) -> Self {
         let deg = turn_rad.to_degrees();
@@ -162,7 +164,7 @@ impl Turn {
 }
 
 impl Climb {
-    /// The word for a rise of so many metres.
+    /// The word for a rise of `rise_m` metres.
     #[must_use]
     pub fn from_rise(rise_m: f64) -> Self {
         if rise_m >= CLIMB_M {

@@ -1,4 +1,4 @@
-//! What was seen from a place, in words.
+//! Captions of the views from one frame.
 
 use crate::{Caption, Gaze, Heading, Side, Sighting};
 use serde::{Deserialize, Serialize};
@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 /// A captioned view.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Look {
-    /// Where it looked.
+    /// The direction and width of the view.
     pub gaze: Gaze,
-    /// What was said of it.
+    /// Its caption.
     pub caption: Caption,
 }
 
@@ -19,13 +19,14 @@ pub struct Observation {
     pub looks: Vec<Look>,
     /// The frame in words: the caption of the only look, or the four condensed to under 20 words.
     pub summary: String,
-    /// Who condensed them, where that is another than the run's summariser, which failed.
+    /// Who condensed them, where the run's summariser failed and another did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
 
 impl Look {
-    /// The side of a walker who looks along `heading` on which a thing of this view is said to be; none where that was not told.
+    /// On which side of an agent that looks along `heading` an object of this view is said to be; `None` where the
+    /// caption gives no place.
     #[must_use]
     pub fn side_of(&self, sighting: &Sighting, heading: Heading) -> Option<Side> {
         let place = sighting.place?;

@@ -1,13 +1,13 @@
-//! A walk through a scene: frames in order, and what it is for.
+//! A path through a scene: frames in order, and the target where there is one.
 
 use crate::{Heading, Motion, Move, ObjectId, Pose, SceneId, Side, ViewpointId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A stop on a path from which frames are taken.
+/// A stop on a path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// Where the eye is and how the walker looks when it arrives.
+    /// Where the eye is, and which way the agent looks when it arrives.
     pub pose: Pose,
     /// The node of the viewpoint graph, where the stop is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -17,19 +17,19 @@ pub struct Frame {
     pub level: Option<u32>,
 }
 
-/// A path: frames in the order of the walk.
+/// A path: frames in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Path {
     /// Name of the path, unique within its dataset or run.
     pub id: String,
-    /// Where it lies.
+    /// The scene that it lies in.
     pub scene: SceneId,
     /// At least one frame. The first looks along the episode's heading, every later one along the hop just made.
     pub frames: Vec<Frame>,
     /// Whether the frames' poses mean anything.
     #[serde(default, skip_serializing_if = "Motion::is_known")]
     pub motion: Motion,
-    /// What the walker is to do something with at the end, where that is given.
+    /// The object that the task at the end is about, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<Target>,
 }
@@ -41,7 +41,7 @@ pub struct Target {
     pub object: ObjectId,
     /// Its name, as the labels have it.
     pub name: String,
-    /// Ways to tell it from its likes at the last frame, best first; empty where nothing alike is seen.
+    /// Ways to tell it from its namesakes at the last frame, best first; empty where none is visible.
     #[serde(default)]
     pub told_by: Vec<Distinction>,
     /// Whether something of the same name is visible at the last frame too.
@@ -58,7 +58,7 @@ pub enum Distinction {
         /// The word for it.
         colour: String,
     },
-    /// It is the only one on that side of the walker who has just arrived.
+    /// It is the only one on that side of an agent that has just arrived.
     OnSide {
         /// Which side.
         side: Side,
@@ -76,8 +76,8 @@ pub enum Distinction {
 }
 
 impl Frame {
-    /// What tells where it was taken from where others were: frames of one place see the same. The name counts beside the
-    /// position, for that is all that tells frames without poses apart.
+    /// A key that is equal for frames of one place, because these see the same. It holds the name beside the position,
+    /// because frames without poses differ only by name.
     #[must_use]
     pub fn place(&self) -> ([u64; 3], Option<ViewpointId>) {
         (self.pose.position.to_array().map(f64::to_bits), self.viewpoint.clone())
@@ -85,8 +85,8 @@ impl Frame {
 }
 
 impl Path {
-    /// Frames along `stops`: the first looks along `start_heading` (towards the second where there is none), each later
-    /// one along the hop just made. A hop straight up or down keeps the heading.
+    /// Frames along `stops`. The first looks along `start_heading` (along the first hop where there is none), each
+    /// later one along the hop just made. A hop straight up or down keeps the heading.
     #[must_use]
     pub fn frames_along(stops: Vec<Stop>, start_heading: Option<Heading>) -> Vec<Frame> {
         let first_hop = stops.windows(2).find_map(|pair| Heading::towards(pair[0].position, pair[1].position));
@@ -104,8 +104,8 @@ impl Path {
             .collect()
     }
 
-    /// The moves between its frames: one fewer than frames; move `i` turns at frame `i` and walks to frame `i + 1`. None
-    /// where the motion is unknown.
+    /// The moves between its frames, one fewer than frames: move `i` turns at frame `i` and walks to frame `i + 1`.
+    /// Empty where the motion is unknown.
     #[must_use]
     pub fn moves(&self) -> Vec<Move> {
         if !self.motion.is_known() {
@@ -189,7 +189,7 @@ mod tests {
         let unknown = Path { motion: Motion::Unknown, ..known.clone() };
         assert_eq!((unknown.moves(), unknown.length_m()), (Vec::new(), None));
         assert_eq!(known.length_m(), Some(2.0));
-        // Files of paths with poses are what they were before.
+        // Paths with poses are written as before.
         assert!(!serde_json::to_string(&known).unwrap().contains("motion"));
         let text = serde_json::to_string(&unknown).unwrap();
         assert!(text.contains(r#""motion":"unknown""#), "{text}");

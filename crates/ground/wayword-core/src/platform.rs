@@ -1,4 +1,4 @@
-//! What a world must offer.
+//! What a platform must offer.
 
 use crate::{
     Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, Way,
@@ -13,7 +13,7 @@ use std::{
     sync::Arc,
 };
 
-/// A world: scenes with a viewpoint graph, paths through them, and views along these.
+/// A platform: scenes with a viewpoint graph, paths through them, and views along the paths.
 ///
 /// Blocking and object-safe; threads belong to the caller.
 pub trait Platform: Send + Sync {
@@ -26,11 +26,11 @@ pub trait Platform: Send + Sync {
     /// When its data cannot be read.
     fn scenes(&self) -> Result<Vec<SceneId>, PlatformError>;
 
-    /// Looks whether scenes can be read, where that can be known before anything is made of them. One that is not there is no
-    /// concern of this.
+    /// Checks that scenes can be read, where the platform can find out before a run begins. It skips scenes that it
+    /// does not have.
     ///
     /// # Errors
-    /// When one cannot.
+    /// When a scene cannot be read.
     fn check(&self, _scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         Ok(())
     }
@@ -41,8 +41,8 @@ pub trait Platform: Send + Sync {
     /// When there is no such scene or its data cannot be read.
     fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError>;
 
-    /// A random path that keeps to `request`; the same seed gives the same path. Its target, where the platform knows
-    /// objects, is one that is visible at its end.
+    /// A random path that keeps to `request`; the same seed gives the same path. Where the platform knows objects, the
+    /// path's target is visible at its end.
     ///
     /// # Errors
     /// When the scene holds no such path, or cannot be read.
@@ -54,7 +54,7 @@ pub trait Platform: Send + Sync {
     /// When the frame is not a place of the scene, or its data cannot be read.
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError>;
 
-    /// The same for somebody who looks at no picture: a world that has to read one from a file leaves it out.
+    /// The same for a caller that needs no picture: a platform that would have to read one from a file leaves it out.
     ///
     /// # Errors
     /// When the frame is not a place of the scene, or its data cannot be read.
@@ -62,8 +62,8 @@ pub trait Platform: Send + Sync {
         self.look(scene, from, gaze)
     }
 
-    /// A storey (the lowest is 1) straight from above, without what lies over the heads there; `None` where the platform has no
-    /// such picture, or no such storey.
+    /// A storey (the lowest is 1) straight from above, without its ceiling and all that is over it; `None` where the
+    /// platform has no such picture, or no such storey.
     ///
     /// # Errors
     /// When there is no such scene or its data cannot be read.
@@ -83,8 +83,8 @@ pub trait Platform: Send + Sync {
     /// When the data cannot be read.
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError>;
 
-    /// The shortest way on foot from one frame to another, over all ground and not only along viewpoints; `None` where the platform
-    /// does not know the ground, or no way leads there.
+    /// The shortest way on foot from one frame to another, over all ground and not only along viewpoints; `None` where
+    /// the platform does not know the ground, or there is no way.
     ///
     /// # Errors
     /// When there is no such scene or its data cannot be read.
@@ -92,7 +92,7 @@ pub trait Platform: Send + Sync {
         Ok(None)
     }
 
-    /// The pieces of ground of a scene, the largest first; empty where the platform does not know the ground.
+    /// The islands of a scene, the largest first; empty where the platform does not know the ground.
     ///
     /// # Errors
     /// When there is no such scene or its data cannot be read.
@@ -100,7 +100,7 @@ pub trait Platform: Send + Sync {
         Ok(Vec::new())
     }
 
-    /// The file that a scene is read from, where Habitat reads the same one; `None` elsewhere.
+    /// The file that a scene is read from, where Habitat reads the same file; `None` elsewhere.
     ///
     /// # Errors
     /// When there is no such scene.
@@ -108,8 +108,8 @@ pub trait Platform: Send + Sync {
         Ok(None)
     }
 
-    /// The files that a scene is read from, sorted; empty where a world is made up or runs elsewhere. A run keeps their hash, so that it
-    /// is not continued with other data.
+    /// The files that a scene is read from, sorted; empty where the scene is generated or comes from another program. A
+    /// run keeps their hash, so that it is not continued with other data.
     ///
     /// # Errors
     /// When there is no such scene, or a folder cannot be read.
@@ -179,7 +179,8 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 /// What a random path has to be like.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathRequest {
-    /// Number of hops on the viewpoint graph. A continuous platform, whose paths have none, keeps to the length alone.
+    /// Number of hops on the viewpoint graph. Paths of a continuous platform have no hops: there only the length
+    /// counts.
     pub hops: RangeInclusive<usize>,
     /// Length of the path, metres.
     pub length_m: RangeInclusive<f64>,
@@ -193,14 +194,14 @@ impl Default for PathRequest {
 }
 
 impl PathRequest {
-    /// Whether a path is as long as was asked for. One whose length is unknown is not.
+    /// Whether a path's length is in the range. An unknown length is not.
     #[must_use]
     pub fn allows_length_of(&self, path: &Path) -> bool {
         path.length_m().is_some_and(|length_m| self.length_m.contains(&length_m))
     }
 }
 
-/// A world cannot give what it was asked for.
+/// A platform cannot give what it was asked for.
 #[derive(Debug, thiserror::Error)]
 pub enum PlatformError {
     /// A scene that it does not have.
@@ -219,13 +220,13 @@ pub enum PlatformError {
         /// The viewpoint.
         viewpoint: ViewpointId,
     },
-    /// A frame that names no viewpoint, on a platform that has nothing between them.
+    /// A frame that names no viewpoint, on a platform that offers views from viewpoints only.
     #[error("scene {scene} can only be seen from viewpoints of its graph, and this frame names none")]
     NotAViewpoint {
         /// The scene.
         scene: SceneId,
     },
-    /// A graph that does not hold together.
+    /// A viewpoint graph with a mistake.
     #[error("scene {scene}: {source}")]
     Graph {
         /// The scene.
@@ -241,7 +242,7 @@ pub enum PlatformError {
         /// What was asked for, in words.
         request: String,
     },
-    /// A file that is missing or cannot be read.
+    /// A file that cannot be read or used.
     #[error("{}: {reason}; {hint}", file.display())]
     File {
         /// Which file.
@@ -259,7 +260,7 @@ pub enum PlatformError {
         /// What to do.
         hint: &'static str,
     },
-    /// A world that runs beside us, or the disk that holds it, went away while it was in use.
+    /// A platform that is another program, or the disk that holds its data, went away while it was in use.
     #[error("{world}: {reason}; {hint}")]
     Lost {
         /// Its program or address, or the file.
@@ -272,7 +273,7 @@ pub enum PlatformError {
 }
 
 impl PlatformError {
-    /// How it is dealt with.
+    /// Its kind of failure.
     #[must_use]
     pub fn failure(&self) -> Failure {
         match self {
@@ -286,7 +287,7 @@ impl PlatformError {
         }
     }
 
-    /// A file could not be read, for a reason that the system gives.
+    /// The error for a file that could not be read, with the system's reason.
     #[must_use]
     pub fn unread(file: &FilePath, error: &io::Error, hint: &'static str) -> Self {
         match error.kind() {
@@ -298,7 +299,8 @@ impl PlatformError {
         }
     }
 
-    /// There is nowhere in a scene to stand where a frame says: its viewpoint is unknown, or else its place.
+    /// The error for a frame at which nobody can stand in the scene. It names the frame's viewpoint, or its position
+    /// where it has none.
     #[must_use]
     pub fn nowhere(scene: &SceneId, frame: &Frame) -> Self {
         let eye = frame.pose.position;
@@ -311,13 +313,13 @@ impl PlatformError {
     }
 }
 
-/// Whether the system says that a disk has gone away or fails: one of another machine, or a broken one.
+/// Whether the system says that a disk has gone away or fails: a network disk, or a broken one.
 #[must_use]
 pub fn is_lost_disk(error: &io::Error) -> bool {
     use io::ErrorKind::{
         HostUnreachable, NetworkDown, NetworkUnreachable, NotConnected, StaleNetworkFileHandle, TimedOut,
     };
-    /// Unix' number of "input/output error", for which the standard library has no name.
+    /// Unix's number of "input/output error", for which the standard library has no name.
     const EIO: i32 = 5;
     let gone = [HostUnreachable, NetworkDown, NetworkUnreachable, NotConnected, StaleNetworkFileHandle, TimedOut];
     gone.contains(&error.kind()) || (cfg!(unix) && error.raw_os_error() == Some(EIO))

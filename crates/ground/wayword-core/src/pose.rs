@@ -1,4 +1,4 @@
-//! Where somebody stands and looks.
+//! Where an eye is and which way it looks.
 
 use crate::Heading;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! A small memory of what was made last.
+//! A small cache of values, the least recently used of which goes first.
 
 use hashlink::LruCache;
 use std::{
@@ -8,21 +8,21 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
-/// The last few values that were made, by key; the one that was not asked for longest is forgotten first.
+/// A cache of a few values by key. The value that was not asked for longest is dropped first.
 pub struct Recent<K, V> {
     shelf: Mutex<Shelf<K, V>>,
-    /// Held by whoever makes a value, where one is made at a time.
+    /// The lock of the thread that makes a value, where one is made at a time.
     alone: Option<Arc<Mutex<()>>>,
 }
 
 struct Shelf<K, V> {
     kept: LruCache<K, Arc<V>>,
-    /// For each value that is being made, what its maker holds.
+    /// For each value that is being made, the lock of the thread that makes it.
     making: HashMap<K, Arc<Mutex<()>>>,
 }
 
 impl<K: Clone + Eq + Hash, V> Recent<K, V> {
-    /// Nothing remembered yet. Values of different keys are made side by side.
+    /// An empty cache. Values of different keys are made at the same time.
     #[must_use]
     pub fn new(capacity: usize) -> Self {
         let shelf = Shelf { kept: LruCache::new(capacity), making: HashMap::new() };
@@ -35,21 +35,22 @@ impl<K: Clone + Eq + Hash, V> Recent<K, V> {
         Self { alone: Some(Arc::default()), ..Self::new(capacity) }
     }
 
-    /// The value of a key, if it is remembered.
+    /// The value of a key, if the cache has it.
     pub fn get(&self, key: &K) -> Option<Arc<V>> {
         self.shelf().kept.get(key).map(Arc::clone)
     }
 
-    /// Remembers a value; returns the one that is remembered from now on. Where there is one already, that is it.
+    /// Keeps a value and returns it. Where the key has a value already, that one is kept and returned.
     pub fn put(&self, key: K, value: V) -> Arc<V> {
         self.shelf().put(key, value)
     }
 
-    /// The value of a key, made if it is not remembered. Whoever asks for it while it is made waits and gets the same.
-    /// `make` must not ask for a value of this memory that has to be made; it may [`put`](Self::put) others.
+    /// The value of a key; it is made if the cache does not have it. A thread that asks for it meanwhile waits and gets
+    /// the same value. `make` must not ask this cache for a value that has to be made; it may [`put`](Self::put)
+    /// others.
     ///
     /// # Errors
-    /// When it cannot be made. Nothing is remembered then, and the next one who asks tries again.
+    /// When it cannot be made. Then nothing is kept, and the next caller tries again.
     pub fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
         let turn = {
             let mut shelf = self.shelf();
@@ -62,13 +63,14 @@ impl<K: Clone + Eq + Hash, V> Recent<K, V> {
             }
         };
         let _turn = turn.lock().unwrap_or_else(PoisonError::into_inner);
-        // Somebody else may have made it in the meantime.
+        // Another thread may have made it in the meantime.
         if let Some(value) = self.get(&key) {
             return Ok(value);
         }
         let made = make();
         let mut shelf = self.shelf();
-        // Where it failed and others wait for this turn, one of them tries next, and who comes now has to wait behind them.
+        // Where it failed and threads wait for this lock, one of them tries next. The entry stays, so that later
+        // callers queue behind them.
         if made.is_ok() || Arc::strong_count(&turn) <= 2 {
             shelf.making.remove(&key);
         }

@@ -2,14 +2,14 @@
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
-/// A generator for one purpose: seeded from the run's seed and the names of what it is for, so that no item's randomness
-/// depends on which items came before it.
+/// A generator for one purpose. Its seed comes from the run's seed and the names of the purpose, so that an item's
+/// randomness does not depend on the items before it.
 #[must_use]
 pub fn rng(seed: u64, purpose: &[&str]) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(derive(seed, purpose))
 }
 
-/// A seed for a part of a whole: FNV-1a over the seed and the purpose's words.
+/// The seed for one purpose: FNV-1a over the run's seed and the purpose's words.
 #[must_use]
 pub fn derive(seed: u64, purpose: &[&str]) -> u64 {
     const PRIME: u64 = 0x0000_0100_0000_01b3;

@@ -22,13 +22,13 @@ pub enum Check {
     Form,
     /// The text ends in a task on an object of the final viewpoint.
     Task,
-    /// Each landmark is evidenced by a frame of the path.
+    /// Each landmark has evidence at a frame of the path.
     Landmarks,
-    /// Landmarks and turns come in the order of the walk.
+    /// Landmarks and turns come in the order of the path.
     Order,
     /// Each turn word agrees with a move.
     Turns,
-    /// Floors and stairs agree with the path.
+    /// Storeys and stairs agree with the path.
     Floors,
     /// No run of five words is shared with the references.
     Leak,
@@ -50,11 +50,11 @@ pub struct Finding {
 }
 
 impl Check {
-    /// All of them, in the order in which they are told.
+    /// All of them, in the order in which they are listed.
     pub const ALL: [Self; 7] =
         [Self::Form, Self::Task, Self::Landmarks, Self::Order, Self::Turns, Self::Floors, Self::Leak];
 
-    /// Its name, as files and screens have it.
+    /// Its name, in files and on the screen.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -70,7 +70,7 @@ impl Check {
 }
 
 impl Verdict {
-    /// The verdict on a whole text: the worst of its checks; nothing checked is unverified.
+    /// The verdict on a whole text: the worst of its checks. A text without checks is unverified.
     #[must_use]
     pub fn of(findings: &[Finding]) -> Self {
         findings.iter().map(|finding| finding.verdict).max().unwrap_or(Self::Unverified)

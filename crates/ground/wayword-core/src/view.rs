@@ -16,7 +16,7 @@ pub struct Gaze {
 /// What is seen from a pose with a field of view.
 #[derive(Debug, Clone)]
 pub struct View {
-    /// Where the eye is and looks.
+    /// Where the eye is, and which way it looks.
     pub pose: Pose,
     /// Horizontal field of view, radians.
     pub horizontal_fov_rad: f64,
@@ -30,7 +30,7 @@ pub struct View {
 pub struct GroundTruth {
     /// Objects whose box's centre lies in the view.
     pub labels: Vec<Label>,
-    /// Whether the platform lists the objects here: without it, that there are no labels says nothing.
+    /// Whether the platform lists the objects here. Where it does not, a lack of labels says nothing.
     pub lists_objects: bool,
     /// The room in which the eye is ("living room").
     pub room: Option<String>,
@@ -55,8 +55,8 @@ impl Gaze {
         Compass::ALL.map(|point| Self::quarter(point.heading()))
     }
 
-    /// Whether a direction lies within the gaze's width. Half open on the right, so that each direction belongs to exactly
-    /// one view of a panorama.
+    /// Whether a direction lies within the gaze's width. Half open on the right, so that each direction belongs to
+    /// exactly one view of a panorama.
     #[must_use]
     pub fn holds(&self, heading: Heading) -> bool {
         let off = self.heading.turn_to(heading);
@@ -66,20 +66,20 @@ impl Gaze {
 }
 
 impl View {
-    /// A view; `truth` is `None` where the platform knows nothing but the picture.
+    /// A view. `truth` is `None` where the platform knows nothing but the picture.
     #[must_use]
     pub fn new(pose: Pose, horizontal_fov_rad: f64, image: Option<Arc<Image>>, truth: Option<GroundTruth>) -> Self {
         Self { pose, horizontal_fov_rad, image, truth }
     }
 
-    /// Whether nothing is known of it, as of what a camera did not look at.
+    /// Whether nothing is known of it, as where a camera did not look.
     #[must_use]
     pub fn is_blank(&self) -> bool {
         self.image.is_none() && self.truth.is_none()
     }
 
-    /// What the platform knows. Only the `labels` minds and the checks' evidence may ask: the invariants test of
-    /// the program holds every other mind to the picture.
+    /// What the platform knows. Only `labels` as a role and the checks' evidence may use it. The program's invariants
+    /// test keeps every other role to the picture.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&GroundTruth> {
         self.truth.as_ref()

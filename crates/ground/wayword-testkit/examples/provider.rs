@@ -1,9 +1,11 @@
-//! A service that plays models, to try a run with models where there is none. It speaks as OpenAI-compatible servers do, under the names
-//! `server/words` and `server/eye`, and it does not see: what it says of a picture is made up from the picture's bytes.
+//! A service that plays models, for trying a run with models where no model is available. It speaks as
+//! OpenAI-compatible servers do, and its models are `server/words` and `server/eye`. It does not see: what it says of a
+//! picture is made up from the picture's bytes.
 //!
-//! `cargo run -p wayword-testkit --example provider` prints the address for `--base-url` and serves until it is interrupted.
+//! `cargo run -p wayword-testkit --example provider` prints the address for `--base-url` and serves until it is
+//! interrupted.
 
-#![allow(clippy::print_stdout, reason = "an example tells what it does")]
+#![allow(clippy::print_stdout, reason = "an example prints what it does")]
 
 use wayword_testkit::provider::{
     Behaviour, Dialect, Gallery, Provider,

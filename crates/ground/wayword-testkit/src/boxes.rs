@@ -1,11 +1,11 @@
-//! REVERIE's boxes: what is near each viewpoint, projected into the simulator's 36 views.
+//! REVERIE's boxes: the objects near each viewpoint, projected into the simulator's 36 views.
 
 use crate::plan::{self, Object, VIEWPOINTS, viewpoint_id};
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 use std::f64::consts::FRAC_PI_6;
 
-/// Objects within this distance are listed; what stands in another room is listed but hidden.
+/// Objects within this distance are listed. Those in another room are listed but hidden.
 const REACH_M: f64 = 2.2;
 const WIDTH_PX: f64 = 640.0;
 const HEIGHT_PX: f64 = 480.0;

@@ -1,4 +1,4 @@
-//! Paths through the building, with instructions of our own in REVERIE's and R2R's manner.
+//! Paths through the building, with made-up instructions in the manner of REVERIE and R2R.
 
 use crate::plan::{SCAN, viewpoint_id};
 use serde_json::{Value, json};

@@ -1,7 +1,9 @@
-//! A small made-up building in the file formats of Matterport3D, REVERIE and R2R, for tests: two storeys with stairs, nine
-//! rooms, 14 viewpoints, 42 objects (some of one name), ten paths with instructions. Nothing of it is taken from a dataset.
-//! And [`provider`]: models behind HTTP that answer by script, with every fault that services have; and [`documents`]: the commands
-//! that the repository's documents tell their readers to type.
+//! A small made-up building in the file formats of Matterport3D, REVERIE and R2R, for tests: two storeys with stairs,
+//! nine rooms, 14 viewpoints, 42 objects (some share a name), ten paths with instructions. Nothing of it is taken from
+//! a dataset.
+//!
+//! [`provider`] has models behind HTTP that answer by script, with every fault that services have. [`documents`] has
+//! the commands that the repository's documents give their readers to type.
 
 mod boxes;
 pub mod documents;
@@ -18,7 +20,7 @@ pub use plan::{SCAN, viewpoint_id};
 
 /// Writes the building below `data`, laid out as a user's Matterport3D and REVERIE folders are:
 /// `matterport/connectivity`, `matterport/v1/scans`, `reverie` (boxes, `objpos.json`, `REVERIE_val_seen.json`) and
-/// `r2r/R2R_val_seen.json`. The same bytes each time.
+/// `r2r/R2R_val_seen.json`. It writes the same bytes each time.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -48,7 +50,7 @@ pub fn write_skyboxes(data: &Path) -> io::Result<()> {
     write_skyboxes_marked(data, |_| 0)
 }
 
-/// The same, but no two places look the same: for those who tell views by their pictures.
+/// The same, but no two viewpoints look the same, for tests that tell views apart by their pictures.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -78,7 +80,7 @@ fn connectivity_file() -> Value {
         .enumerate()
         .map(|(index, viewpoint)| connectivity_item(index, plan::eye(viewpoint).to_array(), true, count))
         .collect();
-    // A tripod place that was left out, as every real file has some.
+    // A viewpoint that is not included: every real file has some.
     items.push(connectivity_item(count - 1, [5.0, 4.0, 1.5], false, count));
     Value::Array(items)
 }

@@ -12,7 +12,7 @@ const UPPER_M: f64 = 2.9;
 pub(crate) struct Room {
     /// Matterport3D's letter.
     pub(crate) letter: char,
-    /// 0 below, 1 above.
+    /// The storey: 0 is the lower one, 1 the upper.
     pub(crate) level: usize,
     /// West, south, east, north.
     pub(crate) sides_m: [f64; 4],
@@ -26,7 +26,7 @@ pub(crate) struct Viewpoint {
 }
 
 pub(crate) struct Object {
-    /// As an annotator writes it: `#` is a space.
+    /// Its name as an annotator writes it: `#` is a space.
     pub(crate) name: &'static str,
     pub(crate) room: usize,
     /// Its centre, above its storey's floor.
@@ -76,7 +76,7 @@ pub(crate) const VIEWPOINTS: &[Viewpoint] = &[
     viewpoint(8, 2.0, 1.5, UPPER_M),
 ];
 
-/// Pairs of viewpoints between which one can walk.
+/// Pairs of viewpoints between which one can walk straight.
 const EDGES: &[(usize, usize)] = &[
     (0, 1),
     (0, 2),
@@ -139,7 +139,8 @@ pub(crate) const OBJECTS: &[Object] = &[
     object(8, "bookshelf", [3.3, 0.5, 1.0], [0.5, 0.15, 1.0]),
 ];
 
-/// The name of a viewpoint: 32 hexadecimal digits, as Matterport3D's are. The one after the last was left out.
+/// The name of a viewpoint: 32 hexadecimal digits, as in Matterport3D. The index after the last is the viewpoint that
+/// is not included.
 #[must_use]
 pub fn viewpoint_id(index: usize) -> String {
     let mixed = (index as u128 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835);
@@ -161,7 +162,7 @@ pub(crate) fn centre(object: &Object) -> DVec3 {
     DVec3::from_array(object.at_m) + DVec3::Z * floor_m(ROOMS[object.room].level)
 }
 
-/// Whether one can walk between two viewpoints.
+/// Whether one can walk straight between two viewpoints.
 pub(crate) fn joined(a: usize, b: usize) -> bool {
     EDGES.contains(&(a, b)) || EDGES.contains(&(b, a))
 }

@@ -1,4 +1,4 @@
-//! What the provider does to a connection, and says of its limits, in each dialect.
+//! The faults of the provider, and what it says of its limits, in each dialect.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -22,7 +22,7 @@ fn changed(mut faults: Faults, change: impl FnOnce(&mut Faults)) -> Faults {
     faults
 }
 
-/// Path, header of the key, and a request of each dialect.
+/// The path, the key's header and a request, for each dialect.
 fn requests() -> [(Dialect, &'static str, &'static str, Value); 5] {
     let messages = json!([{ "role": "user", "content": "hi" }]);
     [
@@ -49,7 +49,7 @@ fn requests() -> [(Dialect, &'static str, &'static str, Value); 5] {
     ]
 }
 
-/// A connection on which a request was just sent; without a body it is a GET.
+/// A connection on which a request was just sent. Without a body it is a GET.
 fn sent(base: &str, path: &str, header: &str, body: Option<&Value>) -> TcpStream {
     let (address, root) = base.strip_prefix("http://").unwrap().split_once('/').unwrap_or((&base[7..], ""));
     let root = if root.is_empty() { String::new() } else { format!("/{root}") };
@@ -220,7 +220,7 @@ fn two_runs_of_a_storm_meet_the_same_faults_in_any_order() {
             let text = format!("request {number}");
             let body = json!({ "model": "m", "messages": [{ "role": "user", "content": text }] });
             let mut all = Vec::new();
-            // Some of the connections break: that is what is wanted.
+            // Some of the connections break, as they should.
             let _ = sent(&base, path, &format!("{header} {KEY}"), Some(&body)).read_to_end(&mut all);
         }
         provider.log()

@@ -1,4 +1,4 @@
-//! The provider answers in each dialect's shape, keeps to its rate, and breaks what it is told to break.
+//! The provider answers in each dialect's shape, keeps to its rate, and commits the faults that it is given.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use std::{
 };
 use wayword_testkit::provider::{Behaviour, Dialect, Fault, Faults, Heard, Provider, Rate, RetryAfter, Script};
 
-/// Status, head and body of a POST, as far as they came.
+/// Status, head and body of a POST.
 fn post(base: &str, path: &str, headers: &str, body: &Value) -> std::io::Result<(u16, String, String)> {
     let address = base.strip_prefix("http://").unwrap().split('/').next().unwrap();
     let mut stream = TcpStream::connect(address)?;

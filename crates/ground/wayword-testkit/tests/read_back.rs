@@ -1,4 +1,4 @@
-//! What is written is what the field's formats are.
+//! The files that are written fit the field's formats.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -5,21 +5,21 @@ use wayword_core::{ModelError, PlatformError, SceneId, ViewpointId};
 /// An agent could not walk.
 #[derive(Debug, thiserror::Error)]
 pub enum WalkError {
-    /// The world could not be looked at.
+    /// The platform gave no view.
     #[error(transparent)]
     Platform(#[from] PlatformError),
     /// A model failed.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// An episode begins or ends where there is nothing.
-    #[error("scene {scene} has no viewpoint {viewpoint}: the episodes are of another release of the scene")]
+    /// An episode begins or ends at a viewpoint that its scene does not have.
+    #[error("scene {scene} has no viewpoint {viewpoint}: the episodes belong to another release of the scene")]
     Unknown {
         /// The scene.
         scene: SceneId,
         /// The viewpoint.
         viewpoint: ViewpointId,
     },
-    /// A grounder gave what cannot be compared.
+    /// A grounder gave scores that cannot be compared.
     #[error("{grounder} did not give one finite score per view and phrase")]
     Unusable {
         /// Its name.

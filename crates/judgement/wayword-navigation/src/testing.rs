@@ -1,4 +1,4 @@
-//! A world for tests: a cross of corridors, with a thing at the end of each arm.
+//! A platform for tests: a cross of corridors, with a thing at the end of each arm.
 
 use crate::agents::Start;
 use std::{
@@ -69,7 +69,7 @@ impl Platform for Cross {
     }
 
     fn sample_path(&self, _: &SceneId, _: &PathRequest, _: u64) -> Result<Path, PlatformError> {
-        panic!("nobody draws a path here")
+        panic!("no test here samples a path")
     }
 
     fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {

@@ -7,7 +7,7 @@ use wayword_core::{Heading, ObjectId, SceneId, ViewpointId};
 /// One agent's walk by one instruction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Walk {
-    /// Who walked (`clip-nav`, `random/5`).
+    /// The agent (`clip-nav`, `random/5`).
     pub agent: String,
     /// Which set the instruction is from (`original`, `central`), or how an original was swapped (`original~other-path`).
     pub set: String,
@@ -19,7 +19,7 @@ pub struct Walk {
     pub text: String,
     /// The scene.
     pub scene: SceneId,
-    /// The instruction as the agent took it apart; `None` for one that does not read.
+    /// The instruction as it was split for the agent; `None` for one that does not read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub directions: Option<Directions>,
     /// Every node at which it stood, in order; at least the start.
@@ -31,7 +31,7 @@ pub struct Walk {
     pub object: Option<ObjectId>,
 }
 
-/// A stand at a node, and what was decided there.
+/// A stop at a node, and what was decided there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// The node.
@@ -41,18 +41,19 @@ pub struct Step {
     /// What was seen and scored. Empty on the way back over nodes, and for agents that look at nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub views: Vec<Scored>,
-    /// The key phrase in hand when it looked, from 0; beyond the last where only the activity is left.
+    /// The current key phrase when it looked, from 0; beyond the last where only the activity is left.
     #[serde(default)]
     pub phrase: usize,
     /// What it did then.
     pub choice: Choice,
 }
 
-/// One of the four views of a step: north, east, south, west. A list of its three values in files, of which there are many.
+/// One of the four views of a step: north, east, south, west. In files it is a list of its three values, because there
+/// are many of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "(f32, f32, usize)", into = "(f32, f32, usize)")]
 pub struct Scored {
-    /// How well the key phrase in hand fits it.
+    /// How well the current key phrase fits it.
     pub phrase: f32,
     /// How well the activity fits it.
     pub activity: f32,
@@ -66,11 +67,11 @@ pub struct Scored {
 pub enum Choice {
     /// Went on through one of the four views, from 0.
     Onward(usize),
-    /// Went on without having looked (floors and ceilings).
+    /// Went on without having looked (baselines and upper bounds).
     Unseeing,
-    /// Went back to the node before, since the sequence of scores was too low.
+    /// Went back to the node before, because the sequence of scores was too low.
     Back,
-    /// Stayed here for good.
+    /// Ended the walk here.
     Stop,
 }
 
@@ -80,7 +81,7 @@ pub enum Choice {
 pub enum End {
     /// The agent took the place for the goal.
     Stopped,
-    /// It had made as many steps as it may.
+    /// It had made the most steps that it may.
     Cap,
     /// There was nowhere to go.
     DeadEnd,

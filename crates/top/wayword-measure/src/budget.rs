@@ -1,4 +1,4 @@
-//! A run that a budget stops: what it has spent against the bound.
+//! Compares what a run has spent with the budget that stops it.
 
 use crate::stage::{Stage, World};
 use wayword::{
@@ -10,7 +10,7 @@ use wayword::{
 };
 use wayword_core::Platform;
 
-/// What came of a run with a bound.
+/// The result of a run with a budget.
 #[derive(Debug)]
 struct Figures {
     frames: usize,
@@ -22,9 +22,9 @@ struct Figures {
 pub(super) fn measure(world: &World, paths: usize, max_usd: f64, output: &Output) -> Result<(), Error> {
     let Figures { frames, done, spent } = figures(&Stage::new(world, 0.15)?, paths, max_usd)?;
     let lines = [
-        format!("{paths} paths, {frames} frames; {done} were made before the budget stopped the rest"),
-        format!("bound ${max_usd:.4}, spent ${:.4}, {} requests", spent.usd + spent.maybe_usd, spent.requests),
-        format!("within the bound: {}", spent.usd + spent.maybe_usd <= max_usd),
+        format!("paths: {paths}, frames: {frames}; paths made before the budget stopped the run: {done}"),
+        format!("budget ${max_usd:.4}, spent ${:.4}, requests: {}", spent.usd + spent.maybe_usd, spent.requests),
+        format!("within the budget: {}", spent.usd + spent.maybe_usd <= max_usd),
     ];
     output.data(&(), lines.join("\n"));
     Ok(())

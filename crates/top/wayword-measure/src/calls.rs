@@ -1,4 +1,4 @@
-//! How many calls a second, at what cost of our own.
+//! Calls per second, and this program's own processor time and memory.
 
 use crate::{provider::Process, resources};
 use std::{
@@ -34,7 +34,7 @@ impl Client {
         Ok(Self { model: Services::new(config, run)?.model(model)?, concurrency, _folder: folder })
     }
 
-    /// Makes so many calls; `request` says what each asks. Returns the reasons of those that failed.
+    /// Makes `calls` calls; `request` makes each request. Returns the reasons of those that failed.
     pub(super) fn make(&self, calls: usize, request: impl Fn(usize) -> Request + Sync) -> Vec<String> {
         let next = AtomicUsize::new(0);
         let failed: Mutex<Vec<String>> = Mutex::default();
@@ -73,7 +73,7 @@ const LOOKS: [usize; 3] = [1_000, 10_000, 100_000];
 pub(super) fn measure(calls: usize, latency_ms: u64, concurrency: usize, output: &Output) -> Result<(), Error> {
     let provider = Process::start(&["--latency-ms".to_owned(), latency_ms.to_string()])?;
     let client = Client::new(&provider.base_url, "server/words", Concurrency::Fixed(concurrency), 30.0)?;
-    // What is made once, connections and threads, is made before.
+    // Connections and threads are made once, so they are made before the measurement.
     client.make(concurrency, |number| words(usize::MAX / 2 + number));
     let (begun, cpu) = (Instant::now(), resources::cpu());
     let mut done = 0;
@@ -89,13 +89,13 @@ pub(super) fn measure(calls: usize, latency_ms: u64, concurrency: usize, output:
     }
     let took = begun.elapsed();
     lines.push(throughput(calls, took, latency_ms, concurrency));
-    lines.push(format!("{} of our own processor time per call", per_call(resources::cpu() - cpu, calls)));
+    lines.push(format!("{} of this program's processor time per call", per_call(resources::cpu() - cpu, calls)));
     provider.end()?;
     output.data(&(), lines.join("\n"));
     Ok(())
 }
 
-/// Calls per second, and what share that is of what a provider allows that takes so long for each of so many at a time.
+/// Calls per second, and their share of the most that is possible with this latency and concurrency.
 fn throughput(calls: usize, took: Duration, latency_ms: u64, concurrency: usize) -> String {
     let per_s = calls as f64 / took.as_secs_f64();
     if latency_ms == 0 {
@@ -109,7 +109,7 @@ fn per_call(time: Duration, calls: usize) -> String {
     format!("{:.2} ms", time.as_secs_f64() * 1e3 / calls as f64)
 }
 
-/// Pictures apart: each its own, and one asked about ten times.
+/// Calls with pictures: each picture asked about once, then ten times.
 pub(super) fn pictures(calls: usize, output: &Output) -> Result<(), Error> {
     let provider = Process::start(&[])?;
     let mut lines = Vec::new();
@@ -124,7 +124,7 @@ pub(super) fn pictures(calls: usize, output: &Output) -> Result<(), Error> {
         });
         let own: Duration = resources::cpu() - cpu;
         lines.push(format!(
-            "{what} (640 x 480): {} of our own processor time per call, {} failed",
+            "{what} (640 x 480): {} of this program's processor time per call, {} failed",
             per_call(own, calls),
             failed.len()
         ));
@@ -134,7 +134,7 @@ pub(super) fn pictures(calls: usize, output: &Output) -> Result<(), Error> {
     Ok(())
 }
 
-/// A picture that no other is like, smooth as photographs are.
+/// A picture unlike all others, and smooth as photographs are.
 fn noise(number: usize) -> Result<Image, wayword_core::image::WrongPixelCount> {
     let (width, height) = (640u32, 480u32);
     // Two offsets, so that 65,536 pictures differ and not 256.
@@ -176,7 +176,7 @@ mod tests {
         assert_eq!(provider.log().answered, 20);
     }
 
-    /// Pictures that are alike would be one picture to a cache of encodings, and cheaper than what is measured.
+    /// Equal pictures would be encoded once and cached, which is cheaper than what is measured.
     #[test]
     fn no_two_pictures_of_the_measurement_are_alike() {
         let pictures: BTreeSet<Vec<u8>> =

@@ -1,7 +1,8 @@
 //! Makes good instructions wrong.
 //!
-//! The first kinds change words that the checks recognised when the instruction was made (its mentions), so what the checks
-//! do not recognise at all they cannot measure. The others are made from the path and its labels alone ([`by_path`]).
+//! The first kinds change words that the checks recognised when the instruction was made (its mentions), so they cannot
+//! measure what the checks do not recognise at all. The others are made only from the path and its labels
+//! ([`by_path`]).
 
 mod by_path;
 
@@ -15,7 +16,7 @@ use wayword_language::lexicon::agree;
 /// The ways to make an instruction wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Corruption {
-    /// A left turned into a right, or the other way round.
+    /// A left turn becomes a right turn, or the other way round.
     TurnFlipped,
     /// A landmark replaced by one that no frame shows.
     LandmarkAbsent,
@@ -27,11 +28,11 @@ pub(super) enum Corruption {
     TaskElsewhere,
     /// Stairs on a path without any.
     StairsAdded,
-    /// A floor on which the path does not end.
+    /// A storey on which the path does not end.
     FloorWrong,
-    /// A room replaced by one in which no frame lies.
+    /// A room replaced by one in which no frame is.
     RoomWrong,
-    /// A thing told on the other side.
+    /// A thing on the other side.
     SideWrong,
     /// A task on an object that no frame shows, in a style that asks for no task.
     TaskUnasked,
@@ -59,10 +60,10 @@ impl Corruption {
             Self::ReferenceCopied => "a reference's words copied",
             Self::TaskElsewhere => "the task's object from elsewhere",
             Self::StairsAdded => "stairs on a path without any",
-            Self::FloorWrong => "a floor where the path does not end",
+            Self::FloorWrong => "a storey where the path does not end",
             Self::RoomWrong => "a room where the path does not lead",
-            Self::SideWrong => "a thing told on the other side",
-            Self::TaskUnasked => "an absent object of a task unasked for",
+            Self::SideWrong => "a thing on the other side",
+            Self::TaskUnasked => "an added task on an absent object",
         }
     }
 }
@@ -95,7 +96,7 @@ const ABSENT: [&str; 24] = [
     "rocking chair",
 ];
 
-/// A corrupted text, or `None` where this kind of corruption cannot be done to it.
+/// A corrupted text, or `None` if this kind of corruption is not possible.
 pub(super) fn corrupt(
     kind: Corruption,
     record: &Record,
@@ -155,7 +156,7 @@ pub(super) fn corrupt(
     }
 }
 
-/// Two places in each other's stead, where every frame that shows the first comes before any that shows the second.
+/// Swaps two places if every frame that shows the first comes before every frame that shows the second.
 fn swapped(record: &Record, evidence: &Evidence, rng: &mut impl Rng) -> Option<String> {
     let text = &record.instruction.text;
     let places: Vec<_> = record

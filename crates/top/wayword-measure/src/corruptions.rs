@@ -11,9 +11,9 @@ use wayword::{
     error::Error,
     output::Output,
     pipeline::panoramas,
+    platforms::{self, Remembering},
     run::{file, settings_of},
     styles,
-    world::{self, Remembering},
 };
 use wayword_checks::{Evidence, Subject, check};
 use wayword_core::{Platform, SceneId, Style, Verdict, rng};
@@ -42,10 +42,10 @@ pub(super) fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize,
     Ok(())
 }
 
-/// Of each kind, how many were caught, and of how many.
+/// For each kind, how many were caught, and how many there were.
 type Counts = BTreeMap<Corruption, (usize, usize)>;
 
-/// Makes as many corruptions of each kind, and checks them; those that were missed are told.
+/// Makes the same number of corruptions of each kind, and checks them; also returns a line for each that was missed.
 fn counted(all: &[(&Run, &Record)], count: usize, seed: u64) -> (Counts, Vec<String>) {
     let mut rng = rng(seed, &["corruptions"]);
     let mut counts = Counts::new();
@@ -81,13 +81,13 @@ fn table(counts: &Counts) -> String {
 
 fn open(folder: &Path, output: &Output) -> Result<Run, Error> {
     let settings = settings_of(folder)?;
-    let platform = world::open(&settings)?;
+    let platform = platforms::open(&settings)?;
     let styles = styles::find(&settings.style, settings.seed)?.into_iter().map(|measured| measured.style).collect();
     let mut records = jsonl::read(&folder.join(file::INSTRUCTIONS))?;
     records.retain(|record| record.instruction.verdict == Verdict::Pass);
     let mut paths: Vec<_> = records.iter().map(|record| &record.path).collect();
     paths.dedup_by_key(|path| &path.id);
-    let bar = output.progress(paths.len(), "paths seen again");
+    let bar = output.progress(paths.len(), "paths");
     let seen: Vec<(String, SceneId, Evidence)> = paths
         .par_iter()
         .filter_map(|path| {
@@ -146,7 +146,8 @@ mod tests {
         }
     }
 
-    /// The sofa stands on the left of the first frame, the lamp at the second, and the last lies in the kitchen; nothing else is there.
+    /// The sofa is on the left of the first frame, the lamp at the second, and the last frame is in the kitchen;
+    /// nothing else is there.
     fn known() -> Evidence {
         let frame = |room: &str, seen: Option<(&str, f64)>| FrameEvidence {
             rooms: vec![room.to_owned()],
@@ -176,8 +177,8 @@ mod tests {
         counted(&all, 40, 0).0
     }
 
-    /// Each corruption of this text contradicts what is known of the path, so each is to be caught. The text has no task whose object
-    /// could be exchanged.
+    /// Each corruption of this text contradicts what is known of the path, so the checks must catch each. The text has
+    /// no task whose object could be exchanged.
     #[test]
     fn where_all_is_known_every_corruption_is_caught() {
         let counts = counts_of(known());
@@ -187,8 +188,8 @@ mod tests {
         }
     }
 
-    /// Nobody knows the objects and rooms: absent ones cannot be caught, and there are none whose order, side or room could be wrong.
-    /// Turns, stairs and floors follow from the path, and a copied reference from the text.
+    /// Objects and rooms are not known, so absent ones cannot be caught, and there are none whose order, side or room
+    /// could be wrong. Turns, stairs and storeys follow from the path, and a copied reference from the text.
     #[test]
     fn where_only_the_path_is_known_what_is_seen_along_it_cannot_be_caught() {
         let counts = counts_of(Evidence::of_path_alone(&path("p")));

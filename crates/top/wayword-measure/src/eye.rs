@@ -1,4 +1,5 @@
-//! Does the dialogue remove ghosts? Captions and instructions of a flawed eye, for each way of asking.
+//! Does the dialogue remove hallucinated objects? Counts them in captions and instructions when a scripted model that
+//! sees is flawed, for each way of asking.
 
 use crate::stage::{CARELESSNESS, Stage, World};
 use std::collections::BTreeSet;
@@ -14,32 +15,38 @@ use wayword_core::Platform;
 use wayword_language::reading::{What, read};
 use wayword_synthesis::repair::Outcome;
 
-/// Objects that instructions name, and those of them that no label along the path agrees with.
+/// Counts of the objects that instructions name, and of those that no label along the path confirms.
 #[derive(Debug, Default)]
 struct Named {
     texts: usize,
     rejected: usize,
     finished_by_rules: usize,
     objects: usize,
-    ghosts: usize,
-    haunted: usize,
+    hallucinated: usize,
+    with_hallucinations: usize,
 }
 
-pub(super) fn measure(world: &World, views: usize, paths: usize, ghosts: f64, output: &Output) -> Result<(), Error> {
-    let stage = Stage::new(world, ghosts)?;
+pub(super) fn measure(
+    world: &World,
+    views: usize,
+    paths: usize,
+    hallucinated_share: f64,
+    output: &Output,
+) -> Result<(), Error> {
+    let stage = Stage::new(world, hallucinated_share)?;
     let ways = [Perception::Fixed, Perception::Single, Perception::Dialogue];
     let extent = Extent { views, show: 0 };
     let captions = perceive(&stage.world, &stage.job(views)?, extent, &ways, output)?;
     let mut lines = vec![
         format!(
-            "{} views of {}, and instructions for {paths} paths; a scripted eye that names {:.0} % ghosts and denies 70 % of them \
-             when it is asked about one; scripted text roles that err with {:.0} %",
+            "{} views of {}, and instructions for {paths} paths; a scripted eye that names {:.0} % hallucinated objects and denies 70 % of \
+             them when it is asked about one; scripted text roles that err with {:.0} %",
             captions.views,
             captions.platform,
-            100.0 * ghosts,
+            100.0 * hallucinated_share,
             100.0 * CARELESSNESS
         ),
-        "asked     caption: ghosts  with ghost  precision  recall  calls/view | instruction: ghosts  with ghost  by rules  rejected"
+        "asked     caption: hallucinated  with one  precision  recall  calls/view | instruction: hallucinated  with one  by rules  rejected"
             .to_owned(),
     ];
     for row in &captions.rows {
@@ -50,15 +57,15 @@ pub(super) fn measure(world: &World, views: usize, paths: usize, ghosts: f64, ou
             named.count(&made?, &stage.world)?;
         }
         lines.push(format!(
-            "{:<9}{:>15.1}% {:>10.1}% {:>9.1}% {:>6.1}% {:>11.1} | {:>18.1}% {:>10.1}% {:>9} {:>9}",
+            "{:<9}{:>21.1}% {:>8.1}% {:>9.1}% {:>6.1}% {:>11.1} | {:>24.1}% {:>8.1}% {:>9} {:>9}",
             format!("{:?}", row.perception).to_lowercase(),
-            100.0 * row.ghost_rate,
-            100.0 * row.captions_with_ghosts,
+            100.0 * row.hallucination_rate,
+            100.0 * row.captions_with_hallucinations,
             100.0 * row.precision,
             100.0 * row.recall,
             row.calls_per_view,
-            100.0 * named.ghosts as f64 / named.objects.max(1) as f64,
-            100.0 * named.haunted as f64 / named.texts.max(1) as f64,
+            100.0 * named.hallucinated as f64 / named.objects.max(1) as f64,
+            100.0 * named.with_hallucinations as f64 / named.texts.max(1) as f64,
             named.finished_by_rules,
             named.rejected
         ));
@@ -83,13 +90,13 @@ impl Named {
                 What::Place(place) if place.is_thing && !place.is_room => Some(place.name.as_str()),
                 _ => None,
             });
-            // What labels leave out is no ghost, and no object here either.
+            // An object that the labels neither confirm nor deny is not counted at all.
             let (real, others): (Vec<&str>, Vec<&str>) =
                 things.partition(|name| !labels.frames_with_thing(name).is_empty());
-            let ghosts = others.iter().filter(|name| labels.denies_thing(name)).count();
-            self.objects += real.len() + ghosts;
-            self.ghosts += ghosts;
-            self.haunted += usize::from(ghosts > 0);
+            let hallucinated = others.iter().filter(|name| labels.denies_thing(name)).count();
+            self.objects += real.len() + hallucinated;
+            self.hallucinated += hallucinated;
+            self.with_hallucinations += usize::from(hallucinated > 0);
         }
         Ok(())
     }
@@ -99,7 +106,7 @@ impl Named {
 mod tests {
     use super::*;
     use crate::made_up::{Building, instruction};
-    use wayword::{item::items, world};
+    use wayword::{item::items, platforms};
     use wayword_synthesis::walk::Walk;
 
     /// A path of the made-up building from the entryway, where a bench stands, and these outcomes.
@@ -108,7 +115,7 @@ mod tests {
         let stage = Stage::new(&building.world(), 0.15).unwrap();
         let mut settings = stage.job(1).unwrap().settings;
         settings.episodes = Some(building.data().join("reverie/REVERIE_val_seen.json"));
-        let world = world::open_named("matterport", Some(&building.data()), None, None).unwrap();
+        let world = platforms::open_named("matterport", Some(&building.data()), None, None).unwrap();
         let first = items(&settings, world.as_ref()).unwrap().remove(0);
         let path = first.path(&settings, world.as_ref()).unwrap();
         let made = Made { walk: Walk::new(path, Vec::new()), outcomes, pictures: Vec::new() };
@@ -119,13 +126,17 @@ mod tests {
 
     /// Of three objects that two texts name, a piano is nowhere in the building.
     #[test]
-    fn an_object_that_no_label_along_the_path_agrees_with_is_a_ghost() {
+    fn an_object_that_no_label_along_the_path_confirms_is_hallucinated() {
         let text = |text: &str| Outcome::Accepted(instruction("r2r", text, &[]));
         let named = counted(vec![
             text("Walk past the bench. Stop at the piano."),
             text("Walk past the bench. Stop in the hallway."),
         ]);
-        assert_eq!((named.texts, named.objects, named.ghosts, named.haunted), (2, 3, 1, 1), "{named:?}");
+        assert_eq!(
+            (named.texts, named.objects, named.hallucinated, named.with_hallucinations),
+            (2, 3, 1, 1),
+            "{named:?}"
+        );
         assert_eq!((named.rejected, named.finished_by_rules), (0, 0));
     }
 

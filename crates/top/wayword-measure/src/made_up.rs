@@ -1,4 +1,4 @@
-//! For the tests of figures: instructions, paths and a building that the tests make, so that every figure can be worked out by hand.
+//! Made-up instructions, paths and a building for tests, so that every figure can be worked out by hand.
 
 use crate::stage::World;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use wayword_core::{
 };
 use wayword_formats::jsonl::Record;
 
-/// An instruction that passed; each mention by its words, which are looked for from where the last one ended.
+/// An instruction that passed. Each mention is given by its words, which are searched from the end of the last mention.
 pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKind)]) -> Instruction {
     let mut from = 0;
     let mentions = mentions.iter().map(|(words, kind)| {
@@ -39,7 +39,7 @@ pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKin
     }
 }
 
-/// Four metres north, then four to the west: straight ahead, and one left turn. On the lowest floor.
+/// Four metres north, then four to the west: straight ahead, and one left turn. On the lowest storey.
 pub(crate) fn path(id: &str) -> Path {
     let stop = |x, y| Stop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
     let stops = vec![stop(0.0, 0.0), stop(0.0, 4.0), stop(-4.0, 4.0)];

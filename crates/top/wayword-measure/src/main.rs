@@ -1,4 +1,4 @@
-//! Measurements that the documents quote, each a command: see `wayword-measure --help`.
+//! The measurements that the documents quote, one command each: see `wayword-measure --help`.
 
 mod budget;
 mod calls;
@@ -20,7 +20,7 @@ use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
 use wayword::{error::Error, output::Output};
 
-/// Measures what the documents of Wayword state.
+/// Measures the figures in Wayword's documents.
 #[derive(Debug, Parser)]
 struct Cli {
     #[command(subcommand)]
@@ -40,20 +40,20 @@ enum What {
         /// Seed of the choice.
         #[arg(long, default_value_t = 0)]
         seed: u64,
-        /// Show so many that were missed.
+        /// How many missed corruptions to show.
         #[arg(long, default_value_t = 10)]
         show: usize,
     },
-    /// The most frequent sentence skeletons of each style: landmarks, rooms and turns masked.
+    /// Count the most frequent sentence skeletons of each style: sentences with landmarks, rooms and turns masked.
     Variety {
         /// Run folders.
         #[arg(required = true)]
         runs: Vec<PathBuf>,
-        /// Show so many per style.
+        /// How many to show per style.
         #[arg(long, default_value_t = 3)]
         show: usize,
     },
-    /// Instructions of each style, picked by seed, beside what people wrote.
+    /// Show instructions of each style, picked by seed, beside what people wrote.
     Sample {
         /// Run folder.
         run: PathBuf,
@@ -64,9 +64,10 @@ enum What {
         #[arg(long, default_value_t = 0)]
         seed: u64,
     },
-    /// Ghosts in the captions and instructions of a flawed eye, for each way of asking.
+    /// Count hallucinated objects in captions and instructions when the model that sees is flawed, for each way of
+    /// asking.
     Eye {
-        /// The world.
+        /// The platform.
         #[command(flatten)]
         world: stage::World,
         /// Views that are captioned.
@@ -75,37 +76,37 @@ enum What {
         /// Paths that instructions are written for.
         #[arg(long, default_value_t = 40)]
         paths: usize,
-        /// Share of what the eye names that is not there.
+        /// Share of the objects named by that model that are not there.
         #[arg(long, default_value_t = 0.15)]
-        ghosts: f64,
+        hallucinated: f64,
     },
-    /// Calls per second, our own processor time for each, and memory, against a provider that is slow or is not.
+    /// Measure calls per second, this program's processor time per call, and memory, with a test provider.
     Calls {
-        /// How many.
+        /// How many calls.
         #[arg(long, default_value_t = 5000)]
         calls: usize,
-        /// How long the provider takes for each, milliseconds.
+        /// How long the provider takes for each call, milliseconds.
         #[arg(long, default_value_t = 200)]
         latency_ms: u64,
         /// Requests at a time.
         #[arg(long, default_value_t = 32)]
         concurrency: usize,
     },
-    /// Our own processor time for calls with pictures.
+    /// Measure this program's processor time for calls with pictures.
     Pictures {
-        /// How many.
+        /// How many calls.
         #[arg(long, default_value_t = 500)]
         calls: usize,
     },
-    /// What gets through to a rate-limited provider in a storm of faults.
+    /// Measure how many calls succeed with a rate-limited provider that often fails.
     Storm {
         /// How many calls.
         #[arg(long, default_value_t = 3000)]
         calls: usize,
-        /// Requests per second that the provider bears.
+        /// Requests per second that the provider accepts.
         #[arg(long, default_value_t = 50.0)]
         requests_per_second: f64,
-        /// And at once, after a rest.
+        /// Requests that it accepts at once after a pause.
         #[arg(long, default_value_t = 10)]
         burst: u32,
         /// Share of requests that meet a fault.
@@ -117,28 +118,28 @@ enum What {
     },
     /// Serves the test kit's provider until standard input closes.
     Provider(provider::Flags),
-    /// A run that a budget stops: what it has spent against the bound.
+    /// Compare what a run spends with the budget that stops it.
     Budget {
-        /// The world.
+        /// The platform.
         #[command(flatten)]
         world: stage::World,
-        /// Paths that would be made.
+        /// Paths of the run without a budget.
         #[arg(long, default_value_t = 330)]
         paths: usize,
-        /// The bound, US dollars, at 10 and 20 a million tokens in and out.
+        /// The budget, US dollars, at prices of 10 and 20 per million tokens in and out.
         #[arg(long, default_value_t = 2.0)]
         max_usd: f64,
     },
-    /// Calls per instruction on paths of one building, against the paper's way.
+    /// Compare the calls per instruction on paths of one building with those of the paper's method.
     Reuse {
-        /// The world.
+        /// The platform.
         #[command(flatten)]
         world: stage::World,
         /// Paths that instructions are written for.
         #[arg(long, default_value_t = 200)]
         paths: usize,
     },
-    /// What agents decide by, tried out on a train split.
+    /// Try out the settings of agents on a train split.
     Sweep(sweep::Flags),
 }
 
@@ -164,7 +165,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         }
         What::Provider(flags) => provider::serve(&flags, output),
         What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
-        What::Eye { world, views, paths, ghosts } => eye::measure(&world, views, paths, ghosts, output),
+        What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),

@@ -1,4 +1,5 @@
-//! The test kit's provider as a process of its own, so that a measurement counts its own time and memory alone.
+//! The test kit's provider as a process of its own, so that a measurement does not count the provider's time and
+//! memory.
 
 use serde::{Deserialize, Serialize};
 use std::{
@@ -15,16 +16,16 @@ use wayword_testkit::provider::{
 /// How the provider behaves.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct Flags {
-    /// From a request to its answer, milliseconds.
+    /// Time from a request to its answer, milliseconds.
     #[arg(long, default_value_t = 0)]
     latency_ms: u64,
     /// Share of requests that meet a fault from which a client can recover.
     #[arg(long, default_value_t = 0.0)]
     storm: f64,
-    /// Requests per second that it bears; 0 for any number.
+    /// Requests per second that the provider accepts; 0 for any number.
     #[arg(long, default_value_t = 0.0)]
     requests_per_second: f64,
-    /// Requests at once after a rest.
+    /// Requests that it accepts at once after a pause.
     #[arg(long, default_value_t = 10)]
     burst: u32,
     /// Seed of the faults.
@@ -32,22 +33,22 @@ pub(super) struct Flags {
     seed: u64,
 }
 
-/// What a provider says of itself.
+/// What a provider reports.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Told {
-    /// Where it is found.
+    /// Its address.
     pub(super) base_url: String,
     /// Requests that were let in.
     pub(super) admitted: u64,
     /// Requests that were answered.
     pub(super) answered: u64,
-    /// Faults that were committed.
+    /// Faults that the provider made.
     pub(super) faults: u64,
     /// Requests above the rate.
     pub(super) rate_limited: u64,
 }
 
-/// Serves until standard input closes; says where at the beginning, and what it has done at the end.
+/// Serves until standard input closes. Prints its address at the beginning, and what it has done at the end.
 pub(super) fn serve(flags: &Flags, output: &Output) -> Result<(), Error> {
     let cast = Cast::new(FlawedEye::new(Gallery::default(), flags.seed, 0.15), flags.seed, 0.2);
     let rate = (flags.requests_per_second > 0.0).then_some(Rate {
@@ -115,7 +116,7 @@ impl Process {
             .map_err(|error| Error::usage(format!("the provider said {line:?}: {error}"), "try again"))
     }
 
-    /// Ends it; what it has done.
+    /// Ends it, and returns what it has done.
     pub(super) fn end(mut self) -> Result<Told, Error> {
         drop(self.child.stdin.take());
         let told = self.told();

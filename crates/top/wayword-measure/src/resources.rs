@@ -1,8 +1,8 @@
-//! What this process has used, as Linux tells it.
+//! What this process has used, from Linux's `/proc`.
 
 use std::{fs, time::Duration};
 
-/// Processor time of this process so far, user and system. Zero where the system does not tell.
+/// Processor time of this process so far, user and system. Zero on systems without `/proc`.
 pub(super) fn cpu() -> Duration {
     // The name in brackets may hold spaces; after it come the fields from the third on.
     let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
@@ -18,7 +18,7 @@ pub(super) fn cpu() -> Duration {
     Duration::from_millis(ticks * 10)
 }
 
-/// Resident memory of this process, MiB. Zero where the system does not tell.
+/// Resident memory of this process, MiB. Zero on systems without `/proc`.
 pub(super) fn resident_mib() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap_or_default();
@@ -30,7 +30,7 @@ mod tests {
     use super::*;
     use std::{hint::black_box, time::Instant};
 
-    /// Other tests of this process may compute at the same time, so there is a lower bound alone.
+    /// Other tests of this process may compute at the same time, so there is only a lower bound.
     #[test]
     fn processor_time_grows_with_what_is_computed() {
         let (before, begun) = (cpu(), Instant::now());

@@ -1,4 +1,4 @@
-//! Calls per instruction, against those of the paper's way: every frame of every path, all rounds, nothing kept.
+//! Calls per instruction, compared with the paper's method: every frame of every path, all rounds, nothing kept.
 
 use crate::stage::{Stage, World};
 use wayword::{error::Error, output::Output};
@@ -11,7 +11,7 @@ struct Figures {
     frames: usize,
     /// Questions with their answers, in all dialogues.
     exchanges: usize,
-    /// Calls of the paper's way.
+    /// Calls of the paper's method.
     papers: usize,
     /// Calls here.
     here: u64,
@@ -46,7 +46,7 @@ impl Figures {
                 "{instructions} paths, {frames} frames, {:.1} exchanges per dialogue",
                 per(*exchanges as f64, *frames)
             ),
-            format!("the paper's way: {papers} calls, {:.1} per instruction", per(*papers as f64, *instructions)),
+            format!("the paper's method: {papers} calls, {:.1} per instruction", per(*papers as f64, *instructions)),
             format!("here: {here} calls, {:.1} per instruction", per(*here as f64, *instructions)),
         ]
     }
@@ -65,14 +65,14 @@ mod tests {
             figures.lines(),
             [
                 "4 paths, 20 frames, 4.5 exchanges per dialogue",
-                "the paper's way: 404 calls, 101.0 per instruction",
+                "the paper's method: 404 calls, 101.0 per instruction",
                 "here: 62 calls, 15.5 per instruction",
             ]
         );
     }
 
-    /// The paper asks nine questions about each frame, which are 20 calls with the opening and the summary. Here the ledger, which
-    /// counts on its own, has one row for each call.
+    /// The paper asks nine questions about each frame, which are 20 calls with the opening and the summary. Here the
+    /// ledger, which counts on its own, has one row for each call.
     #[test]
     fn calls_here_are_those_in_the_ledger_and_those_of_the_paper_follow_from_the_frames() {
         let building = Building::new();

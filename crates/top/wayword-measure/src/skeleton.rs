@@ -1,4 +1,4 @@
-//! Sentence skeletons: what is left of a sentence when landmarks, rooms and turns are masked.
+//! Sentence skeletons: sentences with landmarks, rooms and turns masked.
 
 use std::{collections::BTreeMap, path::PathBuf};
 use wayword::{error::Error, output::Output, run::file};
@@ -28,7 +28,7 @@ fn lines(instructions: &[Instruction], show: usize) -> Vec<String> {
         let total: usize = skeletons.values().sum();
         let mut ranked: Vec<_> = skeletons.iter().collect();
         ranked.sort_by_key(|(skeleton, count)| (std::cmp::Reverse(**count), *skeleton));
-        lines.push(format!("{style}: {total} sentences, {} skeletons", skeletons.len()));
+        lines.push(format!("{style} (sentences: {total}, skeletons: {})", skeletons.len()));
         lines.extend(
             ranked
                 .iter()
@@ -81,10 +81,10 @@ mod tests {
         assert_eq!(
             lines(&texts, 2),
             [
-                "r2r: 6 sentences, 3 skeletons",
+                "r2r (sentences: 6, skeletons: 3)",
                 "  50.00 %  turn turn at the landmark.",
                 "  33.33 %  stop.",
-                "reverie: 1 sentences, 1 skeletons",
+                "reverie (sentences: 1, skeletons: 1)",
                 "  100.00 %  go up to level 2 and clean the landmark",
             ]
         );

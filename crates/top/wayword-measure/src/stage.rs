@@ -1,4 +1,5 @@
-//! A world whose pictures a flawed eye can read, and a provider that plays every role: what `eye` and `reuse` measure on.
+//! The setup for `eye`, `reuse` and `budget`: a platform whose pictures a scripted, flawed model can read, and a
+//! provider that plays every role.
 
 use rayon::{ThreadPoolBuilder, prelude::*};
 use std::path::PathBuf;
@@ -7,12 +8,12 @@ use wayword::{
     calls::Spent,
     error::Error,
     output::Output,
-    pipeline::{Made, RunWorld, make},
+    pipeline::{Made, RunPlatform, make},
     plan::Plan,
+    platforms,
     run::fresh_id,
-    settings::{self, Against, Asked, AskedRoles, Draw, Job, Service, Telling, Walks},
+    settings::{Against, Asked, AskedPlatform, AskedRoles, Draw, Job, Service, Walks, Writing},
     team::Team,
-    world,
 };
 use wayword_core::Platform;
 use wayword_testkit::provider::{
@@ -20,29 +21,29 @@ use wayword_testkit::provider::{
     scripts::{Cast, FlawedEye},
 };
 
-/// How often the scripted text roles are careless.
+/// How often the scripted text roles make mistakes, as a share.
 pub(super) const CARELESSNESS: f64 = 0.2;
-/// Items that are made at a time: calls are waited for.
+/// Items that are made at a time; they mostly wait for calls.
 const AT_A_TIME: usize = 16;
 
-/// Which world is looked at.
+/// The platform of a measurement.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct World {
     /// house or matterport.
     #[arg(long, default_value = "house")]
     pub(super) platform: String,
-    /// Folder of the world's data.
+    /// Folder of the platform's data.
     #[arg(long)]
     pub(super) data: Option<PathBuf>,
-    /// Keep to this scene.
+    /// Use only this scene.
     #[arg(long)]
     pub(super) scan: Option<String>,
-    /// Seed of paths and of all that the scripts draw.
+    /// Seed of the paths, and of everything that the scripted roles draw.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
 }
 
-/// A world, a provider, and a ledger of their own.
+/// A platform, a provider, and a ledger only for them.
 pub(super) struct Stage {
     pub(super) world: Pictured<Box<dyn Platform>>,
     pub(super) provider: Provider,
@@ -52,12 +53,12 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// A stage whose eye has so large a share of ghosts.
-    pub(super) fn new(asked: &World, ghost_share: f64) -> Result<Self, Error> {
+    /// A setup whose model that sees names that share of hallucinated objects.
+    pub(super) fn new(asked: &World, hallucinated_share: f64) -> Result<Self, Error> {
         let io = |source| Error::Io { path: std::env::temp_dir(), doing: "set the measurement up in", source };
         let gallery = Gallery::default();
-        let platform = world::open(&asked_job(asked, 1).resolve()?)?;
-        let cast = Cast::new(FlawedEye::new(gallery.clone(), asked.seed, ghost_share), asked.seed, CARELESSNESS);
+        let platform = platforms::open(&asked_job(asked, 1).resolve()?)?;
+        let cast = Cast::new(FlawedEye::new(gallery.clone(), asked.seed, hallucinated_share), asked.seed, CARELESSNESS);
         Ok(Self {
             world: Pictured::new(platform, gallery),
             provider: Provider::start(Behaviour::of("words", cast.clone()).and("eye", cast)).map_err(io)?,
@@ -67,7 +68,8 @@ impl Stage {
         })
     }
 
-    /// So many paths, with every role played by the provider. Texts are held against captions, as in a world without labels.
+    /// A job of `paths` paths with every role played by the provider. Texts are checked against captions, as on a
+    /// platform without labels.
     pub(super) fn job(&self, paths: usize) -> Result<Job, Error> {
         let roles = AskedRoles {
             llm: Some("server/words".into()),
@@ -79,10 +81,10 @@ impl Stage {
         Asked {
             roles,
             service,
-            telling: Telling {
+            writing: Writing {
                 evidence: Some(Against::Captions),
                 style: Some(vec!["r2r".into()]),
-                ..Telling::default()
+                ..Writing::default()
             },
             draw: Draw { seed: Some(self.seed), ..Draw::default() },
             ..asked_job(&self.asked, paths)
@@ -106,13 +108,13 @@ impl Stage {
         Ok(file)
     }
 
-    /// Makes every item of a job; tells what was spent.
+    /// Makes every item of a job, and returns what was spent.
     pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
         let plan = Plan::writing(job, &self.world)?;
         let calls = plan.models.open(|| Ok(fresh_id("measure")), &Output::new(false, true))?;
         let team = Team::new(&job.settings, calls.as_ref())?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
-        let world = RunWorld { platform: &self.world, data: None };
+        let world = RunPlatform { platform: &self.world, data: None };
         let one = |item| make(item, &job.settings, world, &team, &plan.styles);
         let work = || plan.items.par_iter().map(one).collect();
         let made = match threads {
@@ -125,10 +127,10 @@ impl Stage {
 
 fn asked_job(world: &World, paths: usize) -> Asked {
     Asked {
-        world: settings::World {
+        platform: AskedPlatform {
             platform: Some(world.platform.clone()),
             data: world.data.clone(),
-            ..settings::World::default()
+            ..AskedPlatform::default()
         },
         walks: Walks { scan: world.scan.clone().map(|scan| vec![scan]), paths: Some(paths), ..Walks::default() },
         ..Asked::default()

@@ -1,14 +1,14 @@
-//! A rate-limited provider in a storm: how much gets through.
+//! How many calls succeed with a rate-limited provider that often fails.
 
 use crate::{
     calls::{Client, words},
-    provider::Process,
+    provider::{Process, Told},
 };
 use std::{collections::BTreeMap, time::Instant};
 use wayword::{error::Error, output::Output};
 use wayword_remote::Concurrency;
 
-/// What a trickling answer costs: longer than any that is whole takes.
+/// After this time a slow, partial answer is given up; every whole answer takes less.
 const TIMEOUT_S: f64 = 3.0;
 
 pub(super) fn measure(
@@ -34,15 +34,13 @@ pub(super) fn measure(
     let took_s = begun.elapsed().as_secs_f64();
     let told = provider.end()?;
     let mut lines = goodput(calls, &failed, took_s, per_s * (1.0 - share));
-    lines.insert(
-        2,
-        format!("{} requests let in, {} faults, {} refused by the rate", told.admitted, told.faults, told.rate_limited),
-    );
+    let Told { admitted, faults, rate_limited, .. } = told;
+    lines.insert(2, format!("{admitted} requests let in, {faults} faults, {rate_limited} refused by the rate limit"));
     output.data(&(), lines.join("\n"));
     Ok(())
 }
 
-/// What got through, against so many answers a second at most; then why the others failed.
+/// The answers, compared with the most that are possible per second; then why the others failed.
 fn goodput(calls: usize, failed: &[String], took_s: f64, bound_per_s: f64) -> Vec<String> {
     let answered = calls - failed.len();
     let good = answered as f64 / took_s;

@@ -1,15 +1,15 @@
-//! What agents decide by, tried out on a train split: the papers publish none of it.
+//! Tries out the settings of agents on a train split, because the papers do not publish theirs.
 
 use clap::Args;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use std::{fmt::Write as _, path::PathBuf, sync::Arc};
-use wayword::{demands::Demands, encoder, episodes, error::Error, output::Output, world};
+use wayword::{demands::Demands, encoder, episodes, error::Error, output::Output, platforms};
 use wayword_core::{Grounder, Heading, Platform, rng};
 use wayword_formats::Episode;
 use wayword_metrics::{Metric, Rule, Trajectory, score};
 use wayword_navigation::{
-    Eyes,
+    AgentView,
     agents::{Back, Parameters, Start, walk_by_phrases},
     directions::{ByRules, Directions, Splitter},
     grounders::{Lexical, Sees, Similar},
@@ -21,7 +21,7 @@ pub(crate) struct Flags {
     /// Folder of Matterport3D's and REVERIE's data.
     #[arg(long)]
     data: PathBuf,
-    /// Episodes to learn from: a train split, never one that is judged on.
+    /// Episodes to choose the settings on: a train split, never the one that agents are compared on.
     #[arg(long)]
     episodes: PathBuf,
     /// Who scores views.
@@ -36,7 +36,7 @@ pub(crate) struct Flags {
     /// Seed of the draw.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Show so many of the best.
+    /// How many of the best settings to show.
     #[arg(long, default_value_t = 8)]
     show: usize,
 }
@@ -51,12 +51,12 @@ struct Tried {
 const FIGURES: [Metric; 3] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl];
 
 pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let platform = world::open_named("matterport", Some(&flags.data), None, None)?;
+    let platform = platforms::open_named("matterport", Some(&flags.data), None, None)?;
     let mut episodes = episodes::read(&flags.episodes, platform.as_ref())?;
     episodes.retain(|episode| !episode.instructions.is_empty() && platform.graph(&episode.scene).is_ok());
     episodes.shuffle(&mut rng(flags.seed, &["sweep"]));
     episodes.truncate(flags.items);
-    // Scene by scene: a world keeps the last few of them ready.
+    // Scene by scene, because a platform keeps only the last few scenes in memory.
     episodes.sort_by(|a, b| a.scene.cmp(&b.scene));
     for (name, sees) in [("whole views (clip-nav, seq-clip-nav)", Sees::Views), ("boxes (glip-nav)", Sees::Boxes)] {
         let grounder = grounder(flags, sees)?;
@@ -76,7 +76,7 @@ fn grounder(flags: &Flags, sees: Sees) -> Result<Box<dyn Grounder>, Error> {
     })
 }
 
-/// Everything that is tried of an agent that never goes back.
+/// All settings that are tried without going back.
 fn walks(grounder: &str) -> Vec<Parameters> {
     let default = Parameters::default_of("clip-nav", grounder);
     let mut all = Vec::new();
@@ -102,7 +102,7 @@ fn walks(grounder: &str) -> Vec<Parameters> {
     all
 }
 
-/// Everything that is tried of going back.
+/// All settings that are tried for going back.
 fn backs(best: &Parameters) -> Vec<Parameters> {
     let mut all = vec![*best];
     for window in [3, 6, 8, 12] {
@@ -150,11 +150,11 @@ fn of_episode(
     let rule = if demand.visible_from.is_some() { Rule::Visible } else { Rule::Distance };
     let heading = episode.start_heading.unwrap_or(Heading::NORTH);
     let start = Start { scene: episode.scene.clone(), viewpoint: episode.viewpoints[0].clone(), heading };
-    let eyes = Eyes::new(platform, grounder, false, &episode.scene)?;
+    let agent_view = AgentView::new(platform, grounder, false, &episode.scene)?;
     let directions: Vec<Directions> =
         ByRules.split(&[&episode.instructions[0]]).into_iter().collect::<Result<_, _>>()?;
     let figures = |parameters: &Parameters| -> Result<[f64; 3], Error> {
-        let walked = walk_by_phrases(&eyes, &start, &directions[0], parameters)?;
+        let walked = walk_by_phrases(&agent_view, &start, &directions[0], parameters)?;
         let viewpoints = walked.steps.into_iter().map(|step| step.viewpoint).collect();
         let scored = score(&distances, &demand, &Trajectory { viewpoints, object: None });
         let scored = scored.map_err(|problems| Error::usage(format!("{problems:?}"), "report this as a bug"))?;
@@ -164,7 +164,7 @@ fn of_episode(
 }
 
 fn table(name: &str, tried: &[Tried], items: usize, show: usize) -> String {
-    let mut text = format!("{name}: {} settings, {items} items\n    SR   OSR   SPL\n", tried.len());
+    let mut text = format!("{name} (settings: {}, items: {items})\n    SR   OSR   SPL\n", tried.len());
     for Tried { parameters, sums } in tried.iter().take(show) {
         let [sr, osr, spl] = sums.map(|sum| 100.0 * sum / items.max(1) as f64);
         let named: Vec<String> =
@@ -189,12 +189,12 @@ mod tests {
         assert!(all.iter().enumerate().all(|(at, one)| !all[..at].contains(one)));
     }
 
-    /// Whoever may not move stays at the start. The goal of one episode is 1.9 m away, so that staying is a success by the shortest way;
-    /// that of the other is behind two hops of 4 m and more.
+    /// An agent that may not move stays at the start. The goal of one episode is 1.9 m away, so staying is a success by
+    /// the shortest way; that of the other is two hops of 4 m and more away.
     #[test]
     fn figures_are_sums_over_the_episodes_and_the_best_comes_first() {
         let building = Building::new();
-        let world = world::open_named("matterport", Some(&building.data()), None, None).unwrap();
+        let world = platforms::open_named("matterport", Some(&building.data()), None, None).unwrap();
         let item = |number: usize, path: &[usize]| {
             let path: Vec<String> = path.iter().map(|at| viewpoint_id(*at)).collect();
             serde_json::json!({
@@ -219,7 +219,7 @@ mod tests {
         let tried = [Tried { parameters: default, sums: [2.0, 3.0, 1.0] }];
         let table = table("agents", &tried, 4, 8);
         let mut lines = table.lines();
-        assert_eq!(lines.next(), Some("agents: 1 settings, 4 items"));
+        assert_eq!(lines.next(), Some("agents (settings: 1, items: 4)"));
         assert_eq!(lines.next(), Some("    SR   OSR   SPL"));
         assert!(lines.next().unwrap().starts_with(" 50.00 75.00 25.00  "), "{table}");
     }

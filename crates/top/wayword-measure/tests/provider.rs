@@ -16,7 +16,7 @@ fn number_before(text: &str, words: &str) -> f64 {
     before.rsplit([' ', '\n']).next().unwrap().parse().unwrap()
 }
 
-/// Four at a time with 50 ms for each are 80 a second at most.
+/// Four calls at a time with 50 ms for each are 80 per second at most.
 #[test]
 fn calls_keep_to_what_the_latency_allows() {
     let told = measured(&["calls", "--calls", "40", "--latency-ms", "50", "--concurrency", "4"]);

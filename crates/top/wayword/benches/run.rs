@@ -1,5 +1,5 @@
-//! Items per second of whole runs, from path to checked instructions on the disk: where labels carry the perception, and
-//! in a house, whose pictures are drawn.
+//! Items per second of whole runs, from path to checked instructions on the disk: with labels alone, and in a generated
+//! house, whose pictures are drawn.
 
 #![allow(clippy::expect_used, missing_docs, reason = "a benchmark may fail")]
 
@@ -8,7 +8,7 @@ use std::time::Duration;
 use wayword::{
     commands::{Summary, generate_into},
     output::Output,
-    settings::{Asked, Draw, Walks, World},
+    settings::{Asked, AskedPlatform, Draw, Walks},
 };
 
 /// A run into a new folder; the default is both styles.
@@ -22,7 +22,11 @@ fn labels(criterion: &mut Criterion) {
     let data = tempfile::tempdir().expect("a folder for the building");
     wayword_testkit::write_building(data.path()).expect("the building is written");
     let asked = |episodes: Option<&str>, paths: Option<usize>| Asked {
-        world: World { platform: Some("matterport".into()), data: Some(data.path().to_owned()), ..World::default() },
+        platform: AskedPlatform {
+            platform: Some("matterport".into()),
+            data: Some(data.path().to_owned()),
+            ..AskedPlatform::default()
+        },
         walks: Walks {
             episodes: episodes.map(|file| data.path().join(file)),
             paths,

@@ -1,6 +1,6 @@
-//! Numbers of things in words.
+//! Numbers with their nouns.
 
-/// As 1 item, 2 items, 0 different views, 3 calls of unknown price.
+/// A number with its noun: 1 item, 2 items, 0 different views, 3 calls of unknown price.
 pub(crate) fn count(count: impl TryInto<u64>, of: &str) -> String {
     match count.try_into().unwrap_or(u64::MAX) {
         1 => format!("1 {of}"),
@@ -11,7 +11,7 @@ pub(crate) fn count(count: impl TryInto<u64>, of: &str) -> String {
     }
 }
 
-/// The plural of a noun, or of words that end in it, by the rules that the program's own words need.
+/// The plural of a noun, or of words that end in one. It knows the rules that the program's own words need.
 fn plural(noun: &str) -> String {
     let ends = |ends: &[&str]| ends.iter().any(|end| noun.ends_with(end));
     match noun.strip_suffix('y') {
@@ -26,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_thing_is_told_in_the_singular() {
+    fn one_thing_is_in_the_singular() {
         assert_eq!(count(1_usize, "item"), "1 item");
         assert_eq!(count(0_usize, "item"), "0 items");
         assert_eq!(count(2_u64, "trajectory"), "2 trajectories");

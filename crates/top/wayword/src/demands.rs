@@ -1,4 +1,4 @@
-//! What episodes demand of a trajectory, by what the platform knows.
+//! What a trajectory has to reach for each episode, from what the platform knows.
 
 use crate::error::Error;
 use std::sync::Arc;
@@ -6,14 +6,14 @@ use wayword_core::{Platform, SceneId};
 use wayword_formats::Episode;
 use wayword_metrics::{Atlas, Demand, Distances};
 
-/// What episodes of a platform demand. Distances of a scene are computed once.
+/// The demands of the episodes of a platform. The distances of a scene are computed once.
 pub struct Demands<'a> {
     platform: &'a dyn Platform,
     atlas: Atlas<'a>,
 }
 
 impl<'a> Demands<'a> {
-    /// Nothing computed yet.
+    /// Without any distances yet.
     #[must_use]
     pub fn new(platform: &'a dyn Platform) -> Self {
         Self { platform, atlas: Atlas::new(platform) }
@@ -22,12 +22,12 @@ impl<'a> Demands<'a> {
     /// The distances of a scene.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the scene cannot be read.
     pub fn distances(&self, scene: &SceneId) -> Result<Arc<Distances>, Error> {
         Ok(self.atlas.scene(scene)?)
     }
 
-    /// What an episode demands, and the distances of its scene.
+    /// The demand of an episode, and the distances of its scene.
     ///
     /// # Errors
     /// When the scene cannot be read.

@@ -1,11 +1,11 @@
-//! Shows how far a download is.
+//! Shows the progress of a download.
 
 use crate::output::Output;
 use indicatif::{HumanBytes, ProgressBar};
 use std::sync::{Mutex, PoisonError};
 use wayword_local::Progress;
 
-/// A bar for the file that comes right now, or a line for each where nobody looks at bars.
+/// A bar for the current file, or a line for each file if standard error is not a terminal.
 pub(crate) struct DownloadBar {
     output: Output,
     bar: ProgressBar,
@@ -28,14 +28,14 @@ impl Progress for DownloadBar {
             self.bar.set_length(total.unwrap_or(done));
             if self.bar.is_hidden() {
                 let of = total.map(|total| format!(" of {}", HumanBytes(total))).unwrap_or_default();
-                self.output.say(format_args!("fetching {file}: {}{of} are here", HumanBytes(done)));
+                self.output.say(format_args!("fetching {file}: {}{of} so far", HumanBytes(done)));
             }
         }
         self.bar.set_position(done);
     }
 
     fn waiting(&self, file: &str) {
-        self.output.say(format_args!("another process fetches {file}; waiting for it"));
+        self.output.say(format_args!("waiting for another process that fetches {file}"));
     }
 }
 

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{ModelError, TextEncoder};
 use wayword_metrics::Words;
 
-/// So many texts go to the encoder at a time.
+/// Number of texts that the encoder gets at once.
 const BATCH: usize = 128;
 
-/// An encoder by its name.
+/// An encoder by its name. `words` counts words, without a model.
 pub fn encoder(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
     if name == "words" { Ok(Box::new(Words)) } else { in_process(name) }
 }
@@ -32,7 +32,7 @@ fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
     ))
 }
 
-/// Each text's vector, each text encoded once.
+/// The vector of each text. Equal texts are encoded once.
 pub fn vectors<'a>(
     encoder: &dyn TextEncoder,
     texts: impl Iterator<Item = &'a str>,
@@ -47,7 +47,7 @@ pub fn vectors<'a>(
         let expected = *numbers.get_or_insert_with(|| found.first().map_or(0, Vec::len));
         let fits = |vector: &Vec<f32>| vector.len() == expected && vector.iter().all(|number| number.is_finite());
         if found.len() != batch.len() || !found.iter().all(fits) {
-            let reason = "it did not give one vector of numbers for each text".to_owned();
+            let reason = "it did not give one vector of finite numbers for each text".to_owned();
             return Err(ModelError::Failed { model: encoder.name().to_owned(), reason }.into());
         }
         vectors.extend(batch.iter().copied().zip(found));
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
     use std::sync::Mutex;
 
-    /// Gives what it is told to, and notes what it was asked.
+    /// Always gives the same vector, and records the texts that it was given.
     struct Fixed(Vec<f32>, Mutex<Vec<String>>);
 
     impl TextEncoder for Fixed {

@@ -5,8 +5,8 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_core::{Platform, SceneId, ViewpointGraph, ViewpointId};
 use wayword_formats::{Episode, Format, jsonl};
 
-/// Reads a file's episodes. A path of a continuous world, whose frames lie between viewpoints, is told by the viewpoints nearest to
-/// its frames, by straight line: two in a row need not be joined, and one may lie behind a wall.
+/// Reads the episodes of a file. A path whose frames lie between viewpoints is replaced by the viewpoints nearest to its frames, by
+/// straight line. Two of these in a row need not be joined by an edge, and one may lie behind a wall.
 ///
 /// # Errors
 /// When the file cannot be read, a scene is unknown, or an episode has neither viewpoints nor frames.
@@ -28,24 +28,24 @@ pub fn read(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode>, Error>
     };
     match episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         Some(blind) => Err(Error::usage(
-            format!("{}: episode {} names no viewpoints, and agents walk over viewpoints", file.display(), blind.id),
+            format!("{}: episode {} names no viewpoints, which agents need", file.display(), blind.id),
             "give an R2R, REVERIE, RxR or Wayword file",
         )),
         None => Ok(episodes),
     }
 }
 
-/// The path that an episode lies on: items on one path are not independent.
+/// The path of an episode, for clustering: items on one path are not independent.
 pub fn cluster(episode: &Episode) -> String {
     path_name(&episode.scene, &episode.path_id)
 }
 
-/// A path's name over all scenes.
+/// The name of a path, unique over all scenes.
 pub fn path_name(scene: &SceneId, path_id: &str) -> String {
     format!("{scene}/{path_id}")
 }
 
-/// The viewpoints nearest to a path's frames, each once in a row.
+/// The viewpoints nearest to the frames of a path, without repeats in a row.
 fn nearest_along(platform: &dyn Platform, path: &wayword_core::Path) -> Result<Vec<ViewpointId>, Error> {
     let graph = platform.graph(&path.scene)?;
     let mut viewpoints: Vec<ViewpointId> =

@@ -1,4 +1,4 @@
-//! What can go wrong, told once, and the exit codes of the program.
+//! The errors of the program, and its exit codes.
 
 use std::{
     io::{self, ErrorKind},
@@ -15,20 +15,20 @@ use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::Styl
 pub enum Exit {
     /// Everything was done, and every check passed.
     Done = 0,
-    /// The input was wrong: a flag, a file, a folder. Nothing was written.
+    /// The input is wrong: a flag, a file, a folder. Nothing was written.
     BadInput = 1,
-    /// Done, but some items failed, or some texts failed their checks; each with its reason.
+    /// Done, but some items failed, or some texts failed their checks. The reasons are listed.
     WithLoss = 3,
-    /// Another process works in the same run folder.
+    /// Another process is writing to the same run folder.
     Busy = 4,
-    /// Stopped before the end: a budget was spent or a key refused. The same command goes on.
+    /// Stopped early: a budget is spent or a key was refused. The same command continues.
     Stopped = 5,
-    /// Interrupted by the user or by a scheduler (SIGINT, SIGTERM). The same command goes on.
+    /// Interrupted by the user or by a scheduler (SIGINT, SIGTERM). The same command continues.
     Interrupted = 6,
-    /// The world, a service or the disk was lost. The same command goes on.
+    /// The simulator, a service or the disk failed. The same command continues.
     Lost = 7,
 }
-// 2 is clap's own: the command line could not be read.
+// clap itself exits with 2 when the command line is wrong.
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
@@ -36,15 +36,15 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// What to do about an error of the file system.
+/// The hint for an error of the file system.
 fn advice(error: &io::Error) -> &'static str {
     match error.kind() {
-        ErrorKind::NotFound => "\nhint: check how the path is written, and that its folder is there",
+        ErrorKind::NotFound => "\nhint: check the spelling of the path, and that its folder exists",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "\nhint: name another place, or see to it that you may use this one"
+            "\nhint: give another path, or change its permissions"
         }
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "\nhint: make room, and give the same command again",
-        ErrorKind::IsADirectory => "\nhint: name a file; this is a folder",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "\nhint: free some space, and give the same command again",
+        ErrorKind::IsADirectory => "\nhint: give a file; this is a folder",
         _ => "",
     }
 }
@@ -52,51 +52,51 @@ fn advice(error: &io::Error) -> &'static str {
 /// An error of a command.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A world's.
+    /// Of a platform.
     #[error(transparent)]
     Platform(#[from] PlatformError),
-    /// A dataset file's.
+    /// Of a dataset file.
     #[error(transparent)]
     Format(#[from] FormatError),
-    /// A style's.
+    /// Of a style.
     #[error(transparent)]
     Style(#[from] StyleError),
-    /// A prompt's.
+    /// Of a prompt.
     #[error(transparent)]
     Prompt(#[from] PromptError),
-    /// A model gave nothing.
+    /// A model gave no answer.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The ledger's.
+    /// Of the ledger.
     #[error(transparent)]
     Ledger(#[from] wayword_ledger::LedgerError),
     /// A model cannot be reached by its name.
     #[error(transparent)]
     Service(#[from] wayword_remote::ConfigError),
-    /// A model cannot be had on this machine.
+    /// A model in process cannot be loaded.
     #[cfg(feature = "local")]
     #[error(transparent)]
     Local(#[from] wayword_local::LocalError),
     /// An agent could not walk.
     #[error(transparent)]
     Walk(#[from] WalkError),
-    /// A walk could not be seen.
+    /// A path could not be observed.
     #[error(transparent)]
     Observe(#[from] ObserveError),
     /// A house could not be saved.
     #[error(transparent)]
     House(#[from] wayword_house::SaveError),
-    /// The file system would not.
+    /// A file operation failed.
     #[error("{}: cannot {doing}: {source}{}", path.display(), advice(source))]
     Io {
         /// Which file or folder.
         path: PathBuf,
         /// What was tried.
         doing: &'static str,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
-    /// What was asked for does not make sense.
+    /// The user asked for something that cannot be done.
     #[error("{problem}\nhint: {hint}")]
     Usage {
         /// What is wrong.
@@ -104,49 +104,49 @@ pub enum Error {
         /// What to do.
         hint: String,
     },
-    /// A run is not continued in a world that has changed.
+    /// A run is not continued with scene files that have changed.
     #[error(
-        "scene {scene}: its files are not those that the run was begun with ({} holds their hash)\nhint: put the old files back, or give another --out for a new run",
+        "scene {scene}: its files have changed since the run began ({} holds their old hash)\nhint: put the old files back, or give another --out for a new run",
         record.display()
     )]
-    OtherWorld {
+    ChangedScene {
         /// Which scene.
         scene: String,
-        /// Where its hash is kept.
+        /// The file that holds its hash.
         record: PathBuf,
     },
     /// The user or a scheduler has interrupted the command.
-    #[error("interrupted\nhint: give the same command again; what was finished is kept")]
+    #[error("interrupted\nhint: give the same command again to continue; finished items are kept")]
     Interrupted,
     /// Another process has the run folder.
-    #[error("{}: another wayword is at work in this run folder\nhint: wait for it, or give another --out", .0.display())]
+    #[error("{}: another wayword process is writing to this run folder\nhint: wait for it, or give another --out", .0.display())]
     Busy(PathBuf),
-    /// A process that cannot be looked for has the run folder, or had it when it was killed.
-    #[error("{}: {by} is at work in this run folder, or was killed there; on {kind}, a network's file system, no lock tells which\nhint: wait for it, or give another --out; if it is gone, remove {} and give the same command", folder.display(), mark.display())]
+    /// A process on another machine has the run folder, or had it when it was killed.
+    #[error("{}: {by} is writing to this run folder, or was killed while it did; on a network file system ({kind}) a lock does not show which\nhint: wait for it, or give another --out; if that process is gone, remove {} and give the same command again", folder.display(), mark.display())]
     BusyElsewhere {
         /// The run folder.
         folder: PathBuf,
-        /// Who, as far as it said.
+        /// The process, as its file names it.
         by: String,
-        /// What the file system is called.
+        /// Kind of the file system.
         kind: &'static str,
-        /// The file that says so.
+        /// The file that names the process.
         mark: PathBuf,
     },
 }
 
 impl Error {
-    /// A mistake of the user's, with the way out.
+    /// A mistake of the user, with a hint.
     pub fn usage(problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Usage { problem: problem.into(), hint: hint.into() }
     }
 
-    /// What this build leaves out.
+    /// A feature that this build lacks.
     pub fn not_built(problem: impl Into<String>) -> Self {
         Self::usage(problem, "build it with `cargo build --release --features full`")
     }
 
-    /// How one item's failure is dealt with; `None` for what concerns the whole run.
+    /// How the failure of one item is handled; `None` if the error concerns the whole run.
     pub(crate) fn failure(&self) -> Option<Failure> {
         match self {
             Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
@@ -162,7 +162,7 @@ impl Error {
         }
     }
 
-    /// Whether the disk has no room left, or went away.
+    /// Whether the disk is full or gone.
     fn is_of_the_disk(&self) -> bool {
         let is_full = |error: &io::Error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);
         matches!(self, Self::Io { source, .. } if is_full(source) || is_lost_disk(source))
@@ -174,7 +174,7 @@ impl Error {
         move |source| Self::Io { path, doing, source }
     }
 
-    /// Whether a model's service lets nothing through any more.
+    /// Whether the provider of a model accepts no more requests.
     pub(crate) fn ends_sending(&self) -> bool {
         match self {
             Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
@@ -184,7 +184,7 @@ impl Error {
         }
     }
 
-    /// The exit code that it ends the program with.
+    /// The exit code of the program.
     #[must_use]
     pub fn exit_code(&self) -> Exit {
         match self {

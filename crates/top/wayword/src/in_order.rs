@@ -1,4 +1,4 @@
-//! Makes many things at a time and hands them on in their order.
+//! Makes many items in parallel and passes them on in their order.
 
 use std::{
     collections::BTreeMap,
@@ -6,16 +6,16 @@ use std::{
     thread,
 };
 
-/// How far ahead of the oldest unfinished item the others may be, in items per worker: enough that one slow item does not
-/// hold up the rest, few enough that finished ones do not pile up.
+/// How far the newest item may be ahead of the oldest unfinished one, in items per worker: enough that one slow item does not
+/// delay the others, few enough that finished items do not fill the memory.
 const AHEAD: usize = 4;
 
-/// Items that are made at a time where no model is waited for.
+/// Number of items that are made in parallel if no model is called.
 pub(crate) fn cores() -> usize {
     thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// Calls what it holds when it is dropped, in a panic too.
+/// Calls its function if a panic drops it.
 struct AtTheEnd<'a>(&'a dyn Fn());
 
 impl Drop for AtTheEnd<'_> {
@@ -26,18 +26,18 @@ impl Drop for AtTheEnd<'_> {
     }
 }
 
-/// Where the work stands.
+/// The state of the work.
 struct Progress {
     next: usize,
     kept: usize,
     stopped: bool,
 }
 
-/// Has `make` called for each item on so many threads, and `keep` with each result, in the order of the items. When `keep`
-/// answers `false` or fails, no further item is begun; those that are being made are finished and dropped.
+/// Calls `make` for each item on `workers` threads, and `keep` with each result in the order of the items. When `keep` returns
+/// `false` or fails, no further item is begun; those in progress are finished and dropped.
 ///
 /// # Errors
-/// The first that `keep` gives.
+/// The first error of `keep`.
 pub(crate) fn in_order<I: Sync, R: Send, E>(
     items: &[I],
     workers: usize,
@@ -60,22 +60,22 @@ pub(crate) fn in_order<I: Sync, R: Send, E>(
             progress = moved.wait(progress).unwrap_or_else(PoisonError::into_inner);
         }
     };
-    let tell = |change: &dyn Fn(&mut Progress)| {
+    let update = |change: &dyn Fn(&mut Progress)| {
         change(&mut progress.lock().unwrap_or_else(PoisonError::into_inner));
         moved.notify_all();
     };
-    let stop = || tell(&|progress| progress.stopped = true);
+    let stop = || update(&|progress| progress.stopped = true);
     thread::scope(|scope| {
-        // Nor may they wait for room when it is `keep` that panics.
+        // Workers must not wait for room after `keep` has panicked.
         let _last = AtTheEnd(&stop);
         let (sender, results) = mpsc::channel();
         for _ in 0..workers {
             let (sender, take, make, stop) = (sender.clone(), &take, &make, &stop);
             scope.spawn(move || {
-                // A worker that panics would otherwise leave the others waiting for its item for ever.
+                // Without this, a panic in one worker would leave the others waiting for its item for ever.
                 let _last = AtTheEnd(stop);
                 while let Some(at) = take() {
-                    // Nobody listens once `keep` has had enough.
+                    // The receiver is gone once `keep` has returned `false`.
                     let _ = sender.send((at, make(&items[at])));
                 }
             });
@@ -92,7 +92,7 @@ pub(crate) fn in_order<I: Sync, R: Send, E>(
                     return goes_on.map(drop);
                 }
                 kept += 1;
-                tell(&|progress| progress.kept = kept);
+                update(&|progress| progress.kept = kept);
             }
         }
         Ok(())

@@ -1,7 +1,7 @@
-//! Ctrl-C and SIGTERM: a command finishes what it has in hand, or ends at once, with an exit code of its own.
+//! Ctrl-C and SIGTERM: a command finishes the items that it works on, or ends at once, with exit code 6.
 //!
-//! Other systems than Unix end the process at once, with their own code. Nothing is lost there either: every file is written so that
-//! a kill leaves it whole.
+//! On systems other than Unix the system ends the process, with its own exit code. Nothing is lost there either, because a kill leaves
+//! every file whole.
 
 use crate::{calls::Calls, error::Error, output::Output};
 use std::{
@@ -15,31 +15,31 @@ use std::{
 };
 use wayword_platforms::process;
 
-/// Whether anybody has interrupted.
+/// Whether the user or a scheduler has interrupted.
 static ASKED: AtomicBool = AtomicBool::new(false);
-/// What the command that is at work does to come to an end; none where it can be ended anywhere.
+/// How the running command comes to an end; `None` if it can be ended at any point.
 static ENDING: Mutex<Option<Ending>> = Mutex::new(None);
-/// Files that say that this process is at work, to be removed however it ends.
+/// Files that mark this process as running. They are removed however it ends.
 static MARKS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// How long a world in a child process may take over what it was asked before an interrupt.
+/// How long a child process may take to answer what it was asked before an interrupt.
 const GRACE: Duration = Duration::from_secs(10);
-/// How long after that a command without models may take to come to its end, before it is ended anywhere: a simulator may be waited
-/// for. One with models is not, because what is in flight is paid for.
+/// After that, how long a command without models may take before it is ended at any point: a simulator may keep it waiting. A command
+/// with models is not ended, because the calls in flight are paid for.
 const LAST_GRACE: Duration = Duration::from_secs(5);
 
-/// Ends the sending; whether there are calls to be finished.
+/// How to stop sending calls, and whether the command makes any.
 struct Ending {
     stop: Box<dyn Fn() + Send>,
     has_calls: bool,
 }
 
-/// A command that looks for interrupts by itself, for as long as this lives.
+/// While this lives, the command checks for interrupts by itself.
 #[must_use]
 pub struct Graceful(());
 
-/// From now on an interrupt ends the sending of `calls`, and the command looks at [`check`] between two pieces of its work. A second
-/// interrupt ends the process.
+/// From now on an interrupt stops the sending of `calls`, and the command calls [`check`] between two items. A second interrupt ends
+/// the process.
 pub fn finish_first(calls: Option<&Calls>) -> Graceful {
     let stop: Box<dyn Fn() + Send> = match calls.map(Calls::ending) {
         Some(ending) => Box::new(ending),
@@ -55,18 +55,18 @@ impl Drop for Graceful {
     }
 }
 
-/// Has a file removed where an interrupt ends the process at once.
+/// Registers a file that is removed if an interrupt ends the process at once.
 pub(crate) fn removes(mark: &Path) {
     MARKS.lock().unwrap_or_else(PoisonError::into_inner).push(mark.to_owned());
 }
 
-/// Whether anybody has interrupted.
+/// Whether the user or a scheduler has interrupted.
 #[must_use]
 pub fn is_asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// Refuses to begin more work once anybody has interrupted.
+/// Refuses to begin more work after an interrupt.
 ///
 /// # Errors
 /// [`Error::Interrupted`].
@@ -82,7 +82,7 @@ pub fn listen(output: &Output) {
         iterator::Signals,
     };
     let output = *output;
-    // Where signals cannot be had, they end the process as they always did.
+    // Without a handler the signals end the process, as usual.
     let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
     thread::spawn(move || {
         for _ in signals.forever() {
@@ -95,14 +95,14 @@ pub fn listen(output: &Output) {
     });
 }
 
-/// Has the command come to its end, and ends it itself where that takes too long.
+/// Lets the command come to its end, and ends it if that takes too long.
 #[cfg(unix)]
 fn finish(ending: &Ending, output: Output) {
-    output.say("finishing what is in hand; interrupt again to end at once");
+    output.say("finishing the items in progress; interrupt again to stop at once");
     (ending.stop)();
     let has_calls = ending.has_calls;
     thread::spawn(move || {
-        // A world that hangs would hold up the end. Its item is tried again by the next command.
+        // A hanging platform would delay the end. The next command tries its item again.
         thread::sleep(GRACE);
         process::end_all();
         if !has_calls {
@@ -121,7 +121,7 @@ fn end_at_once(output: &Output) {
     output.error(&Error::Interrupted);
     process::end_all();
     for mark in MARKS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
-        // What stays is found by whoever comes next.
+        // A file that stays is found by the next command.
         let _ = std::fs::remove_file(mark);
     }
     std::process::exit(crate::error::Exit::Interrupted as i32);

@@ -1,4 +1,4 @@
-//! What a run works through: paths from episodes, or random ones.
+//! The items of a run: paths of a dataset, or random ones.
 
 use crate::{error::Error, settings::Settings};
 use std::{collections::BTreeSet, sync::Arc};
@@ -17,7 +17,7 @@ pub enum Item {
         id: String,
         /// All scenes of the run.
         scenes: Arc<[SceneId]>,
-        /// The one that it is to lie in; those after it take its place where it holds no such path.
+        /// Index of its scene. If that scene has no such path, the next scenes are tried.
         first: usize,
         /// Its own seed.
         seed: u64,
@@ -27,7 +27,7 @@ pub enum Item {
 /// The items of a run, in their order.
 ///
 /// # Errors
-/// When the episodes or their scenes cannot be read, or nothing is left.
+/// When the episodes or their scenes cannot be read, or no item is left.
 pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
     let mut items = match &settings.episodes {
         Some(file) => episodes(wayword_formats::read(file)?, settings)?,
@@ -35,7 +35,10 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
     };
     items.truncate(settings.limit.unwrap_or(usize::MAX));
     if items.is_empty() {
-        return Err(Error::usage("there is nothing to do: no episode is left", "check --scan, --limit and --episodes"));
+        return Err(Error::usage(
+            "no item is left: none of the episodes is in the scenes asked for",
+            "check --scan and --episodes",
+        ));
     }
     platform.check(&items.iter().map(Item::scene).collect())?;
     Ok(items)
@@ -43,8 +46,7 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
 
 fn episodes(episodes: Vec<Episode>, settings: &Settings) -> Result<Vec<Item>, Error> {
     if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
-        let problem =
-            format!("episode {} names no viewpoints, and the paths of these platforms run over viewpoints", blind.id);
+        let problem = format!("episode {} names no viewpoints, which a path needs", blind.id);
         return Err(Error::usage(problem, "give an R2R, REVERIE, RxR or Wayword file"));
     }
     let wanted =
@@ -64,9 +66,9 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
         scenes = platform.scenes()?;
     }
     if scenes.is_empty() {
-        return Err(Error::usage("the platform offers no scene", "check --data"));
+        return Err(Error::usage("the platform has no scene", "check --data"));
     }
-    // A single scene on whose ground nobody walks is wrong input, and not a run of which every item fails.
+    // A single scene without walkable ground is wrong input. Otherwise every item of the run would fail.
     if let [scene] = &scenes[..] {
         platform.islands(scene)?;
     }
@@ -80,8 +82,8 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
     Ok((0..settings.paths).map(item).collect())
 }
 
-/// The scene in which a random path is to lie. Scene after scene, because a world keeps the last few of them ready; paths that were
-/// asked for later go through the scenes once more, so that those before them stay where they are.
+/// The scene of a random path. Paths go scene by scene, because a platform keeps only the last few scenes loaded. Paths that were
+/// asked for later go through the scenes again, so that earlier paths stay in their scenes.
 fn first_scene(number: usize, settings: &Settings, scenes: usize) -> usize {
     let steps = settings.raised_from.iter().copied().chain([settings.paths]);
     let mut start = 0;
@@ -104,7 +106,7 @@ impl Item {
         }
     }
 
-    /// The scene in which its path is looked for first.
+    /// The scene that is tried first.
     fn scene(&self) -> &SceneId {
         match self {
             Self::Episode(episode) => &episode.scene,
@@ -115,7 +117,7 @@ impl Item {
     /// Its path.
     ///
     /// # Errors
-    /// When an episode does not fit the world, or the scene holds no random path of the kind asked for.
+    /// When an episode does not fit its scene, or no scene has a random path of the length asked for.
     pub fn path(&self, settings: &Settings, platform: &dyn Platform) -> Result<Path, PlatformError> {
         match self {
             Self::Episode(episode) => path_of(
@@ -140,7 +142,7 @@ impl Item {
         }
     }
 
-    /// What people said about it.
+    /// The instructions that the dataset has for it.
     #[must_use]
     pub fn originals(&self) -> &[String] {
         match self {
@@ -149,7 +151,7 @@ impl Item {
         }
     }
 
-    /// The name of its path in its dataset, which several items may share.
+    /// The name of its path in its dataset. Several items may share it.
     #[must_use]
     pub fn path_id(&self) -> String {
         match self {
@@ -159,20 +161,20 @@ impl Item {
     }
 }
 
-/// Refuses names that the run folder cannot use: it tells items apart by them, and names files after them.
+/// Refuses ids that the run folder cannot use, because items are found by them and files are named after them.
 ///
 /// # Errors
-/// When two items share a name, or one cannot be a file's.
+/// When two items share an id, or one cannot be part of a file name.
 pub fn check_names(items: &[Item]) -> Result<(), Error> {
     let mut seen = BTreeSet::new();
     for id in items.iter().map(Item::id) {
         ObjectId::new(id.as_str()).map_err(|error| {
-            Error::usage(format!("an item cannot be named so: {error}"), "change its id in the episodes file")
+            Error::usage(format!("an item's id cannot be used: {error}"), "change its id in the episodes file")
         })?;
         if !seen.insert(id.clone()) {
             return Err(Error::usage(
-                format!("item {id} comes twice"),
-                "give each item of the episodes file an id of its own",
+                format!("item {id} occurs twice"),
+                "give each item of the episodes file its own id",
             ));
         }
     }

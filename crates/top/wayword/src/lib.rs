@@ -1,6 +1,6 @@
 //! The command line of Wayword: configuration, wiring, progress, run folders and reports.
 //!
-//! A library beside the binary, so that the repository's own measurements run exactly what users run.
+//! This is a library beside the binary, so that `wayword-measure` runs exactly what users run.
 
 pub mod calls;
 pub mod cli;
@@ -20,6 +20,7 @@ pub mod output;
 pub mod pictures;
 pub mod pipeline;
 pub mod plan;
+pub mod platforms;
 pub mod report;
 pub mod run;
 pub mod settings;
@@ -28,4 +29,3 @@ pub mod styles;
 pub mod team;
 mod text_file;
 mod texts;
-pub mod world;

@@ -1,16 +1,16 @@
-//! When a command gives up, because what it needs is gone.
+//! Decides when a command gives up because its platform or service is gone.
 
 use wayword_core::Failure;
 
-/// So many items in a row whose world or service was lost end a command: the others would wait for the same.
+/// A command ends after this many lost items in a row, because the other items would be lost too.
 pub(crate) const MOST_IN_A_ROW: usize = 5;
 
-/// Items in a row that were lost.
+/// Number of lost items in a row.
 #[derive(Debug, Default)]
 pub(crate) struct Losses(usize);
 
 impl Losses {
-    /// Takes note of an item that failed so, or not at all. Returns whether that is enough.
+    /// Counts an item with this failure, or without one. Returns whether the command should end.
     pub(crate) fn are_enough(&mut self, failure: Option<Failure>) -> bool {
         self.0 = if failure == Some(Failure::Lost) { self.0 + 1 } else { 0 };
         self.0 >= MOST_IN_A_ROW

@@ -6,11 +6,11 @@ use wayword::{cli::Cli, commands, error::Exit, interrupt, output::Output};
 
 fn main() -> ExitCode {
     wayword_platforms::process::stand_guard_if_asked();
-    let tell = std::panic::take_hook();
+    let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        // A decoder that broke on a file is told of by the error about the file.
+        // If a decoder panics on a file, the error about that file reports it.
         if !wayword_core::contain::is_contained() {
-            tell(panic);
+            report(panic);
         }
     }));
     let cli = Cli::parse();
@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         Err(error) => {
             output.error(&error);
             match error.exit_code() {
-                // What an interrupt cut off looks like a call that was not let out, or a world that was lost.
+                // After an interrupt, a call that was not sent or a simulator that was ended looks like a failure.
                 Exit::Stopped | Exit::Lost if interrupt::is_asked() => Exit::Interrupted.into(),
                 code => code.into(),
             }

@@ -1,5 +1,5 @@
-//! The only place that writes to the terminal: data to standard output, talk and progress to standard error.
-#![allow(clippy::print_stdout, clippy::print_stderr)] // This is the place where that is done.
+//! The only place that writes to the terminal: results to standard output, messages and progress to standard error.
+#![allow(clippy::print_stdout, clippy::print_stderr)] // This file is the one place that prints.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use serde::Serialize;
@@ -10,22 +10,23 @@ use std::{
 };
 use wayword_world::said::is_unseen;
 
-/// How the program speaks.
+/// How the program prints.
 #[derive(Debug, Clone, Copy)]
 pub struct Output {
     json: bool,
     quiet: bool,
 }
 
-/// Longest error that is printed, characters: parsers quote the line that they choke on, however long.
+/// Longest error that is printed, characters, because parsers quote the whole line that they fail on.
 const MOST_ERROR_CHARS: usize = 1000;
 
-/// A text that may hold anything, made fit for a terminal. Whatever a model, a server, a child or a file says goes through here.
+/// A text without control characters. Every text from a model, a server, a child process or a file goes through here before it is
+/// printed.
 pub(crate) fn tame(text: &str) -> String {
     text.chars().map(|c| if is_unseen(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
 }
 
-/// The same for an error, which is cut where it is long.
+/// The same for an error, which is cut if it is long.
 fn tame_error(text: &str) -> String {
     let mut tamed = tame(&text.chars().take(MOST_ERROR_CHARS).collect::<String>());
     if text.chars().nth(MOST_ERROR_CHARS).is_some() {
@@ -34,7 +35,7 @@ fn tame_error(text: &str) -> String {
     tamed
 }
 
-/// JSON with what a terminal would obey written as JSON escapes it: the same values.
+/// The same JSON values, with control characters as JSON escapes.
 fn tame_json(json: &str) -> String {
     let mut tamed = String::with_capacity(json.len());
     for c in json.chars() {
@@ -48,28 +49,28 @@ fn tame_json(json: &str) -> String {
     tamed
 }
 
-/// A line of a child process, beside this program's own talk.
+/// Prints a line of a child process.
 pub(crate) fn pass_on(line: &str) {
     eprintln!("{}", tame_error(line));
 }
 
 impl Output {
-    /// `json`: data as JSON; `quiet`: no talk, no progress.
+    /// `json`: results as JSON; `quiet`: no messages, no progress.
     #[must_use]
     pub fn new(json: bool, quiet: bool) -> Self {
         Self { json, quiet }
     }
 
-    /// Whether data is wanted as JSON.
+    /// Whether results are printed as JSON.
     #[must_use]
     pub fn is_json(&self) -> bool {
         self.json
     }
 
-    /// Data: `value` as JSON where that is wanted, else the text. A reader that has gone away is no error.
+    /// Prints a result: `value` as JSON if that is wanted, else the text. A closed standard output is no error.
     pub fn data(&self, value: &impl Serialize, text: impl Display) {
         let line = if self.json {
-            // The name of a file need not be UTF-8, and JSON is.
+            // A file name that is not UTF-8 cannot be written as JSON.
             let json = serde_json::to_string(value);
             tame_json(&json.unwrap_or_else(|error| format!("{{\"error\":{:?}}}", error.to_string())))
         } else {
@@ -78,26 +79,26 @@ impl Output {
         let _ = writeln!(io::stdout(), "{}", line.trim_end());
     }
 
-    /// Talk.
+    /// Prints a message.
     pub fn say(&self, text: impl Display) {
         if !self.quiet {
             eprintln!("{}", tame(&text.to_string()));
         }
     }
 
-    /// An error.
+    /// Prints an error.
     pub fn error(&self, error: &impl Display) {
         let red = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
         eprintln!("{}: {}", if red { "\x1b[31merror\x1b[0m" } else { "error" }, tame_error(&error.to_string()));
     }
 
-    /// A progress bar; hidden where nobody looks.
+    /// A progress bar, hidden if standard error is not a terminal.
     #[must_use]
     pub fn progress(&self, total: usize, what: &'static str) -> ProgressBar {
         self.bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}{left}").with_prefix(what)
     }
 
-    /// A progress bar for bytes, whose number is told later; hidden where nobody looks.
+    /// A progress bar for bytes, whose length is set later; hidden if standard error is not a terminal.
     #[cfg(feature = "local")]
     #[must_use]
     pub fn bytes(&self) -> ProgressBar {
@@ -116,12 +117,12 @@ impl Output {
 fn style(template: &str) -> ProgressStyle {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     style.with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| {
-        // Where this cannot be written, the rest of the bar cannot either.
+        // If this cannot be written, the rest of the bar cannot either.
         let _ = out.write_str(&left(state.eta()));
     })
 }
 
-/// How long it still takes. Nobody knows before the first is done, and then nothing is said.
+/// The remaining time. It is not known before the first item is done, and empty then.
 fn left(eta: Duration) -> String {
     if eta.is_zero() { String::new() } else { format!("  {:#} left", HumanDuration(eta.max(Duration::from_secs(1)))) }
 }
@@ -132,7 +133,7 @@ mod tests {
     use indicatif::TermLike;
     use std::sync::{Arc, Mutex};
 
-    /// What is written to a terminal.
+    /// A terminal that keeps what is written to it.
     #[derive(Debug, Clone, Default)]
     struct Screen(Arc<Mutex<String>>);
 

@@ -1,4 +1,4 @@
-//! Pictures of a run's frames, as files.
+//! The pictures of a run's frames, as files.
 
 use crate::error::Error;
 use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::jpeg::JpegEncoder};
@@ -8,25 +8,28 @@ use std::{
 };
 use wayword_core::{Image, View};
 
-/// Quality of kept pictures, percent.
+/// JPEG quality of the pictures, percent.
 const JPEG_QUALITY: u8 = 80;
 
-/// A frame's picture as a JPEG file's bytes.
+/// The picture of a frame as the bytes of a JPEG file.
 #[derive(Debug, Clone)]
 pub struct Picture {
     frame: usize,
     jpeg: Vec<u8>,
 }
 
-/// Encodes what is seen ahead from each frame, where the platform has pictures.
+/// Encodes the picture ahead of each frame, if the platform has pictures.
 ///
 /// # Errors
-/// When the platform gave a picture that no JPEG can hold.
+/// When a picture cannot be encoded as JPEG.
 pub fn encode(ahead: &[View]) -> Result<Vec<Picture>, Error> {
     let images = ahead.iter().enumerate().filter_map(|(frame, view)| Some((frame, view.image.as_deref()?)));
     let encoded = images.map(|(frame, image)| {
         let jpeg = jpeg(image).map_err(|error| {
-            Error::usage(format!("the picture of frame {frame} cannot be kept: {error}"), "report this as a bug")
+            Error::usage(
+                format!("the picture of frame {frame} cannot be written as JPEG: {error}"),
+                "report this as a bug",
+            )
         })?;
         Ok(Picture { frame, jpeg })
     });
@@ -40,13 +43,13 @@ fn jpeg(image: &Image) -> Result<Vec<u8>, ImageError> {
     Ok(jpeg)
 }
 
-/// The file of a frame's picture.
+/// The file of the picture of a frame.
 #[must_use]
 pub fn file(folder: &Path, item: &str, frame: usize) -> PathBuf {
     folder.join(format!("{item}_{frame}.jpg"))
 }
 
-/// Writes pictures as ITEM_FRAME.jpg; `item` has been checked to be a file's name. Returns whether there were any.
+/// Writes pictures as ITEM_FRAME.jpg. The caller has checked that `item` can be part of a file name. Returns whether there were any.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -1,16 +1,16 @@
-//! The name that somebody meant who mistyped it.
+//! Suggestions for a mistyped name.
 
-/// How alike two names have to be, from 0 to 1: what clap asks of its own suggestions.
+/// Least similarity of a suggestion, from 0 to 1: the same as in clap's own suggestions.
 const ALIKE: f64 = 0.7;
 
-/// The name most like a word, where one is alike at all.
+/// The name most similar to a word, if any is similar enough.
 pub(crate) fn similar<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let word = word.to_lowercase();
     let rated = names.into_iter().map(|name| (strsim::jaro(&word, name), name));
     rated.filter(|(alike, _)| *alike > ALIKE).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
-/// A question that names it, as "; did you mean \"r2r\"?"; nothing where none is alike.
+/// The suggestion as "; did you mean \"r2r\"?", or nothing if no name is similar.
 pub(crate) fn did_you_mean<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> String {
     similar(word, names).map_or_else(String::new, |name| format!("; did you mean {name:?}?"))
 }

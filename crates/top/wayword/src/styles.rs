@@ -6,37 +6,37 @@ use std::path::Path;
 use wayword_core::{Constraints, Style, rng};
 use wayword_synthesis::style::{Profile, built_in, built_in_names, parse, validated};
 
-/// A style with what its references measure.
+/// A style with the measures of its reference texts.
 #[derive(Debug, Clone)]
 pub struct Measured {
     /// The style.
     pub style: Style,
-    /// What its references are like.
+    /// The measures.
     pub profile: Profile,
 }
 
-/// A style's name as a flag takes it: of a built-in style, a TOML file, or NAME=DATASET.
+/// The name of a style as a flag takes it: a built-in style, a TOML file, or NAME=DATASET.
 ///
 /// # Errors
-/// When it is none of these. Whether a file is there is seen when it is read.
+/// When it is none of these. Whether a file exists is checked when it is read.
 pub(crate) fn typed(name: &str) -> Result<String, String> {
     let names = built_in_names();
     if name.contains('=') || is_toml(name) || names.contains(&name) {
         return Ok(name.to_owned());
     }
     let (all, meant) = (names.join(", "), did_you_mean(name, names));
-    Err(format!("name {all}, a file that ends in .toml, or NAME=DATASET{meant}"))
+    Err(format!("give {all}, a file that ends in .toml, or NAME=DATASET{meant}"))
 }
 
 fn is_toml(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end == "toml")
 }
 
-/// How many texts of a dataset show its style: enough to measure, few enough for a prompt.
+/// Number of reference texts that are drawn from a dataset: enough to measure, few enough for a prompt.
 const FROM_DATASET: usize = 24;
 
-/// The styles of a run. A style is named as a built-in one, as a TOML file, or as NAME=DATASET: references from a dataset's
-/// own instructions (drawn by the seed), with the constraints of the built-in style of that name where there is one.
+/// The styles of a run. A name is that of a built-in style, a TOML file, or NAME=DATASET. The last draws reference texts from the
+/// instructions of a dataset (by the seed), and takes the constraints of the built-in style of that name, if there is one.
 ///
 /// # Errors
 /// When one cannot be found or read, or two have one name.
@@ -45,7 +45,7 @@ pub fn find(names: &[String], seed: u64) -> Result<Vec<Measured>, Error> {
     for name in names {
         let style = find_one(name, seed)?;
         if styles.iter().any(|other| other.style.name == style.name) {
-            return Err(Error::usage(format!("style {} is named twice", style.name), "name each style once"));
+            return Err(Error::usage(format!("style {} is given twice", style.name), "give each style once"));
         }
         styles.push(Measured { profile: Profile::measure(&style.references), style });
     }

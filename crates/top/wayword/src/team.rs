@@ -1,4 +1,4 @@
-//! The minds of a run: who asks, sees, sums up, writes, and finishes.
+//! The roles of a run: who asks, sees, summarises, writes, and writes if that fails.
 
 use crate::{
     calls::Calls,
@@ -10,15 +10,15 @@ use std::{fs, path::Path, sync::Arc};
 use wayword_core::{Answerer, LanguageModel};
 use wayword_synthesis::{
     dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
-    minds::Labels,
     models::{ModelAnswerer, ModelAsker, ModelSummariser, ModelWriter},
-    observe::Minds,
+    observe::Observers,
+    offline::Labels,
     prompts::{Manner, Prompts},
     repair::Writers,
     writer::{RulesWriter, Writer},
 };
 
-/// Who takes part in a run.
+/// Who plays the roles of a run.
 pub struct Team {
     asker: Box<dyn Asker>,
     answerer: Box<dyn Answerer>,
@@ -30,7 +30,7 @@ pub struct Team {
 }
 
 impl Team {
-    /// The minds that the settings name. `calls` reaches models, and is needed where there are any.
+    /// The roles that the settings name. `calls` is needed if a model plays one.
     ///
     /// # Errors
     /// When a model cannot be reached by its name, or a prompt cannot be used.
@@ -47,7 +47,7 @@ impl Team {
         let prompts = || Arc::clone(&prompts);
         let sees = model(&roles.see)?;
         let doubts = sees.is_some();
-        // Without a dialogue nobody asks and nobody sums up.
+        // Without a dialogue there is no asker and no summariser.
         let in_dialogue = |name: &str| if settings.has_dialogue() { model(name) } else { Ok(None) };
         let writes = model(&roles.write)?;
         let finisher = writes.is_some() && roles.finish == Finish::Rules;
@@ -78,10 +78,10 @@ impl Team {
         })
     }
 
-    /// Those who perceive.
+    /// Who asks, sees and summarises.
     #[must_use]
-    pub fn minds(&self) -> Minds<'_> {
-        Minds {
+    pub fn observers(&self) -> Observers<'_> {
+        Observers {
             asker: self.asker.as_ref(),
             answerer: self.answerer.as_ref(),
             summariser: self.summariser.as_ref(),
@@ -90,7 +90,7 @@ impl Team {
         }
     }
 
-    /// Those who write.
+    /// Who writes, and who writes if that fails.
     #[must_use]
     pub fn writers(&self) -> Writers<'_> {
         let finisher = self.finisher.as_ref().map(|finisher| finisher as &dyn Writer);
@@ -98,16 +98,16 @@ impl Team {
     }
 }
 
-/// The prompts, with those of the user's folder in their stead.
+/// The prompts, replaced by those of the user's folder.
 ///
 /// # Errors
-/// When the folder holds none, or one cannot be used.
+/// When the folder has none, or one cannot be used.
 pub fn prompts(settings: &Settings) -> Result<Prompts, Error> {
     let own = settings.roles.prompts.as_deref().map_or_else(|| Ok(Vec::new()), own_prompts)?;
     Ok(Prompts::new(&own)?)
 }
 
-/// Every template of a folder. One whose name no prompt has is misspelt, and would be paid for without being used.
+/// Every template of a folder. An unknown name is kept here and refused later, because a misspelt template would not be used.
 fn own_prompts(folder: &Path) -> Result<Vec<(String, String)>, Error> {
     let mut own = Vec::new();
     let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
@@ -120,8 +120,8 @@ fn own_prompts(folder: &Path) -> Result<Vec<(String, String)>, Error> {
     own.sort();
     if own.is_empty() {
         return Err(Error::usage(
-            format!("--prompts {}: it holds no prompt", folder.display()),
-            format!("put one of these files there: {}.j2", Prompts::names().collect::<Vec<_>>().join(".j2, ")),
+            format!("--prompts {}: this folder has no prompt", folder.display()),
+            format!("put one of these files into it: {}.j2", Prompts::names().collect::<Vec<_>>().join(".j2, ")),
         ));
     }
     Ok(own)

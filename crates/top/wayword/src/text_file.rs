@@ -1,4 +1,4 @@
-//! Small text files of a user's: read whole, within a bound.
+//! Reads small text files of the user, up to a limit.
 
 use crate::error::Error;
 use std::{
@@ -11,23 +11,23 @@ use wayword_world::files;
 /// Largest file that is read, bytes.
 const MOST_BYTES: u64 = 4 << 20;
 
-/// The text of a file, without the mark that Windows' editors put before it; `what` is told in errors ("read the settings").
+/// The text of a file, without a byte order mark. `what` says in errors what was tried ("read the settings").
 ///
 /// # Errors
-/// When it cannot be read, is no file (a pipe, say), is no UTF-8, or is larger than 4 MiB.
+/// When it cannot be read, is not a plain file (but a pipe, say), is not UTF-8, or is larger than 4 MiB.
 pub(crate) fn read(path: &Path, what: &'static str) -> Result<String, Error> {
-    let wrong = |reason: &str, hint: &str| Error::usage(format!("{}: it {reason}", path.display()), hint);
+    let wrong = |reason: &str, hint: &str| Error::usage(format!("{}: this {reason}", path.display()), hint);
     let about = fs::metadata(path).map_err(Error::io(path, what))?;
     if let Some(reason) = files::irregular(&about) {
-        return Err(wrong(reason, "name a file"));
+        return Err(wrong(reason, "give a file"));
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(Error::io(path, what))?;
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(Error::io(path, what))?;
     if bytes.len() as u64 > MOST_BYTES {
-        return Err(wrong("is larger than 4 MiB", "is it the right file?"));
+        return Err(wrong("is larger than 4 MiB", "check that this is the right file"));
     }
-    files::text(bytes).map_err(|reason| wrong(reason, "is it the right file?"))
+    files::text(bytes).map_err(|reason| wrong(reason, "check that this is the right file"))
 }
 
 #[cfg(test)]

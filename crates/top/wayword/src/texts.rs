@@ -1,4 +1,4 @@
-//! Sets of instructions by name: a run folder or a dataset file, by item.
+//! Sets of instructions, from a run folder or a dataset file, by item.
 
 use crate::{cli::By, episodes, error::Error, run::file};
 use std::{
@@ -10,7 +10,7 @@ use wayword_formats::{
     jsonl::{self, Record},
 };
 
-/// Items by their names.
+/// Items by id.
 pub(crate) type Items = BTreeMap<String, Texts>;
 
 /// The texts of one item.
@@ -21,15 +21,15 @@ pub(crate) struct Texts {
     pub(crate) texts: Vec<String>,
 }
 
-/// Reads a set: a run folder, or a file of any format, with `#STYLE` at the end where one style is meant.
+/// Reads a set: a run folder, or a file of any format, with `#STYLE` at the end to take one style.
 pub(crate) fn set(name: &str, style: Option<&str>, by: By) -> Result<Items, Error> {
     let (_, own_style) = split(name);
     let path = file_of(name);
     let texts = if wayword_formats::detect(&path)? == Format::Wayword {
         of_records(&path, own_style.or(style))?
     } else if let Some(style) = own_style {
-        let problem = format!("{}: items of this format have no style, so none is {style}", path.display());
-        return Err(Error::usage(problem, "leave the # and what follows out"));
+        let problem = format!("{}: texts of this format have no style, so none has style {style}", path.display());
+        return Err(Error::usage(problem, "leave out the # and what follows"));
     } else {
         of_episodes(&path)?
     };
@@ -47,7 +47,7 @@ pub(crate) fn file_of(name: &str) -> PathBuf {
     if path.is_dir() { path.join(file::INSTRUCTIONS) } else { path }
 }
 
-/// A name that is a file's or folder's is taken as it stands.
+/// Splits the style off a name. A name that exists as a file or folder is not split.
 fn split(name: &str) -> (PathBuf, Option<&str>) {
     match name.rsplit_once('#') {
         Some((path, style)) if !Path::new(name).exists() => (path.into(), Some(style)),
@@ -77,8 +77,10 @@ fn of_records(file: &Path, style: Option<&str>) -> Result<Vec<Said>, Error> {
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
     let all = styles.iter().cloned().collect::<Vec<_>>().join(", ");
     if style.is_none() && styles.len() > 1 {
-        let problem = format!("{}: it has several styles ({all}), which are not to be mixed", file.display());
-        return Err(Error::usage(problem, "name one with --style, or with #STYLE behind the folder"));
+        let problem = format!("{}: it has texts of several styles ({all}), and a set has one", file.display());
+        let set = format!("{}#{}", file.display(), styles.first().map_or("", String::as_str));
+        let hint = format!("name one style: in `similarity` as {set}, in `compare` as --instructions NAME={set}");
+        return Err(Error::usage(problem, hint));
     }
     if let Some(style) = style.filter(|style| !styles.contains(*style)) {
         let problem = format!("{}: it has no instruction of style {style}", file.display());

@@ -1,4 +1,5 @@
-//! `wayword check` from the outside: good texts pass, each kind of mistake is caught, and nothing passes without evidence.
+//! `wayword check` from the outside: good texts pass, each kind of mistake is caught, and nothing passes without
+//! evidence.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -7,7 +8,7 @@ mod common;
 use common::{Building, Ran};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
-use wayword::{pipeline::panoramas, run::settings_of, world};
+use wayword::{pipeline::panoramas, platforms, run::settings_of};
 use wayword_checks::Evidence;
 use wayword_synthesis::style::built_in;
 use wayword_testkit::{SCAN, viewpoint_id};
@@ -130,7 +131,7 @@ fn each_kind_of_mistake_is_caught_with_its_words() {
             "microwave",
         ),
         ("a reference's words", "r2r", copied, "leak", "pantry"),
-        ("one sentence", "r2r", "Leave the kitchen and stop at the lamp.".into(), "form", "1 sentences"),
+        ("one sentence", "r2r", "Leave the kitchen and stop at the lamp.".into(), "form", "1 sentence "),
         (
             "a task on an object of another room",
             "reverie",
@@ -175,7 +176,7 @@ fn each_text_of_a_run_is_held_to_the_style_that_it_was_written_in() {
     let (report, texts) = (ran.json(), lines.len() / 2);
     assert_eq!((ran.code, &report["styles"]), (Some(0), &json!({"reverie": texts, "r2r": texts})), "{report}");
 
-    // A coarse text of two sentences and without a task is a good fine one.
+    // A text of two sentences without a task is good in style r2r and fails in style reverie.
     let coarse = lines.iter().position(|line| line["style"] == "reverie").unwrap();
     lines[coarse]["text"] = "Walk on. Stop there.".into();
     (lines[coarse]["mentions"], lines[coarse]["findings"]) = (json!([]), json!([]));
@@ -187,13 +188,13 @@ fn each_text_of_a_run_is_held_to_the_style_that_it_was_written_in() {
     let failed: Vec<&Value> = wrong["findings"].as_array().unwrap().iter().map(|finding| &finding["check"]).collect();
     assert_eq!(failed, ["form", "task"]);
 
-    // `--style` holds for all.
+    // `--style` applies to all texts.
     lines.retain(|line| line["text"] == "Walk on. Stop there." || line["style"] == "r2r");
     building.write("told.jsonl", all(&lines));
     let report = check(&building, "told.jsonl", &["--style", "r2r", "--json"]).json();
     assert_eq!((&report["failed"], &report["styles"]), (&0.into(), &json!({"r2r": lines.len()})), "{report}");
 
-    // A style of a user's own is not known by its name.
+    // The name alone does not identify a user's own style.
     for line in &mut lines {
         line["provenance"]["style_hash"] = "0123456789abcdef".into();
     }
@@ -201,7 +202,7 @@ fn each_text_of_a_run_is_held_to_the_style_that_it_was_written_in() {
     let ran = check(&building, "told.jsonl", &[]);
     for (style, texts) in [("r2r", format!("{} texts", lines.len() - 1)), ("reverie", "1 text".to_owned())] {
         let told = format!(
-            "style {style} of this file is not the built-in one (a style of your own, or of another version), so the form of \
+            "style {style} in this file differs from the built-in one (it is your own, or of another version), so the form of \
              {texts} was not checked: name the style with --style"
         );
         assert!(ran.out.contains(&told), "{told}: {}", ran.out);
@@ -264,7 +265,7 @@ fn without_evidence_nothing_passes() {
         let (code, found) = findings(&building, text, style);
         assert!(code == Some(0) && found.iter().any(|(_, verdict, _)| verdict == "unverified"), "{text}: {found:?}");
     }
-    // What the path alone can tell is wrong is wrong all the same.
+    // A claim that the path alone shows to be wrong still fails.
     assert_eq!(findings(&building, &FINE.replace("right", "left"), "r2r").0, Some(3));
 }
 
@@ -283,7 +284,7 @@ fn a_wrong_colour_is_caught_in_a_house() {
         .wayword(&["generate", "--paths", "1", "--scan", "house-3", "--seed", "3", "--style", "r2r", "--out", "run"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let record = building.records("run").remove(0);
-    let platform = world::open(&settings_of(&building.path("run")).unwrap()).unwrap();
+    let platform = platforms::open(&settings_of(&building.path("run")).unwrap()).unwrap();
     let views = panoramas(platform.as_ref(), &record.path).unwrap();
     let evidence = Evidence::from_labels(&record.path, &views).unwrap();
     let mut colours: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();

@@ -1,7 +1,8 @@
-//! A world that is a child process ends with the program, in whichever way the program ends, and so does all that the child
-//! has started.
+//! A platform's child process ends with the program, however the program ends. So does everything that the child has
+//! started.
 //!
-//! Every process of a test carries the test's folder in its environment; whoever still carries it afterwards was left behind.
+//! Every process of a test has the test's folder in its environment. A process that still has it afterwards was left
+//! behind.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
@@ -22,7 +23,7 @@ use wayword_platforms::process::{ProcessOptions, ProcessPlatform, end_all};
 /// The variable that every process of a test has.
 const MARK: &str = "WAYWORD_TEST_FOLDER";
 
-/// A world that starts two processes: one that keeps its pipes open, and one that does not.
+/// A world program that starts two processes: one that keeps its pipes open, and one that does not.
 const WORLD: &str = r#"
 sleep 1000 &
 sleep 1000 <&- >&- 2>&- &
@@ -51,7 +52,7 @@ while read -r line; do
 done
 "#;
 
-/// A folder with the world in it. Dropped, whatever still runs is killed.
+/// A folder with the world program in it. When it is dropped, it kills what still runs.
 struct Stage(tempfile::TempDir);
 
 impl Stage {
@@ -67,7 +68,7 @@ impl Stage {
         self.0.path().join(name)
     }
 
-    /// A run in this world.
+    /// A run on this world program.
     fn generate(&self) -> Command {
         let mut command = common::command(&["generate", "--platform", "process", "--data", "world.json"]);
         command.args(["--paths", "1", "--hops", "2..4", "--metres", "4..20", "--style", "r2r", "--out", "run"]);
@@ -75,7 +76,7 @@ impl Stage {
         command
     }
 
-    /// This very test binary, as a program that plays a role in this world.
+    /// This test binary itself, as a program that plays a role with this world program.
     fn program(&self, role: &str) -> Command {
         let mut command = Command::new(std::env::current_exe().unwrap());
         command.args(["--exact", "the_program", "--nocapture"]).env("WAYWORD_TEST_ROLE", role);
@@ -84,7 +85,7 @@ impl Stage {
         command
     }
 
-    /// Starts a program and waits until the world hangs.
+    /// Starts a program and waits until the world program hangs.
     fn hung(&self, command: &mut Command) -> Child {
         let child = command.spawn().unwrap();
         wait_for(&self.path("hangs"));
@@ -112,7 +113,7 @@ impl Drop for Stage {
     }
 }
 
-/// The processes that carry a folder; one that waits to be reaped does not run.
+/// The processes that have a folder in their environment. A process that waits to be reaped does not count as running.
 fn running(folder: &Path) -> Vec<u32> {
     let mark = format!("{MARK}={}\0", folder.display()).into_bytes();
     let carries = |pid: &u32| {
@@ -136,7 +137,7 @@ fn wait_for(file: &Path) {
     }
 }
 
-/// Plays a program where the environment names a role, and is an empty test otherwise.
+/// Plays a program if the environment names a role. Otherwise this is an empty test.
 #[test]
 fn the_program() {
     let Ok(role) = std::env::var("WAYWORD_TEST_ROLE") else { return };
@@ -187,7 +188,7 @@ fn a_run_that_fails_leaves_nothing_running() {
         let asked = Instant::now();
         let ran = common::run(&mut stage.generate());
         assert_ne!(ran.code, Some(0), "{ran:?}");
-        // What the world has started keeps its output open; that it died is told nevertheless.
+        // A process that the world program started keeps its output open; the run reports the death nevertheless.
         assert!(asked.elapsed() < Duration::from_secs(30), "{ran:?}");
         stage.nothing_is_left();
     }
@@ -198,7 +199,7 @@ fn a_run_that_is_ended_while_its_world_hangs_leaves_nothing_running() {
     for with in ["-TERM", "-INT", "-HUP", "-KILL"] {
         let stage = Stage::new("hangs");
         let mut program = stage.hung(stage.generate().stdout(Stdio::null()).stderr(Stdio::null()));
-        // The program, the guard, the world, and two that the world has started.
+        // The program, the guard, the world program, and two processes that the world program has started.
         assert!(stage.running().len() >= 5, "{:?}", stage.running());
         signal(program.id(), with);
         assert_ne!(program.wait().unwrap().code(), Some(0), "{with}");

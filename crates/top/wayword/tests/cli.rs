@@ -1,4 +1,4 @@
-//! The command line itself: help, exit codes, completions, the demo, and what wrong input is told.
+//! The command line itself: help, exit codes, completions, the demo, and the errors for wrong input.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -27,7 +27,7 @@ fn the_examples_of_the_help_are_command_lines_that_can_be_read() {
     use clap::{CommandFactory, Parser};
     use wayword::cli::Cli;
     for name in COMMANDS {
-        // Not as printed: a narrow terminal breaks the lines.
+        // Unwrapped, because a narrow terminal would break the lines.
         let told = Cli::command().find_subcommand(name).unwrap().get_after_long_help().unwrap().to_string();
         let lines: Vec<&str> = told.lines().map(str::trim).filter(|line| line.starts_with("wayword ")).collect();
         assert!(!lines.is_empty());
@@ -45,7 +45,7 @@ fn exit_codes_are_told_in_the_help_and_kept() {
     for code in 0..=4 {
         assert!(codes.lines().any(|line| line.trim().starts_with(&format!("{code}  "))), "{codes}");
     }
-    // 0, 3 and 4 are kept where they belong: in the tests of generate and check.
+    // The tests of generate and check cover the codes 0, 3 and 4.
     assert_eq!(run(&mut command(&["generate"])).code, Some(2));
     assert_eq!(run(&mut command(&["generate", "--out", "x", "--frames", "sideways"])).code, Some(2));
     assert_eq!(run(&mut command(&["no-such-command"])).code, Some(2));
@@ -84,7 +84,7 @@ fn the_demo_shows_a_walk_with_both_instructions_and_writes_its_report() {
     assert!(page.contains("data:image/jpeg;base64,") && page.contains("<svg"), "pictures and a map");
     assert!(!page.contains("http://") || !page.contains("src=\"http"), "nothing is fetched");
 
-    // The same command goes on where there is nothing left to do.
+    // The same command succeeds when there is nothing left to do.
     let again = run(command(&["demo", "--json"]).current_dir(folder.path())).json();
     assert_eq!(again["records"].as_array().unwrap().len(), 2, "{again}");
 }
@@ -99,10 +99,10 @@ fn a_report_is_written_for_a_run_and_refused_for_what_is_none() {
     assert!(building.path("run/report.html").is_file());
     let before = files(&building.path("."));
     for (given, told) in [
-        ("data", ["--run data: it is no run folder", "`wayword generate`"]),
+        ("data", ["--run data: it is not a run folder", "`wayword generate`"]),
         ("nowhere", ["--run nowhere: there is no such folder", "`wayword compare`"]),
         ("run/walks.jsonl", ["it is a file", "--run run"]),
-        (".", ["it is no run folder", "--run ./run"]),
+        (".", ["it is not a run folder", "--run ./run"]),
     ] {
         let ran = building.wayword(&["report", "--run", given]);
         assert!(told.iter().all(|told| ran.refused().contains(told)), "{ran:?}");
@@ -120,7 +120,7 @@ fn a_house_is_saved_with_its_navigation_data() {
     assert!(serde_json::from_slice::<Value>(&navigation).unwrap().is_object());
 }
 
-/// Runs a command that has to be refused, and makes sure that it left nothing behind.
+/// Runs a command that has to be refused, and checks that it left nothing behind.
 fn refused(building: &Building, arguments: &[&str]) -> String {
     let before = files(&building.path("."));
     let ran = building.wayword(arguments);
@@ -147,13 +147,13 @@ fn wrong_flags_are_refused_with_what_is_wrong_and_what_to_do() {
         (&["--hops=-1..3"], &["--hops -1..3"]),
         (&["--metres", "NaN..3"], &["--metres NaN..3"]),
         (&["--paths", "2000000"], &["2000000", "1000000"]),
-        (&["--episodes", EPISODES, "--paths", "3"], &["--episodes", "--paths", "exclude"]),
+        (&["--episodes", EPISODES, "--paths", "3"], &["--episodes", "--paths", "cannot be combined"]),
         (&["--episodes", "nowhere.json"], &["nowhere.json"]),
         (&["--config", "nowhere.toml"], &["nowhere.toml"]),
         (&["--config", "wrong.toml"], &["\"matterprot\"; did you mean \"matterport\"?", "house, matterport"]),
-        (&["--paths", "0"], &["--paths 0: no path would be walked", "leave it out"]),
+        (&["--paths", "0"], &["--paths 0 asks for no path", "leave the flag out"]),
         (&["--episodes", EPISODES, "--paths", "0"], &["--paths 0"]),
-        (&["--limit", "0"], &["--limit 0: no item would be left", "leave it out"]),
+        (&["--limit", "0"], &["--limit 0 leaves no item", "leave the flag out"]),
     ];
     for (arguments, told) in cases {
         let is_whole = arguments.iter().any(|argument| ["--platform", "wrong.toml"].contains(argument));
@@ -172,7 +172,7 @@ fn wrong_flags_are_refused_with_what_is_wrong_and_what_to_do() {
     assert!(error.contains("data/r2r"), "{error}");
 }
 
-/// What nobody can read to its end, or keep by its name, is told at once and as what it is.
+/// The program refuses a pipe, which has no end, and a name that is not UTF-8. The error says which of the two it is.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pipe_for_a_dataset_and_a_name_that_is_no_text_are_refused() {
@@ -194,11 +194,11 @@ fn a_pipe_for_a_dataset_and_a_name_that_is_no_text_are_refused() {
     let named = std::ffi::OsStr::from_bytes(b"da\xffta");
     fs::rename(building.data(), building.path(".").join(named)).unwrap();
     let ran = run(building.command(&["generate", "--platform", "matterport", "--out", "run"]).arg("--data").arg(named));
-    assert!(ran.refused().contains("not UTF-8") && !ran.err.contains("bug"), "{ran:?}");
+    assert!(ran.refused().contains("not valid UTF-8") && !ran.err.contains("bug"), "{ran:?}");
     assert!(!building.path("run").exists());
 }
 
-/// The episodes with something done to the second of them.
+/// The episodes, with the second one changed by `spoil`.
 fn broken(building: &Building, spoil: impl Fn(&mut Value)) -> &'static str {
     let mut items: Value = serde_json::from_slice(&fs::read(building.reverie()).unwrap()).unwrap();
     spoil(&mut items[1]);
@@ -318,7 +318,7 @@ fn a_run_over_buildings_without_boxes_says_what_lacks_and_what_to_do() {
         ran.err
     };
     let told = matterport("data/matterport");
-    assert!(told.contains("warning: data/matterport: no boxes of REVERIE's"), "{told}");
+    assert!(told.contains("warning: data/matterport: there are no REVERIE boxes"), "{told}");
     assert!(told.contains("hint: give the folder above it") && told.contains("/data\n"), "{told}");
     assert_eq!(matterport("data"), "");
 }

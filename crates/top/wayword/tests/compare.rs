@@ -1,4 +1,4 @@
-//! `wayword compare`: agents walk a made-up building by what people wrote and by what a run wrote.
+//! `wayword compare`: agents walk through a made-up building by people's instructions and by those of a run.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -66,7 +66,7 @@ fn the_table_has_agents_floors_and_ceilings() {
     assert!(ran.out.contains("not perception") && ran.out.contains("clip-nav"), "{}", ran.out);
 }
 
-/// The agents' own trajectories are what the evaluator takes, and it finds what the table says.
+/// The evaluator accepts the agents' trajectories, and its figures equal those of the table.
 #[test]
 fn the_submissions_evaluate_to_the_tables_figures() {
     let building = Building::new();
@@ -107,7 +107,7 @@ fn the_report_shows_walks_that_succeed_and_walks_that_do_not() {
     assert_eq!(compare(&building, REVERIE, &sets).code, Some(0));
     let page = || fs::read_to_string(building.path("walked/report.html")).unwrap();
     assert!(!page().contains("<article "));
-    // The page needs the world and the episodes alone.
+    // The page needs only the platform and the episodes.
     fs::remove_dir_all(building.path("run")).unwrap();
     let ran = building.wayword(&["report", "--run", "walked", "--items", "30"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
@@ -140,11 +140,11 @@ fn what_agents_decide_by_can_be_changed_by_name() {
     assert_eq!(rate(&found, "clip-nav", Some("original")), 0.0, "who may not walk does not arrive");
     for (text, told) in [
         ("[clip-nav]\nstop = 1\n", "unknown field"),
-        ("[glip-nav]\nmax_hops = 3\n", "no agent named glip-nav walks"),
+        ("[glip-nav]\nmax_hops = 3\n", "no agent of this command is named glip-nav"),
         ("[clip-nav]\nmax_hops = 5000\n", "at most 1000"),
         ("[clip-nav]\nstop_threshold = nan\n", "a finite number"),
         ("[clip-nav.back]\nwindow = 3\nthreshold = 0.1\nnodes = 1\n", "never goes back"),
-        ("clip-nav = 3\n", "are a table"),
+        ("clip-nav = 3\n", "must be a table"),
     ] {
         fs::write(building.path("p.toml"), text).unwrap();
         let ran = compare(&building, R2R, &args);
@@ -157,14 +157,14 @@ fn what_makes_no_sense_is_refused_and_leaves_no_folder() {
     let building = Building::new();
     building.run_over_episodes("run");
     for (args, told) in [
-        (vec!["--agents", "clip-nav,clip-nav"], "it comes twice"),
-        (vec!["--instructions", "ours"], "that names no set"),
-        (vec!["--instructions", "original", "--instructions", "original"], "comes twice"),
+        (vec!["--agents", "clip-nav,clip-nav"], "is named twice"),
+        (vec!["--instructions", "ours"], "does not name a set"),
+        (vec!["--instructions", "original", "--instructions", "original"], "is used twice"),
         (vec!["--instructions", "ours=run"], "several styles"),
-        (vec!["--instructions", "none=run#reverie"], "that names no set"),
-        (vec!["--instructions", "..=run#reverie"], "that names no set"),
-        (vec!["--instructions", "a=run#r2r", "--instructions", "A=run#reverie"], "comes twice"),
-        (vec!["--swaps", "none,directions"], "none beside others"),
+        (vec!["--instructions", "none=run#reverie"], "does not name a set"),
+        (vec!["--instructions", "..=run#reverie"], "does not name a set"),
+        (vec!["--instructions", "a=run#r2r", "--instructions", "A=run#reverie"], "is used twice"),
+        (vec!["--swaps", "none,directions"], "together with others"),
         (vec!["--swaps", "sentences,sentences"], "a swap twice"),
         (vec!["--grounder", "magic"], "there is no such grounder"),
         (vec!["--grounder", "hf/openai/clip-vit-base-patch32"], "no GLIP network"),
@@ -206,7 +206,7 @@ fn generated_houses_can_be_walked_by_their_own_instructions() {
     assert_eq!(rate(&comparison(&building), "oracle", None), 1.0);
 }
 
-/// What no walk could mend is told before any walk, with its place.
+/// The program reports a wrong episode, with its place, before any agent walks.
 #[test]
 fn an_episode_that_does_not_fit_its_scene_is_refused_before_anybody_walks() {
     let building = Building::new();
@@ -228,7 +228,7 @@ fn texts_of_several_styles_are_not_mixed() {
     assert_eq!(compare(&building, "run/instructions.jsonl", &apart).code, Some(0));
     let found = comparison(&building);
     assert_eq!(found["sets"][0]["texts"], found["about"]["items"]);
-    // Items of one path are one cluster, whatever file they are read from.
+    // Items of one path are one cluster, also when they come from different files.
     let (items, paths) = (found["about"]["items"].as_u64().unwrap(), found["about"]["paths"].as_u64().unwrap());
     let of_dataset: Vec<Value> = serde_json::from_str(&fs::read_to_string(building.reverie()).unwrap()).unwrap();
     let distinct: std::collections::BTreeSet<String> =
@@ -244,11 +244,11 @@ fn a_page_is_made_of_what_was_compared_or_not_at_all() {
     assert_eq!(report().code, Some(0));
     let episodes = fs::read_to_string(building.r2r()).unwrap();
     fs::write(building.r2r(), format!("{episodes} ")).unwrap();
-    assert!(report().refused().contains("it has changed"));
+    assert!(report().refused().contains("has changed since"));
     fs::write(building.r2r(), episodes).unwrap();
     fs::remove_file(building.path("walked/comparison.json")).unwrap();
     assert!(report().refused().contains("not finished"));
-    // The rule can be changed: no walk hangs on it.
+    // The rule can be changed, because the walks do not depend on it.
     let ran = compare(&building, R2R, &["--swaps", "none", "--rule", "distance", "--resamples", "300"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
 }

@@ -9,7 +9,7 @@ use common::{Building, EPISODES, Ran, run};
 use std::{fs, path::Path};
 use wayword_testkit::provider::{Behaviour, Dialect, Heard, Provider, Script};
 
-/// Takes every instruction apart in the same way; says nothing useful where it is told of a pillow.
+/// Takes every instruction apart in the same way. The reply to an instruction with a pillow is useless.
 struct Splits;
 
 impl Script for Splits {
@@ -33,7 +33,7 @@ fn a_model_takes_instructions_apart_and_each_is_paid_once() {
     let base = provider.base_url(Dialect::OpenAi);
     let args = ["--split", "server/words", "--base-url", &base];
     let ran = compare(&building, "first", &args);
-    // The items with a pillow could not be taken apart: they are told, and left out.
+    // The items with a pillow could not be taken apart: they are reported and left out.
     assert_eq!(ran.code, Some(3), "{ran:?}");
     assert!(ran.err.contains("item ") && ran.err.contains("words"), "{ran:?}");
     let walks = building.lines("first/walks.jsonl");
@@ -72,7 +72,7 @@ fn a_budget_stops_it_and_the_same_command_goes_on() {
 fn clip_in_process_looks_at_pictures() {
     let building = Building::new();
     wayword_testkit::write_distinct_skyboxes(&building.data()).unwrap();
-    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../minds/wayword-local/fixtures/clip");
+    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/wayword-local/fixtures/clip");
     let name = format!("hf/{}", fixture.canonicalize().unwrap().display());
     let ran = compare(&building, "walked", &["--grounder", &name, "--limit", "2"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");

@@ -1,4 +1,4 @@
-//! A decoder that panics on a broken file is told of by an error about the file, and by nothing else.
+//! When a decoder panics on a broken file, the user sees an error about the file and nothing else.
 
 #![cfg(feature = "habitat")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -10,7 +10,7 @@ use common::Building;
 #[test]
 fn a_decoder_that_panics_is_not_heard() {
     let building = Building::new();
-    // The reader of glTF takes the header's twelve bytes from the length of none that it announces.
+    // The header announces a length of 0. The glTF reader subtracts the header's 12 bytes from it, and panics.
     let glb = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &0_u32.to_le_bytes(), &[0; 20]].concat();
     std::fs::write(building.path("broken.glb"), glb).unwrap();
     let ran = building.wayword(&[

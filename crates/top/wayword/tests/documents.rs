@@ -1,5 +1,5 @@
-//! The commands of README.md, docs/*.md and `--help`: each is read by the real command line, and each that needs nothing but this
-//! program is run.
+//! The commands of README.md, docs/*.md and `--help`. The real command line reads each of them, and the test runs each
+//! that needs only this program.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use std::{collections::BTreeSet, path::Path};
 use wayword::cli::Cli;
 use wayword_testkit::documents::{self, Documented};
 
-/// Commands that a test cannot run, by words that give them away, and what they need. All others are run.
+/// Commands that a test cannot run: a word by which to recognise them, and what they need. The test runs all others.
 const NEEDS: [(&str, &str); 11] = [
     ("data/scene_datasets", "HM3D"),
     ("--platform matterport", "Matterport3D's files"),
@@ -25,14 +25,14 @@ const NEEDS: [(&str, &str); 11] = [
     ("hf/", "weights from the hub"),
 ];
 
-/// Subcommands that a test cannot run, whatever their arguments, and what they need.
+/// Subcommands that a test cannot run with any arguments, and what they need.
 const COMMANDS_NEED: [(&str, &str); 2] =
     [("ledger", "a ledger, which calls of models make"), ("similarity", "the weights of a sentence encoder")];
 
-/// The most that a command is run with, where the document has more: a reader waits, a test does not.
+/// The largest values that the test runs a command with, because a document's larger ones would take too long.
 const AT_MOST: [(&str, u32); 3] = [("--paths", 1), ("--views", 5), ("--smooth", 1)];
 
-/// How commands may end that a reader is told to type: done, or done with loss that is told.
+/// The exit codes that a documented command may end with: done, or done with loss.
 const GOOD: [Option<i32>; 2] = [Some(0), Some(3)];
 
 fn documented() -> Vec<Documented> {
@@ -43,18 +43,19 @@ fn documented() -> Vec<Documented> {
     commands
 }
 
-/// What a command needs that no test has; none for those that are run.
+/// What a command needs that no test has; `None` for a command that the test runs.
 fn needs(command: &Documented) -> Option<&'static (&'static str, &'static str)> {
     let line = format!("{} ", command.args.join(" "));
     NEEDS.iter().find(|(word, _)| line.contains(word)).or_else(|| {
-        // By its place and not by its letters: `--ledger FILE` is a flag of many commands.
+        // Only the subcommand counts, because `--ledger FILE` is a flag of many commands.
         let known = Cli::command();
         let subcommand = command.args.iter().find(|word| known.find_subcommand(word).is_some())?;
         COMMANDS_NEED.iter().find(|(name, _)| name == subcommand)
     })
 }
 
-/// The name of a command within the text, as in "`wayword ledger export` writes": there is nothing to be typed in it.
+/// Whether this is only a command's name within the text, as in "`wayword ledger export` writes", and not a command to
+/// type.
 fn is_a_name(command: &Documented) -> bool {
     let mut known = Cli::command();
     for word in &command.args {
@@ -99,8 +100,8 @@ fn every_example_of_the_help_is_read_by_the_command_line() {
     assert!(examples > 30, "{examples} examples");
 }
 
-/// The lines of a help text that are typed: those that begin with the program, and those that these go on in. A remark stands behind
-/// several blanks.
+/// The lines of a help text that a user types: those that begin with the program, and their continuations. Several
+/// blanks separate a remark.
 fn typed(help: &str) -> String {
     let mut lines = Vec::new();
     let mut goes_on = false;
@@ -131,7 +132,7 @@ fn a_command_with_a_ledger_of_its_own_needs_nothing_else() {
     assert!(!needs_of("wayword generate --paths 1 --ledger calls.db --out runs/a"));
 }
 
-/// In one folder and in the order of the documents, because a reader's later commands use what the earlier ones have made.
+/// In one folder and in the order of the documents, because later commands use what earlier ones have made.
 #[test]
 fn every_command_that_needs_nothing_else_does_what_the_documents_say() {
     let folder = tempfile::tempdir().unwrap();
@@ -152,7 +153,7 @@ fn every_command_that_needs_nothing_else_does_what_the_documents_say() {
         let ended = common::run(&mut process);
         assert!(
             GOOD.contains(&ended.code),
-            "{}: {args:?}: mend it, or say in NEEDS what it needs: {ended:?}",
+            "{}: {args:?}: correct it, or say in NEEDS what it needs: {ended:?}",
             command.place
         );
     }

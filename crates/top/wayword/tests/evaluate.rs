@@ -24,7 +24,7 @@ fn is(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
 }
 
-/// The building's graph, read from its own file without a line of the program's.
+/// The building's graph, read from its file without the program's code.
 struct Graph {
     names: Vec<String>,
     at: Vec<[f64; 3]>,
@@ -57,7 +57,7 @@ impl Graph {
         self.places(trajectory).windows(2).map(|pair| self.hop_m(pair[0], pair[1])).sum()
     }
 
-    /// From a trajectory's start to its end by the shortest way (Bellman and Ford).
+    /// The length of the shortest way from a trajectory's start to its end (Bellman and Ford).
     fn shortest_m(&self, trajectory: &Value) -> f64 {
         let places = self.places(trajectory);
         let mut far_m = vec![f64::INFINITY; self.names.len()];
@@ -159,7 +159,7 @@ fn the_table_names_rules_intervals_and_numbers() {
         "SR       100.0 %    100.0 to 100.0 %",
         "NE (m)     0.00     0.00 to 0.00",
         "no trajectory names an object",
-        "intervals of 95 %, clustered by path",
+        "with 95 % intervals, clustered by path",
     ] {
         assert!(ran.out.contains(told), "{told:?} is not in\n{}", ran.out);
     }
@@ -376,7 +376,8 @@ fn a_limit_takes_the_first_items_alone() {
     let numbers = ["instructions", "items", "limit", "left_out"].map(|name| found[name].as_u64().unwrap());
     assert_eq!(numbers, [6, 3, 3, 13]);
     let shown = evaluate(&building, &submitted, R2R, &["--limit", "3"]);
-    let told = format!("only the first 3 items of {R2R} count; left out for later ones: 13 trajectories");
+    let told =
+        format!("only the first 3 items of {R2R} count; left out, because they are for later items: 13 trajectories");
     assert!(shown.out.lines().nth(1).is_some_and(|line| line == told), "{shown:?}");
     let alone = report(&evaluate(&building, &submitted[..6], R2R, &["--limit", "3", "--json"]));
     assert_eq!((&alone["rules"], &alone["left_out"]), (&found["rules"], &json!(0)));
@@ -391,10 +392,10 @@ fn a_dataset_or_a_folder_is_named_as_what_it_is_and_not_item_by_item() {
     building.run_over_episodes("run");
     fs::create_dir_all(building.path("table/submissions")).unwrap();
     for (given, told) in [
-        (R2R, "it is a dataset (format r2r), and no submission"),
-        (EPISODES, "it is a dataset (format reverie), and no submission"),
-        ("run/instructions.jsonl", "it is a dataset (format wayword), and no submission"),
-        ("run", "it is a folder, and no submission"),
+        (R2R, "it is a dataset (format r2r), not a submission"),
+        (EPISODES, "it is a dataset (format reverie), not a submission"),
+        ("run/instructions.jsonl", "it is a dataset (format wayword), not a submission"),
+        ("run", "it is a folder, not a submission"),
         ("table", "name one of the files in table/submissions"),
     ] {
         let ran = evaluate_file(&building, given, R2R, &[]);

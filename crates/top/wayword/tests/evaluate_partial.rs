@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use std::fs;
 use submissions::{R2R, annotated, evaluate, evaluate_file, problems, report};
 
-/// What `wayword compare` leaves of `original`, held against a set that lacks two items.
+/// The submission of `original` that `wayword compare` writes when it is compared with a set that lacks two items.
 fn compared(building: &Building) -> &'static str {
     let ran = building.generate("run", &["--episodes", EPISODES, "--style", "reverie"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
@@ -34,7 +34,7 @@ fn a_comparison_s_own_submission_is_scored_with_partial_and_its_extent_is_told()
     assert!(refused.code == Some(1) && refused.err.contains("score the others with --partial"), "{refused:?}");
     let shown = evaluate_file(&building, submission, EPISODES, &["--partial"]);
     assert_eq!(shown.code, Some(0), "{shown:?}");
-    let told = format!("partial: these are 16 of 20 instructions and 8 of 10 items of {EPISODES}");
+    let told = format!("partial: 16 of 20 instructions and 8 of 10 items of {EPISODES} are scored");
     assert!(shown.out.contains(&told), "{shown:?}");
     let found = report(&evaluate_file(&building, submission, EPISODES, &["--partial", "--json"]));
     let numbers = ["instructions", "of_instructions", "items", "of_items"].map(|name| found[name].as_u64().unwrap());
@@ -53,7 +53,7 @@ fn partial_overlooks_what_is_missing_and_nothing_else() {
     let found = problems(&evaluate(&building, &submitted, R2R, &["--partial", "--json"]));
     assert_eq!(found.len(), 2, "{found:#?}");
     let mixed = evaluate(&building, &submitted, R2R, &[]);
-    let told = "fix the problems listed above; --partial overlooks 15 instructions";
+    let told = "fix the problems listed above; --partial skips 15 instructions";
     assert!(mixed.err.contains(told), "{mixed:?}");
     let none = evaluate(&building, &[], R2R, &["--partial"]);
     assert!(none.refused().contains("no instruction has a trajectory"), "{none:?}");

@@ -1,4 +1,4 @@
-//! `wayword export` from the outside: every format is read back with the texts and paths of the run.
+//! `wayword export` as a user runs it: every format, read back, has the texts and paths of the run.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -91,7 +91,7 @@ fn what_is_exported_as_reverie_keeps_the_ids_of_its_episodes() {
     assert_eq!(ids("out.json"), ids(common::EPISODES));
 }
 
-/// Two short walks in houses, of which pictures are drawn: one scene each.
+/// Two short paths through houses, in two scenes, with pictures.
 fn houses(building: &Building) {
     for (out, scene) in [("a", "house-3"), ("b", "house-4")] {
         let arguments = ["generate", "--paths", "1", "--metres", "5..7", "--scan", scene, "--seed"];
@@ -154,7 +154,7 @@ fn vlnce_says_how_habitat_gets_a_generated_house() {
         (&"house/house-3/house-3.glb".into(), &needs.into())
     );
     assert_eq!(episode["info"]["geodesic_distance_over"], "frames");
-    // What it says to do puts the file there.
+    // The command that `scene_needs` names writes the file to this place.
     assert_eq!(building.wayword(&["house", "--seed", "3", "--out", "SCENES/house/house-3"]).code, Some(0));
     assert!(building.path("SCENES").join(episode["scene_id"].as_str().unwrap()).is_file());
 }
@@ -181,7 +181,7 @@ fn vlnce_says_over_what_a_distance_was_measured_and_what_a_recording_lacks() {
     let (said, episode) = export("recording.json");
     assert_eq!(episode["scene_id"], format!("recording/{scan}/{scan}.glb"));
     let needs = episode["info"]["scene_needs"].as_str().unwrap();
-    assert!(needs.contains("put a scene of yours at SCENES/recording/") && said.contains(needs), "{needs}: {said}");
+    assert!(needs.contains("put your own scene at SCENES/recording/") && said.contains(needs), "{needs}: {said}");
 }
 
 #[test]
@@ -191,10 +191,14 @@ fn bad_combinations_are_refused_with_what_to_do() {
     let before = files(&building.path("."));
     let cases: [(&[&str], &str, &str); 7] = [
         (&["--run", "run", "--format", "reverie"], "does not say which style", "--style"),
-        (&["--run", "run", "--run", "run", "--style", "r2r", "--format", "r2r"], "very instruction", "leave one"),
+        (
+            &["--run", "run", "--run", "run", "--style", "r2r", "--format", "r2r"],
+            "already has the same instruction",
+            "leave one",
+        ),
         (&["--run", "run", "--style", "r2r", "--format", "r2r", "--val-share", "0.1"], "no splits", "--format wayword"),
-        (&["--run", "run", "--format", "wayword", "--val-share", "1.5"], "no share", "from 0 to 1"),
-        (&["--run", "run", "--format", "wayword", "--val-share", "nan"], "no share", "from 0 to 1"),
+        (&["--run", "run", "--format", "wayword", "--val-share", "1.5"], "is not a share", "from 0 to 1"),
+        (&["--run", "run", "--format", "wayword", "--val-share", "nan"], "is not a share", "from 0 to 1"),
         (&["--run", "run", "--style", "poem", "--format", "r2r"], "no instruction to export", "r2r, reverie"),
         (&["--run", "nowhere", "--style", "r2r", "--format", "r2r"], "nowhere", "instructions.jsonl"),
     ];
@@ -222,7 +226,7 @@ fn a_recording_without_poses_is_exported_as_records_alone() {
             assert!(jsonl::read(&building.path("o")).unwrap().iter().all(|record| !record.path.motion.is_known()));
         } else {
             let error = ran.refused();
-            assert!(error.contains("demands poses") && error.contains("--format wayword"), "{error}");
+            assert!(error.contains("needs poses") && error.contains("--format wayword"), "{error}");
             assert!(!building.path("o").exists());
         }
     }

@@ -1,4 +1,5 @@
-//! What fails is told by its kind, kept apart from what was judged, and tried again by the same command.
+//! The program reports a failure with its kind, keeps it apart from rejected texts, and the same command tries it
+//! again.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
@@ -16,7 +17,7 @@ use std::{
     time::Duration,
 };
 
-/// Everything in a run folder but the lock.
+/// Every file of a run folder except the lock.
 fn contents(building: &Building, run: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = files(&building.path(run));
     files.remove(&PathBuf::from("run.lock"));
@@ -52,7 +53,7 @@ fn an_interrupt_without_models_has_a_code_of_its_own_and_loses_nothing() {
 
 #[test]
 fn an_interrupt_ends_a_command_that_keeps_nothing_with_the_same_code() {
-    // It waits for a build of ThreeDWorld that never comes.
+    // It waits for a build of ThreeDWorld, which never connects.
     let building = Building::new();
     let args =
         ["view", "map", "--platform", "tdw", "--at", "127.0.0.1:0", "--scan", "floorplan_1a", "--out", "map.svg"];
@@ -96,7 +97,7 @@ fn a_run_can_be_asked_for_more_paths_and_items_and_for_no_fewer() {
     let more = fs::read(building.path("run/instructions.jsonl")).unwrap();
     assert!(more.starts_with(&first) && building.records("run").len() == 10);
     assert_eq!(building.generate("run", &paths("10")).code, Some(0), "the raised command goes on");
-    assert!(building.generate("run", &paths("6")).refused().contains("holds a run of 10 paths, and 6 are asked for"));
+    assert!(building.generate("run", &paths("6")).refused().contains("holds a run of 10 paths, but 6 are asked for"));
 
     let limit = |number: &'static str| ["--episodes", common::EPISODES, "--style", "r2r", "--limit", number];
     assert_eq!(building.generate("limited", &limit("1")).code, Some(0));
@@ -162,12 +163,12 @@ fn a_run_is_not_continued_in_a_world_that_has_changed() {
 fn what_all_items_lack_ends_the_run_before_each_has_failed_of_it() {
     let building = Building::new();
     wayword_testkit::write_skyboxes(&building.data()).unwrap();
-    // Graphs and photographs alone: a model would have to see.
+    // There are only graphs and photographs, so a model would have to see.
     for known in ["reverie", "matterport/v1/scans/madeUpHouse/house_segmentations"] {
         let _ = fs::remove_dir_all(building.data().join(known));
     }
     let ran = building.generate("run", &["--paths", "40", "--hops", "2..7", "--style", "r2r"]);
     assert_eq!(ran.code, Some(1), "{ran:?}");
-    assert!(ran.out.contains("have failed alike"), "{ran:?}");
+    assert!(ran.out.contains("failed for the same reason"), "{ran:?}");
     assert_eq!(building.lines("run/errors.jsonl").len(), 5);
 }

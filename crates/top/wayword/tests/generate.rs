@@ -1,4 +1,4 @@
-//! `wayword generate` from the outside: what is in the run folder, and what is refused.
+//! `wayword generate` as a user runs it: what the run folder contains, and which input is refused.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -127,7 +127,7 @@ fn a_second_process_in_the_same_folder_is_told_that_it_is_busy() {
     let before = files(&building.path("run"));
     let ran = building.generate("run", &["--episodes", EPISODES, "--style", "reverie", "--style", "r2r"]);
     assert_eq!((ran.code, ran.out.as_str()), (Some(4), ""), "{ran:?}");
-    assert!(ran.err.starts_with("error: ") && ran.err.contains("another wayword is at work"), "{ran:?}");
+    assert!(ran.err.starts_with("error: ") && ran.err.contains("another wayword process is writing"), "{ran:?}");
     assert!(files(&building.path("run")) == before);
     drop(held);
     building.run_over_episodes("run");
@@ -192,7 +192,7 @@ fn flags_win_over_the_config_file_and_the_file_over_defaults() {
             .iter()
             .all(|record| record.instruction.style == "r2r" && (3..=4).contains(&record.path.frames.len()))
     );
-    // A flag for episodes wins over the file's number of paths.
+    // The flag `--episodes` wins over the file's number of paths.
     let ran = building.wayword(&["generate", "--config", "run.toml", "--episodes", EPISODES, "--out", "episodes"]);
     assert_eq!((ran.code, building.records("episodes").len()), (Some(0), 10), "{ran:?}");
 }

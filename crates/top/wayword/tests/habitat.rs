@@ -1,4 +1,4 @@
-//! Habitat's scenes from the outside: on which island people walk, and what VLN-CE is told of the way.
+//! Habitat's scenes as a user runs them: on which island paths lie, and what a VLN-CE export says of the way.
 
 #![cfg(feature = "habitat")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -58,7 +58,7 @@ fn vlnce_has_every_corner_of_the_way_and_the_distance_over_the_navmesh() {
         }
         let told_m = written["info"]["geodesic_distance"].as_f64().unwrap();
         assert!((told_m - length_m(path[0], path[path.len() - 1])).abs() < 1e-6);
-        // The walks are shortest ways themselves; heights of stairs and floors differ by centimetres.
+        // The paths are shortest ways themselves; heights of stairs and floors differ by centimetres.
         assert!((told_m - walked_m).abs() < 0.02 * told_m + 0.05, "{told_m} {walked_m}");
         assert_eq!(written["info"]["geodesic_distance_over"], "navmesh");
         assert_eq!(written["scene_id"], "own/house-2/house-2.stage_config.json");
@@ -90,7 +90,7 @@ fn vlnce_is_exported_over_the_frames_where_the_scenes_are_gone() {
     assert_eq!(episodes.len(), records.len());
 }
 
-/// Puts a navmesh beside a scene that has ground far above its rooms alone.
+/// Puts a navmesh beside a scene. Its only ground is far above the rooms.
 fn roof(building: &Building, stage: &Path) {
     let stage = building.path(stage.to_str().unwrap());
     let world = HabitatPlatform::open(&stage, HabitatOptions::default(), Arc::new(|_: &str| {})).unwrap();
@@ -119,7 +119,7 @@ fn islands_are_listed_and_one_can_be_named() {
         .cloned()
         .collect();
     assert_eq!((walked.len(), &walked[0]["cover"]), (1, &"ceiling".into()), "{ran:?}");
-    assert!(building.wayword(&map).out.contains("under a ceiling, which walks keep to"));
+    assert!(building.wayword(&map).out.contains("under a ceiling, used for random paths"));
     let ran = run(&building, stage, "run", &["--island", "99"]);
     assert!(ran.refused().contains("has no island 99: island 0: ") && ran.err.contains("--island"), "{ran:?}");
     let ran = building.wayword(&["generate", "--paths", "1", "--island", "0", "--out", "run"]);
@@ -132,7 +132,7 @@ fn a_scene_on_whose_ground_nobody_walks_is_refused_with_its_islands() {
     let stage = house(&building);
     roof(&building, &stage);
     let ran = run(&building, stage.to_str().unwrap(), "run", &[]);
-    assert!(ran.refused().contains("nobody would walk on any island of its ground"), "{ran:?}");
+    assert!(ran.refused().contains("no island of its navmesh is a place to walk on"), "{ran:?}");
     assert!(ran.err.contains("island 0: ") && ran.err.contains("on top of a roof"), "{ran:?}");
     assert!(!building.path("run").exists());
 }

@@ -1,5 +1,5 @@
-//! A thousand damaged files per reader of the program's own: each is used or refused with the file's name, and none
-//! brings the program down. The readers of datasets and buildings have such tests of their own.
+//! A thousand damaged files for each reader of this crate. The program uses a file or refuses it with the file's name,
+//! and never crashes. The readers of datasets and buildings have the same tests in their crates.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -18,7 +18,7 @@ use wayword::{
     error::Error,
     output::Output,
     run::{Journal, RunFolder, WalkRecord, read_lines, settings_of},
-    settings::{Asked, Draw, Job, Providers, Service, Settings, Telling, Walks, World},
+    settings::{Asked, AskedPlatform, Draw, Job, Providers, Service, Settings, Walks, Writing},
     styles,
 };
 use wayword_core::rng;
@@ -38,7 +38,7 @@ fewer_words_than = 60
 ends_in_task = false
 "#;
 
-/// One whose references tell no turns, and ask for a task: another way of writing.
+/// A style whose references have no turns and ask for a task, so that it is written differently.
 const COARSE_STYLE: &str = r#"name = "mine"
 references = ["Go to the pantry and open the oven", "Head to the attic on level 2 and move the crib"]
 
@@ -48,7 +48,7 @@ fewer_words_than = 20
 ends_in_task = true
 "#;
 
-/// Damages a TOML or JSON text: cuts it, flips bytes, or puts what does not belong into a value's place.
+/// Damages a TOML or JSON text: cuts it, flips bytes, or replaces a value by a wrong one.
 fn damaged(text: &str, rng: &mut ChaCha8Rng) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     let at = rng.random_range(0..bytes.len());
@@ -71,7 +71,7 @@ fn damaged(text: &str, rng: &mut ChaCha8Rng) -> Vec<u8> {
     bytes
 }
 
-/// What a value is replaced by: wrong types, huge and negative numbers, names that lead elsewhere, and long or deep things.
+/// The wrong values: wrong types, huge and negative numbers, names that lead elsewhere, long texts, deep nesting.
 fn strange(rng: &mut ChaCha8Rng) -> String {
     let depth = rng.random_range(1..300);
     let values = [
@@ -99,7 +99,7 @@ fn strange(rng: &mut ChaCha8Rng) -> String {
     values[rng.random_range(0..values.len())].clone()
 }
 
-/// The text with one of its values (what stands after a `=` or a `:` or within a list) replaced.
+/// The text with one of its values replaced. A value follows a `=` or a `:`, or is in a list.
 fn with_another_value(text: &str, rng: &mut ChaCha8Rng) -> String {
     let marks: &[char] = if rng.random_bool(0.5) { &['=', ':'] } else { &['[', ','] };
     let starts: Vec<usize> = text.match_indices(marks).map(|(at, _)| at + 1).collect();
@@ -108,7 +108,7 @@ fn with_another_value(text: &str, rng: &mut ChaCha8Rng) -> String {
     format!("{} {}{}", &text[..start], strange(rng), &text[start + length..])
 }
 
-/// Asserts that an error is told in a way that helps: with the file's name.
+/// Asserts that an error has the file's name, so that it helps the user.
 fn assert_names(error: &Error, name: &str, input: &[u8]) {
     let told = error.to_string();
     assert!(told.contains(name), "{told}\nfor {}", String::from_utf8_lossy(&input[..input.len().min(2000)]));
@@ -119,7 +119,7 @@ struct Counts {
     refused: usize,
 }
 
-/// Writes each damaged text to `file` and hands it to `used`, which tells whether it could be used.
+/// Writes each damaged text to `file` and passes it to `used`, which returns whether it could be used.
 fn for_each_damaged(file: &Path, text: &str, mut used: impl FnMut(usize, &[u8]) -> bool) -> Counts {
     let mut counts = Counts { used: 0, refused: 0 };
     let mut rng = rng(1, &["hostile", text]);
@@ -138,9 +138,13 @@ fn for_each_damaged(file: &Path, text: &str, mut used: impl FnMut(usize, &[u8]) 
 /// Settings of a run over one episode of the building.
 fn settings(building: &Building, style: &Path) -> Settings {
     let asked = Asked {
-        world: World { platform: Some("matterport".into()), data: Some(building.data()), ..World::default() },
+        platform: AskedPlatform {
+            platform: Some("matterport".into()),
+            data: Some(building.data()),
+            ..AskedPlatform::default()
+        },
         walks: Walks { episodes: Some(building.reverie()), ..Walks::default() },
-        telling: Telling { style: Some(vec![style.display().to_string()]), ..Telling::default() },
+        writing: Writing { style: Some(vec![style.display().to_string()]), ..Writing::default() },
         draw: Draw { limit: Some(1), ..Draw::default() },
         ..Asked::default()
     };
@@ -162,7 +166,7 @@ fn damaged_styles_are_used_or_refused() {
                     false
                 }
                 Ok(_) => {
-                    // What is accepted has to be usable, too: a whole item is written in it.
+                    // An accepted file must also be usable: a whole item is written with it.
                     let run = building.path(&format!("run-{number}"));
                     let summary = generate_into(&run, &job, &quiet);
                     let summary = summary.unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(bytes)));
@@ -193,9 +197,9 @@ fn damaged_run_configs_are_used_or_refused() {
         if let Err(error) = &read {
             assert_names(error, "config.toml", bytes);
         }
-        // Nobody's run is touched when the settings are not those.
+        // A run with other settings is left alone.
         match RunFolder::open(&building.path("run"), &settings) {
-            // Of a run that had a smaller limit, more is asked for.
+            // If the run's limit was smaller, the command asks for more items.
             Ok(_) => assert!(read.as_ref().is_ok_and(|read| read.raised_to(&settings) == settings)),
             Err(error) => assert_names(&error, "run", bytes),
         }
@@ -272,7 +276,8 @@ fn check_damaged_records(file: &Path, settings: &Settings, line: &str, count: us
         match check_file(file, settings, Some("reverie"), &quiet) {
             Ok(report) => used += report.passed + report.unverified + report.failed,
             Err(error) => {
-                // A path that does not fit the world is told with the scene; what cannot be read with the file.
+                // The error about a path that does not fit its scene names the scene; that about an unreadable line
+                // names the file.
                 let told = error.to_string();
                 assert!(
                     told.contains("told.jsonl") || told.contains("scene"),
@@ -320,7 +325,7 @@ fn a_house_is_not_looked_at_from_nowhere() {
         let mut changed = line.clone();
         *changed.pointer_mut(pointer).unwrap() = value.clone();
         fs::write(&file, format!("{changed}\n")).unwrap();
-        // Refused, or looked at in vain: what matters is that it ends.
+        // The line may be refused, or checked without a result; the command only has to end.
         if let Err(error) = check_file(&file, &settings, None, &Output::new(true, true)) {
             let told = error.to_string();
             assert!(told.contains("told.jsonl") || told.contains("scene"), "{pointer} = {value}: {told}");

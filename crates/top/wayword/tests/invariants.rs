@@ -1,4 +1,4 @@
-//! What ARCHITECTURE.md promises about the source, held against the source.
+//! Checks the source against what ARCHITECTURE.md promises about it.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -27,18 +27,18 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Ground truth is for the mind that answers from labels and for the evidence of the checks: a writer or an asker that
-/// looked at it would make results that no robot can have. The platforms that know it may.
+/// Only the role `labels`, the evidence of the checks and the platforms may read ground-truth labels. With a writer or
+/// an asker that read them, the results would be out of any robot's reach.
 #[test]
 fn only_labels_and_evidence_look_at_ground_truth() {
     let allowed = [
         "crates/ground/wayword-core/src/view.rs",
         "crates/ground/wayword-testkit/src/provider/pictured.rs",
-        "crates/judgement/wayword-navigation/src/agents/floors.rs",
+        "crates/judgement/wayword-navigation/src/agents/baselines.rs",
         "crates/judgement/wayword-navigation/src/grounders/labels_of.rs",
         "crates/words/wayword-checks/src/evidence/from_labels.rs",
-        "crates/words/wayword-synthesis/src/minds/distinguish.rs",
-        "crates/words/wayword-synthesis/src/minds/labels.rs",
+        "crates/words/wayword-synthesis/src/offline/distinguish.rs",
+        "crates/words/wayword-synthesis/src/offline/labels.rs",
         "crates/world/wayword-house/src/",
         "crates/world/wayword-world/src/episode_path.rs",
     ];
@@ -90,7 +90,7 @@ fn no_crate_is_built_on_one_above_it() {
         ("wayword-platforms", &["wayword-core", "wayword-render", "wayword-world"]),
         ("wayword-habitat", &["wayword-core", "wayword-render", "wayword-world"]),
         ("wayword-recording", &["wayword-core", "wayword-world"]),
-        // Its stand-ins, which no program ships, draw generated houses.
+        // Its stand-ins draw generated houses; they are not part of any program that users get.
         ("wayword-live", &["wayword-core", "wayword-house", "wayword-render", "wayword-world"]),
         ("wayword-checks", &["wayword-core", "wayword-language"]),
         ("wayword-synthesis", &["wayword-checks", "wayword-core", "wayword-language"]),
@@ -149,7 +149,7 @@ fn no_crate_is_built_on_one_above_it() {
     }
 }
 
-/// Words are made and held against evidence in memory: what is done is the same for every world and every caller.
+/// Texts are written and checked in memory, so that the result is the same for every platform and every caller.
 #[test]
 fn words_are_made_and_checked_without_a_file_or_a_connection() {
     let crates = ["ground/wayword-language", "words/wayword-checks", "words/wayword-synthesis"];
@@ -165,7 +165,7 @@ fn words_are_made_and_checked_without_a_file_or_a_connection() {
     }
 }
 
-/// Only one module speaks to the terminal, so that `--json` and `--quiet` hold everywhere.
+/// Only one module prints, so that `--json` and `--quiet` work for every command.
 #[test]
 fn only_the_output_module_prints() {
     let root = workspace();
@@ -183,7 +183,8 @@ fn only_the_output_module_prints() {
     assert_eq!(printing, allowed);
 }
 
-/// Sines differ in their last digit between C libraries, and a heading lands in files: `libm` gives the same everywhere.
+/// Sines differ in their last digit between C libraries, and headings are written to files. `libm` gives the same value
+/// on every machine.
 #[test]
 fn no_crate_asks_the_standard_library_for_a_sine() {
     let functions = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sin_cos", "sinh", "cosh", "tanh"];
@@ -191,7 +192,7 @@ fn no_crate_asks_the_standard_library_for_a_sine() {
         let called = |name: &&str| {
             [format!(".{name}("), format!("f64::{name}"), format!("f32::{name}")].iter().any(|way| line.contains(way))
         };
-        // glam asks the standard library too.
+        // glam calls the standard library too.
         let rotates =
             ["from_rotation_", "from_axis_angle", "from_euler", "from_scaled_axis", "slerp(", "angle_between("];
         functions.iter().any(called) || rotates.iter().any(|way| line.contains(way))
@@ -199,7 +200,7 @@ fn no_crate_asks_the_standard_library_for_a_sine() {
     let root = workspace();
     for file in sources(&root.join("crates")) {
         let name = file.strip_prefix(&root).unwrap().to_str().unwrap().to_owned();
-        // What only a test computes lands in no file.
+        // Values that only a test computes are not written to files.
         if name.split('/').nth(3) != Some("src") || name.ends_with("tests.rs") {
             continue;
         }

@@ -1,6 +1,6 @@
-//! A world that goes away at a random look: the same command goes on, and the files end up the same byte for byte.
+//! A platform that dies at a random view: the same command continues, and the files end up the same byte for byte.
 //!
-//! `WAYWORD_KILLS` sets how often each world dies (default 1).
+//! `WAYWORD_KILLS` sets how often each platform dies (default 1).
 
 #![cfg(all(unix, feature = "live"))]
 #![allow(
@@ -29,17 +29,17 @@ fn deaths() -> usize {
     env::var("WAYWORD_KILLS").map_or(1, |kills| kills.parse().unwrap())
 }
 
-/// A port that nobody has.
+/// A port that no program uses.
 fn free_port() -> SocketAddr {
     TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
 }
 
-/// Everything in a run folder but the lock.
+/// Every file of a run folder except the lock.
 fn contents(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     files(run).into_iter().filter(|(path, _)| !path.ends_with("run.lock")).collect()
 }
 
-/// The same command until it is done. Nothing may be rejected on the way.
+/// Gives the same command until it is done. No text may be rejected on the way.
 fn go_on(building: &Building, run: &str, command: &dyn Fn(&str) -> Ran) -> Vec<Ran> {
     let mut ran = Vec::new();
     for _ in 0..5 {
@@ -53,7 +53,7 @@ fn go_on(building: &Building, run: &str, command: &dyn Fn(&str) -> Ran) -> Vec<R
     panic!("the same command does not get to the end: {ran:?}");
 }
 
-/// A room with things along its walls, which dies at the look that a file names, once.
+/// A world program: a room with things along its walls. It dies once, at the view that a file names.
 const MORTAL: &str = r#"
 import os, pathlib, sys
 sys.path.insert(0, sys.argv[1])
@@ -88,7 +88,7 @@ class Room(kit.OpenWorld):
 kit.serve(Room)
 "#;
 
-/// A folder with a world in Python, which is told where the kit and the folder are.
+/// A folder with a world program in Python, which gets the places of the kit and of the folder as arguments.
 fn with_child(name: &str, script: &str) -> Option<Building> {
     if !Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
         println!("SKIPPED: there is no python3 here, so no child of the Python kit dies");
@@ -125,7 +125,7 @@ fn a_child_that_dies_costs_nothing() {
     }
 }
 
-/// Its scene "deadly" kills it at every look; the other is sound.
+/// A world program that dies at every view of its scene "deadly"; its other scene works.
 const POISONED: &str = r#"
 import os, sys
 sys.path.insert(0, sys.argv[1])
@@ -174,7 +174,7 @@ fn a_simulator_that_is_gone_for_good_ends_the_run_with_a_code_of_its_own() {
     let (building, address) = (Building::new(), free_port());
     let at = format!("http://{address}");
     let args = ["generate", "--platform", "virtualhome", "--at", &at, "--style", "r2r", "--paths", "6", "--out", "run"];
-    // Somebody takes the first connection, by which the port is looked at, and no other.
+    // The listener accepts only the first connection, with which the program tests the port.
     let listener = TcpListener::bind(address).unwrap();
     let child = building.command(&args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     drop(listener.accept().unwrap());
@@ -205,7 +205,7 @@ fn an_executable_that_dies_costs_nothing() {
         while fs::metadata(building.path(&run).join("walks.jsonl")).map_or(0, |file| file.len()) < moment {
             thread::sleep(Duration::from_millis(1));
         }
-        // Between two items, or amid one.
+        // Between two items, or during one.
         thread::sleep(Duration::from_millis(rng.random_range(0..40)));
         drop(executable);
         assert!(matches!(child.wait().unwrap().code(), Some(0 | 3 | 7)));

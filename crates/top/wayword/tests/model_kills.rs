@@ -1,10 +1,10 @@
-//! A run with models that is killed again and again ends like one that was left alone, and pays twice at most for what was on
-//! the wire; so do two that run at the same time on one ledger.
+//! A run with models that is killed repeatedly ends like a run that was not killed. It pays twice at most for the calls
+//! that were in flight. The same is true for two runs at the same time on one ledger.
 //!
 //! `WAYWORD_KILLS` sets how often it is killed (default 3).
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking, and tells what it counted")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking, and prints what it counted")]
 
 mod common;
 #[path = "common/models.rs"]
@@ -17,7 +17,7 @@ use wayword_core::rng;
 use wayword_testkit::provider::Behaviour;
 
 const CONCURRENCY: u64 = 16;
-/// Some 2,000 calls.
+/// About 2,000 calls.
 const RUN: [&str; 6] = ["--paths", "100", "--concurrency", "16", "--quiet", "--json"];
 
 #[test]
@@ -37,7 +37,7 @@ fn a_run_that_is_killed_ends_the_same_and_pays_once() {
         while killed.provider.requests() < moment && child.try_wait().unwrap().is_none() {
             thread::sleep(Duration::from_millis(1));
         }
-        // A process that has nothing to ask yet is killed while it reads what it has.
+        // A process that has not asked anything yet is killed while it reads its files.
         thread::sleep(Duration::from_millis(rng.random_range(0..60)));
         child.kill().unwrap();
         at_work += usize::from(child.wait().unwrap().code().is_none());
@@ -57,7 +57,7 @@ fn a_run_that_is_killed_ends_the_same_and_pays_once() {
     assert!(lost <= kills as u64 * CONCURRENCY * 2, "{lost}");
 }
 
-/// Two runs of the same paths at the same time, one of them killed at seeded moments and begun again at once.
+/// Two runs of the same paths at the same time, one of them killed at seeded moments and started again at once.
 #[test]
 fn two_runs_on_one_ledger_pay_for_each_call_once() {
     const RUN: [&str; 6] = ["--paths", "40", "--concurrency", "16", "--quiet", "--json"];

@@ -35,7 +35,7 @@ fn models_play_every_role_and_say_so() {
     let transcript = walks[0]["observations"][0]["looks"][0]["caption"]["transcript"].as_array().unwrap();
     assert!(transcript.len() > 2, "{transcript:?}");
 
-    // The whole run again, from the recording alone.
+    // The whole run again, with only the recorded answers.
     drop(stage.provider);
     let args =
         ["generate", "--platform", "matterport", "--data", "data", "--paths", "6", "--style", "r2r", "--hops", "3..7"];
@@ -73,11 +73,11 @@ fn what_was_asked_once_is_never_asked_again() {
     let second = stage.generate("second", &["--paths", "6"]);
     assert_eq!(second.code, Some(0), "{second:?}");
     assert_eq!(stage.provider.requests(), asked, "{}", second.out);
-    // Nothing stays behind beside the ledger, neither its log nor what says that it is in use.
+    // Neither the ledger's log nor the file that says that it is in use is left behind.
     let names = fs::read_dir(stage.building.path("")).unwrap().map(|entry| entry.unwrap().file_name());
     let beside: Vec<_> = names.filter(|name| name.to_string_lossy().starts_with("ledger.db")).collect();
     assert_eq!(beside, ["ledger.db"]);
-    // More paths through the same building pass places that were looked at before.
+    // More paths through the same building pass places whose views were already asked about.
     stage.generate("third", &["--paths", "40"]);
     let log = stage.provider.log();
     assert_eq!(log.answered_again(), 0);
@@ -150,7 +150,7 @@ fn a_refused_key_and_an_empty_account_stop_the_run_and_lose_nothing() {
     assert!(more.code != Some(0), "{more:?}");
 }
 
-/// A port that nobody listens at.
+/// A port at which no program listens.
 fn closed_port() -> String {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     format!("http://{}/v1", listener.local_addr().unwrap())
@@ -175,7 +175,7 @@ fn what_can_be_known_at_once_is_told_before_the_world_is_opened() {
         (&["--metres", "20..5"], &["--metres 20..5"]),
         (&["--hops", "0"], &["--hops 0"]),
     ] {
-        // There is no such world either, and nobody has looked yet.
+        // The platform's data does not exist either, but the program has not opened it yet.
         for command in ["generate", "perceive"] {
             if command == "perceive" && args[0] != "--llm" {
                 continue;
@@ -240,7 +240,7 @@ fn a_changed_answer_stops_the_run_and_is_dropped_by_name() {
     let stage = Stage::new(cast());
     assert_eq!(stage.generate("run", &["--paths", "2"]).code, Some(0));
     let ledger = stage.building.path("ledger.db");
-    // One byte of an answer, in the file itself.
+    // Changes one byte of an answer in the file itself.
     let shown = stage.building.wayword(&["ledger", "show", "--limit", "200", "--ledger", "ledger.db", "--json"]).json();
     let texts = shown["rows"].as_array().unwrap().iter().map(|row| row["answer"]["text"].as_str().unwrap());
     let text = texts.max_by_key(|text| text.len()).unwrap().as_bytes();
@@ -313,7 +313,7 @@ fn an_interrupt_finishes_what_is_in_flight_and_the_same_command_goes_on() {
     let output = child.wait_with_output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(6), "{told}");
-    assert!(told.contains("finishing what is in hand"), "{told}");
+    assert!(told.contains("finishing the items in progress"), "{told}");
     let log = stage.provider.log();
     assert_eq!(log.received, log.answered, "nothing was broken off");
     let whole = stage.generate("run", &args);
@@ -408,7 +408,7 @@ fn a_dry_run_asks_nothing_and_counts_what_a_run_would_ask() {
     let planned: u64 = models.iter().map(|model| model["calls"].as_u64().unwrap()).sum();
     stage.generate("run", &["--paths", "6"]);
     let asked = stage.provider.requests();
-    // Repairs come on top of a plan, and dialogues that end early are below it.
+    // Repairs add to the planned calls, and dialogues that end early save some.
     assert!(planned >= asked * 9 / 10 && planned < 3 * asked, "{planned} planned, {asked} asked");
 }
 
@@ -416,7 +416,7 @@ fn a_dry_run_asks_nothing_and_counts_what_a_run_would_ask() {
 fn the_doctor_tells_what_works_and_what_to_do() {
     let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..cast() });
     let healthy = run(&mut stage.command("doctor", &[]));
-    assert!(healthy.out.contains("server/words") && healthy.out.contains("picture and labels"), "{healthy:?}");
+    assert!(healthy.out.contains("server/words") && healthy.out.contains("has a picture and labels"), "{healthy:?}");
     let keyless = run(stage.command("doctor", &["--json"]).env_remove(stage::KEY_ENV));
     assert_eq!(keyless.code, Some(1), "{keyless:?}");
     let findings = keyless.json();
@@ -454,7 +454,7 @@ fn perception_is_measured_in_each_way_of_asking() {
     let labels =
         stage.building.wayword(&["perceive", "--platform", "matterport", "--data", "data", "--views", "12", "--json"]);
     let rows = labels.json();
-    assert_eq!(rows["rows"][2]["ghost_rate"], 0.0, "ground truth has no ghosts: {rows}");
+    assert_eq!(rows["rows"][2]["hallucination_rate"], 0.0, "ground-truth labels hallucinate nothing: {rows}");
     let episodes = format!("episodes = '{}'\n", common::EPISODES);
     stage.building.write("run.toml", format!("platform = 'matterport'\ndata = 'data'\n{episodes}"));
     let shown = |args: &[&str]| stage.building.wayword(&[&["perceive", "--show", "4", "--views", "4"], args].concat());

@@ -7,7 +7,7 @@ mod common;
 use common::{Ran, command, run};
 use std::path::Path;
 
-/// `wayword models ARGS` with nothing of the hub's from the outside, and a cache in a folder.
+/// `wayword models ARGS` without the user's hub settings, and with a cache in a folder.
 fn models(cache: &Path, args: &[&str], variables: &[(&str, &str)]) -> Ran {
     let mut command = command(&[&["models"], args].concat());
     for name in ["HF_HOME", "HF_TOKEN", "HF_ENDPOINT", "HF_HUB_OFFLINE", "TRANSFORMERS_OFFLINE", "WAYWORD_OFFLINE"] {
@@ -77,7 +77,7 @@ mod with_models {
         let file = cache.path().join("models--org--name/snapshots").join(COMMIT).join("small.gguf");
         assert_eq!((ran.code, ran.out.trim_end()), (Some(0), file.to_str().unwrap()), "{ran:?}");
         assert_eq!(fs::read(&file).unwrap(), BYTES);
-        assert_eq!(ran.err, "fetching small.gguf: 0 B of 13 B are here\n");
+        assert_eq!(ran.err, "fetching small.gguf: 0 B of 13 B so far\n");
         let sent = heads.lock().unwrap().len();
         assert!(heads.lock().unwrap().iter().all(|head| head.contains(&format!("Bearer {TOKEN}"))));
 

@@ -1,5 +1,5 @@
-//! The real val_seen split of REVERIE in both styles, where the data lies: `WAYWORD_DATA`, or `../shared/data` beside the
-//! workspace. None of it is in this repository.
+//! The real val_seen split of REVERIE in both styles. The data is in `WAYWORD_DATA`, or else in `../shared/data` beside
+//! the workspace; none of it is in this repository.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking, and says what it skipped")]
 
@@ -36,7 +36,7 @@ fn nearly_all_of_val_seen_passes_every_check_in_both_styles() {
     assert!(count("passed") * 100 >= 1002 * 99, "fewer than 99 % pass: {summary}");
 }
 
-/// The annotated path of each item, handed in for each of its instructions.
+/// The annotated path of each item, submitted for each of its instructions.
 #[test]
 fn annotated_paths_of_val_seen_end_where_they_should() {
     let Some(data) = data() else { return };
@@ -44,7 +44,7 @@ fn annotated_paths_of_val_seen_end_where_they_should() {
     let episodes = data.join("reverie/REVERIE_val_seen.json");
     let items: Vec<Value> = serde_json::from_slice(&fs::read(&episodes).unwrap()).unwrap();
     let mut submitted = Vec::new();
-    // Weighted by instructions: how many end where their object is listed with a place in the picture.
+    // How many instructions have a path that ends where their object is listed with a place in the picture.
     let mut visible = 0;
     for item in &items {
         let path = item["path"].as_array().unwrap();
@@ -75,8 +75,8 @@ fn annotated_paths_of_val_seen_end_where_they_should() {
     assert!((rate(1) - 1.0).abs() < 1e-12);
 }
 
-/// An agent that does not listen measures nothing: each must do better by what people wrote than by chance, and worse by the
-/// instruction of another path.
+/// An agent that ignores its instruction measures nothing. So each agent must do better by people's instructions than
+/// by chance, and worse by the instruction of another path.
 #[test]
 fn agents_listen_to_what_people_wrote_of_val_seen() {
     let Some(data) = data() else { return };

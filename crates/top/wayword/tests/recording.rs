@@ -1,5 +1,5 @@
-//! Recordings from end to end: pictures with poses, without any, and files that other programs made. A model of the test sees; nobody
-//! else can.
+//! Recordings from end to end: pictures with poses, pictures without poses, and files that other programs made. A model
+//! of the test sees, because recordings have no labels.
 
 #![cfg(all(feature = "mcap", feature = "video"))]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
@@ -33,7 +33,7 @@ fn walk(stage: &Stage, poses: bool) {
     }
 }
 
-/// Instructions for one path through a recording, by the models of the test.
+/// Instructions for one path through a recording, written by the models of the test.
 fn generate(stage: &Stage, data: &str, args: &[&str]) -> Ran {
     let models = stage.models();
     let mut all = vec!["generate", "--platform", "recording", "--data", data, "--out", "run", "--json"];
@@ -44,7 +44,7 @@ fn generate(stage: &Stage, data: &str, args: &[&str]) -> Ran {
     run(stage.building.command(&all).env(KEY_ENV, KEY))
 }
 
-/// Whether a text tells a turn or a floor.
+/// Whether a text mentions a turn or a storey.
 fn tells_motion(text: &str) -> bool {
     let words = ["left", "right", "turn", "turns", "around", "upstairs", "downstairs", "stairs", "straight"];
     text.to_lowercase().split(|c: char| !c.is_alphabetic()).any(|word| words.contains(&word))
@@ -138,7 +138,8 @@ fn what_other_programs_have_written_becomes_instructions() {
     }
 }
 
-/// A run over a folder of recordings, of which one is none: a person's, before anything is made.
+/// A run over a folder in which one recording cannot be read: an error that the user can correct, before anything is
+/// made.
 #[test]
 fn a_recording_that_cannot_be_read_ends_the_run_before_it_begins() {
     let stage = Stage::new(cast());

@@ -1,4 +1,4 @@
-//! A run that is killed goes on where it stopped, and its files end up the same byte for byte.
+//! A run that was killed continues where it stopped, and its files end up the same byte for byte.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
@@ -23,7 +23,7 @@ fn size(file: &Path) -> u64 {
     fs::metadata(file).map_or(0, |metadata| metadata.len())
 }
 
-/// Starts the run and kills it once `file` has grown to `bytes`; tells whether it really was killed at work.
+/// Starts the run and kills it once `file` has grown to `bytes`. Returns whether it was still running.
 fn killed_at(building: &Building, file: &Path, bytes: u64) -> bool {
     let mut arguments = vec!["generate", "--platform", "matterport", "--data", "data", "--out", "killed", "--quiet"];
     arguments.extend(RUN);
@@ -42,7 +42,7 @@ fn a_run_that_is_killed_twenty_times_ends_up_the_same() {
     let whole = contents(&building.path("whole"));
     assert!(whole.iter().all(|bytes| !bytes.is_empty()), "each file has something to lose");
 
-    // Moments are told by how far the file has grown: machines differ in speed.
+    // A moment is a length of the file and not a time, because machines differ in speed.
     let grown = building.path("killed/walks.jsonl");
     let mut rng = rng(5, &["kills"]);
     let mut moments: Vec<u64> = (0..KILLS).map(|_| rng.random_range(1..whole[1].len() as u64 * 19 / 20)).collect();
@@ -70,7 +70,8 @@ fn torn_last_lines_are_cut_off_and_written_again() {
     let whole = contents(&building.path("whole"));
     let mut rng = rng(6, &["tears"]);
     for _ in 0..10 {
-        // A process dies while it writes one file: the walk of an item is whole before its texts begin.
+        // A process dies while it writes one file. An item's line in walks.jsonl is complete before its texts are
+        // written.
         building.generate("torn", run);
         let file = building.path("torn/instructions.jsonl");
         let bytes = fs::read(&file).unwrap();

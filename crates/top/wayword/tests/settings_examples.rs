@@ -1,4 +1,4 @@
-//! The settings that `docs/MODELS.md` shows are settings that the program takes.
+//! The program accepts the settings that `docs/MODELS.md` shows.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,7 +14,7 @@ fn blocks(document: &str) -> Vec<String> {
     blocks.collect()
 }
 
-/// A block begins with the name of its file, as a comment.
+/// A block begins with a comment that names its file.
 #[test]
 fn the_settings_and_prices_of_the_documents_are_read() {
     let (mut settings, mut prices) = (0, 0);

@@ -1,4 +1,4 @@
-//! `wayword similarity` on a made-up building whose items two people described.
+//! `wayword similarity` on a made-up building, with two people's descriptions of each item.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -85,7 +85,8 @@ fn an_encoder_that_is_not_here_is_told() {
     command.env("WAYWORD_OFFLINE", "1").env("HF_HUB_CACHE", building.path("empty"));
     let ran = common::run(&mut command);
     assert_eq!(ran.code, Some(1));
-    // A build without models in process names the encoder that needs none; one with them says what is missing where.
+    // A build without models in process suggests the encoder that needs none; a build with them says which file is
+    // missing where.
     let hints = ran.err.contains("--encoder words") || ran.err.contains("config.json");
     assert!(hints && ran.err.contains("all-MiniLM-L6-v2"), "{ran:?}");
 }

@@ -43,7 +43,7 @@ fn a_panorama_goes_all_around_without_a_seam() {
         picture
     };
     let (north, east) = (around("0", "north.png"), around("90", "east.png"));
-    // 0.75 of the width high, and at the seams the square root of a half of that.
+    // The height: 0.75 of a view's width, times the square root of 1/2, because that is what remains at the seams.
     assert_eq!(north.dimensions(), (2000, (2000.0 * 0.75 * 0.5f64.sqrt() / std::f64::consts::PI) as u32));
     for (x, y, pixel) in east.enumerate_pixels() {
         let same = north.get_pixel((x + 500) % 2000, y);
@@ -60,12 +60,12 @@ fn a_panorama_that_cannot_be_says_what_is_missing() {
     let building = Building::new();
     let matterport = ["panorama", "--platform", "matterport", "--data", "data", "--out", "p.png"];
     let told = refused(&building, &matterport);
-    assert!(told.contains("has no pictures there") && told.contains("wayword platforms"), "{told}");
+    assert!(told.contains("has no pictures at this place") && told.contains("wayword platforms"), "{told}");
     wayword_testkit::write_skyboxes(&building.data()).unwrap();
     view(&building, &matterport);
     picture(&building.path("p.png"));
     let told = refused(&building, &["panorama", "--viewpoint", "attic", "--out", "q.png"]);
-    assert!(told.contains("no viewpoint attic") && told.contains("there are"), "{told}");
+    assert!(told.contains("no viewpoint attic") && told.contains("it has "), "{told}");
     assert!(refused(&building, &["panorama", "--heading-deg", "NaN", "--out", "q.png"]).contains("--heading-deg"));
     assert!(refused(&building, &["panorama", "--width", "0", "--out", "q.png"]).contains("--width"));
     assert!(refused(&building, &["panorama", "--scan", "moon", "--out", "q.png"]).contains("moon"));
@@ -78,7 +78,7 @@ fn only_what_could_have_been_written_is_overwritten() {
     building.write("notes.png", "notes");
     for args in [&["panorama"][..], &["map"]] {
         let told = refused(&building, &[args, &["--out", "notes.png"]].concat());
-        assert!(told.contains("would be overwritten"), "{told}");
+        assert!(told.contains("would overwrite it"), "{told}");
         assert!(refused(&building, &[args, &["--out", "data"]].concat()).contains("ending"));
         assert!(refused(&building, &[args, &["--out", "p.tiff"]].concat()).contains(".png"));
     }
@@ -88,7 +88,7 @@ fn only_what_could_have_been_written_is_overwritten() {
     assert!(refused(&building, &["path", "--out", "full"]).contains("thesis.txt"));
     assert!(refused(&building, &["path", "--out", "walk.avi"]).contains(".gif"));
     assert!(refused(&building, &["path", "--fps", "1000", "--out", "walk.gif"]).contains("--fps"));
-    // A picture of the world's own data is in its format, and is not to be lost for that.
+    // The platform's own pictures have the same format as the output, and must not be overwritten.
     wayword_testkit::write_skyboxes(&building.data()).unwrap();
     let own =
         files(&building.data()).into_keys().find(|file| file.extension().is_some_and(|end| end == "jpg")).unwrap();
@@ -115,7 +115,7 @@ fn a_path_is_the_one_that_generate_walks() {
     let of_run = ["path", "--episodes", "run/instructions.jsonl", "--item", &walked.id, "--out"];
     view(&building, &[&of_run[..], &["recorded/"]].concat());
     assert_eq!(files(&building.path("recorded")), made);
-    // The same again may take its own place; a longer one before it may not be mixed with it.
+    // The same command may replace its own pictures. Pictures of a longer path must not be mixed with them.
     view(&building, &[&of_run[..], &["recorded/"]].concat());
     fs::write(building.path("recorded/frame-00999.png"), []).unwrap();
     assert!(refused(&building, &[&of_run[..], &["recorded/"]].concat()).contains("frame-00999.png"));
@@ -147,11 +147,11 @@ fn a_gif_shows_every_frame_as_long_as_asked() {
 fn a_world_of_viewpoints_shows_nothing_between_them() {
     let building = Building::new();
     let path = ["path", "--platform", "matterport", "--data", "data", "--episodes", EPISODES, "--out", "frames"];
-    assert!(refused(&building, &path).contains("no picture of any of its"));
+    assert!(refused(&building, &path).contains("there is no picture for any of its"));
     assert!(!building.path("frames").exists());
     wayword_testkit::write_skyboxes(&building.data()).unwrap();
     let told = refused(&building, &[&path[..], &["--smooth", "2"]].concat());
-    assert!(told.contains("nothing between") && told.contains("--smooth"), "{told}");
+    assert!(told.contains("no pictures between") && told.contains("--smooth"), "{told}");
     let _ = fs::remove_dir_all(building.path("frames"));
     assert!(view(&building, &path)["frames"].as_u64().unwrap() > 1);
 }
@@ -163,7 +163,7 @@ fn a_build_without_films_says_how_to_get_one() {
     assert!(told.contains("--features full") && told.contains(".gif"), "{told}");
 }
 
-/// Every frame of an MP4 file, decoded: its samples lie one after the other in `mdat`, each unit behind its length.
+/// Every frame of an MP4 file, decoded. Its samples follow one another in `mdat`, and each unit comes after its length.
 #[cfg(feature = "video")]
 fn decoded(bytes: &[u8]) -> Vec<RgbImage> {
     use openh264::{decoder::Decoder, formats::YUVSource};
@@ -212,7 +212,7 @@ fn a_film_shows_the_pictures_in_their_order() {
     // One picture a second is ten frames a second.
     assert_eq!((written["frames"].as_u64().unwrap() as usize, film.len()), (pictures.len(), 10 * pictures.len()));
     for (at, frame) in film.iter().enumerate() {
-        // H.264 has even sides.
+        // H.264 needs an even width and height.
         assert_eq!(frame.dimensions(), (320, 240));
         let differs = |picture: &RgbImage| {
             let off = |(x, y, pixel): (u32, u32, &image::Rgb<u8>)| {
@@ -226,7 +226,7 @@ fn a_film_shows_the_pictures_in_their_order() {
     }
 }
 
-/// The titles of a map's discs.
+/// The titles of the discs on a map.
 fn named(svg: &str) -> BTreeSet<String> {
     let titles = svg.split("<circle").skip(1).filter_map(|mark| mark.split_once("<title>"));
     titles.map(|(_, rest)| rest.split('<').next().unwrap().to_owned()).collect()

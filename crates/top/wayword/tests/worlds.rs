@@ -1,4 +1,5 @@
-//! Worlds by their names: listed, refused with what is missing, and walked from end to end over stand-ins of live simulators.
+//! Platforms by name: they are listed, and refused with what is missing; and whole runs on stand-ins of live
+//! simulators.
 
 #![cfg(feature = "live")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -9,7 +10,7 @@ use common::{Building, Ran};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use wayword_live::{tdw, virtualhome};
 
-/// A port that nobody has.
+/// A port that no program uses.
 fn free_port() -> SocketAddr {
     TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
 }
@@ -69,7 +70,8 @@ fn an_executable_that_answers_can_be_walked_through() {
     generate(&building, "virtualhome", "home_0", &format!("http://{address}"));
 }
 
-/// From a scene's files to checked instructions, by Habitat's own formats: stage configuration, GLB and HM3D's semantics.
+/// From a scene's files to checked instructions, in Habitat's own formats: stage configuration, GLB and HM3D's
+/// semantics.
 #[test]
 fn a_house_saved_for_habitat_can_be_walked_through_as_one_of_its_scenes() {
     let building = Building::new();

@@ -1,11 +1,11 @@
-//! From views to words: the dialogue, prompts, styles, writing and repair, and the offline minds.
+//! From views to words: the dialogue, prompts, styles, writing and repair, and the roles that need no model.
 //!
 //! Architecture invariant: nothing here opens a file or a connection, and nothing knows a platform beyond the trait.
 
 pub mod dialogue;
-pub mod minds;
 pub mod models;
 pub mod observe;
+pub mod offline;
 pub mod perception;
 pub mod prompts;
 pub mod repair;

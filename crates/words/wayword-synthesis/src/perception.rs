@@ -1,6 +1,7 @@
-//! How well captions fit the labels of their views: objects named rightly, ghosts, and objects missed.
+//! How well captions fit the labels of their views: objects named correctly, hallucinated objects, and objects missed.
 //!
-//! The paper claims that its dialogue removes ghosts and does not measure it; this does, for any answerer.
+//! The paper (arXiv 2403.11487) claims that its dialogue removes hallucinated objects, and does not measure it. This
+//! module does, for any answerer.
 
 use crate::dialogue::{OPENING, sightings};
 use serde::Serialize;
@@ -11,20 +12,20 @@ use wayword_language::lexicon::{Class, agree, thing};
 /// What a caption got right.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Score {
-    /// Different objects that it names and labels can judge.
+    /// How many different objects it names, of those that labels can judge.
     pub named: usize,
-    /// Those of them that no label of the view agrees with.
-    pub ghosts: Vec<String>,
-    /// Different names among the labels of the view.
+    /// The named objects that agree with no label of the view.
+    pub hallucinated: Vec<String>,
+    /// How many different names the labels of the view have.
     pub labelled: usize,
-    /// Those of them that it names.
+    /// How many of those it names.
     pub found: usize,
 }
 
-/// Holds a caption's words against the labels of its view.
+/// Compares the objects that a caption names with the labels of its view.
 ///
-/// Walls, floors, doors and the like are left out on both sides: most label sets leave them out, so that they can be neither
-/// found nor ghosts.
+/// Walls, floors, doors and the like are left out on both sides: most label sets lack them, so that they could be
+/// neither found nor hallucinated.
 #[must_use]
 pub fn score(caption: &str, labels: &[SeenThing]) -> Score {
     let judged = |name: &str| !matches!(thing(name).map(|thing| thing.class), Some(Class::Fabric | Class::Door));
@@ -33,10 +34,10 @@ pub fn score(caption: &str, labels: &[SeenThing]) -> Score {
     let named = distinct(seen.map(|sighting| sighting.name.as_str()).filter(|name| judged(name)));
     let labelled = distinct(labels.iter().map(|label| label.name.as_str()).filter(|name| judged(name)));
     let in_list = |list: &[&str], name: &str| list.iter().any(|other| agree(other, name));
-    let ghosts = named.iter().filter(|name| !in_list(&labelled, name)).map(|name| (*name).to_owned());
+    let hallucinated = named.iter().filter(|name| !in_list(&labelled, name)).map(|name| (*name).to_owned());
     Score {
         named: named.len(),
-        ghosts: ghosts.collect(),
+        hallucinated: hallucinated.collect(),
         labelled: labelled.len(),
         found: labelled.iter().filter(|name| in_list(&named, name)).count(),
     }
@@ -62,16 +63,16 @@ mod tests {
     }
 
     #[test]
-    fn ghosts_and_misses_are_counted_by_kind() {
+    fn hallucinated_objects_and_misses_are_counted_by_kind() {
         let score =
             score("A bedroom with a bed, two lamps and a mirror.", &labels(&["bed", "lamp", "lamp", "wardrobe"]));
         assert_eq!((score.named, score.labelled, score.found), (3, 3, 2));
-        assert_eq!(score.ghosts, ["mirror"]);
+        assert_eq!(score.hallucinated, ["mirror"]);
     }
 
     #[test]
-    fn what_a_caption_says_is_absent_is_no_ghost_and_walls_are_not_judged() {
+    fn what_a_caption_says_is_absent_is_not_hallucinated_and_walls_are_not_judged() {
         let score = score("There is a bed and no mirror. The wall is white.", &labels(&["bed"]));
-        assert_eq!((score.named, score.ghosts.len(), score.found), (1, 0, 1));
+        assert_eq!((score.named, score.hallucinated.len(), score.found), (1, 0, 1));
     }
 }

@@ -1,4 +1,4 @@
-//! A path together with what was seen along it: all that a writer is told.
+//! A path together with what was seen along it: all that a writer gets.
 
 use serde::{Deserialize, Serialize};
 use wayword_checks::Evidence;
@@ -15,7 +15,7 @@ pub enum FrameSelection {
     Panoramic,
 }
 
-/// All that a writer is told about a path.
+/// All that a writer gets to know about a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walk {
     /// The path, with its target where one is given.
@@ -31,13 +31,13 @@ pub struct Walk {
 pub struct Seen<'a> {
     /// What the witness said.
     pub sighting: &'a Sighting,
-    /// The side of the walker on which it is, where that was told and the motion is known.
+    /// The side of the walker on which it is, where the caption says so and the motion is known.
     pub side: Option<Side>,
 }
 
 impl Walk {
-    /// A walk from a path and what was seen along it. Where the motion is unknown, so are floors and where the target is from
-    /// the walker: whatever the path says of them is left out.
+    /// Joins a path and what was seen along it. Where the motion is unknown, it leaves out whatever the path says of
+    /// storeys, and of the target's side and distance from the walker.
     #[must_use]
     pub fn new(mut path: Path, observations: Vec<Observation>) -> Self {
         if !path.motion.is_known() {
@@ -51,7 +51,7 @@ impl Walk {
         Self { moves: path.moves(), path, observations }
     }
 
-    /// The objects that were seen from a frame, each look's in its order.
+    /// The objects that were seen from a frame, look by look.
     pub fn seen(&self, frame: usize) -> impl Iterator<Item = Seen<'_>> {
         let heading = self.path.frames.get(frame).map_or(Heading::NORTH, |frame| frame.pose.heading);
         let has_sides = self.path.motion.is_known();
@@ -61,7 +61,7 @@ impl Walk {
         })
     }
 
-    /// The room of a frame, as its captions have it.
+    /// The room of a frame, as its captions name it.
     #[must_use]
     pub fn room(&self, frame: usize) -> Option<&str> {
         self.observations.get(frame)?.looks.iter().find_map(|look| look.caption.room.as_deref())

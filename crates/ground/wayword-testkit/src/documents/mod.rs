@@ -1,5 +1,5 @@
-//! The commands that documents tell their readers to type, read from Markdown: from fenced blocks of shell, and from spans of code
-//! within the text. For tests that hold the documents against the real command line.
+//! The commands that documents give their readers to type. They are read from Markdown: from fenced blocks of shell,
+//! and from code spans within the text. For tests that check the documents against the real command line.
 
 mod shell;
 
@@ -15,17 +15,17 @@ pub struct Documented {
     pub place: String,
     /// The program: `wayword` or `wayword-measure`, however the document starts it.
     pub program: String,
-    /// Variables that are set for it alone.
+    /// Variables that are set for this command only.
     pub variables: Vec<(String, String)>,
     /// Its arguments.
     pub args: Vec<String>,
-    /// Whether it stands within the text, where `wayword check` may be a name and no command to type.
+    /// Whether it is within the text, where `wayword check` may be a name and not a command to type.
     pub is_within_text: bool,
 }
 
-/// Programs of this repository that documents tell of.
+/// Programs of this repository that documents describe.
 const PROGRAMS: [&str; 2] = ["wayword", "wayword-measure"];
-/// What the fences of shell are called; those without a name are shell as well.
+/// The names of fenced blocks of shell. Blocks without a name are shell as well.
 const SHELL: [&str; 5] = ["", "sh", "bash", "console", "shell"];
 
 /// The commands of `README.md` and of `docs/*.md`, the README's first, then document by document.
@@ -47,7 +47,7 @@ pub fn commands(repository: &Path) -> io::Result<Vec<Documented>> {
     Ok(found)
 }
 
-/// The commands of one document, in its order. Places in it are told with its name.
+/// The commands of one document, in its order. `name` is the document's name in their places.
 #[must_use]
 pub fn commands_of(name: &str, markdown: &str) -> Vec<Documented> {
     let mut found = Vec::new();
@@ -76,7 +76,7 @@ fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
     Some((package.map_or("wayword", String::as_str).to_owned(), args[1..].to_vec()))
 }
 
-/// Text that a shell could be given.
+/// Text that may hold shell commands.
 struct Piece {
     /// Line on which it begins, from 1.
     line: usize,
@@ -96,7 +96,7 @@ fn pieces(markdown: &str) -> Vec<Piece> {
                 pieces.extend(fence.take().filter(|(name, _)| SHELL.contains(name)).map(|(_, block)| block));
             }
             Some((name, block)) => {
-                // Of a console only what is typed is a command; the rest is what was answered.
+                // In a console only what is typed is a command. The rest is output.
                 let typed = if *name == "console" { marks.strip_prefix("$ ").unwrap_or("#") } else { marks };
                 block.text.push_str(typed);
                 block.text.push('\n');
@@ -117,7 +117,7 @@ fn pieces(markdown: &str) -> Vec<Piece> {
     pieces
 }
 
-/// The spans of code within a paragraph; one may go on in the next line.
+/// The code spans within a paragraph. A span may continue in the next line.
 fn spans(paragraph: &Piece) -> Vec<Piece> {
     let mut line = paragraph.line;
     let mut found = Vec::new();

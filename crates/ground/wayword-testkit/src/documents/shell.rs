@@ -1,11 +1,12 @@
-//! As much of a shell as documents use: words, quotes, continued lines, lists and pipes, variables before a command.
+//! The part of a shell's syntax that documents use: words, quotes, continued lines, lists and pipes, variables before a
+//! command.
 
 /// One simple command: what a shell would run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Simple {
     /// Line of the text, from 0, on which it begins.
     pub(super) line: usize,
-    /// Variables that are set for it alone.
+    /// Variables that are set for this command only.
     pub(super) variables: Vec<(String, String)>,
     /// The program and its arguments, without quotes and redirections.
     pub(super) words: Vec<String>,
@@ -33,7 +34,7 @@ pub(super) fn commands(script: &str) -> Vec<Simple> {
             (None, '#') if reader.word.is_none() => while chars.next_if(|c| *c != '\n').is_some() {},
             (None, '>' | '<') => {
                 reader.redirect();
-                // `2>&1` is one redirection, and not the end of a command.
+                // `2>&1` is one redirection: its `&` does not end a command.
                 chars.next_if_eq(&'&');
             }
             (None, '\n' | ';' | '|' | '&') => {
@@ -56,7 +57,7 @@ struct Reader {
     line: usize,
     quote: Option<char>,
     word: Option<String>,
-    /// Whether the next word is a file that is read or written, and no argument.
+    /// Whether the next word is a file that is read or written, and not an argument.
     is_redirected: bool,
     now: Vec<String>,
     begun: Option<usize>,
@@ -69,7 +70,7 @@ impl Reader {
         self.word.get_or_insert_default().push(c);
     }
 
-    /// `2>` and `>`: the number of a stream is no argument.
+    /// `2>` and `>`: the number of a stream is not an argument.
     fn redirect(&mut self) {
         if self.word.as_ref().is_some_and(|word| word.chars().all(|c| c.is_ascii_digit())) {
             self.word = None;

@@ -1,11 +1,11 @@
-//! Pictures that carry a number, so that a provider that is shown nothing but a picture can know which view it is.
+//! Pictures that show a number, so that a provider can know from the picture alone which view it is.
 
 use wayword_core::Image;
 
 /// Blocks of a picture: 64 bits of the number, and 16 of a checksum.
 const COLUMNS: u32 = 10;
 const ROWS: u32 = 8;
-/// Pixels of a block: large enough for JPEG, and for half the size.
+/// Pixels of a block: large enough to survive JPEG and half the size.
 const BLOCK_PX: u32 = 16;
 
 /// A picture of a number, in large black and white blocks.

@@ -7,15 +7,15 @@ use wayword_core::Role;
 /// How a provider behaves. It has no `Debug`, because it holds a key.
 #[derive(Clone, Default)]
 pub struct Behaviour {
-    /// Who answers for a model's name. Any other name is answered with 404.
+    /// The script of each model, by name. Any other name is answered with 404.
     pub scripts: BTreeMap<String, Arc<dyn Script>>,
-    /// From a request to its answer or fault. What is refused for its key or its rate is refused at once.
+    /// The time from a request to its answer or fault. A request is refused at once for its key or its rate.
     pub latency: Duration,
     /// What goes wrong.
     pub faults: Faults,
     /// How many requests are allowed; `None` for any number.
     pub rate: Option<Rate>,
-    /// The only key that is accepted, in the header that the dialect has for it; `None` where none is asked for.
+    /// The only key that is accepted, in the dialect's header for it; `None` where no key is needed.
     pub key: Option<String>,
     /// Seed of the faults.
     pub seed: u64,
@@ -38,24 +38,24 @@ impl Behaviour {
 
 /// Plays a model.
 pub trait Script: Send + Sync {
-    /// What the model says. It should depend on what it hears alone, so that runs can be repeated.
+    /// The model's reply. It should depend on the request alone, so that runs can be repeated.
     fn reply(&self, heard: &Heard) -> String;
 }
 
-/// What a model is told, the same in every dialect.
+/// A request to a model, the same in every dialect.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Heard {
-    /// Its name, without its provider's.
+    /// The model's name, without its provider's.
     pub model: String,
-    /// Who said what, in order.
+    /// The messages with their roles, in order.
     pub messages: Vec<(Role, String)>,
     /// The bytes of all pictures, in order.
     pub pictures: Vec<Vec<u8>>,
-    /// 0 for the likeliest words.
+    /// 0 gives the likeliest words.
     pub temperature: Option<f64>,
-    /// Most words of the reply: a token is a word here.
+    /// Most words of the reply, because a token is a word here.
     pub max_tokens: Option<u64>,
-    /// Seed of the draw.
+    /// Seed of the sampling.
     pub seed: Option<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! Which request meets which fault.
+//! The faults, and which request gets which.
 
 use super::RetryAfter;
 use rand::Rng;
@@ -7,11 +7,11 @@ use std::time::Duration;
 /// What can go wrong with one request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
-    /// 429 though the rate was kept.
+    /// 429 although the rate was kept.
     TooMany(RetryAfter),
     /// 500.
     Server,
-    /// 502 with a page of HTML, as gateways have it.
+    /// 502 with a page of HTML, as gateways send it.
     Gateway,
     /// 503.
     Unavailable,
@@ -21,21 +21,21 @@ pub enum Fault {
     Reset,
     /// The connection is closed before any byte of a response.
     Closed,
-    /// The body comes a byte at a time, with [`Faults::trickle`] between two.
+    /// The body comes a byte at a time, with [`Faults::trickle`] between two bytes.
     Trickle,
     /// Half of the JSON, with a `content-length` that says it is all.
     Truncated,
     /// A reply without a choice in it.
     NoChoices,
-    /// 200, and in it an error.
+    /// 200 with an error in the body.
     ErrorInOk,
-    /// A page of HTML under 200.
+    /// 200 with a page of HTML.
     WrongType,
-    /// 500 whose words repeat the key that came with the request.
+    /// 500 with a message that repeats the key of the request.
     EchoesKey,
-    /// Half of the answer, said to have been cut off for its length.
+    /// Half of the answer, marked as cut off for its length.
     CutOff,
-    /// The service's filter keeps the answer back.
+    /// The service's filter withholds the answer.
     Filtered,
     /// The model refuses.
     Refused,
@@ -45,19 +45,20 @@ pub enum Fault {
 
 /// What goes wrong, and how often.
 ///
-/// A fault is drawn from the seed, the request (its dialect, model and body) and how many like it were let in before. So the same
-/// requests meet the same faults in every run, in any order, and one that is repeated may succeed.
+/// A fault is drawn from the seed, the request (its dialect, model and body) and the number of equal requests that were
+/// let in before. So the same requests get the same faults in every run, in any order, and a repeated request may
+/// succeed.
 #[derive(Debug, Clone)]
 pub struct Faults {
     shares: Vec<(Fault, f64)>,
     first: Vec<Option<Fault>>,
-    /// So many requests are let in; to every later one the key is wrong (401).
+    /// After this number of requests was let in, the key is refused (401).
     pub key_refused_after: Option<u64>,
-    /// So many requests are let in; then the account is empty.
+    /// After this number of requests was let in, the account is empty.
     pub quota_after: Option<u64>,
-    /// The wait that a 429 out of turn asks for. Forms that have whole seconds round it up.
+    /// The wait that [`Fault::TooMany`] asks for. Forms in whole seconds round it up.
     pub wait: Duration,
-    /// Between two bytes of [`Fault::Trickle`].
+    /// The time between two bytes of [`Fault::Trickle`].
     pub trickle: Duration,
 }
 
@@ -74,7 +75,7 @@ impl Default for Faults {
     }
 }
 
-/// The faults after which the same request may succeed; 429 comes besides, in each of its forms.
+/// The faults after which the same request may succeed, without 429 in its forms.
 const PASSING: [Fault; 12] = [
     Fault::Server,
     Fault::Gateway,
@@ -91,8 +92,9 @@ const PASSING: [Fault; 12] = [
 ];
 
 impl Faults {
-    /// All faults that pass, equally often, in sum at `share` (0 to 1) of the requests: the twelve of 500, 502, 503, 529, reset,
-    /// closed, trickle, truncated, no choices, error under 200, wrong type and echoed key, and 429, whose forms share its part.
+    /// All faults after which the same request may succeed, equally often, together at `share` (0 to 1) of the
+    /// requests. They are the twelve of 500, 502, 503, 529, reset, closed, trickle, truncated, no choices, error under
+    /// 200, wrong type and echoed key, and 429, whose forms share its part.
     #[must_use]
     pub fn storm(share: f64) -> Self {
         let each = share / (PASSING.len() + 1) as f64;
@@ -109,20 +111,20 @@ impl Faults {
         self
     }
 
-    /// The same, but the first requests that are let in meet these, in the order in which they come.
+    /// The same, but the first requests that are let in get these faults, in order.
     #[must_use]
     pub fn first(mut self, faults: &[Option<Fault>]) -> Self {
         self.first = faults.to_vec();
         self
     }
 
-    /// The share of requests that meet no drawn fault.
+    /// The share of requests that get no drawn fault.
     #[must_use]
     pub fn free_share(&self) -> f64 {
         (1.0 - self.shares.iter().map(|(_, share)| share).sum::<f64>()).max(0.0)
     }
 
-    /// The fault of a request: `index` were let in before it, `nth` of them equal to it.
+    /// The fault of a request: `index` requests were let in before it, `nth` of them equal to it.
     pub(super) fn of(&self, seed: u64, index: u64, request: u64, nth: u64) -> Option<Fault> {
         if let Some(scripted) = usize::try_from(index).ok().and_then(|index| self.first.get(index)) {
             return *scripted;

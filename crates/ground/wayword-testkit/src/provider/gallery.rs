@@ -1,4 +1,4 @@
-//! What is to be seen in the pictures that a test shows.
+//! What a test's pictures show.
 
 use std::{
     collections::BTreeMap,
@@ -10,13 +10,13 @@ use std::{
 pub struct Thing {
     /// Its name.
     pub name: String,
-    /// The third of the picture in which it is: 0 left, 1 middle, 2 right.
+    /// The third of the picture that it is in: 0 left, 1 middle, 2 right.
     pub third: u8,
     /// Its colour.
     pub colour: Option<String>,
 }
 
-/// What is to be seen in a picture.
+/// What a picture shows.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Scenery {
     /// The room.
@@ -25,17 +25,17 @@ pub struct Scenery {
     pub things: Vec<Thing>,
 }
 
-/// Sceneries by the numbers of their pictures. Clones are the same gallery.
+/// What each picture shows, by the picture's number. Clones share one gallery.
 #[derive(Debug, Clone, Default)]
 pub struct Gallery(Arc<Mutex<BTreeMap<u64, Scenery>>>);
 
 impl Gallery {
-    /// Hangs a picture.
+    /// Adds a picture.
     pub fn hang(&self, id: u64, scenery: Scenery) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(id, scenery);
     }
 
-    /// What is to be seen in a picture.
+    /// What a picture shows.
     #[must_use]
     pub fn scenery(&self, id: u64) -> Option<Scenery> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&id).cloned()

@@ -1,4 +1,4 @@
-//! What a provider remembers.
+//! What a provider counts.
 
 use super::Fault;
 use std::collections::BTreeMap;
@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 pub struct Log {
     /// Requests that came, refused ones too.
     pub received: u64,
-    /// Requests that were let in: neither their key nor the rate was against it. The key and the quota that run out after so many
-    /// requests count these.
+    /// Requests that were let in: neither their key nor the rate was a reason to refuse them.
+    /// `Faults::key_refused_after` and `Faults::quota_after` count these.
     pub admitted: u64,
-    /// Requests that got a whole answer: what a real service would bill.
+    /// Requests that got a whole answer. A real service would bill these.
     pub answered: u64,
     /// Requests above the rate.
     pub rate_limited: u64,
@@ -19,18 +19,18 @@ pub struct Log {
     pub key_refused: u64,
     /// Requests after the quota was used up.
     pub out_of_quota: u64,
-    /// Requests that make no sense, or name a model that is none.
+    /// Requests that are malformed, or name an unknown model.
     pub unfit: u64,
-    /// Faults that were committed.
+    /// How often each fault was committed.
     pub faults: BTreeMap<Fault, u64>,
-    /// Most requests that were worked on at the same time.
+    /// Most requests that were in work at the same time.
     pub most_at_once: u64,
     /// Each distinct request (its dialect, model and body), by hash.
     pub bodies: BTreeMap<u64, Body>,
     pub(super) at_once: u64,
 }
 
-/// How often one and the same request came.
+/// How often the same request came.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Body {
     /// Times that it came.
@@ -42,7 +42,7 @@ pub struct Body {
 }
 
 impl Log {
-    /// Answers beyond the first to the same request: what was paid again.
+    /// Answers beyond the first to the same request, which had to be paid again.
     #[must_use]
     pub fn answered_again(&self) -> u64 {
         self.bodies.values().map(|body| u64::from(body.answered.saturating_sub(1))).sum()
@@ -54,7 +54,7 @@ impl Log {
         self.bodies.values().filter(|body| body.answered > 0).count() as u64
     }
 
-    /// All faults that were committed.
+    /// The number of all faults that were committed.
     #[must_use]
     pub fn faults_committed(&self) -> u64 {
         self.faults.values().sum()
@@ -67,7 +67,7 @@ impl Log {
         self.bodies.entry(request).or_default().received += 1;
     }
 
-    /// How many were let in before this request, and how many of them equal to it.
+    /// How many requests were let in before this one, and how many of them were equal to it.
     pub(super) fn admit(&mut self, request: u64) -> (u64, u64) {
         let body = self.bodies.entry(request).or_default();
         let before = (self.admitted, u64::from(body.admitted));

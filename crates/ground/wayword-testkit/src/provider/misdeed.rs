@@ -19,7 +19,7 @@ pub(super) struct Misdeed<'a> {
     pub(super) faults: &'a Faults,
     pub(super) line: &'a Line,
     pub(super) headers: &'a HeaderMap,
-    /// What would have been answered.
+    /// The answer without the fault.
     pub(super) said: Said,
 }
 
@@ -59,7 +59,7 @@ impl Misdeed<'_> {
         }
     }
 
-    /// A good answer on a connection that fails it.
+    /// A good answer on a connection that breaks.
     fn broken(&self, how: Break) -> Response {
         self.line.breaks(how);
         json(&self.dialect.answer(&self.said))

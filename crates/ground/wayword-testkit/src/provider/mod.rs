@@ -1,5 +1,6 @@
-//! A model provider of our own, for tests and measurements: it speaks the dialects of the real ones on one port of this machine,
-//! answers from scripts, and commits every fault that such services have, at a share that is drawn from a seed.
+//! A model provider for tests and measurements. It speaks the dialects of the real ones on one port of this machine,
+//! answers from scripts, and commits every fault that real services have. The test sets the share of each fault, and a
+//! seed draws the requests that get it.
 
 pub mod barcode;
 mod behaviour;
@@ -27,9 +28,9 @@ pub use pictured::Pictured;
 pub use rate::Rate;
 pub use retry_after::RetryAfter;
 
-/// Threads that serve. They are named `provider`, so that a measurement can leave their work out of its own.
+/// Threads that serve. They are named `provider`, so that a measurement can leave out their work.
 const THREADS: usize = 2;
-/// Longest that dropping a provider takes.
+/// The longest time that dropping a provider takes.
 const FAREWELL: Duration = Duration::from_secs(2);
 
 /// A running provider. It stops when it is dropped, and every connection to it breaks.
@@ -43,7 +44,7 @@ impl Provider {
     /// Starts a provider on a port of 127.0.0.1 that the system chooses.
     ///
     /// # Errors
-    /// When no port or thread is to be had.
+    /// When the system gives no port or thread.
     pub fn start(behaviour: Behaviour) -> io::Result<Self> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(THREADS)
@@ -57,7 +58,7 @@ impl Provider {
         Ok(Self { address, shared, runtime: Some(runtime) })
     }
 
-    /// What a client of a dialect takes as its base URL: up to the version where it has one.
+    /// The base URL for clients of a dialect; it ends with the API's version where the dialect has one.
     #[must_use]
     pub fn base_url(&self, dialect: Dialect) -> String {
         format!("http://{}{}", self.address, dialect.base_path())
@@ -69,7 +70,7 @@ impl Provider {
         self.shared.tally().received
     }
 
-    /// What has happened so far. It grows by some 50 bytes for each distinct request.
+    /// The counts so far. They grow by some 50 bytes for each distinct request.
     #[must_use]
     pub fn log(&self) -> Log {
         self.shared.tally().clone()

@@ -1,4 +1,5 @@
-//! Any platform, with pictures that a [`FlawedEye`](super::scripts::FlawedEye) can read: their labels hang in a gallery.
+//! Any platform, with pictures that a [`FlawedEye`](super::scripts::FlawedEye) can read, because a gallery has their
+//! labels.
 
 use super::{Gallery, Scenery, Thing, barcode};
 use sha2::{Digest, Sha256};
@@ -8,14 +9,14 @@ use wayword_core::{
     Where,
 };
 
-/// A platform whose views show a number instead of the world.
+/// A platform whose views show a number instead of the scene.
 pub struct Pictured<P> {
     platform: P,
     gallery: Gallery,
 }
 
 impl<P: Platform> Pictured<P> {
-    /// Hangs what is looked at in the gallery.
+    /// Wraps a platform. Each view that is looked at is added to the gallery.
     #[must_use]
     pub fn new(platform: P, gallery: Gallery) -> Self {
         Self { platform, gallery }
@@ -71,7 +72,7 @@ impl<P: Platform> Platform for Pictured<P> {
     }
 }
 
-/// The number of a view: equal looks have equal numbers.
+/// The number of a view. Equal views have equal numbers.
 fn id(scene: &SceneId, from: &Frame, gaze: Gaze) -> u64 {
     let mut hash = Sha256::new();
     hash.update(scene.as_str());
@@ -91,7 +92,7 @@ mod tests {
     use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
     use wayword_core::{DVec3, GroundTruth, Heading, Label, Pose};
 
-    /// A world of one place, with a lamp ahead and a bed on the right.
+    /// A platform with one place, which has a lamp ahead and a bed on the right.
     struct Cell;
 
     impl Platform for Cell {
@@ -104,11 +105,11 @@ mod tests {
         }
 
         fn graph(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-            panic!("nobody walks here")
+            panic!("this test needs no graph")
         }
 
         fn sample_path(&self, _: &SceneId, _: &PathRequest, _: u64) -> Result<Path, PlatformError> {
-            panic!("nobody walks here")
+            panic!("this test needs no path")
         }
 
         fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {

@@ -3,7 +3,7 @@
 use super::RetryAfter;
 use std::time::{Duration, Instant};
 
-/// A token bucket. What is above it is refused with 429 and does not count against it.
+/// A token bucket. Requests above the rate are refused with 429 and do not count against it.
 #[derive(Debug, Clone, Copy)]
 pub struct Rate {
     /// How fast the bucket fills.
@@ -27,7 +27,7 @@ impl Bucket {
         Self { rate, left: f64::from(rate.burst), at: now }
     }
 
-    /// Takes one request; `Err` with the form and the wait where there is none.
+    /// Takes one request out of the bucket; `Err` with the form and the wait where it is empty.
     pub(super) fn take(&mut self, now: Instant) -> Result<(), (RetryAfter, Duration)> {
         let filled = now.saturating_duration_since(self.at).as_secs_f64() * self.rate.requests_per_s;
         self.left = (self.left + filled).min(f64::from(self.rate.burst));

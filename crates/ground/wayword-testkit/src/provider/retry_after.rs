@@ -5,10 +5,10 @@ use jiff::{Timestamp, fmt::rfc2822};
 use serde_json::{Value, json};
 use std::time::{Duration, SystemTime};
 
-/// The forms in which a 429 tells how long to wait.
+/// The forms in which a 429 says how long to wait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RetryAfter {
-    /// It does not.
+    /// It does not say.
     Silent,
     /// `retry-after: 2`, rounded up.
     Seconds,
@@ -18,9 +18,9 @@ pub enum RetryAfter {
     HttpDate,
     /// `retry-after-ms: 50`.
     Milliseconds,
-    /// OpenAI's `x-ratelimit-reset-requests: 50ms`; Anthropic's `anthropic-ratelimit-requests-reset` with a moment.
+    /// OpenAI's `x-ratelimit-reset-requests: 50ms`; Anthropic's `anthropic-ratelimit-requests-reset` with a timestamp.
     Reset,
-    /// Gemini's `RetryInfo` in the error's body; a dialect whose error is no object leaves it out.
+    /// Gemini's `RetryInfo` in the error's body. A dialect whose error is not an object leaves it out.
     RetryInfo,
 }
 
@@ -48,7 +48,7 @@ impl RetryAfter {
         }
     }
 
-    /// What stands in the error's body as `details`.
+    /// The `details` in the error's body.
     pub(super) fn details(self, wait: Duration) -> Option<Value> {
         let delay = || format!("{:.3}s", wait.as_secs_f64());
         (self == Self::RetryInfo)
@@ -60,7 +60,7 @@ fn whole_seconds(wait: Duration) -> Duration {
     Duration::from_secs(wait.as_millis().div_ceil(1000).max(1).try_into().unwrap_or(u64::MAX))
 }
 
-/// The first whole second that is no sooner than the wait; none later than a clock can tell.
+/// The first whole second after the wait, but at most the latest timestamp that there is.
 fn moment(wait: Duration) -> Timestamp {
     let at = Timestamp::try_from(SystemTime::now() + whole_seconds(wait + Duration::from_millis(999)));
     at.and_then(|at| Timestamp::from_second(at.as_second())).unwrap_or(Timestamp::MAX)

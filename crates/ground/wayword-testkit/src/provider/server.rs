@@ -21,9 +21,9 @@ use std::{
 };
 use tokio::net::TcpListener;
 
-/// Largest request that is taken: several pictures fit.
+/// Largest request that is accepted; several pictures fit.
 const LARGEST_BODY: usize = 64 << 20;
-/// What a picture counts as, in tokens.
+/// The tokens that a picture counts as.
 const PICTURE_TOKENS: u64 = 85;
 
 /// What all connections share.
@@ -36,7 +36,7 @@ pub(super) struct Shared {
 /// A request as it came.
 struct Arrival {
     dialect: Dialect,
-    /// Where the address names it.
+    /// The model, where the address names it.
     model: Option<String>,
     headers: HeaderMap,
     body: Bytes,
@@ -55,7 +55,7 @@ pub(super) async fn serve(listener: TcpListener, shared: Arc<Shared>) {
         .route("/api/tags", list(Dialect::Ollama))
         .layer(DefaultBodyLimit::max(LARGEST_BODY))
         .with_state(shared);
-    // It ends with the runtime; it never does by itself.
+    // It ends only with the runtime.
     let _ = axum::serve(Door(listener), router.into_make_service_with_connect_info::<Line>()).await;
 }
 
@@ -103,7 +103,7 @@ impl Shared {
         self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Works on a request to its end, though the one who asked may be gone: a service bills it all the same.
+    /// Works on a request to its end, even if the client is gone, because a real service bills it all the same.
     async fn worked(self: Arc<Self>, arrival: Arrival) -> Response {
         let dialect = arrival.dialect;
         let work = tokio::spawn(async move {
@@ -143,7 +143,7 @@ impl Shared {
         self.behaviour.key.as_ref().is_none_or(|key| *key == key_of(dialect, headers))
     }
 
-    /// How many requests were let in before, and how many of them equal to this; `Err` where this is not let in.
+    /// How many requests were let in before this one, and how many of them were equal to it; `Err` where it is refused.
     fn admitted(&self, arrival: &Arrival, request: u64) -> Result<(u64, u64), Box<Response>> {
         let dialect = arrival.dialect;
         let mut log = self.tally();
@@ -169,14 +169,14 @@ impl Shared {
         Ok(log.admit(request))
     }
 
-    /// What the model says to a request.
+    /// The model's reply to a request.
     fn said(&self, arrival: &Arrival) -> Result<Said, Box<Response>> {
         let dialect = arrival.dialect;
         let refused = |wrong: Wrong, message: &str| {
             self.tally().unfit += 1;
             Box::new(dialect.refuse(wrong, message))
         };
-        let body = serde_json::from_slice(&arrival.body).map_err(|_| refused(Wrong::Request, "This is no JSON."))?;
+        let body = serde_json::from_slice(&arrival.body).map_err(|_| refused(Wrong::Request, "This is not JSON."))?;
         let heard = dialect.heard(&body, arrival.model.as_deref()).map_err(|why| refused(Wrong::Request, why))?;
         let script = self.behaviour.scripts.get(&heard.model);
         let script = script.ok_or_else(|| refused(Wrong::Model, "There is no such model."))?;
@@ -199,7 +199,7 @@ fn words(text: &str) -> u64 {
     text.split_whitespace().count() as u64
 }
 
-/// A reply of no more words than were allowed.
+/// The reply, cut to the number of words that the request allows.
 fn cut(reply: String, heard: &Heard) -> (String, End) {
     let most = heard.max_tokens.and_then(|most| usize::try_from(most).ok()).unwrap_or(usize::MAX);
     if words(&reply) <= most as u64 {

@@ -18,20 +18,20 @@ use tokio::{
     time::Sleep,
 };
 
-/// What a connection does with the response that is written to it next, and to its end.
+/// How a connection breaks the responses that are written to it from now on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Break {
     /// Closes before any byte.
     Close,
     /// Sends the head and half of the body, then a TCP reset.
     Reset,
-    /// Sends the head, then a byte at a time, with so long between two.
+    /// Sends the head, then a byte at a time, with this time between two bytes.
     Trickle(Duration),
     /// Sends a body that never ends instead.
     Endless,
 }
 
-/// Through which the server tells a connection to break.
+/// Lets the server order a connection to break.
 #[derive(Clone, Default)]
 pub(super) struct Line(Arc<Mutex<Option<Break>>>);
 
@@ -62,11 +62,12 @@ impl Listener for Door {
         loop {
             match self.0.accept().await {
                 Ok((stream, address)) => {
-                    // Without it an answer waits for the acknowledgement of the one before. It cannot be worse than not set.
+                    // Without it an answer waits for the acknowledgement of the one before. A failure to set it does no
+                    // harm.
                     let _ = stream.set_nodelay(true);
                     return (Wire { stream, line: Line::default(), sent: 0, half: None, pause: None }, address);
                 }
-                // Out of sockets: some will be free again.
+                // Out of sockets: wait until some are free again.
                 Err(_) => tokio::time::sleep(Duration::from_millis(50)).await,
             }
         }
@@ -81,9 +82,9 @@ impl Listener for Door {
 pub(super) struct Wire {
     stream: TcpStream,
     line: Line,
-    /// Bytes that were sent since it was told to break.
+    /// Bytes that were sent since the order to break.
     sent: usize,
-    /// Where the head, or the head and half of the body, ends.
+    /// The byte at which the head, or the head and half of the body, ends.
     half: Option<usize>,
     pause: Option<Pin<Box<Sleep>>>,
 }
@@ -101,7 +102,7 @@ impl Wire {
         sent
     }
 
-    /// Sends up to half of the body of a response that is written in one piece, as small ones are, then resets.
+    /// Sends the head and half of the body, then resets. The response must be written in one piece, as small ones are.
     fn reset(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let half = *self.half.get_or_insert_with(|| head_bytes(bytes) + (bytes.len() - head_bytes(bytes)) / 2);
         match half.saturating_sub(self.sent) {
@@ -127,7 +128,7 @@ impl Wire {
         self.send(cx, &bytes[..bytes.len().min(1)])
     }
 
-    /// Goes on until the other side hangs up.
+    /// Sends until the other side closes the connection.
     fn endless(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
         loop {
             let next = ENDLESS_HEAD.get(self.sent..).filter(|rest| !rest.is_empty()).unwrap_or(&ENDLESS_WORDS);
@@ -139,7 +140,7 @@ impl Wire {
     }
 }
 
-/// Bytes of a response up to its body.
+/// The number of bytes of a response before its body.
 fn head_bytes(bytes: &[u8]) -> usize {
     bytes.windows(4).position(|window| window == b"\r\n\r\n").map_or(bytes.len(), |at| at + 4)
 }
@@ -166,7 +167,7 @@ impl AsyncWrite for Wire {
     }
 
     fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        // An orderly farewell would go out before the reset.
+        // An orderly shutdown would be sent before the reset.
         if self.line.told() == Some(Break::Reset) {
             return Poll::Ready(Ok(()));
         }

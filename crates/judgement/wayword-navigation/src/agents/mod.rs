@@ -1,11 +1,11 @@
-//! Agents that walk by instructions, and what stands beside them.
+//! Agents that walk by instructions, and the agents that they are compared with.
 
-mod floors;
-mod mind;
+mod baselines;
 mod parameters;
 mod phrases;
+mod policy;
 
-pub use floors::{last_room_in, nearest_room, oracle, random, straight};
+pub use baselines::{last_room_in, nearest_room, oracle, random, straight};
 pub use parameters::{Back, Parameters};
 pub use phrases::walk_by_phrases;
 
@@ -22,10 +22,10 @@ pub struct Start {
     pub heading: Heading,
 }
 
-/// What a walk came to.
+/// The result of a walk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walked {
-    /// Every stand.
+    /// Every step.
     pub steps: Vec<crate::walk::Step>,
     /// Why it ended.
     pub end: crate::walk::End,

@@ -1,23 +1,23 @@
-//! What the papers leave open, each with a name.
+//! The parameters that the papers leave open.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// How an agent that walks by phrases decides. Neither paper publishes these (arXiv 2211.16649; arXiv 2403.11487, section 4).
 ///
-/// The defaults were swept on REVERIE's train split: `wayword-measure sweep` does it again.
+/// The defaults were swept on REVERIE's train split: `wayword-measure sweep` repeats that.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameters {
-    /// A key phrase that fits the best view so well is done; the next one is in hand from the next step on.
+    /// A key phrase that scores at least this in the best view is done; the next one is current from the next step on.
     pub phrase_threshold: f32,
-    /// An activity that fits any view so well ends the walk.
+    /// An activity that scores at least this in any view ends the walk.
     pub stop_threshold: f32,
-    /// The activity is only listened to when at most so many key phrases are left.
+    /// The activity only counts when at most this many key phrases are left.
     pub stop_with_phrases_left: usize,
     /// Most hops, those back included.
     pub max_hops: usize,
-    /// Only those neighbours are taken at which it has stood the fewest times.
+    /// Whether the agent only goes to the neighbours at which it has been the fewest times.
     pub shun_visited: bool,
     /// Going back; `None` for an agent that never does.
     pub back: Option<Back>,
@@ -27,19 +27,19 @@ pub struct Parameters {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Back {
-    /// The sequence score is the mean over so many looks of how well the phrase in hand fits the best view.
+    /// The sequence score is the mean, over this many looks, of how well the current phrase fits the best view.
     pub window: usize,
-    /// Below this sequence score it goes back.
+    /// The agent goes back where the sequence score is below this.
     pub threshold: f32,
-    /// So many nodes.
+    /// How many nodes it goes back.
     pub nodes: usize,
 }
 
-/// As many phrases left as an instruction can have: the activity is always listened to.
+/// As many phrases as an instruction can have: the activity always counts.
 const ALWAYS: usize = 12;
 
 impl Parameters {
-    /// What an agent decides by with a grounder, unless told otherwise: `clip-nav` never goes back, `glip-nav` goes by boxes.
+    /// The default parameters of an agent with a grounder: `clip-nav` never goes back, `glip-nav` uses boxes.
     #[must_use]
     pub fn default_of(agent: &str, grounder: &str) -> Self {
         let by_boxes = agent == "glip-nav";
@@ -63,7 +63,7 @@ impl Parameters {
         }
     }
 
-    /// All of them by their names, for those who read a result.
+    /// All of them by name, for reports.
     #[must_use]
     pub fn named(&self) -> BTreeMap<String, String> {
         let mut named = BTreeMap::from([

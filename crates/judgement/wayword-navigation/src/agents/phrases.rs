@@ -2,36 +2,36 @@
 
 use super::{
     Parameters, Start, Walked,
-    mind::{Decision, Mind},
+    policy::{Decision, Policy},
 };
 use crate::{
     directions::Directions,
     error::WalkError,
-    eyes::{Eyes, Sight},
+    sight::{AgentView, Sight},
     walk::{Choice, End, Scored, Step},
 };
 use wayword_core::{Heading, ViewpointId};
 
-/// Walks by an instruction that was taken apart.
+/// Walks by an instruction that was split.
 ///
 /// # Errors
-/// When the world cannot be looked at, or the grounder fails.
+/// When the platform gives no view, or the grounder fails.
 pub fn walk_by_phrases(
-    eyes: &Eyes<'_>,
+    agent_view: &AgentView<'_>,
     start: &Start,
     directions: &Directions,
     parameters: &Parameters,
 ) -> Result<Walked, WalkError> {
     let mut told = directions.phrases.clone();
     told.push(directions.activity.clone());
-    let mut mind = Mind::new(parameters, directions.phrases.len());
+    let mut policy = Policy::new(parameters, directions.phrases.len());
     let mut steps: Vec<Step> = Vec::new();
     let (mut here, mut heading) = (start.viewpoint.clone(), start.heading);
     let end = loop {
-        let sight = eyes.look(&here, &told)?;
-        let in_hand = mind.phrase();
+        let sight = agent_view.look(&here, &told)?;
+        let in_hand = policy.phrase();
         let is_last = steps.len() >= parameters.max_hops;
-        let decision = mind.decide(&here, heading, &sight);
+        let decision = policy.decide(&here, heading, &sight);
         let scored = scored(&sight, in_hand, directions.phrases.len());
         let step =
             |choice| Step { viewpoint: here.clone(), heading_rad: heading, views: scored, phrase: in_hand, choice };
@@ -46,22 +46,22 @@ pub fn walk_by_phrases(
             }
             Decision::Onward { view, to } => {
                 steps.push(step(Choice::Onward(view)));
-                heading = eyes.heading_to(&here, &to).unwrap_or(heading);
+                heading = agent_view.heading_to(&here, &to).unwrap_or(heading);
                 here = to;
             }
             Decision::Back(over) => {
                 steps.push(step(Choice::Back));
-                (here, heading) = go_back(eyes, &mut steps, (here, heading), &over, parameters.max_hops);
+                (here, heading) = go_back(agent_view, &mut steps, (here, heading), &over, parameters.max_hops);
             }
         }
     };
-    let object = eyes.point(&here, &directions.activity)?;
+    let object = agent_view.point(&here, &directions.activity)?;
     Ok(Walked { steps, end, object })
 }
 
 /// Goes back over nodes; all but the last of them are passed without a look. Returns the last, and the heading there.
 fn go_back(
-    eyes: &Eyes<'_>,
+    agent_view: &AgentView<'_>,
     steps: &mut Vec<Step>,
     from: (ViewpointId, Heading),
     over: &[ViewpointId],
@@ -69,7 +69,7 @@ fn go_back(
 ) -> (ViewpointId, Heading) {
     let (mut here, mut heading) = from;
     for (at, to) in over.iter().enumerate() {
-        heading = eyes.heading_to(&here, to).unwrap_or(heading);
+        heading = agent_view.heading_to(&here, to).unwrap_or(heading);
         here = to.clone();
         if at + 1 == over.len() || steps.len() >= max_hops {
             break;
@@ -81,7 +81,7 @@ fn go_back(
 }
 
 fn scored(sight: &Sight, in_hand: usize, activity: usize) -> Vec<Scored> {
-    let scored = |view: &crate::eyes::Seen| Scored {
+    let scored = |view: &crate::sight::Seen| Scored {
         phrase: view.scores[in_hand],
         activity: view.scores[activity],
         ways: view.onward.len(),
@@ -107,8 +107,8 @@ mod tests {
 
     fn walked(things: &[(&'static str, &'static str)], directions: &Directions, parameters: &Parameters) -> Walked {
         let (world, grounder) = (Cross::new(things), Lexical::new(Sees::Views));
-        let eyes = Eyes::new(&world, &grounder, false, &scene()).unwrap();
-        walk_by_phrases(&eyes, &Cross::start(), directions, parameters).unwrap()
+        let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
+        walk_by_phrases(&agent_view, &Cross::start(), directions, parameters).unwrap()
     }
 
     fn parameters(back: Option<Back>) -> Parameters {
@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(walked.object.unwrap().as_str(), "sink");
     }
 
-    /// What it passes on the way is in hand first, and the task counts only then.
+    /// The phrase of what it passes is current first, and the task counts only after that.
     #[test]
     fn key_phrases_come_one_after_the_other() {
         let listens = Parameters { stop_with_phrases_left: 0, ..parameters(None) };

@@ -1,5 +1,5 @@
-use super::{mind::*, *};
-use crate::eyes::{Seen, Sight};
+use super::{policy::*, *};
+use crate::sight::{Seen, Sight};
 use proptest::prelude::*;
 use wayword_core::{DVec3, ViewpointGraph, rng};
 
@@ -33,19 +33,19 @@ fn onward(view: usize, to: usize) -> Decision {
 #[test]
 fn the_best_view_leads_to_its_nearest_neighbour() {
     let parameters = parameters();
-    let mut mind = Mind::new(&parameters, 1);
+    let mut policy = Policy::new(&parameters, 1);
     let seen = sight([(&[0.1, 0.0], &[1]), (&[0.4, 0.0], &[2, 3]), (&[0.2, 0.0], &[4]), (&[0.3, 0.0], &[])]);
-    assert_eq!(mind.decide(&id(0), Heading::NORTH, &seen), onward(1, 2));
+    assert_eq!(policy.decide(&id(0), Heading::NORTH, &seen), onward(1, 2));
 }
 
 #[test]
 fn a_view_without_neighbours_gives_way_to_the_next_best() {
     let parameters = parameters();
-    let mut mind = Mind::new(&parameters, 1);
+    let mut policy = Policy::new(&parameters, 1);
     let seen = sight([(&[0.4, 0.0], &[]), (&[0.1, 0.0], &[1]), (&[0.2, 0.0], &[2]), (&[0.0, 0.0], &[3])]);
-    assert_eq!(mind.decide(&id(0), Heading::NORTH, &seen), onward(2, 2));
+    assert_eq!(policy.decide(&id(0), Heading::NORTH, &seen), onward(2, 2));
     let nowhere = sight([(&[0.4, 0.0], &[]), (&[0.1, 0.0], &[]), (&[0.2, 0.0], &[]), (&[0.0, 0.0], &[])]);
-    assert_eq!(mind.decide(&id(0), Heading::NORTH, &nowhere), Decision::DeadEnd);
+    assert_eq!(policy.decide(&id(0), Heading::NORTH, &nowhere), Decision::DeadEnd);
 }
 
 #[test]
@@ -54,57 +54,57 @@ fn of_equal_views_the_one_straight_ahead_is_taken() {
     let equal: (&[f32], &[usize]) = (&[0.2, 0.0], &[7]);
     for view in 0..4 {
         let heading = wayword_core::Compass::ALL[view].heading().turned(0.3);
-        let mut mind = Mind::new(&parameters, 1);
-        assert_eq!(mind.decide(&id(0), heading, &sight([equal; 4])), onward(view, 7));
+        let mut policy = Policy::new(&parameters, 1);
+        assert_eq!(policy.decide(&id(0), heading, &sight([equal; 4])), onward(view, 7));
     }
 }
 
 #[test]
 fn a_phrase_that_fits_gives_way_to_the_next() {
     let parameters = parameters();
-    let mut mind = Mind::new(&parameters, 2);
+    let mut policy = Policy::new(&parameters, 2);
     // The first phrase fits east, the second west.
     let seen =
         sight([(&[0.0, 0.0, 0.0], &[1]), (&[0.6, 0.0, 0.0], &[2]), (&[0.0, 0.0, 0.0], &[3]), (&[0.0, 0.4, 0.0], &[4])]);
-    assert_eq!((mind.phrase(), mind.decide(&id(0), Heading::NORTH, &seen)), (0, onward(1, 2)));
-    assert_eq!((mind.phrase(), mind.decide(&id(0), Heading::NORTH, &seen)), (1, onward(3, 4)));
-    assert_eq!(mind.phrase(), 1, "a phrase that fits too little stays in hand");
+    assert_eq!((policy.phrase(), policy.decide(&id(0), Heading::NORTH, &seen)), (0, onward(1, 2)));
+    assert_eq!((policy.phrase(), policy.decide(&id(0), Heading::NORTH, &seen)), (1, onward(3, 4)));
+    assert_eq!(policy.phrase(), 1, "a phrase that fits too little stays the current one");
 }
 
 #[test]
 fn the_activity_ends_the_walk_when_few_phrases_are_left() {
     let seen = sight([(&[0.0, 0.9], &[1]), (&[0.0, 0.0], &[2]), (&[0.0, 0.0], &[3]), (&[0.0, 0.0], &[4])]);
     let patient = parameters();
-    assert_ne!(Mind::new(&patient, 1).decide(&id(0), Heading::NORTH, &seen), Decision::Stop);
+    assert_ne!(Policy::new(&patient, 1).decide(&id(0), Heading::NORTH, &seen), Decision::Stop);
     let eager = Parameters { stop_with_phrases_left: 1, ..patient };
-    assert_eq!(Mind::new(&eager, 1).decide(&id(0), Heading::NORTH, &seen), Decision::Stop);
+    assert_eq!(Policy::new(&eager, 1).decide(&id(0), Heading::NORTH, &seen), Decision::Stop);
 }
 
 #[test]
 fn neighbours_that_were_stood_at_are_shunned_while_there_are_others() {
     let shy = Parameters { shun_visited: true, ..parameters() };
-    let mut mind = Mind::new(&shy, 1);
+    let mut policy = Policy::new(&shy, 1);
     let from_0 = sight([(&[0.4, 0.0], &[1]), (&[0.0, 0.0], &[]), (&[0.0, 0.0], &[2]), (&[0.0, 0.0], &[])]);
     let from_1 = sight([(&[0.0, 0.0], &[3]), (&[0.0, 0.0], &[]), (&[0.4, 0.0], &[0]), (&[0.0, 0.0], &[])]);
     let dead_end = sight([(&[0.0, 0.0], &[]), (&[0.0, 0.0], &[]), (&[0.4, 0.0], &[1]), (&[0.0, 0.0], &[])]);
-    assert_eq!(mind.decide(&id(0), Heading::NORTH, &from_0), onward(0, 1));
-    assert_eq!(mind.decide(&id(1), Heading::NORTH, &from_1), onward(0, 3), "not back to where it came from");
-    assert_eq!(mind.decide(&id(3), Heading::NORTH, &dead_end), onward(2, 1), "unless there is no other way");
+    assert_eq!(policy.decide(&id(0), Heading::NORTH, &from_0), onward(0, 1));
+    assert_eq!(policy.decide(&id(1), Heading::NORTH, &from_1), onward(0, 3), "not back to where it came from");
+    assert_eq!(policy.decide(&id(3), Heading::NORTH, &dead_end), onward(2, 1), "unless there is no other way");
 }
 
 #[test]
 fn low_scores_in_a_row_lead_back() {
     let back = Back { window: 2, threshold: 0.3, nodes: 2 };
     let parameters = Parameters { back: Some(back), shun_visited: true, ..parameters() };
-    let mut mind = Mind::new(&parameters, 1);
+    let mut policy = Policy::new(&parameters, 1);
     let seen = |fit: f32| {
         let scores = [fit, 0.0];
         sight([(&scores, &[1, 2, 3, 4]), (&[0.0, 0.0], &[]), (&[0.0, 0.0], &[]), (&[0.0, 0.0], &[])])
     };
-    assert_eq!(mind.decide(&id(0), Heading::NORTH, &seen(0.4)), onward(0, 1));
-    assert_eq!(mind.decide(&id(1), Heading::NORTH, &seen(0.4)), onward(0, 2), "high enough");
-    assert_eq!(mind.decide(&id(2), Heading::NORTH, &seen(0.1)), Decision::Back(vec![id(1), id(0)]));
-    assert_eq!(mind.decide(&id(0), Heading::NORTH, &seen(0.1)), onward(0, 3), "the scores count anew, another way");
+    assert_eq!(policy.decide(&id(0), Heading::NORTH, &seen(0.4)), onward(0, 1));
+    assert_eq!(policy.decide(&id(1), Heading::NORTH, &seen(0.4)), onward(0, 2), "high enough");
+    assert_eq!(policy.decide(&id(2), Heading::NORTH, &seen(0.1)), Decision::Back(vec![id(1), id(0)]));
+    assert_eq!(policy.decide(&id(0), Heading::NORTH, &seen(0.1)), onward(0, 3), "the scores count anew, another way");
 }
 
 fn line() -> ViewpointGraph {
@@ -167,7 +167,7 @@ proptest! {
     ) {
         let back = Back { window, threshold: 0.5, nodes };
         let parameters = Parameters { back: Some(back), shun_visited, ..parameters() };
-        let mut mind = Mind::new(&parameters, 2);
+        let mut policy = Policy::new(&parameters, 2);
         let graph = line();
         let (mut here, mut stood) = (id(2), vec![id(2)]);
         for round in 0..30 {
@@ -175,7 +175,7 @@ proptest! {
                 scores: (0..3).map(|of| scores[(at + 5 * of + round) % scores.len()] * 0.49).collect(),
                 onward: if at == 0 { graph.neighbours(&here).into_iter().cloned().collect() } else { Vec::new() },
             };
-            match mind.decide(&here, Heading::NORTH, &Sight { views: std::array::from_fn(view) }) {
+            match policy.decide(&here, Heading::NORTH, &Sight { views: std::array::from_fn(view) }) {
                 Decision::Onward { to, .. } => {
                     prop_assert!(graph.neighbours(&here).contains(&&to));
                     here = to;

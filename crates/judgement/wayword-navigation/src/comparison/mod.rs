@@ -1,5 +1,5 @@
-//! Sets of instructions held against each other by how well agents walk by them: the paper's table, with what has to stand
-//! beside it.
+//! Compares sets of instructions by how well agents walk by them: the paper's table, with intervals, bounds and swap
+//! tests.
 
 mod results;
 mod table;
@@ -32,16 +32,16 @@ pub struct About {
     pub platform: String,
     /// Name of the episodes' file.
     pub episodes: String,
-    /// Who says how well phrases fit views; `labels` is ground truth, not perception.
+    /// The grounder, which scores how well phrases fit views; `labels` is ground truth, not perception.
     pub grounder: String,
     /// The same for agents that walk by a detector.
     pub detector: String,
     /// The sentence encoder behind `labels`, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub encoder: Option<String>,
-    /// Who takes instructions apart.
+    /// What splits instructions.
     pub splitter: String,
-    /// The rule that the table's figures go by.
+    /// The rule of success in the table.
     pub rule: Rule,
     /// What intervals cover, as 0.95.
     pub level: f64,
@@ -49,7 +49,7 @@ pub struct About {
     pub resamples: usize,
     /// Seed of everything random.
     pub seed: u64,
-    /// Items that every set has and that could be walked, to which all rows are confined.
+    /// Items that every set has and that could be walked, which all rows are about.
     pub items: usize,
     /// Paths on which those items lie: items on one path are not independent.
     pub paths: usize,
@@ -83,13 +83,15 @@ pub struct Set {
 #[serde(rename_all = "kebab-case")]
 pub enum AgentKind {
     /// It knows nothing and reads nothing.
-    Floor,
+    #[serde(alias = "floor")] // The name in comparisons that were made before.
+    LowerBound,
     /// It reads.
     Agent,
-    /// It knows what no agent is told: the map, the labels of rooms.
+    /// It knows what no agent gets: the map, the labels of rooms.
     Informed,
     /// It knows the goal.
-    Ceiling,
+    #[serde(alias = "ceiling")]
+    UpperBound,
 }
 
 /// An agent's figures on one set. A text's figure is its walk's, an item's the mean over its texts, the row's the mean over
@@ -113,7 +115,8 @@ pub struct Row {
 pub struct Difference {
     /// Each figure's difference with its interval, clustered by path.
     pub figures: BTreeMap<Metric, Estimate>,
-    /// On the success of each item's first text. It takes items for independent, which they are not: a description.
+    /// On the success of each item's first text. It treats items as independent, which they are not, so it only
+    /// describes.
     pub mcnemar: McNemar,
 }
 
@@ -130,10 +133,10 @@ pub struct Swapped {
     pub texts: usize,
     /// The agent's figures by the swapped texts.
     pub figures: BTreeMap<Metric, Estimate>,
-    /// By the original texts less by the swapped ones, on the same items and texts: positive where the agent listens to what was
-    /// swapped.
+    /// The figures by the original texts less those by the swapped ones, on the same items and texts: positive where
+    /// the agent listens to what was swapped.
     pub lost: Difference,
-    /// What that says.
+    /// What that shows.
     pub listening: Listening,
 }
 
@@ -143,13 +146,13 @@ pub struct Swapped {
 pub enum Listening {
     /// The whole interval of the lost success rate is above 0.
     Shown,
-    /// It is not: that the agent does not listen is not shown either.
+    /// It is not. That does not show that the agent does not listen.
     NotShown,
     /// The swap changed texts on fewer than [`FEWEST_PATHS`] paths, too few for an interval that means anything.
     TooFew,
 }
 
-/// On fewer paths an interval that draws paths says nothing.
+/// The fewest paths on which an interval that draws paths means anything.
 pub const FEWEST_PATHS: usize = 20;
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub struct Results {
 pub(super) type Texts = BTreeMap<String, BTreeSet<usize>>;
 
 impl Results {
-    /// Adds what a walk came to. `cluster` is the item's path.
+    /// Adds the score of a walk. `cluster` is the item's path.
     pub fn add(&mut self, walk: &crate::walk::Walk, cluster: &str, score: Score) {
         let scores = self.scores.entry((walk.agent.clone(), walk.set.clone())).or_default();
         scores.entry(walk.item.clone()).or_default().insert(walk.text_index, score);

@@ -27,7 +27,7 @@ pub struct Walker {
     pub reads: bool,
 }
 
-/// Puts the table together. Swaps are of the first set, and only of agents that are told nothing else.
+/// Makes the table. Swaps are of the first set, and only of agents that know nothing but the instruction and the views.
 #[must_use]
 pub fn compare(about: About, sets: Vec<Set>, walkers: &[Walker], swaps: &[Swap], results: &Results) -> Comparison {
     let table = Table { about: &about, results };

@@ -60,7 +60,7 @@ fn set(name: &str) -> Set {
 
 fn compared(results: &Results, swaps: &[Swap]) -> Comparison {
     let walker = |name: &str, kind, reads| Walker { name: name.into(), kind, reads };
-    let walkers = [walker("reader", AgentKind::Agent, true), walker("blind", AgentKind::Floor, false)];
+    let walkers = [walker("reader", AgentKind::Agent, true), walker("blind", AgentKind::LowerBound, false)];
     compare(about(), vec![set("original"), set("ours")], &walkers, swaps, results)
 }
 
@@ -119,7 +119,7 @@ fn a_swap_is_held_against_the_very_texts_that_it_changed() {
     assert_eq!(swapped.listening, Listening::TooFew, "two paths show nothing");
 }
 
-/// Of 30 items on as many paths, so many lose their success by the swap.
+/// Of 30 items on `paths` paths, `losers` items lose their success by the swap.
 fn after_losing(losers: usize, paths: usize) -> Listening {
     let mut results = Results::default();
     let swapped = swapped_set("original", Swap::OtherPath);

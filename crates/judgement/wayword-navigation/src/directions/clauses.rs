@@ -1,4 +1,4 @@
-//! Clauses as people mean them: the reader's, mended where an "and" or a mark belongs to a noun phrase.
+//! Clauses as people mean them: the reader's, corrected where an "and" or a mark belongs to a noun phrase.
 
 use std::{collections::BTreeSet, ops::Range};
 use wayword_language::{
@@ -11,7 +11,7 @@ use wayword_language::{
 #[derive(Debug, Clone)]
 pub(super) struct Clause {
     pub(super) all: Range<usize>,
-    /// Without what only goes on telling of a place.
+    /// Without what only says more about a place.
     pub(super) head: Range<usize>,
 }
 
@@ -50,7 +50,8 @@ pub(super) fn has_object(tokens: &[Token], clause: &Range<usize>) -> bool {
     clause.len() > 1 && AFTER_VERB.contains(&tokens[clause.start + 1].word.as_str())
 }
 
-/// Whether a clause goes on with the one before: what stands between them is no end, or it begins by telling of a place.
+/// Whether a clause goes on with the one before: what stands between them is no end, or it begins by saying more about
+/// a place.
 fn goes_on(tokens: &[Token], between: Range<usize>, clause: &Range<usize>) -> bool {
     let between = &tokens[between];
     let ends = |token: &Token| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");

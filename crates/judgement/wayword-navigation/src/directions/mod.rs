@@ -15,7 +15,7 @@ pub use model::ByModel;
 pub use places::{NamedPlace, places};
 pub use rules::ByRules;
 
-/// An instruction taken apart (arXiv 2211.16649, section 3: navigation component and activity component).
+/// An instruction split in two (arXiv 2211.16649, section 3: navigation component and activity component).
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Directions {
     /// The navigation component: key phrases in the order in which they are met. Empty where the text only names a task.
@@ -24,7 +24,7 @@ pub struct Directions {
     pub activity: String,
 }
 
-/// Takes instructions apart.
+/// Splits instructions.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait Splitter: Send + Sync {
@@ -35,13 +35,13 @@ pub trait Splitter: Send + Sync {
     fn split(&self, instructions: &[&str]) -> Vec<Result<Directions, ModelError>>;
 }
 
-/// Most key phrases of an instruction; people's have up to about ten.
+/// Most key phrases of an instruction; texts by people have up to about ten.
 const MOST_PHRASES: usize = 12;
 /// Most words of a phrase or an activity: CLIP reads no more than 77 tokens.
 const MOST_WORDS: usize = 50;
 /// Most bytes of a phrase or an activity: a text without spaces is one word.
 const MOST_BYTES: usize = 400;
-/// Most bytes of an instruction that are read; people's have up to about 2,500.
+/// Most bytes of an instruction that are read; texts by people have up to about 2,500.
 const MOST_BYTES_READ: usize = 8_000;
 
 /// The beginning of a text, up to a number of bytes.
@@ -49,7 +49,7 @@ fn beginning(text: &str, most_bytes: usize) -> &str {
     &text[..text.floor_char_boundary(most_bytes)]
 }
 
-/// The beginning of a phrase that is not too long for those who look for it.
+/// The beginning of a phrase that is not too long for a grounder.
 fn short(text: &str) -> String {
     let text = beginning(text.trim(), MOST_BYTES);
     let end = |word: &str| word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
@@ -60,7 +60,7 @@ fn short(text: &str) -> String {
 /// The part of an instruction that is read.
 ///
 /// # Errors
-/// Where it has no words to take apart.
+/// Where it has no words.
 fn readable<'a>(text: &'a str, splitter: &str) -> Result<&'a str, ModelError> {
     let text = beginning(text, MOST_BYTES_READ);
     if text.contains(char::is_alphanumeric) {

@@ -1,18 +1,19 @@
-//! Instructions taken apart by a language model.
+//! Instructions split by a language model.
 
 use super::{Directions, Splitter, readable, reply};
 use minijinja::{Environment, context};
 use std::sync::Arc;
 use wayword_core::{LanguageModel, Message, ModelError, Reply, Request, Sampling};
 
-/// Has a language model take instructions apart, as the paper does. A reply that cannot be read is asked for once more.
+/// Lets a language model split instructions, as the paper does. If a reply cannot be read, the model is asked once
+/// more.
 #[derive(Clone)]
 pub struct ByModel {
     model: Arc<dyn LanguageModel>,
 }
 
 const TEMPLATE: &str = include_str!("split.j2");
-/// The likeliest reply: how an instruction is taken apart does not change with a run's seed.
+/// The likeliest reply, because how an instruction is split does not change with a run's seed.
 const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 200, seed: 0 };
 /// How often a reply is asked for.
 const ATTEMPTS: u32 = 2;
@@ -42,7 +43,7 @@ impl ByModel {
         let next = |_| match replies.next() {
             Some(Ok(Reply { text, .. })) => reply::directions(&text).map_err(Trouble::Unreadable),
             Some(Err(error)) => Err(Trouble::Model(error)),
-            None => Err(Trouble::Model(self.failed("it left an instruction out"))),
+            None => Err(Trouble::Model(self.failed("it gave no reply for an instruction"))),
         };
         prompts.iter().map(next).collect()
     }
@@ -79,7 +80,7 @@ impl Splitter for ByModel {
                     Trouble::Model(error) => error,
                     Trouble::Unreadable(reason) => {
                         unreadable.push(asked);
-                        self.failed(format!("it was asked to take an instruction apart {ATTEMPTS} times, but {reason}"))
+                        self.failed(format!("it was asked {ATTEMPTS} times to split an instruction, but {reason}"))
                     }
                 });
             }
@@ -103,7 +104,7 @@ mod tests {
     use std::sync::Mutex;
     use wayword_core::Finish;
 
-    /// A model that says what it was told to say, in order, and keeps what it heard.
+    /// A model that gives prepared replies in their order, and keeps the requests.
     struct Scripted {
         replies: Mutex<Vec<&'static str>>,
         heard: Mutex<Vec<Request>>,
@@ -161,6 +162,6 @@ mod tests {
         assert!(unreadable.to_string().contains("test/scripted: ") && unreadable.to_string().contains("TASK"));
         assert!(ByModel::new(Scripted::new(&["budget"])).split(&["Wait"]).remove(0).unwrap_err().ends_run());
         let silent = ByModel::new(Scripted::new(&[])).split(&["Wait"]).remove(0).unwrap_err();
-        assert!(silent.to_string().contains("left an instruction out"));
+        assert!(silent.to_string().contains("no reply for an instruction"));
     }
 }

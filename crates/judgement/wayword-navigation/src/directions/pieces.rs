@@ -55,8 +55,8 @@ impl<'a> Pieces<'a> {
 
     /// The pieces of the clauses before `end` that lead to a place, in their order.
     ///
-    /// What only turns or goes on is left out, because no picture shows it. What only climbs or tells a floor is joined to the
-    /// next piece.
+    /// What only turns or goes on is left out, because no picture shows it. What only climbs or names a storey is
+    /// joined to the next piece.
     pub(super) fn leading(&self, end: Option<usize>) -> Vec<&'a str> {
         let mut pieces = Vec::new();
         let mut climb = None;
@@ -73,7 +73,8 @@ impl<'a> Pieces<'a> {
         pieces
     }
 
-    /// The longest clause before the task that does more than turn: it may name a place in words that nobody knows.
+    /// The longest clause before the task that does more than turn: it may name a place in words that the reader does
+    /// not know.
     pub(super) fn unread(&self, task: usize) -> Option<&'a str> {
         let only_moves = |what: &What| matches!(what, What::Turn(_) | What::Onward);
         let may_lead = |clause: &&Clause| {
@@ -83,7 +84,7 @@ impl<'a> Pieces<'a> {
         Some(self.words(&longest.all))
     }
 
-    /// The room in which the closing task is done, as it tells it.
+    /// The room in which the closing task is done, as the task names it.
     pub(super) fn room_of_task(&self, task: usize) -> Option<&'a str> {
         let rooms = self.clauses[task..].iter().flat_map(|clause| {
             let rooms = self
@@ -173,7 +174,7 @@ impl<'a> Pieces<'a> {
         })
     }
 
-    /// "Take two steps into the room": these steps are none to see.
+    /// "Take two steps into the room": these steps are no stairs.
     fn is_pace(&self, event: &Event) -> bool {
         let at = self.first_token(event);
         let before = |back: usize| at.checked_sub(back).map_or("", |at| self.word(at));

@@ -1,4 +1,4 @@
-//! The things and rooms that a phrase names, for those who look for labels and boxes.
+//! The things and rooms that a phrase names, for grounders that look for labels and boxes.
 
 use super::{MOST_BYTES_READ, beginning};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What a model says when it takes an instruction apart.
+//! Reads a model's reply to the request to split an instruction.
 
 use super::{Directions, MOST_BYTES_READ, MOST_PHRASES, beginning, short};
 
@@ -28,7 +28,7 @@ pub(super) fn directions(reply: &str) -> Result<Directions, &'static str> {
             phrases.push(short(text));
         }
     }
-    Err(if awaits_task { "its line of the task is empty" } else { "it wrote no line that begins with \"TASK:\"" })
+    Err(if awaits_task { "its \"TASK:\" line is empty" } else { "it wrote no line that begins with \"TASK:\"" })
 }
 
 /// A line without its number or bullet, and whether it had one.
@@ -39,12 +39,12 @@ fn item(line: &str) -> (bool, &str) {
         let rest = line.trim_start_matches(|c: char| c.is_ascii_digit());
         (rest.len() < line.len()).then(|| rest.strip_prefix(['.', ')', ':', '-'])).flatten()
     };
-    // A star with a space behind it is a bullet, two are emphasis.
+    // A star with a space after it is a bullet, two are emphasis.
     let bulleted = || ["- ", "* ", "• ", "– ", "+ "].iter().find_map(|bullet| line.strip_prefix(bullet));
     numbered().or_else(bulleted).map_or((false, line), |rest| (true, rest))
 }
 
-/// What stands behind the name of the closing line.
+/// What follows the name of the closing line.
 fn closing(text: &str) -> Option<&str> {
     let text = text.trim_start_matches(['*', '_', '"', '#', ' ']);
     let name =

@@ -1,15 +1,14 @@
-//! Instructions taken apart offline, by the reader that the checks use.
+//! Instructions split offline, by the reader that the checks use.
 
 use super::{Directions, MOST_PHRASES, Splitter, pieces::Pieces, readable, short};
 use wayword_core::ModelError;
 
-/// Takes instructions apart by rules.
+/// Splits instructions by rules.
 ///
-/// A key phrase is a clause that names a thing or a room, or a part of one where the clause goes through one place on to another;
-/// clauses that only turn carry no picture and are left out. The activity is the closing task, else the last piece with a
-/// place, else the whole text. A task alone that names the room in which it is done has that as a phrase; a walk with one place
-/// has it as phrase and as activity.
-/// Everything is a run of the text's own words.
+/// A key phrase is a clause that names a thing or a room, or a part of one where the clause goes through one place on
+/// to another. Clauses that only turn show nothing and are left out. The activity is the closing task, else the last
+/// piece with a place, else the whole text. A task alone that names the room in which it is done has that room as a
+/// phrase. A walk with one place has it as phrase and as activity. Everything is a run of the text's own words.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ByRules;
 

@@ -1,11 +1,11 @@
-//! What a view's labels say, for those who go by them.
+//! What a view's labels say, for grounders that use them.
 
 use wayword_core::{Label, ModelError, View};
 
 /// The labels of a view and its room.
 pub(super) fn labels_of<'a>(view: &'a View, by: &str) -> Result<(&'a [Label], Option<&'a str>), ModelError> {
     let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
-        mind: by.to_owned(),
+        name: by.to_owned(),
         needs: "labels",
         hint: "name a grounder that sees pictures, as --grounder hf/openai/clip-vit-base-patch32, or use a platform with labels",
     })?;

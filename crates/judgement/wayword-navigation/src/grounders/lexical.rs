@@ -9,7 +9,7 @@ use std::{
 use wayword_core::{Grounder, Label, ModelError, ObjectId, View};
 use wayword_language::lexicon::{agree, normal, same_room};
 
-/// What a name is worth that means the same by another word ("couch" for a sofa, "chair" for an armchair).
+/// The score of a name that means the same by another word ("couch" for a sofa, "chair" for an armchair).
 const AKIN: f32 = 0.8;
 
 /// Scores a phrase on a view by the share of the places it names that the view's labels name too, in [0, 1]. A phrase that names

@@ -10,11 +10,11 @@ use wayword_core::{Grounder, Label, ModelError, ObjectId, TextEncoder, View};
 
 type Vector = Arc<[f32]>;
 
-/// Scores a phrase on a view by how alike it is to the names of what the labels show: the cosine of an encoder's vectors, that of
-/// the name that is most alike. A view that shows nothing scores 0.
+/// Scores a phrase on a view by the name among its labels that is most like it: the cosine of an encoder's vectors. A
+/// view that shows nothing scores 0.
 ///
-/// Of views it takes the whole phrase; of boxes the mean over the places that the phrase names, since a detector looks for each
-/// noun by itself.
+/// For views it takes the whole phrase; for boxes the mean over the places that the phrase names, because a detector
+/// looks for each noun by itself.
 pub struct Similar {
     sees: Sees,
     encoder: Arc<dyn TextEncoder>,
@@ -28,7 +28,7 @@ impl Similar {
         Self { sees, encoder, vectors: Mutex::default() }
     }
 
-    /// What of a phrase is held against labels: all of it, or its places one by one.
+    /// What of a phrase is compared with labels: all of it, or its places one by one.
     fn parts(&self, phrase: &str) -> Vec<String> {
         let named: Vec<String> = match self.sees {
             Sees::Views => Vec::new(),
@@ -47,7 +47,7 @@ impl Similar {
         if missing.is_empty() {
             return Ok(found);
         }
-        // Nobody waits for the others' vectors while these are computed.
+        // The lock is not held while these are computed, so that other threads do not wait.
         let computed = self.encoder.encode(&missing)?;
         let mut known = self.vectors.lock().unwrap_or_else(PoisonError::into_inner);
         for (text, vector) in missing.into_iter().zip(computed) {

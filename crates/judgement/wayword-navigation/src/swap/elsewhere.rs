@@ -3,7 +3,7 @@
 use rand::Rng;
 use wayword_core::{SceneId, ViewpointId, rng};
 
-/// An item whose instruction could stand in for another's.
+/// An item whose instruction could replace another's.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Candidate {
     /// The item's id.
@@ -16,8 +16,8 @@ pub struct Candidate {
     pub cluster: String,
 }
 
-/// The item whose instruction stands in for that of item `at`: one of the same building, of another path and goal, that is far by
-/// `is_far(of item at, of the other)`. `None` where there is none.
+/// The item whose instruction replaces that of item `at`: one of the same building, with another path and goal, for
+/// which `is_far(item at, other)` is true. `None` where there is none.
 #[must_use]
 pub fn other_path(
     items: &[Candidate],

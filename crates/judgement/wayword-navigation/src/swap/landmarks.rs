@@ -1,4 +1,4 @@
-//! Things and rooms for others.
+//! Replaces things and rooms by others.
 
 use super::casing::{Case, replaced};
 use rand::seq::SliceRandom;
@@ -9,7 +9,7 @@ use wayword_language::{
     reading::{Place, What, read},
 };
 
-/// Things that stand in for others: of homes, told apart at a glance, and no rooms.
+/// Things that replace others: common in homes, easy to tell apart, and no rooms.
 const THINGS: [&str; 36] = [
     "sofa",
     "bed",
@@ -48,7 +48,7 @@ const THINGS: [&str; 36] = [
     "door",
     "column",
 ];
-/// Rooms that stand in for others.
+/// Rooms that replace others.
 const ROOMS: [&str; 14] = [
     "kitchen",
     "bedroom",
@@ -65,16 +65,16 @@ const ROOMS: [&str; 14] = [
     "entryway",
     "attic",
 ];
-/// How often a text is read again for names that only show once others are gone.
+/// How often a text is read again, because some names are only read once others are gone.
 const ROUNDS: usize = 3;
 /// How far before a place its own names are looked for ("bathroom" of "bathroom door"), bytes.
 const REACH_BYTES: usize = 60;
 
-/// Most different names of a text; people's have up to about 30.
+/// Most different names of a text; texts by people have up to about 30.
 const MOST_NAMES: usize = 60;
 
-/// The text with each of its things and rooms replaced by another of the kind that it does not name, equal names by equal ones.
-/// `None` where it names none, or where no name is left to stand in.
+/// The text with each of its things and rooms replaced by another of the kind that it does not name, equal names by
+/// equal ones. `None` where it names none, or where no name is left to replace one.
 pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
     let mut others = Others::new(seed, item);
     let mut new = text.to_owned();
@@ -98,13 +98,13 @@ pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
 struct Named {
     name: String,
     is_room: bool,
-    /// With the names that tell which one it is: "bathroom door".
+    /// With the names that say which one it is: "bathroom door".
     span: [usize; 2],
     /// Those names.
     tells_which: Vec<String>,
 }
 
-/// The names of a text in their order, whether the text says or denies them.
+/// The names of a text in their order, whether the text affirms or denies them.
 fn named(text: &str) -> Vec<Named> {
     let mut all: Vec<Named> = Vec::new();
     for event in read(text, &BTreeSet::new()).events {
@@ -142,7 +142,7 @@ fn right_before(text: &str) -> Option<(usize, String)> {
     (is_known(&place.name) && !gap.is_empty() && gap.trim().is_empty()).then_some((from + last.span[0], place.name))
 }
 
-/// The names that stand in for others.
+/// The names that replace others.
 struct Others {
     things: Vec<&'static str>,
     rooms: Vec<&'static str>,
@@ -159,7 +159,7 @@ impl Others {
         Self { things, rooms, old: BTreeSet::new(), given: BTreeMap::new() }
     }
 
-    /// Keeps in mind that the text names these, but for those that stand in.
+    /// Remembers that the text names these, except for the replacements.
     fn avoid(&mut self, named: &[Named]) {
         let names = named.iter().flat_map(|named| named.tells_which.iter().chain([&named.name]));
         let given: Vec<&str> = self.given.values().copied().collect();
@@ -175,7 +175,7 @@ impl Others {
         self.old.iter().any(|old| agree(old, name) || same_room(old, name))
     }
 
-    /// The name that stands in for another: one that stands in for nothing else, while there are any.
+    /// The replacement of a name: one that replaces nothing else, while there are any.
     fn instead_of(&mut self, named: &Named) -> Option<&'static str> {
         if let Some(given) = self.given.get(&named.name) {
             return Some(given);
@@ -191,7 +191,7 @@ impl Others {
         Some(other)
     }
 
-    /// The edits that write another name for one: its article, if that stands right before it, and the name itself.
+    /// The edits that write another name for one: its article, if that is right before it, and the name itself.
     fn edits(&mut self, text: &str, named: &Named) -> Option<Vec<([usize; 2], String)>> {
         let [from, to] = named.span;
         let other = self.instead_of(named)?;

@@ -1,4 +1,4 @@
-//! Instructions made wrong in one way: an agent that does as well by them does not listen to that.
+//! Instructions made wrong in one way. An agent that does as well by them does not listen to that.
 
 mod casing;
 mod elsewhere;
@@ -47,13 +47,13 @@ impl fmt::Display for Swap {
     }
 }
 
-/// Longest text that is swapped, bytes; people's have up to about 2,500.
+/// Longest text that is swapped, bytes; texts by people have up to about 2,500.
 const MOST_BYTES: usize = 8_000;
 
 /// A text made wrong in one way. `None` where that would change nothing, where the text is too long to be an instruction, and for
 /// [`Swap::OtherPath`], whose text the caller takes from the item that [`other_path`] chooses.
 ///
-/// What is random hangs on the seed and the item's id alone.
+/// What is random depends only on the seed and the item's id.
 #[must_use]
 pub fn swapped(swap: Swap, text: &str, seed: u64, item: &str) -> Option<String> {
     if text.len() > MOST_BYTES {

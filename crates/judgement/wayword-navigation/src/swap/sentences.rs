@@ -6,7 +6,8 @@ use rand::Rng;
 use wayword_core::rng;
 use wayword_language::text::words;
 
-/// The text with none of its sentences where it was; its clauses, where it has one sentence. `None` where that changes nothing.
+/// The text with each of its sentences in another place, or each of its clauses where it has one sentence. `None` where
+/// that changes nothing.
 pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
     let sentences = sentences(text);
     let clauses = if sentences.len() > 1 { Vec::new() } else { clause_texts(text) };

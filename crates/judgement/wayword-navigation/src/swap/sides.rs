@@ -1,7 +1,7 @@
-//! Left for right and up for down.
+//! Swaps left and right, and up and down.
 //!
-//! Whether a word is swapped depends on the words around it, never on which of its pair it is. So what was swapped twice is what
-//! it was.
+//! Whether a word is swapped depends on the words around it, never on which of its pair it is. So a text that is
+//! swapped twice is the same as before.
 
 use super::casing::{Case, replaced};
 use std::collections::BTreeSet;
@@ -12,12 +12,12 @@ use wayword_language::{
     text::{Token, tokens},
 };
 
-/// Words that tell a direction, each with its opposite.
+/// Words that name a direction, each with its opposite.
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["leftward", "rightward"], ["leftwards", "rightwards"]];
 const LEVELS: [[&str; 2]; 5] =
     [["up", "down"], ["upstairs", "downstairs"], ["ascend", "descend"], ["ascending", "descending"], ["top", "bottom"]];
 
-/// The text with its directions swapped; `None` where it tells none.
+/// The text with its directions swapped; `None` where it names none.
 pub(super) fn swapped(text: &str) -> Option<String> {
     let text_tokens = Text { text, tokens: tokens(text) };
     let mut edits: Vec<([usize; 2], String)> = Vec::new();
@@ -49,8 +49,8 @@ impl<'a> Text<'a> {
         &self.text[from..to]
     }
 
-    /// The sides that are turns, as tokens. The reader takes "right past the sofa" for no turn and "left past the sofa" for one;
-    /// so it reads the text with one word of each pair throughout.
+    /// The sides that are turns, by their tokens. The reader takes "right past the sofa" for no turn and "left past the
+    /// sofa" for one; so this reads the text with one word of each pair throughout.
     fn turns(&self) -> BTreeSet<usize> {
         let one_of_pair = |at: usize| match self.word(at) {
             word if other(&SIDES, word).is_some() => Some("right"),
@@ -68,7 +68,7 @@ impl<'a> Text<'a> {
         turns.map(|event| tokens.partition_point(|token| token.span[0] < event.span[0])).collect()
     }
 
-    /// The word to stand for the one at a token, where that tells a direction.
+    /// The opposite of the word at a token, where that names a direction.
     fn opposite(&self, at: usize, turns: &BTreeSet<usize>) -> Option<&'static str> {
         let word = self.word(at);
         if let Some(other) = other(&SIDES, word) {
@@ -86,7 +86,7 @@ impl<'a> Text<'a> {
         self.about(at)
     }
 
-    /// "Turn around" for "go straight" and the other way round, where they are all of their clause.
+    /// "Turn around" for "go straight" and the other way round, where they are the whole clause.
     fn about(&self, at: usize) -> Option<&'static str> {
         let alone = |from: usize| {
             let begins = from == 0 || self.joins(from - 1);
@@ -137,8 +137,8 @@ impl<'a> Text<'a> {
         end.is_some_and(|at| is_end(self.word(at)))
     }
 
-    /// The edits that write another word at a token, in its case, with its article. None where the word is written in a way that
-    /// could not be got back.
+    /// The edits that write another word at a token, in its case, with its article. None where the word is written in a
+    /// way that a second swap could not restore.
     fn edits(&self, at: usize, word: &str) -> Vec<([usize; 2], String)> {
         let written = self.written(at);
         let case = Case::of(written);

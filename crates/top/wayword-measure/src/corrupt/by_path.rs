@@ -1,4 +1,4 @@
-//! Corruptions that the path and its labels alone decide: nothing that the checks recognised in the text has a part in them.
+//! Corruptions that depend only on the path and its labels, not on what the checks recognised in the text.
 
 use super::ABSENT;
 use rand::{Rng, seq::IndexedRandom};
@@ -6,12 +6,12 @@ use wayword_checks::Evidence;
 use wayword_core::{Path, Style};
 use wayword_language::lexicon::agree;
 
-/// A path that rises and falls by less than this in all has no stairs, metres.
+/// A path whose heights differ by less than this has no stairs, metres.
 const FLAT_M: f64 = 0.4;
-/// Something is on a side for sure where it lies so far from ahead and from behind, degrees.
+/// Something is surely on a side if its direction is within this range to the left or right of ahead, degrees.
 const SURE_OF_SIDE_DEG: std::ops::Range<f64> = 30.0..150.0;
 
-/// Rooms to replace others by, each with parts of the names of rooms that may be taken for it.
+/// Rooms to replace others by, each with parts of the names of rooms that could be mistaken for it.
 const ROOMS: [(&str, &[&str]); 7] = [
     ("kitchen", &["kitchen", "dining", "bar"]),
     ("bathroom", &["bath", "toilet", "spa"]),
@@ -22,7 +22,7 @@ const ROOMS: [(&str, &[&str]); 7] = [
     ("classroom", &["class", "meeting", "conference", "office"]),
 ];
 
-/// A command to take stairs on a path that has none.
+/// Adds a command to take stairs to a path that has none.
 pub(super) fn stairs(text: &str, path: &Path, style: &Style, rng: &mut impl Rng) -> Option<String> {
     let heights = path.frames.iter().map(|frame| frame.pose.position.z);
     let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| (low.min(z), high.max(z)));
@@ -33,7 +33,7 @@ pub(super) fn stairs(text: &str, path: &Path, style: &Style, rng: &mut impl Rng)
     in_form(format!("{command}, then {rest}"), style)
 }
 
-/// A floor on which the path does not end, told at the end.
+/// Adds a storey on which the path does not end, at the end.
 pub(super) fn floor(text: &str, path: &Path, style: &Style, rng: &mut impl Rng) -> Option<String> {
     let last = path.frames.last()?.level?;
     let others: Vec<u32> = (1..=4).filter(|level| *level != last).collect();
@@ -42,7 +42,7 @@ pub(super) fn floor(text: &str, path: &Path, style: &Style, rng: &mut impl Rng) 
     at_end(text, &format!("on level {level}"), style)
 }
 
-/// A room of the path replaced by one in which no frame lies.
+/// Replaces a room of the path by one in which no frame is.
 pub(super) fn room(text: &str, evidence: &Evidence, style: &Style, rng: &mut impl Rng) -> Option<String> {
     let rooms: Vec<&String> = evidence.frames.iter().flat_map(|frame| &frame.rooms).collect();
     let all_known = evidence.frames.iter().all(|frame| !frame.rooms.is_empty());
@@ -54,7 +54,7 @@ pub(super) fn room(text: &str, evidence: &Evidence, style: &Style, rng: &mut imp
         .map(|(room, _)| *room)
         .collect();
     let from = find_word(text, name)?;
-    // What a room is next to need not be on the path.
+    // A room that the text only names as a neighbour need not be on the path.
     let before: Vec<&str> = text[..from].split_whitespace().rev().take(4).collect();
     let is_near =
         ["next", "near", "by", "beside", "off", "with", "of", "from", "to"].iter().any(|word| before.contains(word));
@@ -62,7 +62,7 @@ pub(super) fn room(text: &str, evidence: &Evidence, style: &Style, rng: &mut imp
     in_form(format!("{}{other}{}", &text[..from], &text[from + name.len()..]), style)
 }
 
-/// A thing that lies on one side wherever it is seen, told on the other.
+/// Puts a thing that is on one side wherever it is seen on the other side.
 pub(super) fn side(text: &str, evidence: &Evidence, style: &Style, rng: &mut impl Rng) -> Option<String> {
     let things =
         || evidence.frames.iter().enumerate().flat_map(|(at, frame)| frame.things.iter().map(move |thing| (at, thing)));
@@ -88,7 +88,7 @@ pub(super) fn side(text: &str, evidence: &Evidence, style: &Style, rng: &mut imp
     in_form(format!("{} on your {wrong}{}", &text[..end], &text[end..]), style)
 }
 
-/// A task on an object that no frame shows, in a style that asks for no task.
+/// Adds a task on an object that no frame shows, in a style that asks for no task.
 pub(super) fn unasked_task(text: &str, evidence: &Evidence, style: &Style, rng: &mut impl Rng) -> Option<String> {
     let absent: Vec<&str> = ABSENT.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
     let object = absent.choose(rng).filter(|_| !style.constraints.ends_in_task)?;
@@ -100,13 +100,13 @@ fn at_end(text: &str, words: &str, style: &Style) -> Option<String> {
     in_form(format!("{bare} {words}{}", &text[bare.len()..]), style)
 }
 
-/// A text that no style's rule on length catches.
+/// The text, or `None` if the style's limit on length would reject it anyway.
 fn in_form(text: String, style: &Style) -> Option<String> {
     let words = text.split_whitespace().count();
     style.constraints.fewer_words_than.is_none_or(|limit| words < limit).then_some(text)
 }
 
-/// Where whole words stand in a text.
+/// Where a name stands in a text as whole words.
 fn find_word(text: &str, name: &str) -> Option<usize> {
     let is_end = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric());
     text.match_indices(name).map(|(at, _)| at).find(|at| {

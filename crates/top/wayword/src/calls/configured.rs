@@ -1,4 +1,4 @@
-//! What flags and settings file say of how models are reached: providers, prices, rates, and where the ledger lies.
+//! How models are reached, from flags and settings file: providers, prices, rates, and where the ledger is.
 
 use crate::{
     error::Error,
@@ -9,11 +9,12 @@ use etcetera::BaseStrategy;
 use std::path::PathBuf;
 use wayword_remote::{Concurrency, Config, Prices, ProviderConfig};
 
-/// Requests at a time for each provider, unless told otherwise: where the search for the right number ends.
+/// Most requests at a time for each provider, unless the user gives a number: the limit of the search for the right
+/// one.
 const MOST_AT_A_TIME: usize = 64;
 
-/// The ledger that flags or file name, else the one in the user's data folder: one for all runs, so that what one run has
-/// asked the next does not pay for.
+/// The ledger that flags or file name, else the one in the user's data folder. There is one for all runs, so that a run
+/// does not pay for what an earlier one asked.
 ///
 /// # Errors
 /// When the user has no home folder.

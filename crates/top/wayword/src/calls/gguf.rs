@@ -1,7 +1,8 @@
-//! GGUF files: small instruct models. This program runs none of them; it says how a server does, and what the model's name is then.
+//! GGUF files: small instruct models. This program runs none of them. It says how a server runs one, and what the
+//! model's name is then.
 //!
-//! candle reads the format, but what turns a file into words (positions, tokenizers, templates, draws) was over a thousand lines,
-//! slower than what llama.cpp does with the same file.
+//! candle reads the format, but the rest (positions, tokenizers, templates, sampling) took over a thousand lines, and
+//! was slower than llama.cpp with the same file.
 
 use crate::{error::Error, settings::is_in_process};
 use std::{borrow::Cow, path::Path};
@@ -18,7 +19,7 @@ pub(super) fn refused(name: &str) -> Option<Error> {
         Some((repo, file)) => on_hub(repo.split_once('@').map_or(repo, |(repo, _)| repo), file),
         None => on_disk(rest),
     };
-    let problem = format!("{name:?} is a GGUF file, which no model in process is made of");
+    let problem = format!("{name:?} is a GGUF file, and this program runs no GGUF files in process");
     Some(Error::usage(problem, format!("start it with a server, and name it by that server:{servers}")))
 }
 
@@ -26,7 +27,7 @@ pub(super) fn refused(name: &str) -> Option<Error> {
 fn on_hub(repo: &str, file: &str) -> String {
     let alias = alias(file);
     let mut servers = String::new();
-    // What has to be escaped, or lies in a folder, is no tag of Ollama's.
+    // Ollama takes no tag that has to be escaped, or that names a file in a folder.
     if file.len() <= LONGEST_TAG && file.chars().all(is_plain) {
         servers = line("Ollama", &format!("ollama run hf.co/{repo}:{file}"), &format!("ollama/hf.co/{repo}:{file}"));
     }
@@ -46,7 +47,7 @@ fn line(server: &str, command: &str, name: &str) -> String {
     format!("\n  {server}: `{command}`, then as the model {name}")
 }
 
-/// What a model is called after its file.
+/// The name of a model, made from its file's name.
 fn alias(file: &str) -> String {
     let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
     stem.chars().map(|c| if is_plain(c) { c } else { '-' }).take(LONGEST_TAG).collect()
@@ -56,7 +57,7 @@ fn is_plain(c: char) -> bool {
     c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.')
 }
 
-/// As a shell takes it for one word.
+/// Quoted so that a shell takes it for one word.
 fn quoted(word: &str) -> Cow<'_, str> {
     if word.chars().all(|c| is_plain(c) || c == '/') {
         return Cow::Borrowed(word);

@@ -9,41 +9,41 @@ use crate::{
 use std::sync::Arc;
 use wayword_core::LanguageModel;
 use wayword_ledger::Run;
-use wayword_local::{Device, EyeKind, Hub, HubConfig, Loading, Minds, Precision};
+use wayword_local::{Device, EyeKind, Hub, HubConfig, Loading, Models, Precision};
 use wayword_remote::Finding;
 use wayword_synthesis::prompts::Manner;
 
 /// The way to models in process for one command.
 pub(super) struct Local {
-    minds: Minds,
+    models: Models,
 }
 
 impl Local {
-    /// Refuses a name that no model in process can have, and numbers that there are not.
+    /// Refuses a name that no model in process can have, and unusable settings of device or memory.
     pub(super) fn rehearse(job: &Job, name: &str) -> Result<(), Error> {
         loading(job)?;
-        Ok(Minds::check_name(name)?)
+        Ok(Models::check_name(name)?)
     }
 
     /// The hub, its cache and the device by the environment and the settings.
     pub(super) fn open(job: &Job, run: Run, output: &Output) -> Result<Self, Error> {
         let hub = Hub::new(HubConfig::from_env()?)?;
-        Ok(Self { minds: Minds::new(hub, loading(job)?, Box::new(DownloadBar::new(output)), run) })
+        Ok(Self { models: Models::new(hub, loading(job)?, Box::new(DownloadBar::new(output)), run) })
     }
 
-    /// Sees to it that a model's files are here.
+    /// Makes sure that a model's files are on this machine.
     pub(super) fn ready(&self, name: &str) -> Result<(), Error> {
-        Ok(self.minds.at_hand(name)?)
+        Ok(self.models.at_hand(name)?)
     }
 
     /// Loads a model, once.
     pub(super) fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
-        Ok(self.minds.model(name)?)
+        Ok(self.models.model(name)?)
     }
 
-    /// How a model is spoken to.
+    /// The manner in which a model is asked.
     pub(super) fn manner(&self, name: &str) -> Result<Manner, Error> {
-        Ok(match self.minds.model(name)?.kind() {
+        Ok(match self.models.model(name)?.kind() {
             EyeKind::Questions => Manner::Question,
             EyeKind::Texts => Manner::Completion,
         })
@@ -51,7 +51,7 @@ impl Local {
 
     /// Loads a model and tries it out.
     pub(super) fn check(&self, name: &str, is_to_see: bool) -> Vec<Finding> {
-        let model = match self.minds.model(name) {
+        let model = match self.models.model(name) {
             Ok(model) => model,
             Err(error) => return vec![Finding::error(&error.to_string())],
         };

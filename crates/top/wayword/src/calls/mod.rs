@@ -1,4 +1,4 @@
-//! The calls of a command to models: reached over HTTP or made in process, kept in the ledger, bounded by a budget.
+//! The calls of a command to models: over HTTP or in process, kept in the ledger, and limited by a budget.
 
 mod configured;
 mod gguf;
@@ -35,7 +35,7 @@ pub use spent::Spent;
 /// The way to models for one command.
 pub struct Calls {
     services: Services,
-    /// Where a model in process is named.
+    /// `Some` if a model in process is named.
     local: Option<Local>,
     run: Run,
     record: Option<PathBuf>,
@@ -43,12 +43,12 @@ pub struct Calls {
 }
 
 impl Calls {
-    /// Refuses what [`Calls::open`] would refuse of names, prices, providers and files, before anything is written. Gives each
-    /// model's price, where it is known.
+    /// Refuses the names, prices, providers and files that [`Calls::open`] would refuse, before anything is written.
+    /// Gives each model's price, if it is known.
     ///
     /// # Errors
-    /// When a provider is not known, a price is needed and not known, the ledger would lie on a network's file system, there is
-    /// no recording to replay, or no folder for one to be written.
+    /// When a provider is not known, a price is needed and not known, the ledger would be on a network file system, the
+    /// recording to replay is missing, or the folder for a new recording is.
     pub fn rehearse(job: &Job) -> Result<BTreeMap<String, Option<Price>>, Error> {
         let Job { settings, service, .. } = job;
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
@@ -80,8 +80,9 @@ impl Calls {
         Ok(prices)
     }
 
-    /// Opens ledger and services for the models that the settings name; `None` where they name none. `run` names what the
-    /// calls are made for: its spending, earlier commands' included, is what the limits bound. Shows what is fetched on `output`.
+    /// Opens ledger and services for the models that the settings name; `None` if they name none. `run` names the run
+    /// that the calls belong to: the limits apply to its spending, earlier commands included. Shows downloads on
+    /// `output`.
     ///
     /// # Errors
     /// When the ledger cannot be opened, a provider is not known, or a price is needed and not known.
@@ -102,7 +103,7 @@ impl Calls {
         }
         let in_process = models.iter().any(|name| is_in_process(name));
         let local = if in_process { Some(Local::open(job, run.clone(), output)?) } else { None };
-        // Who waits for nobody over a network has no use for more items than cores.
+        // A command that does not wait for a network has no use for more items than cores.
         let waits = models.iter().any(|name| !is_in_process(name));
         let workers = if waits { concurrency(service).threads() } else { cores() };
         Ok(Some(Self { services, local, run, record: service.record.clone(), workers }))
@@ -119,7 +120,7 @@ impl Calls {
         }
     }
 
-    /// In which manner a model that sees is spoken to.
+    /// The manner in which a model that sees is asked.
     ///
     /// # Errors
     /// As for [`Calls::model`].
@@ -130,7 +131,7 @@ impl Calls {
         }
     }
 
-    /// What `doctor` finds out about a model; one that is to see is shown a picture.
+    /// What `doctor` finds out about a model; a model that is to see is shown a picture.
     #[must_use]
     pub fn check(&self, name: &str, sees: bool) -> Vec<Finding> {
         match self.local.as_ref().filter(|_| is_in_process(name)) {
@@ -156,19 +157,19 @@ impl Calls {
         }
     }
 
-    /// Items that are worth making at a time.
+    /// How many items to make at a time.
     #[must_use]
     pub fn workers(&self) -> usize {
         self.workers
     }
 
-    /// Ends the sending: what is in flight is finished and kept.
+    /// Ends the sending: calls in flight are finished, and their answers kept.
     pub fn ending(&self) -> impl Fn() + Send + 'static {
         let run = self.run.stopper();
         move || run.stop()
     }
 
-    /// Writes the recording, where one was asked for.
+    /// Writes the recording, if one was asked for.
     ///
     /// # Errors
     /// When it cannot be written.

@@ -1,4 +1,4 @@
-//! A build that runs no model in process.
+//! In place of `local.rs`, for a build that runs no models in process.
 
 use crate::{error::Error, output::Output, settings::Job};
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use wayword_ledger::Run;
 use wayword_remote::Finding;
 use wayword_synthesis::prompts::Manner;
 
-/// No build without the feature `local` holds one.
+/// Has no values: a build without the feature `local` has no models in process.
 pub(super) enum Local {}
 
 impl Local {

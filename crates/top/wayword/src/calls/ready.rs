@@ -1,4 +1,4 @@
-//! What keeps a job's models from being asked, found out before a world is opened or a folder made.
+//! Finds out whether a job's models can be asked, before a platform is opened or a folder made.
 
 use super::{Calls, configured::config, ledger_path, local::Local};
 use crate::{
@@ -11,9 +11,9 @@ use wayword_ledger::{Ledger, Limits};
 use wayword_remote::{ConfigError, Services};
 
 impl Calls {
-    /// Refuses what [`Calls::rehearse`] refuses, templates that cannot be used, and models that cannot be asked: without their key, with nobody at their port,
-    /// or without their files, which are fetched where they can be. A model whose answers are in the ledger is not held up for a key
-    /// or a port: it may never be asked.
+    /// Refuses what [`Calls::rehearse`] refuses, templates that cannot be used, and models that cannot be asked:
+    /// because the key is missing, nothing listens at the port, or files are missing and cannot be fetched. A model of
+    /// which the ledger has answers is not refused for a key or a port, because it may never be asked.
     ///
     /// # Errors
     /// What is missing, where, and what to do.
@@ -37,7 +37,7 @@ impl Calls {
     }
 }
 
-/// Lets a model pass that cannot be asked, where the ledger has answers of it.
+/// Accepts a model that cannot be asked, if the ledger has answers of it.
 fn kept(job: &Job, services: &Services, name: &str, error: ConfigError) -> Result<(), Error> {
     let path = ledger_path(&job.service)?;
     let is_kept = path.exists() && Ledger::open(&path)?.has_answers_of(name, &services.base_url(name)?)?;

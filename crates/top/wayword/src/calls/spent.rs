@@ -1,10 +1,10 @@
-//! What the calls of a command came to.
+//! What the calls of a command cost.
 
 use crate::count::count;
 use serde::Serialize;
 use std::fmt;
 
-/// Calls, tokens and money of this command; what earlier ones of the same run spent is not in it.
+/// Calls, tokens and money of this command, without what earlier commands of the same run spent.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Spent {
     /// Requests that were sent, repeated attempts among them.
@@ -13,7 +13,7 @@ pub struct Spent {
     pub answered: u64,
     /// Answers that the ledger or the recording had.
     pub from_ledger: u64,
-    /// Requests that came to nothing.
+    /// Requests that failed.
     pub failed: u64,
     /// Requests that may have been paid for although no answer came.
     pub lost: u64,
@@ -21,7 +21,7 @@ pub struct Spent {
     pub tokens_in: u64,
     /// Tokens that came back.
     pub tokens_out: u64,
-    /// What the answers cost, US dollars; models without a known price count nothing.
+    /// What the answers cost, US dollars; models without a known price count as 0.
     pub usd: f64,
     /// What the lost requests may have cost at most, US dollars.
     pub maybe_usd: f64,

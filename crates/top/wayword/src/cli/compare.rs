@@ -1,6 +1,6 @@
-//! `wayword compare` as it is typed.
+//! `wayword compare` as the user types it.
 
-use crate::settings::{Asked, AskedRoles, Draw, RULES, Service, Walks, World, is_mind};
+use crate::settings::{Asked, AskedPlatform, AskedRoles, Draw, RULES, Service, Walks, can_play};
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use std::path::PathBuf;
 use wayword_metrics::Rule;
@@ -12,30 +12,31 @@ use wayword_navigation::swap::Swap;
 Examples:
   wayword compare --platform matterport --data DATA --episodes REVERIE_val_seen.json --out runs/table \\
       --instructions original --instructions central=runs/central#reverie --instructions panoramic=runs/panoramic#reverie
-      Three agents walk by what people wrote and by what two runs wrote; labels stand in for photographs.
-  wayword compare --episodes runs/houses/instructions.jsonl --grounder labels/lexical --out runs/houses_walked
-      Generated houses and their own instructions, without any model.
+      Three agents follow what people wrote and what two runs wrote. Labels stand in for photographs.
+  wayword compare --episodes runs/houses/instructions.jsonl --instructions houses=runs/houses#r2r --out runs/houses_walked
+      Three agents follow the instructions of a run in generated houses, without any model.
   wayword compare --platform matterport --data DATA --episodes R2R_val_seen.json --agents clip-nav \\
       --grounder hf/openai/clip-vit-base-patch32 --out runs/clip      (needs photographs, and the feature full)
   wayword compare --platform matterport --data DATA --episodes REVERIE_val_seen.json --split ollama/qwen3 --out runs/split
-      A language model takes the instructions apart, and not rules.
+      A language model splits the instructions into phrases, instead of rules.
 
-The same command again goes on where it was stopped. `wayword report --run runs/table` shows the walks on the map.")]
+Give the same command again to continue a comparison that was stopped. `wayword report --run runs/table` shows the walks on a map.")]
 pub struct Compare {
-    /// Where to put walks, tables and the page; the same command again continues it.
+    /// Folder for walks, tables and the page. Give the same command again to continue.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// The world.
+    /// The platform.
     #[command(flatten)]
-    pub world: World,
-    /// The items: a dataset file in R2R, REVERIE, RxR or Wayword format.
+    pub platform: AskedPlatform,
+    /// File of the items: R2R, REVERIE, RxR or Wayword.
     #[arg(long, value_name = "FILE")]
     pub episodes: PathBuf,
-    /// A set of instructions: original (the episodes' own), or NAME=RUN#STYLE, NAME=FILE; may be given several times. The first is
-    /// what the others are held against. [default: original]
+    /// A set of instructions: `original` (those of the episodes' file), NAME=RUN#STYLE or NAME=FILE. Give the flag several times to
+    /// compare sets; all are compared with the first. [default: original]
     #[arg(long, value_name = "SET")]
     pub instructions: Vec<String>,
-    /// Who walks: clip-nav, seq-clip-nav, glip-nav. Floors and ceilings walk beside them.
+    /// The agents: clip-nav, seq-clip-nav, glip-nav. Lower-bound baselines (random, straight ahead) and upper bounds (nearest room,
+    /// oracle) are always added.
     #[arg(
         long,
         value_name = "NAMES",
@@ -45,24 +46,25 @@ pub struct Compare {
         hide_possible_values = true
     )]
     pub agents: Vec<String>,
-    /// Who says how well phrases fit views: labels/lexical (by words, no weights), labels (with a text encoder), or a CLIP as
-    /// hf/ORG/NAME.
+    /// What scores how well a phrase fits a view: labels/lexical (compares words, no weights), labels (with a text encoder), or a
+    /// CLIP model as hf/ORG/NAME.
     #[arg(long, value_name = "GROUNDER", default_value = "labels/lexical")]
     pub grounder: String,
-    /// The sentence encoder of `labels`.
+    /// Sentence encoder of the grounder `labels`.
     #[arg(long, value_name = "MODEL", default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]
     pub encoder: String,
-    /// Who takes instructions apart: rules, or a language model as provider/model.
+    /// What splits an instruction into phrases for the agents: rules, or a language model as provider/model.
     #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = splitter)]
     pub split: String,
     /// Base URL of the provider of --split.
     #[arg(long, value_name = "URL")]
     pub base_url: Option<String>,
-    /// Success: the target is visible from the last viewpoint (REVERIE's official rule), or the goal is under 3 m away. [default:
-    /// visible where every item names an object, else distance]
+    /// What counts as success: the target is visible from the last viewpoint (REVERIE's rule), or the goal is under 3 m away (R2R's
+    /// rule). [default: visible if every item names an object, else distance]
     #[arg(long)]
     pub rule: Option<SuccessRule>,
-    /// How the first set's instructions are swapped to see whether agents listen; `none` for no swaps.
+    /// Swap tests: how the first set's instructions are made wrong, to see whether the agents follow them at all. `none` makes no
+    /// swaps.
     #[arg(
         long,
         value_name = "SWAPS",
@@ -70,22 +72,22 @@ pub struct Compare {
         default_value = "directions,landmarks,sentences,other-path"
     )]
     pub swaps: Vec<SwapName>,
-    /// What agents decide by, as TOML: a table per agent, with the names that the page shows.
+    /// Thresholds of the agents as TOML: one table per agent, with the names in docs/AGENTS.md.
     #[arg(long, value_name = "FILE")]
     pub parameters: Option<PathBuf>,
-    /// Only the first so many items.
+    /// Use only the first N items.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
-    /// Resamples of the intervals.
+    /// Number of bootstrap resamples for the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,
     /// Seed of everything random.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Replays on the page.
+    /// Number of replays on the page.
     #[arg(long, value_name = "N", default_value_t = 24)]
     pub replays: usize,
-    /// Settings as TOML, with the providers of `generate`.
+    /// Settings as TOML; only the providers are used.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How models are reached.
@@ -93,23 +95,23 @@ pub struct Compare {
     pub service: Service,
 }
 
-/// Who can walk by an instruction, as `--agents` takes them.
+/// The agents that `--agents` takes.
 const AGENTS: [&str; 3] = ["clip-nav", "seq-clip-nav", "glip-nav"];
 
-/// Who takes instructions apart, as typed.
+/// What splits instructions into phrases, as typed.
 fn splitter(name: &str) -> Result<String, String> {
-    if is_mind(name, RULES) {
+    if can_play(name, RULES) {
         return Ok(name.to_owned());
     }
     Err(format!("name {RULES}, or a language model as provider/model, as in --split ollama/qwen3"))
 }
 
 impl Compare {
-    /// What the flags ask for, as other commands have it. The splitter's model is the only one, in the place of the one who asks.
+    /// What the flags ask for, in the form of other commands. The splitter's model is the only one; it stands in the role that asks.
     #[must_use]
     pub fn asked(&self) -> Asked {
         Asked {
-            world: self.world.clone(),
+            platform: self.platform.clone(),
             walks: Walks { episodes: Some(self.episodes.clone()), ..Walks::default() },
             draw: Draw { seed: Some(self.seed), limit: self.limit.map(|limit| limit as usize) },
             roles: AskedRoles {
@@ -146,11 +148,11 @@ impl From<SuccessRule> for Rule {
 pub enum SwapName {
     /// Left for right, up for down.
     Directions,
-    /// Things and rooms for others.
+    /// Other objects and rooms instead of those that are named.
     Landmarks,
     /// Sentences in another order.
     Sentences,
-    /// The instruction of another path of the building.
+    /// The instruction of another path in the same building.
     OtherPath,
     /// No swap.
     None,

@@ -1,6 +1,6 @@
-//! `wayword doctor` as it is typed.
+//! `wayword doctor` as the user types it.
 
-use crate::settings::{Asked, AskedRoles, Service, World};
+use crate::settings::{Asked, AskedPlatform, AskedRoles, Service};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -12,13 +12,13 @@ Examples:
   wayword doctor --see server/llava --base-url http://127.0.0.1:8000/v1
   wayword doctor --platform matterport --data DATA")]
 pub struct Doctor {
-    /// Settings as TOML, with the providers and roles of `generate`; flags win.
+    /// Settings as TOML, as `generate` takes them. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
-    /// The world.
+    /// The platform.
     #[command(flatten)]
-    pub world: World,
-    /// The models to look at.
+    pub platform: AskedPlatform,
+    /// The models to check.
     #[command(flatten)]
     pub roles: AskedRoles,
     /// How they are reached.
@@ -31,7 +31,7 @@ impl Doctor {
     #[must_use]
     pub fn asked(&self) -> Asked {
         Asked {
-            world: self.world.clone(),
+            platform: self.platform.clone(),
             roles: self.roles.clone(),
             service: self.service.clone(),
             ..Asked::default()

@@ -1,7 +1,7 @@
-//! `wayword evaluate` as it is typed.
+//! `wayword evaluate` as the user types it.
 
 use super::SuccessRule;
-use crate::settings::World;
+use crate::settings::AskedPlatform;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -10,39 +10,38 @@ use std::path::PathBuf;
 #[command(after_long_help = "\
 Examples:
   wayword evaluate submission.json --episodes REVERIE_val_seen.json --platform matterport --data DATA
-      Success, path length and fidelity of anyone's trajectories, by REVERIE's official rule and by the lenient one.
+      Success, path length and fidelity, by REVERIE's official rule (target visible) and by R2R's (under 3 m).
   wayword evaluate submission.json --episodes R2R_val_seen.json --platform matterport --data DATA --per-item scores.jsonl
   wayword evaluate runs/table/submissions/clip-nav.original.json --episodes REVERIE_val_seen.json \\
       --platform matterport --data DATA --rule visible --partial --json
-      What `wayword compare` left of its agents' walks: of the items that all its sets have, and not of every one.
+      A submission that `wayword compare` wrote. It may lack items, because `compare` walks only the items that all its sets have.
 
 A submission is a JSON list of {\"instr_id\": \"ID_PLACE\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
-plain or gzip; one item for every instruction, except with --partial. If anything is wrong with it, nothing is scored, all that is
-wrong is told (20 problems on a screen, --json more), and the exit code is 1.")]
+plain or gzip, with one entry for every instruction (fewer only with --partial). If an entry is wrong, nothing is scored, the problems
+are listed (20 on the screen, more with --json), and the exit code is 1.")]
 pub struct Evaluate {
-    /// The trajectories, as the evaluators of R2R and REVERIE take them.
+    /// File of trajectories, as the evaluators of R2R and REVERIE take it.
     #[arg(value_name = "SUBMISSION")]
     pub submission: PathBuf,
-    /// The episodes that were walked: R2R, REVERIE, RxR or Wayword.
+    /// File of the episodes that were walked: R2R, REVERIE, RxR or Wayword.
     #[arg(long, value_name = "FILE")]
     pub episodes: PathBuf,
-    /// The world.
+    /// The platform.
     #[command(flatten)]
-    pub world: World,
-    /// Score a submission that lacks instructions by those that it has, and say how many they are. Leader boards want all.
+    pub platform: AskedPlatform,
+    /// Score a submission that covers only a part of the instructions, and print how many it covers. Leaderboards want all.
     #[arg(long)]
     pub partial: bool,
-    /// Only this rule of success. [default: every rule that can be applied]
+    /// Use only this rule of success. [default: every rule that can be applied]
     #[arg(long)]
     pub rule: Option<SuccessRule>,
-    /// Where to put the figures of each instruction, one JSON object per line.
+    /// Also write the figures of each instruction to this file, one JSON object per line.
     #[arg(long, value_name = "FILE")]
     pub per_item: Option<PathBuf>,
-    /// Only the first so many items of the episodes, as `wayword compare --limit` walks them; trajectories for later ones are left
-    /// out.
+    /// Use only the first N items of the episodes, as `wayword compare --limit` does. Trajectories of later items are ignored.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
-    /// Resamples of the intervals.
+    /// Number of bootstrap resamples for the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,
     /// Seed of the intervals.

@@ -1,4 +1,4 @@
-//! `wayword ledger` as it is typed.
+//! `wayword ledger` as the user types it.
 
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ pub struct Ledger {
     /// What to do.
     #[command(subcommand)]
     pub command: LedgerCommand,
-    /// The ledger. [default: wayword/ledger.db in your data folder]
+    /// File of the ledger. [default: wayword/ledger.db where your system keeps data, as ~/.local/share]
     #[arg(long, value_name = "FILE", global = true)]
     pub ledger: Option<PathBuf>,
 }
@@ -25,22 +25,22 @@ pub struct Ledger {
 /// What to do with the ledger.
 #[derive(Debug, Subcommand)]
 pub enum LedgerCommand {
-    /// The latest calls, with their answers.
+    /// Show the latest calls, with their answers.
     Show {
         /// Which calls.
         #[command(flatten)]
         filter: CallFilter,
-        /// Most calls to show.
+        /// Show at most this many calls.
         #[arg(long, value_name = "N", default_value_t = 20)]
         limit: usize,
     },
-    /// What calls have cost.
+    /// Show what the calls cost.
     Cost {
-        /// Sum up by this.
+        /// Add the costs up per model, run or day.
         #[arg(long, default_value = "model")]
         by: SumBy,
     },
-    /// Write calls as JSON lines, which --replay can read.
+    /// Write calls as JSON lines, which `--replay` can read.
     Export {
         /// Which calls.
         #[command(flatten)]
@@ -49,15 +49,15 @@ pub enum LedgerCommand {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Drop calls; asking them again will cost again.
+    /// Delete calls. A run that needs one of them again pays for it again.
     Prune {
-        /// Those that are older.
+        /// Delete calls that are older than this.
         #[arg(long, value_name = "DAYS")]
         older_than_days: Option<u64>,
-        /// Those of this model.
+        /// Delete the calls of this model.
         #[arg(long, value_name = "MODEL")]
         model: Option<String>,
-        /// Those whose answer was changed after it was written.
+        /// Delete calls whose answer was changed after it was written (its checksum is wrong).
         #[arg(long, conflicts_with_all = ["older_than_days", "model"])]
         changed: bool,
     },
@@ -66,10 +66,10 @@ pub enum LedgerCommand {
 /// Which calls.
 #[derive(Debug, Args)]
 pub struct CallFilter {
-    /// Only this model's, as provider/model.
+    /// Only calls of this model, as provider/model.
     #[arg(long, value_name = "MODEL")]
     pub model: Option<String>,
-    /// Only this run's, by the name in its folder's run.id.
+    /// Only calls of this run. Its name is in the file run.id of the run folder.
     #[arg(long, value_name = "RUN")]
     pub run: Option<String>,
 }
@@ -82,7 +82,7 @@ impl CallFilter {
     }
 }
 
-/// What costs are summed up by.
+/// What costs are added up per.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SumBy {
     /// Model by model.

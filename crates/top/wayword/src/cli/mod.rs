@@ -1,4 +1,4 @@
-//! The command line as it is typed.
+//! The command line as the user types it.
 
 mod compare;
 mod doctor;
@@ -10,7 +10,7 @@ mod similarity;
 mod view;
 
 use crate::{
-    settings::{Asked, World},
+    settings::{Asked, AskedPlatform},
     styles,
 };
 use clap::{Args, Parser, Subcommand, builder::PossibleValuesParser};
@@ -33,10 +33,10 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
-    /// Data as JSON on standard output.
+    /// Print the result as JSON on standard output.
     #[arg(long, global = true)]
     pub json: bool,
-    /// No talk and no progress on standard error.
+    /// Print no messages and no progress bar on standard error.
     #[arg(long, short, global = true)]
     pub quiet: bool,
 }
@@ -44,62 +44,62 @@ pub struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   wayword demo
-      A walk through a generated house, instructions for it in two styles, and report.html.
+      Write instructions in two styles for a path through a generated house, and open report.html to see them.
   wayword generate --platform house --paths 20 --style r2r --out runs/houses
-      Instructions for 20 random paths through generated houses.
+      Write instructions for 20 random paths through generated houses.
   wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --out runs/val_seen
-      Instructions for every path of a dataset. The same command again continues a run that was stopped.
+      Write instructions for every path of a dataset. Give the same command again to continue a run that was stopped.
   wayword generate --paths 20 --style r2r --llm ollama/qwen3 --see ollama/llava --out runs/models
-      The same with models: one asks, sums up and writes, the other looks at the pictures.
+      The same with models: one asks, summarises and writes, the other looks at the pictures.
   wayword export --run runs/val_seen --style reverie --format reverie --out val_seen_generated.json
-      The run in the file format that agents read.
+      Write the run as a file that agents of the benchmark read.
   wayword check REVERIE_val_seen.json --platform matterport --data DATA --style reverie
-      Anyone's instructions, held against the evidence of their paths.
+      Check anyone's instructions against what their paths show.
   wayword evaluate submission.json --episodes REVERIE_val_seen.json --platform matterport --data DATA
-      Anyone's trajectories, scored as the official evaluators do, with intervals.
+      Score anyone's trajectories as the official evaluators do, with confidence intervals.
 
 Exit codes:
   0  done, and every check passed
-  1  the input was wrong, or a file could not be read or written
-  2  the command line could not be read
-  3  done, but some items failed, or some instructions failed a check; each with its reason
-  4  another process works in the same run folder
-  5  stopped before the end: a budget was spent or a key was refused; the same command goes on
-  6  interrupted (Ctrl-C, SIGTERM); the same command goes on
-  7  the world, a service or the disk was lost; the same command goes on";
+  1  the input is wrong, or a file cannot be read or written
+  2  the command line is wrong
+  3  done, but some items failed, or some instructions failed a check; the reasons are listed
+  4  another process is writing to the same run folder
+  5  stopped early: the budget is spent or a key was refused; the same command continues
+  6  interrupted (Ctrl-C, SIGTERM); the same command continues
+  7  the simulator, a service or the disk failed; the same command continues";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Walk through a generated house and write instructions for the walk, offline.
+    /// Write instructions for a path through a generated house, offline.
     Demo(Demo),
-    /// Write instructions for paths, check them, and repair or reject what fails.
+    /// Write instructions for paths, check them, and repair or reject those that fail.
     Generate(Box<Generate>),
-    /// Check instructions of anyone's against the evidence of their paths.
+    /// Check anyone's instructions against what their paths show.
     Check(Check),
-    /// Write a run in the file format that agents read.
+    /// Write a run in the file format of a benchmark: R2R, REVERIE, RxR, VLN-CE.
     Export(Export),
     /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
     Report(Report),
-    /// Measure how well captions fit the labels of their views: objects, ghosts, calls.
+    /// Measure captions against the labels of their views: objects named rightly, hallucinated objects, calls.
     Perceive(Box<Perceive>),
-    /// Measure how alike two sets of instructions are, beside what people and chance reach.
+    /// Measure how similar two sets of instructions are, next to what people and chance reach.
     Similarity(Similarity),
-    /// Let agents walk by sets of instructions, and hold the sets against each other.
+    /// Let agents follow several sets of instructions, and compare how often each set leads them to the goal.
     Compare(Box<Compare>),
-    /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with intervals.
+    /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with confidence intervals.
     Evaluate(Evaluate),
-    /// Check keys, endpoints, models and data, and say what to do.
+    /// Check keys, endpoints, models and data, and say how to fix what is wrong.
     Doctor(Box<Doctor>),
-    /// What was asked of models, what it cost, and what is kept.
+    /// Show the calls to models that are kept, and what they cost.
     Ledger(Ledger),
-    /// Models that run in this program: what is on this machine, and how to get more.
+    /// List, fetch or locate the models that run inside this program.
     Models(Models),
-    /// The worlds that there are: what each needs and offers.
+    /// List the platforms: what each needs and offers.
     Platforms,
-    /// Pictures of a world: a panorama, a path as its walker sees it, a map.
+    /// Draw a panorama, a path as its walker sees it, or a map.
     View(View),
-    /// Save a generated house as glTF with its navigation data, and as a scene of AI Habitat with semantics.
+    /// Save a generated house as glTF with its navigation data, and as a labelled scene for AI Habitat.
     House(House),
     /// Print shell completions.
     Completions {
@@ -112,10 +112,10 @@ pub enum Command {
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  wayword demo\n  wayword demo --seed 7 --out walk")]
 pub struct Demo {
-    /// Which house, and which walk through it.
+    /// Seed of the house and of the path through it.
     #[arg(long, default_value_t = 3)]
     pub seed: u64,
-    /// Where to put the run and its report.
+    /// Folder for the run and its report.
     #[arg(long, default_value = "wayword-demo")]
     pub out: PathBuf,
 }
@@ -132,13 +132,14 @@ Examples:
   wayword generate --paths 20 --llm openai/gpt-4.1-mini --see openai/gpt-4.1-mini --max-usd 2 --dry-run
   wayword generate --config run.toml --seed 7 --out runs/seven      (flags win over the file)")]
 pub struct Generate {
-    /// Settings as TOML, with the names of these flags; flags win.
+    /// Settings as TOML, with the names of these flags. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
-    /// Where to put the run; the same command again continues it.
+    /// Folder for the run. Give the same command again to continue it.
     #[arg(long, value_name = "DIR", required_unless_present = "dry_run")]
     pub out: Option<PathBuf>,
-    /// Only say what the run would ask of models, but for what is asked or written again: calls, tokens and money.
+    /// Estimate the calls, tokens and money that the run would need, without making a call. Repeated questions and rewritten
+    /// texts are not counted.
     #[arg(long)]
     pub dry_run: bool,
     /// The run.
@@ -154,16 +155,16 @@ Examples:
   wayword check R2R_val_seen.json --platform matterport --data DATA --style r2r --json
   wayword check runs/houses/instructions.jsonl --platform house --style r2r")]
 pub struct Check {
-    /// Instructions: R2R, REVERIE, RxR or Wayword.
+    /// File of instructions: R2R, REVERIE, RxR or Wayword.
     pub file: PathBuf,
-    /// The world.
+    /// The platform.
     #[command(flatten)]
-    pub world: World,
-    /// The style that all of them are to keep to. Without it, a text of Wayword's own keeps to the built-in style that it was
-    /// written in, and of any other only what it says of the path is checked.
+    pub platform: AskedPlatform,
+    /// Check that every text keeps to this style. Without it, a text written by Wayword is checked against the built-in style that
+    /// it was written in, and any other text only against its path.
     #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
     pub style: Option<String>,
-    /// Show each instruction that did not pass, up to this number.
+    /// Show at most this many of the instructions that did not pass.
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub show: usize,
 }
@@ -175,22 +176,22 @@ Examples:
   wayword export --run runs/val_seen --style reverie --format reverie --out val_seen_generated.json
   wayword export --run runs/a --run runs/b --format wayword --val-share 0.1 --out merged.jsonl")]
 pub struct Export {
-    /// Run folder; several only for format wayword, which merges them.
+    /// Run folder. Several are merged, with format wayword only.
     #[arg(long, value_name = "DIR", required = true)]
     pub run: Vec<PathBuf>,
-    /// Only instructions of this style.
+    /// Export only the instructions of this style.
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
-    /// r2r, reverie, rxr, vlnce or wayword.
+    /// File format: r2r, reverie, rxr, vlnce or wayword.
     #[arg(long, value_parser = PossibleValuesParser::new(Format::ALL.map(Format::name)), hide_possible_values = true)]
     pub format: String,
-    /// The file to write; provenance goes beside it where the format's loaders choke on unknown fields.
+    /// File to write. Where a format's loaders refuse unknown fields, the provenance goes into a second file beside it.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Share of the scenes that go into the val split; no scene is in both.
+    /// Put this share of the scenes into a val split. No scene is in both splits.
     #[arg(long, value_name = "SHARE")]
     pub val_share: Option<f64>,
-    /// Seed of that choice.
+    /// Seed of the choice of val scenes.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
 }
@@ -204,12 +205,12 @@ pub struct Report {
     /// Run folder, or the folder of a comparison.
     #[arg(long, value_name = "DIR")]
     pub run: PathBuf,
-    /// At most so many items, those with rejected and unverified texts first; of a comparison, so many walks: of each agent and set
-    /// some that succeed and some that do not. [default: 1000; of a comparison 100]
+    /// Show at most this many items, those with rejected and unverified texts first. For a comparison: this many walks, with
+    /// successes and failures of each agent and set. [default: 1000; for a comparison 100]
     #[arg(long, value_name = "N")]
     pub items: Option<usize>,
-    /// The page; of more than 50 items it is an overview, and the walks are on numbered pages beside it. [default: report.html in
-    /// the run folder]
+    /// HTML file to write. With more than 50 items it is an overview, and the items are on numbered pages beside it. [default:
+    /// report.html in the run folder]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }
@@ -218,10 +219,10 @@ pub struct Report {
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  wayword house --seed 7 --out houses")]
 pub struct House {
-    /// Which house.
+    /// Seed of the house.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Folder for house-SEED.glb, its navigation data, and what Habitat reads beside it.
+    /// Folder for house-SEED.glb, its navigation data and the files that Habitat needs.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -231,9 +232,9 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// Flags of `generate` that no settings file has.
+    /// Flags of `generate` that have no key in a settings file.
     const FLAGS_ALONE: [&str; 3] = ["config", "dry_run", "out"];
-    /// Tables of a settings file that no flag names.
+    /// Tables of a settings file that have no flag.
     const TABLES: [&str; 3] = ["providers", "roles", "service"];
 
     /// The keys that a table of a settings file may have, as the error about another one lists them.

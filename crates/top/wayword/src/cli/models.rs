@@ -1,4 +1,4 @@
-//! `wayword models` as it is typed.
+//! `wayword models` as the user types it.
 
 use clap::{Args, Subcommand};
 
@@ -10,9 +10,9 @@ Examples:
   wayword models fetch hf/Salesforce/blip-vqa-base
   wayword models path hf/Salesforce/blip-vqa-base@main
 
-Models lie in the cache of the hub's own client for Python, which shares them: HF_HUB_CACHE, else hub in HF_HOME, else
+Models are kept in the cache that the hub's Python client uses too: HF_HUB_CACHE, else hub in HF_HOME, else
 ~/.cache/huggingface/hub. HF_ENDPOINT names another hub, HF_TOKEN holds a token for private and gated models, and with
-WAYWORD_OFFLINE=1 nothing is fetched. A folder on this machine has the name hf/PATH, where PATH begins with / or . as in
+WAYWORD_OFFLINE=1 nothing is fetched. A model in a folder of your own is named hf/PATH, where PATH begins with / or ., as in
 hf/./models/blip.")]
 pub struct Models {
     /// What to do.
@@ -23,14 +23,14 @@ pub struct Models {
 /// What to do with models in process.
 #[derive(Debug, Subcommand)]
 pub enum ModelsCommand {
-    /// What is on this machine.
+    /// List the models on this machine.
     List,
-    /// Fetch a model, or what its branch stands for now; a fetch that was cut off goes on where it ended.
+    /// Fetch a model, or the newest version of its branch. A fetch that was cut off continues where it ended.
     Fetch {
         /// Its name: hf/ORG/NAME or hf/ORG/NAME@REVISION.
         name: String,
     },
-    /// Where a model lies, or which file is missing where. Nothing is fetched.
+    /// Print the folder of a model, or which file is missing. Nothing is fetched.
     Path {
         /// Its name.
         name: String,

@@ -1,6 +1,6 @@
-//! `wayword view` as it is typed.
+//! `wayword view` as the user types it.
 
-use crate::settings::World;
+use crate::settings::AskedPlatform;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -12,36 +12,36 @@ pub struct View {
     pub command: ViewCommand,
 }
 
-/// What can be shown of a world.
+/// What can be shown of a platform.
 #[derive(Debug, Subcommand)]
 pub enum ViewCommand {
-    /// All around from a viewpoint, as one picture.
+    /// Draw everything around a viewpoint, as one picture.
     Panorama(ViewPanorama),
-    /// A path as whoever walks it sees it: pictures in a folder, a GIF or a video.
+    /// Draw a path as its walker sees it: pictures in a folder, a GIF or a video.
     Path(ViewPath),
-    /// A storey from above: where one can walk and, where asked, a path.
+    /// Draw a storey from above: where one can walk and, if asked, a path.
     Map(ViewMap),
 }
 
 /// Which path.
 #[derive(Debug, Args)]
 pub struct Walk {
-    /// The scene of a random path. [default: the world's first; of episodes, any]
+    /// Use this scene. [default: the platform's first; with --episodes, that of the item]
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<String>,
-    /// The random path of this seed, the first that `generate` makes of it. [default: 0]
+    /// Show the first random path that `generate` makes with this seed. [default: 0]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Hops of a random path. [default: 4..7]
+    /// Number of hops of a random path. [default: 4..7]
     #[arg(long, value_name = "FROM..TO")]
     pub hops: Option<String>,
     /// Length of a random path in metres. [default: 5..20]
     #[arg(long, value_name = "FROM..TO")]
     pub metres: Option<String>,
-    /// A path of a dataset: R2R, REVERIE, RxR, or Wayword (a run's instructions.jsonl too).
+    /// Show a path of this file: R2R, REVERIE, RxR, or Wayword (also the instructions.jsonl of a run).
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seed", "hops", "metres"])]
     pub episodes: Option<PathBuf>,
-    /// The item whose path it is. [default: the first]
+    /// Show the path of this item. [default: the first]
     #[arg(long, value_name = "ID", requires = "episodes")]
     pub item: Option<String>,
 }
@@ -54,28 +54,28 @@ Examples:
   wayword view panorama --platform habitat --data house.glb --viewpoint v0003 --heading-deg 90 --out east.jpg
   wayword view panorama --platform matterport --data DATA --scan SCAN --seed 3 --out start.png
 
-The picture is a cylinder unrolled: its middle looks along the heading, and it is as high as the four views reach where they
-meet. Where one of the four has no picture that part stays grey; where more have none there is no panorama.")]
+The picture shows 360 degrees, with the heading in its middle. It is made of four views. If one of the four has no picture, that
+part is grey; if more have none, no panorama is written.")]
 pub struct ViewPanorama {
-    /// The world.
+    /// The platform.
     #[command(flatten)]
-    pub world: World,
-    /// The scene. [default: the world's first]
+    pub platform: AskedPlatform,
+    /// Use this scene. [default: the platform's first]
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<String>,
-    /// Where to stand. [default: the scene's first viewpoint]
+    /// Stand at this viewpoint. [default: the scene's first]
     #[arg(long, value_name = "ID", conflicts_with = "seed")]
     pub viewpoint: Option<String>,
-    /// Stand where the random path of this seed starts, and look as it does.
+    /// Stand where the random path of this seed starts, with its heading.
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Where the middle looks: degrees, 0 is north (+y), 90 east. [default: 0; of a path, its own]
+    /// Heading of the middle in degrees: 0 is north (+y), 90 is east. [default: 0; with --seed, that of the path]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub heading_deg: Option<f64>,
-    /// Width of the picture. [default: what keeps the detail of the views]
+    /// Width of the picture. [default: as much detail as the views have]
     #[arg(long, value_name = "PIXELS")]
     pub width: Option<u32>,
-    /// The picture: .png or .jpg.
+    /// Picture to write: .png or .jpg.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }
@@ -89,22 +89,23 @@ Examples:
   wayword view path --platform habitat --data house.glb --metres 5..10 --smooth 8 --width 320 --out walk.gif
   wayword view path --episodes runs/houses/instructions.jsonl --item random-0-4 --out walk.gif
 
-Each of the path's frames is shown once. With --smooth there are pictures between them: the walker turns on the spot and then
-walks, at an even pace. Frames of which the world has no picture are left out, and that is told.")]
+Each frame of the path is shown once. With --smooth there are pictures between them: the walker turns on the spot and then
+walks, at an even pace. A frame without a picture is left out, and the program says so. A GIF with --smooth is
+large: make it smaller with --width, or write an .mp4.")]
 pub struct ViewPath {
-    /// The world.
+    /// The platform.
     #[command(flatten)]
-    pub world: World,
+    pub platform: AskedPlatform,
     /// The path.
     #[command(flatten)]
     pub walk: Walk,
-    /// Pictures for each second. [default: 1; with --smooth 12]
+    /// Pictures per second. [default: 1; with --smooth 12]
     #[arg(long, value_name = "N")]
     pub fps: Option<f64>,
-    /// So many pictures between two frames, in worlds that can be seen from anywhere.
+    /// Draw this many pictures between two frames. Needs a platform that can draw from anywhere (house, habitat).
     #[arg(long, value_name = "N")]
     pub smooth: Option<usize>,
-    /// Width of the pictures. [default: as the world gives them]
+    /// Width of the pictures. [default: that of the platform's pictures]
     #[arg(long, value_name = "PIXELS")]
     pub width: Option<u32>,
     /// What to write: a folder for numbered PNG files, or a .gif or .mp4 file.
@@ -120,19 +121,19 @@ Examples:
   wayword view map --scan house-7 --level 2 --seed 3 --out upstairs.png
   wayword view map --platform matterport --data DATA --episodes REVERIE_val_seen.json --item 4634_215 --out path.svg
 
-A path is drawn where one is asked for: with --seed, --hops, --metres or --episodes. Under the map lies the storey as it looks
-from above, where the world has its geometry (house, habitat). In an SVG, viewpoints say their names.")]
+A path is drawn if one is asked for: with --seed, --hops, --metres or --episodes. The background shows the storey from above if
+the platform has its geometry (house, habitat). In an SVG, hover over a viewpoint to see its name.")]
 pub struct ViewMap {
-    /// The world.
+    /// The platform.
     #[command(flatten)]
-    pub world: World,
+    pub platform: AskedPlatform,
     /// The path.
     #[command(flatten)]
     pub walk: Walk,
-    /// The storey, the lowest being 1. [default: where the path starts, else the lowest]
+    /// Number of the storey; the lowest is 1. [default: where the path starts, else the lowest]
     #[arg(long, value_name = "N")]
     pub level: Option<u32>,
-    /// The map: .svg or .png.
+    /// Map to write: .svg or .png.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }

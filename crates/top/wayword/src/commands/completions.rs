@@ -8,7 +8,7 @@ use clap::CommandFactory;
 use std::io::{self, Write};
 
 pub(super) fn run(shell: clap_complete::Shell) -> Result<Exit, Error> {
-    // Its library panics where it cannot write; a reader that has gone away is no error.
+    // `clap_complete` panics when it cannot write. A reader that has gone away is no error.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "wayword", &mut script);
     let _ = io::stdout().write_all(&script);

@@ -3,7 +3,7 @@
 use crate::{error::Error, settings::Asked, text_file};
 use std::path::Path;
 
-/// What a settings file asks for; nothing where there is none.
+/// What a settings file asks for; nothing if no file is given.
 pub(super) fn read(path: Option<&Path>) -> Result<Asked, Error> {
     let Some(path) = path else { return Ok(Asked::default()) };
     let text = text_file::read(path, "read the settings")?;
@@ -15,7 +15,7 @@ pub(super) fn read(path: Option<&Path>) -> Result<Asked, Error> {
     })
 }
 
-/// What a settings file says of how models are reached, for a command that has nothing else of it.
+/// How models are reached, from a settings file, for a command that uses nothing else of it.
 pub(super) fn calls(path: Option<&Path>) -> Result<Asked, Error> {
     let Asked { service, providers, .. } = read(path)?;
     Ok(Asked { service, providers, ..Asked::default() })

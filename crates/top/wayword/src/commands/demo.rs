@@ -15,7 +15,7 @@ use std::{fmt, path::PathBuf};
 use wayword_core::{Climb, Move, Turn, Verdict};
 use wayword_formats::jsonl::{self, Record};
 
-/// The report of a demo shows its one walk.
+/// The report of a demo shows its one path.
 const ITEMS: usize = 1;
 
 pub(super) fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
@@ -24,7 +24,7 @@ pub(super) fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
         draw: Draw { seed: Some(args.seed), ..Draw::default() },
         ..Asked::default()
     };
-    output.say(format_args!("drawing house-{} and walking through it ...", args.seed));
+    output.say(format_args!("generating house-{} and a path through it ...", args.seed));
     let summary = generate_into(&args.out, &asked.job()?, output)?;
     if let Some(reason) = &summary.stopped {
         output.say(format_args!("stopped before the end: {reason}"));
@@ -80,7 +80,7 @@ impl fmt::Display for Shown {
     }
 }
 
-/// What happens after a frame, in brackets.
+/// The move after a frame, in brackets.
 fn motion(step: &Move) -> String {
     let turn = match step.turn() {
         Turn::Straight => None,

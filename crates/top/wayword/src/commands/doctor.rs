@@ -8,10 +8,10 @@ use crate::{
     error::{Error, Exit},
     item::items,
     output::Output,
+    platforms,
     run::fresh_id,
     settings::{LABELS, Settings, is_model},
     team::prompts,
-    world,
 };
 use serde::Serialize;
 use std::fmt;
@@ -28,7 +28,7 @@ enum Grade {
     Problem,
 }
 
-/// One thing that was looked at.
+/// One thing that was checked.
 #[derive(Debug, Serialize)]
 struct Finding {
     state: Grade,
@@ -39,10 +39,10 @@ struct Finding {
     hint: Option<String>,
 }
 
-/// Everything that was looked at.
+/// Everything that was checked.
 #[derive(Debug, Serialize)]
 struct Report {
-    /// What was found, in the order of looking.
+    /// What was found, in the order of the checks.
     findings: Vec<Finding>,
 }
 
@@ -58,7 +58,8 @@ pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
     match Calls::open(&job, &fresh_id("doctor"), output) {
         Err(error) => findings.push(problem("models", &error)),
         Ok(None) => {
-            let none = "no model is named: labels answer, rules ask and write. Name some with --llm and --see";
+            let none = "no model is named, so ground-truth labels answer, and rules ask and write; name models with \
+                        --llm and --see";
             findings.push(ok("models", none.to_owned()));
         }
         Ok(Some(calls)) => {
@@ -95,11 +96,11 @@ fn problem(about: &str, error: &Error) -> Finding {
     Finding { state: Grade::Problem, about: about.to_owned(), told: told.to_owned(), hint }
 }
 
-/// Opens the world and looks once.
+/// Opens the platform and takes one view.
 fn world_finding(settings: &Settings) -> Finding {
     let about = format!("platform {}", settings.platform);
     let look = || -> Result<Seen, Error> {
-        let platform = world::open(settings)?;
+        let platform = platforms::open(settings)?;
         let one = Settings { limit: Some(1), ..settings.clone() };
         let items = items(&one, platform.as_ref())?;
         let path = items[0].path(settings, platform.as_ref())?;
@@ -115,7 +116,7 @@ fn world_finding(settings: &Settings) -> Finding {
     }
 }
 
-/// What a look into the world showed.
+/// What that view showed.
 struct Seen {
     scenes: usize,
     picture: bool,
@@ -125,13 +126,13 @@ struct Seen {
 impl Seen {
     fn finding(&self, about: String, settings: &Settings) -> Finding {
         let Self { scenes, picture, labels } = *self;
-        let has = |what: bool| if what { "" } else { "no " };
-        let told = format!(
-            "{}; a view of the first has {}picture and {}labels",
-            count(scenes, "scene"),
-            has(picture),
-            has(labels)
-        );
+        let has = match (picture, labels) {
+            (true, true) => "a picture and labels",
+            (true, false) => "a picture, but no labels",
+            (false, true) => "labels, but no picture",
+            (false, false) => "neither a picture nor labels",
+        };
+        let told = format!("{}; its first view has {has}", count(scenes, "scene"));
         let see = &settings.roles.see;
         let hint = if is_model(see) && !picture {
             Some(format!("{see} needs pictures: add them to the data folder, or use --see labels"))

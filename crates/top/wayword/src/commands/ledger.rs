@@ -1,4 +1,4 @@
-//! `wayword ledger`: what was asked, what it cost, and what is kept of it.
+//! `wayword ledger`: lists the calls that the ledger keeps, sums their cost, exports and drops them.
 
 use crate::{
     calls::ledger_path,
@@ -19,7 +19,7 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     if !path.exists() {
         return Err(Error::usage(
             format!("{}: there is no ledger yet", path.display()),
-            "it is made by the first command that asks a model; name another with --ledger FILE",
+            "the first command that asks a model makes it; if yours is elsewhere, give --ledger FILE",
         ));
     }
     let ledger = Ledger::open(&path)?;
@@ -41,8 +41,8 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
         LedgerCommand::Prune { older_than_days, model, changed } => {
             if older_than_days.is_none() && model.is_none() && !changed {
                 return Err(Error::usage(
-                    "that would empty the ledger",
-                    "say what to drop: --older-than-days, --model or --changed",
+                    "prune without a filter would empty the ledger",
+                    "say which calls to drop: --older-than-days, --model or --changed",
                 ));
             }
             let filter = Filter {
@@ -52,13 +52,18 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
             };
             let rows = if *changed { ledger.prune_changed()? } else { ledger.prune(&filter)? };
             let done = Done { ledger: path.display().to_string(), rows };
-            output.data(&done, format_args!("{} dropped; asking again will cost again", count(rows, "call")));
+            let then = if rows == 0 {
+                "the ledger holds none that match"
+            } else {
+                "a run that needs them again pays for them again"
+            };
+            output.data(&done, format_args!("{} dropped: {then}", count(rows, "call")));
         }
     }
     Ok(Exit::Done)
 }
 
-/// How many rows a command was about.
+/// How many calls a command exported or dropped.
 #[derive(Serialize)]
 struct Done {
     ledger: String,
@@ -75,6 +80,9 @@ const SHOWN_CHARS: usize = 70;
 
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.rows.is_empty() {
+            return write!(f, "0 calls: the ledger holds none that match");
+        }
         for row in &self.rows {
             let answer: String = row.answer.text.split_whitespace().collect::<Vec<_>>().join(" ");
             let answer: String = answer.chars().filter(|c| !c.is_control()).take(SHOWN_CHARS).collect();
@@ -92,12 +100,15 @@ impl fmt::Display for Shown {
 #[derive(Serialize)]
 struct Costs {
     lines: Vec<CostLine>,
-    /// Requests that were sent and whose answer is not known.
+    /// Requests that were sent, but whose answer is not known.
     lost: u64,
 }
 
 impl fmt::Display for Costs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.lines.is_empty() {
+            writeln!(f, "the ledger holds no calls yet")?;
+        }
         for line in &self.lines {
             let unknown = match line.without_price {
                 0 => String::new(),
@@ -113,6 +124,12 @@ impl fmt::Display for Costs {
                 line.usd
             )?;
         }
-        write!(f, "{} sent without a known answer; what was sent may have been paid for", count(self.lost, "request"))
+        match self.lost {
+            0 => write!(f, "no request was lost (sent, but without a known answer)"),
+            lost => {
+                let lost = count(lost, "request");
+                write!(f, "{lost} lost (sent, but without a known answer); the provider may have charged for this")
+            }
+        }
     }
 }

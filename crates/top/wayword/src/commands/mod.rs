@@ -32,7 +32,7 @@ pub use perceive::{Extent, Measured, Row, perceive};
 /// Runs a command.
 ///
 /// # Errors
-/// What went wrong, to be told once.
+/// What went wrong. The caller prints it once.
 pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
     match command {
         Command::Demo(args) => demo::run(&args, output),

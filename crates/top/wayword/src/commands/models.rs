@@ -1,4 +1,4 @@
-//! `wayword models`: models in process, and where their files lie.
+//! `wayword models`: models that run in process, and where their files are.
 
 use crate::{
     cli::{Models, ModelsCommand},
@@ -37,7 +37,7 @@ pub(super) fn run(args: &Models, output: &Output) -> Result<Exit, Error> {
     Ok(Exit::Done)
 }
 
-/// Where a model lies.
+/// Where a model's files are.
 #[derive(Serialize)]
 struct Found {
     name: String,
@@ -54,7 +54,7 @@ fn told(name: &ModelName, folder: ModelFolder, output: &Output) {
     output.data(&found, found.file.as_ref().unwrap_or(&found.path).display());
 }
 
-/// What is on this machine.
+/// The models on this machine.
 #[derive(Serialize)]
 struct Listed {
     models: Vec<CachedModel>,

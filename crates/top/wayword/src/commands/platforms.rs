@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, Exit},
     output::Output,
-    world::PLATFORMS,
+    platforms::PLATFORMS,
 };
 use std::fmt::Write as _;
 

@@ -10,11 +10,11 @@ use crate::{
 };
 use std::{fs, path::Path};
 
-/// Items of a run that are shown, unless told otherwise.
+/// Items of a run that are shown, unless `--items` gives another number.
 const ITEMS: usize = 1000;
-/// Walks of a comparison that are shown, unless told otherwise.
+/// Walks of a comparison that are shown, unless `--items` gives another number.
 const WALKS: usize = 100;
-/// Runs below a folder that are named.
+/// Most runs below a folder that an error names.
 const NAMED: usize = 3;
 
 pub(super) fn run(args: &Report, output: &Output) -> Result<Exit, Error> {
@@ -30,7 +30,7 @@ pub(super) fn run(args: &Report, output: &Output) -> Result<Exit, Error> {
     Ok(Exit::Done)
 }
 
-/// Refuses what is no run folder, and names the one that may be meant.
+/// Refuses a path that is not a run folder, and names the one that the user may mean.
 fn expect_run(folder: &Path) -> Result<(), Error> {
     if is_run(folder) {
         return Ok(());
@@ -40,11 +40,11 @@ fn expect_run(folder: &Path) -> Result<(), Error> {
     let within = runs_within(folder);
     let what = match (fs::exists(folder), folder.is_dir()) {
         (Ok(false), _) => "there is no such folder".to_owned(),
-        (_, true) => format!("it is no run folder, for it holds no {}", file::CONFIG),
-        _ => "it is a file, and no run folder".to_owned(),
+        (_, true) => format!("it is not a run folder, because it holds no {}", file::CONFIG),
+        _ => "it is a file, not a run folder".to_owned(),
     };
     let hint = match around {
-        Some(around) => format!("give the folder that it lies in: --run {}", around.display()),
+        Some(around) => format!("give the folder that it is in: --run {}", around.display()),
         None if !within.is_empty() => format!("name one of the runs in it: --run {}", within.join(", --run ")),
         None => "give the --out folder of a `wayword generate` or `wayword compare`".to_owned(),
     };

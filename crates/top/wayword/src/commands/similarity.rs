@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
 use wayword_metrics::{Drawing, Estimate, Said, Similarity, similarity};
 
-/// What the intervals cover.
+/// Confidence level of the intervals.
 const LEVEL: f64 = 0.95;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
@@ -52,7 +52,7 @@ struct Report {
     encoder: String,
     a: Compared,
     b: Compared,
-    /// What the intervals cover.
+    /// Confidence level of the intervals.
     level: f64,
     #[serde(flatten)]
     similarity: Similarity,
@@ -79,7 +79,7 @@ impl fmt::Display for Report {
             writeln!(f, "{letter}: {}, {}, {}", side.name, count(side.items, "item"), count(side.texts, "text"))?;
         }
         let is_model = self.encoder != "words";
-        writeln!(f, "encoder: {}{}", self.encoder, if is_model { "" } else { " (counted, no model)" })?;
+        writeln!(f, "encoder: {}{}", self.encoder, if is_model { "" } else { " (word counts, no model)" })?;
         let Similarity { figure, same_item, random_pairs, only_in_a, only_in_b, single_in_b } = &self.similarity;
         let interval = format!("{:.0} % interval", self.level * 100.0);
         writeln!(f, "{:<38} {:>6}   {interval:<15} {:>6} {:>6}", "mean cosine", "mean", "items", "paths")?;
@@ -87,7 +87,7 @@ impl fmt::Display for Report {
         row(f, "B: two texts of an item", same_item.as_ref())?;
         row(f, "B: texts of two paths, at random", random_pairs.as_ref())?;
         writeln!(f, "only in A: {}; only in B: {only_in_b}", count(*only_in_a, "item"))?;
-        write!(f, "left out of the second row, with one text in B: {}", count(*single_in_b, "item"))
+        write!(f, "left out of the second row, because B has one text for them: {}", count(*single_in_b, "item"))
     }
 }
 
@@ -96,6 +96,6 @@ fn row(f: &mut fmt::Formatter<'_>, name: &str, estimate: Option<&Estimate>) -> f
         Some(Estimate { mean, low, high, values, clusters }) => {
             writeln!(f, "{name:<38} {mean:>6.3}   {low:.3} to {high:.3}  {values:>6} {clusters:>6}")
         }
-        None => writeln!(f, "{name:<38} {:>6}   there is none to measure", "-"),
+        None => writeln!(f, "{name:<38} {:>6}   nothing to measure", "-"),
     }
 }

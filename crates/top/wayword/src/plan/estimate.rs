@@ -5,10 +5,10 @@ use crate::{
     count::count,
     error::Error,
     pipeline,
+    platforms::Remembering,
     settings::{Perception, Settings, is_model},
     styles::Measured,
     team::prompts,
-    world::Remembering,
 };
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
@@ -20,15 +20,15 @@ use wayword_synthesis::{
     writer::Brief,
 };
 
-/// About what a run would ask of models: no dialogue ends early, nothing is asked again or written again, and the ledger holds
-/// nothing yet.
+/// An estimate of what a run would ask of models. It assumes that no dialogue ends early, that nothing is asked or
+/// written a second time, and that the ledger is empty.
 #[derive(Debug, Default, Serialize)]
 pub struct Estimate {
     /// Items of the run that have a path.
     items: usize,
     /// Frames of their paths.
     frames: usize,
-    /// Different views among those that are captioned: each is talked about once.
+    /// Different views that are captioned, each of them once.
     views: usize,
     /// Most questions per view, the opening among them.
     questions: usize,
@@ -44,7 +44,7 @@ struct Asked {
     calls: u64,
     tokens_in: u64,
     tokens_out: u64,
-    /// US dollars; absent where the model's price is not known.
+    /// US dollars; absent if the model's price is not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     usd: Option<f64>,
     /// The day of the price list.
@@ -60,11 +60,11 @@ struct Load {
     tokens_out: u64,
 }
 
-/// What stands for exchanges and captions that nobody has made yet.
+/// Typical texts in place of exchanges and captions that do not exist yet.
 const TYPICAL_QUESTION: &str = "What stands on the left side of the room, and what does it look like?";
 const TYPICAL_ANSWER: &str = "There is a small wooden table with a lamp on it, and a grey chair stands next to it.";
 const TYPICAL_CAPTION: &str = "A living room with a grey sofa on the left, a wooden table in the middle, two chairs on the right and a lamp beside the window. A doorway leads to a hallway.";
-/// Tokens that replies of each kind have.
+/// Tokens of a typical reply of each kind.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
 const CAPTION_TOKENS: u64 = 60;
@@ -81,7 +81,7 @@ impl Estimate {
         let (mut views, mut panoramas, mut writing) = (BTreeSet::new(), BTreeSet::new(), Load::default());
         for item in &plan.items {
             let world = Remembering::new(plan.platform);
-            // What has no path is rejected by the run, and asks nothing of models.
+            // An item without a path fails in the run, and asks nothing of models.
             let Ok(path) = pipeline::path(item, settings, &world) else { continue };
             estimate.items += 1;
             estimate.frames += path.frames.len();
@@ -101,7 +101,7 @@ impl Estimate {
         for (role, model, load, takes_part) in [
             ("asks", &roles.ask, talk.asking.times(estimate.views as u64), dialogue),
             ("sees", &roles.see, talk.seeing.times(estimate.views as u64), true),
-            ("sums up", &roles.summarise, summing, dialogue),
+            ("summarises", &roles.summarise, summing, dialogue),
             ("writes", &roles.write, writing, true),
         ] {
             if is_model(model) && takes_part {
@@ -130,7 +130,7 @@ impl Estimate {
     }
 }
 
-/// Headings that differ by rounding alone look at the same thing.
+/// Headings that differ only by rounding look at the same thing.
 fn micro_rad(gaze: Gaze) -> u64 {
     (gaze.heading.rad() * 1e6).round() as u64
 }
@@ -174,7 +174,7 @@ impl Talk {
     }
 }
 
-/// Writing once for each style; repairs come on top, and nobody knows how many.
+/// Writing once for each style; repairs come on top, and their number is not known before.
 fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path: &Path) -> Result<Load, PromptError> {
     let seen = Observation { summary: TYPICAL_CAPTION.to_owned(), ..Observation::default() };
     let walk = Walk::new(path.clone(), vec![seen; path.frames.len()]);
@@ -188,7 +188,7 @@ fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path:
 
 impl Load {
     fn call(&mut self, prompt: &str, tokens_out: u64) {
-        // Four characters a token is what English text comes to.
+        // English text has about four characters per token.
         self.add(Self { calls: 1, tokens_in: prompt.len().div_ceil(4) as u64, tokens_out });
     }
 
@@ -214,11 +214,11 @@ impl fmt::Display for Estimate {
         let (items, frames) = (count(self.items, "item"), count(self.frames, "frame"));
         writeln!(f, "{items}, {frames}, {} to caption", count(self.views, "different view"))?;
         if self.models.is_empty() {
-            return write!(f, "no model takes part: nothing is asked, nothing is paid");
+            return write!(f, "no model takes part, so the run costs nothing");
         }
         writeln!(
             f,
-            "with every dialogue at its full length, nothing asked or written again, and nothing in the ledger yet:"
+            "estimate, if no dialogue ends early, nothing is asked or written twice, and the ledger is empty:"
         )?;
         for asked in &self.models {
             write!(
@@ -231,7 +231,7 @@ impl fmt::Display for Estimate {
                 asked.tokens_out
             )?;
             match (asked.usd, &asked.price_as_of) {
-                (Some(0.0), _) => writeln!(f, ", free: it runs here")?,
+                (Some(0.0), _) => writeln!(f, ", free: it runs in process")?,
                 (Some(usd), Some(day)) => writeln!(f, ", about ${usd:.2} (prices of {day})")?,
                 _ => writeln!(f, ", price not known (see --prices)")?,
             }
@@ -239,7 +239,7 @@ impl fmt::Display for Estimate {
         let known: Option<f64> = self.models.iter().map(|asked| asked.usd).sum();
         match known {
             Some(usd) => write!(f, "in all: about ${usd:.2}"),
-            None => write!(f, "in all: not known"),
+            None => write!(f, "in all: not known, because a price is missing"),
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Hashes of what the settings only name, so that a run is not continued with other episodes, styles, prompts or endpoints.
+//! Hashes of files and tables that the settings only name, so that a run is not continued with other episodes, styles,
+//! prompts or endpoints.
 
 use crate::{
     error::Error,
@@ -27,7 +28,7 @@ pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, 
     Ok(inputs)
 }
 
-/// Fields of a provider that change no answer.
+/// Fields of a provider that do not change any answer.
 const WITHOUT_EFFECT: [&str; 3] = ["requests_per_minute", "tokens_per_minute", "key_env"];
 
 fn providers(providers: &Providers) -> String {

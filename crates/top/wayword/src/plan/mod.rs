@@ -1,5 +1,5 @@
-//! A run before it begins: its settings, turned into a world with paths, styles and models that there are. Nothing is asked, paid
-//! or written yet.
+//! A run before it begins: its platform, paths, styles and models, found from the settings. Nothing is asked, paid or
+//! written yet.
 
 mod estimate;
 mod inputs;
@@ -18,17 +18,17 @@ use wayword_remote::Price;
 
 pub use estimate::Estimate;
 
-/// What a run works through, and by whom.
+/// What a run works on, and with which models.
 pub struct Plan<'a> {
     /// What was asked for.
     pub job: &'a Job,
-    /// The world.
+    /// The platform.
     pub platform: &'a dyn Platform,
     /// The paths, in their order.
     pub items: Vec<Item>,
-    /// The styles that are written in; none where nothing is written.
+    /// The styles that are written in; empty if nothing is written.
     pub styles: Vec<Measured>,
-    /// Who is asked over a network or in process.
+    /// The models, over a network or in process.
     pub models: Models<'a>,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Plan<'a> {
         Ok(Self { job, platform, items, styles, models: Models::of(job)? })
     }
 
-    /// The settings as a run folder keeps them: with the hashes of what they only name.
+    /// The settings as a run folder keeps them: with hashes of the files and tables that they only name.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -73,7 +73,7 @@ impl<'a> Plan<'a> {
 /// The models that a job names: known, priced, and not asked yet.
 pub struct Models<'a> {
     job: &'a Job,
-    /// By model; none where the price is not known.
+    /// By model; `None` if the price is not known.
     prices: BTreeMap<String, Option<Price>>,
 }
 
@@ -86,8 +86,9 @@ impl<'a> Models<'a> {
         Ok(Self { job, prices: Calls::rehearse(job)? })
     }
 
-    /// The way to them; `None` where none is named. `run` names what the calls are made for. It is asked only where there are
-    /// any: without models nothing is spent, and the same run gives the same folder byte for byte.
+    /// Opens the way to the models; `None` if there are none. `run` gives the name of the run that the calls belong to.
+    /// It is called only if there are models: without them nothing is spent, and the same run gives the same folder
+    /// byte for byte.
     ///
     /// # Errors
     /// When the run has no name, or the ledger cannot be opened.
@@ -95,7 +96,7 @@ impl<'a> Models<'a> {
         if self.prices.is_empty() { Ok(None) } else { Calls::open(self.job, &run()?, output) }
     }
 
-    /// What a model costs, where that is known.
+    /// What a model costs, if that is known.
     #[must_use]
     pub fn price(&self, model: &str) -> Option<&Price> {
         self.prices.get(model)?.as_ref()

@@ -1,4 +1,4 @@
-//! A report as files: one page, or an overview with the walks on numbered pages beside it.
+//! A report as files: one page, or an overview with the paths on numbered pages beside it.
 
 use crate::error::Error;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
@@ -10,25 +10,26 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Walks of a page: with five pictures each, some ten megabytes, and some thirty sheets of paper.
+/// Paths on a page: with five pictures each, they make about ten megabytes, and thirty sheets of paper.
 pub(super) const WALKS_PER_PAGE: usize = 50;
 
-/// What a name may hold in an address as it is.
+/// Characters that are not escaped in an address.
 const IN_ADDRESS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
 
-/// A page's mark stands within so many bytes of its beginning, however long the two names in it are.
+/// A page's mark is within so many bytes of its beginning, however long the two names in it are.
 const MARK_WITHIN: u64 = 4096;
 
 /// The files of a report.
 pub(super) struct Book<'a> {
     out: &'a Path,
-    /// Which report a page of walks belongs to: the names of the overview and of the run folder, as addresses have them.
+    /// Which report a page of paths belongs to: the names of the overview and of the run folder, escaped as in
+    /// addresses.
     page_of: String,
     walks: usize,
     per_page: usize,
 }
 
-/// The pages of walks, for a page that names them.
+/// The pages of paths, for a page that links to them.
 #[derive(Debug, Serialize)]
 pub(super) struct Pager {
     /// Where the overview is.
@@ -36,35 +37,35 @@ pub(super) struct Pager {
     pages: Vec<Leaf>,
 }
 
-/// A page of walks.
+/// A page of paths.
 #[derive(Debug, Serialize)]
 struct Leaf {
     href: String,
-    /// The numbers of its walks, from 1.
+    /// The numbers of its paths, from 1.
     first: usize,
     last: usize,
     is_here: bool,
 }
 
 impl<'a> Book<'a> {
-    /// The files for so many walks of a run.
+    /// The files for `walks` paths of a run.
     pub(super) fn new(out: &'a Path, run: &Path, walks: usize, per_page: usize) -> Self {
-        // "." has a name, too. The folders around it are nobody else's business, for pages are passed on.
+        // "." has a name, too. The folders around it stay private, because pages are passed on.
         let run = fs::canonicalize(run).unwrap_or_else(|_| run.to_owned());
         Self { out, page_of: format!("{} {}", address(out), address(&run)), walks, per_page }
     }
 
-    /// What a page of walks says of itself, so that nobody else's page is taken for it.
+    /// The mark of a page of paths, so that no other report's page is taken for it.
     pub(super) fn page_of(&self) -> &str {
         &self.page_of
     }
 
-    /// How many pages of walks there are beside the overview; none where it holds them itself.
+    /// How many pages of paths there are beside the overview; 0 if it holds the paths itself.
     pub(super) fn pages(&self) -> usize {
         if self.walks <= self.per_page { 0 } else { self.walks.div_ceil(self.per_page) }
     }
 
-    /// The walks (from 0) of a page (from 1).
+    /// The paths (from 0) of a page (from 1).
     pub(super) fn walks(&self, page: usize) -> Range<usize> {
         let first = (page - 1) * self.per_page;
         first..(first + self.per_page).min(self.walks)
@@ -81,13 +82,13 @@ impl<'a> Book<'a> {
         self.out.with_file_name(name)
     }
 
-    /// The address of a walk (from 0), from any page.
+    /// The address of a path (from 0), from any page.
     pub(super) fn address(&self, walk: usize, anchor: &str) -> String {
         let file = if self.pages() == 0 { String::new() } else { address(&self.file(walk / self.per_page + 1)) };
         format!("{file}#{anchor}")
     }
 
-    /// The pages, as page `here` (from 1; none on the overview) names them; none where there is one file.
+    /// The pages, as page `here` (from 1; `None` on the overview) links to them; `None` if there is one file.
     pub(super) fn pager(&self, here: Option<usize>) -> Option<Pager> {
         let leaf = |page: usize| {
             let walks = self.walks(page);
@@ -102,7 +103,7 @@ impl<'a> Book<'a> {
         (!pages.is_empty()).then(|| Pager { overview: address(self.out), pages })
     }
 
-    /// Refuses to replace files that are no pages of this report, which may be another run's.
+    /// Refuses to replace files that are not pages of this report, because they may be another run's.
     ///
     /// # Errors
     /// When there is such a file.
@@ -110,7 +111,7 @@ impl<'a> Book<'a> {
         let is_other = |file: &PathBuf| fs::symlink_metadata(file).is_ok() && !self.is_ours(file);
         match (1..=self.pages()).map(|page| self.file(page)).find(is_other) {
             Some(file) => Err(Error::usage(
-                format!("{}: it is there already, and is no page of this report", file.display()),
+                format!("{}: it exists, and is not a page of this report", file.display()),
                 "give another name with --out, or remove the file",
             )),
             None => Ok(()),
@@ -128,7 +129,7 @@ impl<'a> Book<'a> {
         Ok(())
     }
 
-    /// Whether a file is a page of walks of this very report.
+    /// Whether a file is a page of paths of this very report.
     fn is_ours(&self, file: &Path) -> bool {
         let mut beginning = Vec::new();
         let read = File::open(file).and_then(|file| file.take(MARK_WITHIN).read_to_end(&mut beginning));
@@ -136,12 +137,12 @@ impl<'a> Book<'a> {
     }
 }
 
-/// The mark of a page of walks, as `open.html` has it.
+/// The mark of a page of paths, as in `open.html`.
 fn mark(page_of: &str) -> String {
     format!("<meta name=\"wayword-page-of\" content=\"{page_of}\">")
 }
 
-/// A file in the same folder, as a link names it.
+/// The link to a file in the same folder.
 fn address(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     utf8_percent_encode(&name, IN_ADDRESS).to_string()

@@ -17,21 +17,21 @@ const MOST_ON_CARD: usize = 6;
 /// A frame.
 #[derive(Debug, Serialize)]
 pub(super) struct FrameView {
-    /// From 0, as run folders and the terminal have it.
+    /// From 0, as in run folders and on the terminal.
     number: usize,
     anchor: String,
     colour: Colour,
     picture: Option<Picture>,
-    /// What the picture shows, for those who do not see it.
+    /// The picture in words, for readers who do not see it.
     alt: String,
     room: Option<String>,
     level: Option<u32>,
     caption: String,
-    /// The first things that were seen, where no picture shows them.
+    /// The first things that were seen, if there is no picture.
     seen: Vec<String>,
     seen_left_out: usize,
-    /// Name of the sign for the turn that follows, and the move in words; none at the last frame, and where the motion is
-    /// unknown.
+    /// Name of the sign for the turn that follows, and the move in words; `None` at the last frame, and if the motion
+    /// is not known.
     turn: Option<&'static str>,
     then: Option<String>,
     looks: Vec<LookView>,
@@ -43,7 +43,7 @@ struct LookView {
     /// Where it looked.
     direction: &'static str,
     caption: String,
-    /// Who wrote the caption, where that is not the run's summariser.
+    /// Who wrote the caption, if it was not the run's summariser.
     by: Option<String>,
     transcript: Vec<ExchangeView>,
     /// What was said to be there, not to be there, or not known: a word for each and the names.
@@ -55,7 +55,7 @@ struct LookView {
 struct ExchangeView {
     question: String,
     answer: String,
-    /// Why it was asked a second time, where it was.
+    /// Why it was asked a second time, if it was.
     asked_twice: Option<&'static str>,
 }
 
@@ -127,14 +127,14 @@ fn exchange_view(exchange: &Exchange) -> ExchangeView {
         answer: exchange.answer.clone(),
         asked_twice: exchange.trouble.map(|trouble| match trouble {
             Trouble::Empty => "the first answer was empty",
-            Trouble::Echo => "the first answer was the question",
-            Trouble::Loop => "the first answer went round in circles",
-            Trouble::Repeat => "the first answer was that to an earlier question",
+            Trouble::Echo => "the first answer repeated the question",
+            Trouble::Loop => "the first answer repeated itself",
+            Trouble::Repeat => "the first answer was the one to an earlier question",
         }),
     }
 }
 
-/// Where a gaze looks: ahead, where it follows the walker, else by the compass or by the walker's side.
+/// Where a gaze looks: ahead if it follows the heading, else by the compass or by the agent's side.
 fn direction(gaze: Heading, walker: Heading) -> &'static str {
     let is = |other: Heading| gaze.turn_to(other).abs() < 0.01;
     if is(walker) {

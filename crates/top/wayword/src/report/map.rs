@@ -1,4 +1,4 @@
-//! The numbers of an item's map: metres in the world to units of an SVG, north up.
+//! The numbers of an item's map: metres in world coordinates to units of an SVG, north up.
 
 use super::{
     palette::{Colour, colour},
@@ -18,17 +18,17 @@ pub(super) struct MapView {
     pub(super) edges: String,
     /// Its nodes, as path data: strokes of no length, round at the ends.
     pub(super) nodes: String,
-    /// The walk, hop by hop.
+    /// The path, hop by hop.
     pub(super) hops: Vec<Hop>,
     /// Where the frames are.
     pub(super) spots: Vec<Spot>,
-    /// Which way the walker looks at first, degrees clockwise from north.
+    /// Heading at the start, degrees clockwise from north.
     pub(super) start_deg: f64,
     /// Length of the scale bar.
     pub(super) bar: f64,
-    /// What that is in the world.
+    /// Its length in the scene, metres.
     pub(super) bar_m: u32,
-    /// Where the walk should have gone, where it is held against that.
+    /// The annotated path, if the walk is compared with one.
     pub(super) annotated: Option<Annotated>,
 }
 
@@ -61,28 +61,28 @@ pub(crate) struct Spot {
     pub(crate) is_last: bool,
     /// Where the frame is.
     pub(crate) at: [f64; 2],
-    /// Where its number is: aside, where another number is in the way.
+    /// Where its number is: beside the frame if another number is in the way.
     pub(crate) badge: [f64; 2],
     pub(crate) is_aside: bool,
     pub(crate) colour: Colour,
 }
 
-/// A map as wide as a phone, so that numbers are read there. The graph goes on beyond its edge.
+/// A map as wide as a phone, so that its numbers are readable there. The graph goes on beyond its edge.
 const PAPER: Paper =
     Paper { most: [360.0, 330.0], least: [220.0, 170.0], padding: 34.0, margin_m: 1.2, most_scale: 42.0 };
 /// Radius of a frame's number.
 pub(crate) const RADIUS: f64 = 9.5;
-/// How near two numbers may come: they may touch, but each has to be read.
+/// How near two numbers may come: they may touch, but each has to be readable.
 const LEAST_APART: f64 = 1.5 * RADIUS;
-/// How far a way back bends away from the way there, at its control point.
+/// How far a hop back bends away from the hop there, at its control point.
 const BEND: f64 = 32.0;
-/// Widest stretch of the world that is drawn, metres.
+/// Widest part of a scene that is drawn, metres.
 pub(crate) const MOST_SPAN_M: f64 = 2_000.0;
 /// Most nodes and edges of the graph that are drawn.
 pub(crate) const MOST_NODES: usize = 4_000;
 
 impl MapView {
-    /// The map of the first `frames` frames, or `None` where their positions are not known or make no map.
+    /// The map of the first `frames` frames, or `None` if their positions are not known or cannot be drawn.
     pub(super) fn new(path: &Path, map: &Map, frames: usize) -> Option<Self> {
         if !path.motion.is_known() {
             return None;
@@ -92,7 +92,7 @@ impl MapView {
         Self::draw(map, &Trail::of_frames(&stops, start))
     }
 
-    /// The map of a trail, or `None` where its positions make no map.
+    /// The map of a trail, or `None` if its positions cannot be drawn.
     pub(super) fn draw(map: &Map, trail: &Trail<'_>) -> Option<Self> {
         let first = *trail.stops.first()?;
         let is_near = |x: f64, y: f64| (x - first.x).abs() <= MOST_SPAN_M && (y - first.y).abs() <= MOST_SPAN_M;
@@ -124,20 +124,20 @@ impl MapView {
 /// What is drawn on a map: positions in metres, world frame.
 pub(crate) struct Trail<'a> {
     pub(crate) stops: &'a [DVec3],
-    /// Which way the walker looks at first.
+    /// The heading at the start.
     pub(crate) start: Heading,
-    /// Of each hop whether it goes back; none does where nothing is said.
+    /// For each hop whether it goes back. Hops without a value do not.
     pub(crate) backs: &'a [bool],
-    /// The path that people annotated; its last is the goal.
+    /// The path that people annotated; its last place is the goal.
     pub(crate) annotated: &'a [DVec3],
     /// The number of the first stop.
     pub(crate) first_number: usize,
-    /// Whether a place has one number, that of the first stop there, however often the walk comes by.
+    /// Whether a place has only one number, that of the first stop there, however often the walk returns.
     pub(crate) is_numbered_once: bool,
 }
 
 impl<'a> Trail<'a> {
-    /// The frames of a path, numbered from 0 as run folders and the terminal have it.
+    /// The frames of a path, numbered from 0 as in run folders and on the terminal.
     pub(crate) fn of_frames(stops: &'a [DVec3], start: Heading) -> Self {
         Self { stops, start, backs: &[], annotated: &[], first_number: 0, is_numbered_once: false }
     }
@@ -178,7 +178,7 @@ fn hops(trail: &Trail<'_>, at: &[[f64; 2]]) -> Vec<Hop> {
     (0..at.len().saturating_sub(1)).map(hop).collect()
 }
 
-/// A bent line: the way back is beside the way there.
+/// A bent line, so that the hop back is beside the hop there.
 fn bow(from: [f64; 2], to: [f64; 2]) -> String {
     let [x, y] = [0, 1].map(|axis| to[axis] - from[axis]);
     let length = x.hypot(y).max(1.0);
@@ -192,7 +192,7 @@ fn annotated(path: &[DVec3], sheet: &Sheet) -> Option<Annotated> {
     Some(Annotated { data: data.collect(), goal: *at.last()? })
 }
 
-/// The eight ways out of a crowd, nearest to the reader's habit first.
+/// The eight directions in which a number may move aside, the most usual first.
 const WAYS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0], [0.7, -0.7], [-0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
 

@@ -1,7 +1,8 @@
-//! A run as HTML pages that need nothing but themselves: map, frames, dialogue, captions, instructions and checks.
+//! A run as HTML pages that load nothing else: map, frames, dialogue, captions, instructions and checks.
 //!
-//! A page is made item by item, so that its size is not bound by memory, and the same run gives the same bytes. All that
-//! comes from files or models is untrusted: the templates escape it, and the pages forbid themselves scripts and addresses.
+//! A page is made item by item, so that memory does not limit its size, and the same run gives the same bytes.
+//! Everything from files or models is untrusted: the templates escape it, and the pages' content security policy
+//! forbids scripts and remote addresses.
 
 mod book;
 pub mod comparison;
@@ -44,7 +45,7 @@ use std::{
 pub struct Written {
     /// The page, or the overview where there are several.
     pub page: String,
-    /// Pages of walks beside it, in their order.
+    /// Pages of paths beside it, in their order.
     pub pages: Vec<String>,
     /// Items that are shown.
     pub items: usize,
@@ -52,7 +53,7 @@ pub struct Written {
     pub left_out: usize,
     /// Pictures that are shown.
     pub pictures: usize,
-    /// Pictures of these items that are not shown: missing, no JPEG, too large, or the page was full.
+    /// Pictures of these items that are not shown: missing, not a JPEG, too large, or the page was full.
     pub pictures_left_out: usize,
 }
 
@@ -64,7 +65,7 @@ impl fmt::Display for Written {
         }
         write!(f, ": {}, {}", count(self.items, "item"), count(self.pictures, "picture"))?;
         if self.left_out > 0 {
-            write!(f, "; {} left out (see --items)", count(self.left_out, "item"))?;
+            write!(f, "; {} left out (--items N shows more)", count(self.left_out, "item"))?;
         }
         if self.pictures_left_out > 0 {
             write!(f, "; {} left out", count(self.pictures_left_out, "picture"))?;
@@ -73,12 +74,12 @@ impl fmt::Display for Written {
     }
 }
 
-/// Writes the report of a run, with at most so many of its items, those whose texts did not pass first. What was there before is
-/// replaced once all is whole.
+/// Writes the report of a run, with at most `most_items` of its items; those whose texts did not pass come first. The
+/// new files replace old ones only when all of them are complete.
 ///
 /// # Errors
-/// When `run` is no run folder, a line of it is not of its kind, another report's file is where a page of walks belongs, or a page
-/// cannot be written.
+/// When `run` is not a run folder, a line of it is not of its kind, another report's file is where a page of paths
+/// belongs, or a page cannot be written.
 pub fn write(run: &Path, out: &Path, most_items: usize) -> Result<Written, Error> {
     write_paged(run, out, most_items, WALKS_PER_PAGE)
 }
@@ -113,14 +114,14 @@ fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Re
 /// Takes a page part by part.
 type Take<'a> = dyn FnMut(&str) -> Result<(), Error> + 'a;
 
-/// Writes a page; what was there before is replaced once the page is whole.
+/// Writes a page; it replaces an old one only when it is complete.
 fn replace<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<T, Error> {
     let (page, told) = Unfinished::write(out, render)?;
     page.finish()?;
     Ok(told)
 }
 
-/// A page that is written beside the place where it will be; gone when it is dropped before that.
+/// A page that is written beside its place. If it is dropped before it is finished, it is removed.
 struct Unfinished {
     file: PathBuf,
     out: PathBuf,
@@ -145,7 +146,7 @@ impl Unfinished {
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
-        // It is not there any more where all went well.
+        // A finished page has been moved, so there is nothing to remove.
         let _ = fs::remove_file(&self.file);
     }
 }
@@ -159,7 +160,7 @@ struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
-    /// Hands a page of walks to `take`, or the overview, part by part.
+    /// Hands a page of paths to `take`, or the overview, part by part.
     fn draw(&self, page: Option<usize>, take: &mut Take<'_>) -> Result<Pictures, Error> {
         let Self { records, book, .. } = self;
         let pager = book.pager(page);

@@ -23,7 +23,7 @@ pub(super) struct ItemView {
     pub(super) anchor: String,
     id: String,
     scene: String,
-    /// Metres; none where the recording has no poses.
+    /// Metres; `None` if the recording has no poses.
     length_m: Option<String>,
     target: Option<String>,
     levels: Option<String>,
@@ -51,7 +51,7 @@ impl ItemView {
             target: path.target.as_ref().map(target_words),
             levels: levels(path.frames.iter().filter(|_| path.motion.is_known()).filter_map(|frame| frame.level)),
             map_words: length_m.as_ref().map_or_else(String::new, |length_m| {
-                format!("Map of the walk from frame 0 to frame {}, {length_m} m, north up", shown.saturating_sub(1))
+                format!("Map of the path from frame 0 to frame {}, {length_m} m, north up", shown.saturating_sub(1))
             }),
             length_m,
             map,
@@ -68,7 +68,7 @@ impl ItemView {
 
 fn levels(levels: impl Iterator<Item = u32> + Clone) -> Option<String> {
     let (low, high) = (levels.clone().min()?, levels.max()?);
-    Some(if low == high { format!("floor {low}") } else { format!("floors {low} to {high}") })
+    Some(if low == high { format!("storey {low}") } else { format!("storeys {low} to {high}") })
 }
 
 fn target_words(target: &Target) -> String {

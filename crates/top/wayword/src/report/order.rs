@@ -32,7 +32,8 @@ impl Worst {
 }
 
 impl Order {
-    /// The first `most` items of a file of walks, the worst before the others, as far as their lines fit into so many bytes.
+    /// The first `most` items of a file of paths, the worst before the others, as long as their lines fit into
+    /// `most_bytes`.
     ///
     /// # Errors
     /// When the file cannot be read, or a line names no path.
@@ -50,18 +51,18 @@ impl Order {
         })?;
         let mut left_bytes = most_bytes;
         let in_order = found.into_values().flatten().take(most);
-        // Once one is left out, so are all after it: the first are shown, not those that happen to be small.
+        // Once one is left out, all after it are too, so that the report shows the first items and not the small ones.
         let fitting = in_order.map_while(|(number, bytes)| take(&mut left_bytes, bytes).then_some(number));
         let places = fitting.enumerate().map(|(place, number)| (number, place)).collect();
         Ok(Self { places, left_bytes })
     }
 
-    /// Where the item of a line stands; none where it is not shown.
+    /// The place of a line's item in the report; `None` if it is not shown.
     pub(super) fn place(&self, line: usize) -> Option<usize> {
         self.places.get(&line).copied()
     }
 
-    /// What may still be held of what was written for them.
+    /// How many bytes of instructions may still be read for these items.
     pub(super) fn left_bytes(&self) -> usize {
         self.left_bytes
     }

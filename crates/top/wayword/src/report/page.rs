@@ -1,6 +1,6 @@
-//! What stands above the items: what the run was, who did it, and what came of it.
+//! The part of the page above the items: settings, roles and results of the run.
 
-use super::records::{Counts, Minds, Records};
+use super::records::{Counts, Records, RolesPlayed};
 use crate::settings::{Against, Perception, Settings, TargetMode};
 use serde::Serialize;
 use std::path::Path;
@@ -10,7 +10,7 @@ use wayword_synthesis::walk::FrameSelection;
 #[derive(Debug, Serialize)]
 pub(super) struct PageView {
     settings: Vec<(&'static str, String)>,
-    minds: Vec<MindsView>,
+    roles: Vec<RolesView>,
     outcome: Vec<StyleView>,
     left_out: usize,
     /// Items that failed, shown or not.
@@ -18,9 +18,9 @@ pub(super) struct PageView {
     failed_left_out: usize,
 }
 
-/// Who perceived, wrote and checked: lines of a name and what it did.
+/// Who asked, answered, wrote and checked: lines of a name and what it did.
 #[derive(Debug, Serialize)]
-struct MindsView {
+struct RolesView {
     lines: Vec<(String, String)>,
 }
 
@@ -42,7 +42,7 @@ impl PageView {
         };
         Self {
             settings: settings(&records.settings),
-            minds: records.minds.iter().map(minds).collect(),
+            roles: records.roles.iter().map(roles).collect(),
             outcome: records.counts.iter().map(style).collect(),
             left_out: records.left_out,
             failed: records.failed.len() + records.failed_left_out,
@@ -51,36 +51,36 @@ impl PageView {
     }
 }
 
-/// Who did what, said so that nobody takes ground truth for perception.
-fn minds(minds: &Minds) -> MindsView {
-    let answered = match minds.answerer.as_str() {
+/// Who did what, in words that keep ground truth apart from perception.
+fn roles(roles: &RolesPlayed) -> RolesView {
+    let answered = match roles.answerer.as_str() {
         "labels" => "answered: ground truth of the platform, not perception",
         _ => "answered: perception by a model",
     };
-    let checked = match minds.checked_against.as_str() {
-        "labels" => "is what the checks went by: ground truth of the platform",
-        "captions" => "are what the checks went by: they share the answerer's mistakes",
-        _ => "is what the checks went by",
+    let checked = match roles.checked_against.as_str() {
+        "labels" => "were the evidence for the checks: ground truth of the platform",
+        "captions" => "were the evidence for the checks: they share the answerer's mistakes",
+        _ => "was the evidence for the checks",
     };
-    let wrote = match (minds.writer.as_str(), &minds.finished_for) {
+    let wrote = match (roles.writer.as_str(), &roles.finished_for) {
         ("rules", None) => "wrote: no language model".to_owned(),
-        (_, Some(first)) => format!("wrote where every text of {first} had failed its checks"),
+        (_, Some(first)) => format!("wrote, after every text of {first} had failed its checks"),
         (_, None) => "wrote".to_owned(),
     };
     let line = |who: &str, did: &str| (who.to_owned(), did.to_owned());
-    MindsView {
+    RolesView {
         lines: vec![
-            line(&minds.asker, "asked"),
-            line(&minds.answerer, answered),
-            line(&minds.summariser, "summed up"),
-            line(&minds.writer, &wrote),
-            line(&minds.checked_against, checked),
-            line(&format!("Wayword {}", minds.wayword), "put it together"),
+            line(&roles.asker, "asked"),
+            line(&roles.answerer, answered),
+            line(&roles.summariser, "summarised"),
+            line(&roles.writer, &wrote),
+            line(&roles.checked_against, checked),
+            line(&format!("Wayword {}", roles.wayword), "ran all of this"),
         ],
     }
 }
 
-/// The settings as a reader wants them; no folders, for a page that is passed on should not tell of its maker's machine.
+/// The settings in words, without folders: a page that is passed on should not reveal its maker's machine.
 fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
     let file = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (hops, length_m) = (&settings.request.hops, &settings.request.length_m);
@@ -115,8 +115,8 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         TargetMode::Free => "the writer's choice",
     };
     let against = match settings.evidence {
-        Against::Labels => "labels where there are any, else captions",
-        Against::Captions => "captions alone",
+        Against::Labels => "labels if there are any, else captions",
+        Against::Captions => "captions only",
     };
     let mut told = vec![
         ("Paths", paths),
@@ -124,7 +124,7 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         ("Views", views.to_owned()),
         ("Questions", questions),
         ("Object of the task", target.to_owned()),
-        ("Texts are held against", against.to_owned()),
+        ("Texts are checked against", against.to_owned()),
         ("Repairs", format!("at most {}", settings.repairs)),
         ("Seed", settings.seed.to_string()),
     ];

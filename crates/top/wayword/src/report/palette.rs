@@ -1,15 +1,17 @@
-//! Colours of frames: in their order, from dark to light, so that the order is seen in grey and by colour-blind eyes too.
+//! Colours of frames, from dark to light in their order, so that the order is visible in grey and to colour-blind
+//! readers too.
 
 use serde::Serialize;
 
-/// A colour and the colour of a number that stands on it, as CSS has them.
+/// A colour and the colour of a number on it, in CSS.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(crate) struct Colour {
     pub(crate) fill: String,
     pub(crate) ink: &'static str,
 }
 
-/// Viridis (CC0, Smith and van der Walt) at eighths, without its last: that yellow is lost on white paper.
+/// Viridis (CC0, Smith and van der Walt) at eighths, without the last, because that yellow is hard to see on white
+/// paper.
 const STEPS: [[u8; 3]; 8] = [
     [68, 1, 84],
     [71, 44, 122],
@@ -20,10 +22,10 @@ const STEPS: [[u8; 3]; 8] = [
     [92, 200, 99],
     [170, 220, 50],
 ];
-/// Thousandths of the way up to which a white number is read best on it.
+/// Up to this many thousandths of the scale a white number is easier to read than a black one.
 const WHITE_UNTIL: usize = 498;
 
-/// The colour of frame `at` (from 0) of so many.
+/// The colour of frame `at` (from 0) of `frames`.
 pub(crate) fn colour(at: usize, frames: usize) -> Colour {
     let last = frames.saturating_sub(1).max(1);
     let thousandths = at.min(last) * 1000 / last;

@@ -1,4 +1,4 @@
-//! Pictures of frames, from the run's own folder and nowhere else.
+//! Pictures of frames, from the run's own folder only.
 
 use super::data_uri;
 use crate::run::file;
@@ -12,9 +12,9 @@ use std::{
 
 /// Largest picture, bytes.
 const MOST_BYTES: u64 = 4 << 20;
-/// Largest side of a picture, pixels: a small file can unfold into a picture that takes a browser's memory.
+/// Largest side of a picture, pixels: a small file can hold a picture that fills a browser's memory.
 const MOST_SIDE_PX: u32 = 4096;
-/// All pictures of a page together, bytes: a phone has to open it.
+/// All pictures of a page together, bytes, so that a phone can open it.
 const MOST_BYTES_TOGETHER: u64 = 64 << 20;
 
 /// A picture as the page holds it.
@@ -32,7 +32,7 @@ pub(super) struct Pictures {
     left_bytes: u64,
     /// How many were given out.
     pub(super) shown: usize,
-    /// How many are not shown: they are missing, too large, no JPEG, or the page was full.
+    /// How many are not shown: they are missing, too large, not a JPEG, or the page was full.
     pub(super) left_out: usize,
 }
 
@@ -67,7 +67,7 @@ impl Pictures {
     }
 }
 
-/// A file directly inside a folder, or `None` where its name leads elsewhere: ids of paths are free text.
+/// A file directly inside a folder, or `None` if its name leads elsewhere: ids of paths are free text.
 fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut parts = Path::new(name).components();
     match (parts.next(), parts.next()) {

@@ -1,4 +1,4 @@
-//! Places that several parts of an item's page name: anchors of items and frames, and sides of the walker in words.
+//! Places that several parts of an item's page name: anchors of items and frames, and sides of the agent in words.
 
 use wayword_core::Side;
 
@@ -13,7 +13,7 @@ pub(super) struct Places<'a> {
     pub(super) shown: usize,
 }
 
-/// The anchor of an item's heading; numbered and not named, for names come from anywhere.
+/// The anchor of an item's heading: a number, because a name may hold anything.
 pub(super) fn anchor(number: usize) -> String {
     format!("w{number}")
 }
@@ -23,7 +23,7 @@ pub(super) fn frame_anchor(item: &str, number: usize) -> String {
     format!("{item}-f{number}")
 }
 
-/// Where that is for the walker.
+/// A side of the agent in words.
 pub(super) fn side_words(side: Side) -> &'static str {
     match side {
         Side::Ahead => "ahead",

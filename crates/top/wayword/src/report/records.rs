@@ -1,7 +1,7 @@
 //! What the page needs of a run: some items whole, the rest only counted.
 //!
-//! The files are read twice: first to see what became of each item, then to take those that are shown. What was rejected and what
-//! could not be checked comes first, for that is what a report is opened for.
+//! The files are read twice: first to find out what became of each item, then to take those that are shown. Rejected
+//! and unverified texts come first, because readers open a report to see those.
 
 use super::{
     order::{Order, Worst},
@@ -25,27 +25,27 @@ use wayword_core::{Failure, Instruction, Provenance, Verdict};
 
 /// Most bytes of lines that are held, whatever the number of items asked for.
 const MOST_BYTES: usize = 128 << 20;
-/// Most different minds that are told.
-const MOST_MINDS: usize = 16;
+/// Most different sets of roles that are shown.
+const MOST_ROLES: usize = 16;
 /// Most styles that are counted.
 const MOST_STYLES: usize = 64;
 
 /// A run as far as the page shows it.
 pub(super) struct Records {
     pub(super) settings: Settings,
-    /// The items that are shown: those with a rejected text, those with an unverified one, then the others; each of these in the
-    /// order of the run.
+    /// The items that are shown: those with a rejected text, those with an unverified one, then the others; each of
+    /// these in the order of the run.
     pub(super) items: Vec<ItemRecord>,
-    /// Items that were walked and are not shown.
+    /// Items with a path that are not shown.
     pub(super) left_out: usize,
     /// The first items that failed.
     pub(super) failed: Vec<FailedItem>,
-    /// Those that are not shown.
+    /// Failed items that are not shown.
     pub(super) failed_left_out: usize,
-    /// Of all items, by style.
+    /// Counts of all items, by style.
     pub(super) counts: BTreeMap<String, Counts>,
-    /// Of all accepted instructions, without what differs from one to the next.
-    pub(super) minds: BTreeSet<Minds>,
+    /// The different sets of roles of all accepted instructions.
+    pub(super) roles: BTreeSet<RolesPlayed>,
 }
 
 /// One item.
@@ -63,9 +63,9 @@ pub(super) struct Counts {
     pub(super) rejected: usize,
 }
 
-/// Who perceived, wrote and checked.
+/// Who asked, answered, wrote and checked.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Minds {
+pub(super) struct RolesPlayed {
     pub(super) asker: String,
     pub(super) answerer: String,
     pub(super) summariser: String,
@@ -93,7 +93,7 @@ impl Records {
     /// Reads a run folder, at most `most_items` of its items whole.
     ///
     /// # Errors
-    /// When it is no run folder, a file cannot be read, or a line is not of its kind.
+    /// When it is not a run folder, a file cannot be read, or a line is not of its kind.
     pub(super) fn read(run: &Path, most_items: usize) -> Result<Self, Error> {
         let mut records = Self {
             settings: settings_of(run)?,
@@ -102,7 +102,7 @@ impl Records {
             failed: Vec::new(),
             failed_left_out: 0,
             counts: BTreeMap::new(),
-            minds: BTreeSet::new(),
+            roles: BTreeSet::new(),
         };
         let mut worst = Worst::default();
         lines::each(&run.join(file::INSTRUCTIONS), |line| records.count_accepted(&line, &mut worst))?;
@@ -125,8 +125,8 @@ impl Records {
                 Verdict::Fail => &mut counts.rejected,
             } += 1;
         }
-        if self.minds.len() < MOST_MINDS {
-            self.minds.insert(named.provenance.into());
+        if self.roles.len() < MOST_ROLES {
+            self.roles.insert(named.provenance.into());
         }
         worst.take(named.path.id, state(named.verdict));
         Ok(())
@@ -210,14 +210,14 @@ pub(super) struct PathOf {
     pub(super) path: Id,
 }
 
-/// Whether so many bytes can be held too.
+/// Takes `bytes` from what is left, if there are enough. Returns whether there were.
 pub(super) fn take(left_bytes: &mut usize, bytes: usize) -> bool {
     let left = left_bytes.checked_sub(bytes);
     *left_bytes = left.unwrap_or(*left_bytes);
     left.is_some()
 }
 
-impl From<Provenance> for Minds {
+impl From<Provenance> for RolesPlayed {
     fn from(provenance: Provenance) -> Self {
         let Provenance { asker, answerer, summariser, writer, finished_for, checked_against, wayword, .. } = provenance;
         Self { asker, answerer, summariser, writer, finished_for, checked_against, wayword }

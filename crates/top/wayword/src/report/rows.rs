@@ -8,7 +8,7 @@ use crate::run::FailedItem;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// Longest text of a row, characters; the walk shows it whole.
+/// Longest text of a row, characters; the path's own section shows it whole.
 const MOST_CHARS: usize = 700;
 /// Most styles, and most scenes, that can be chosen from.
 const MOST_CHOICES: usize = 200;
@@ -19,7 +19,7 @@ const PRINTED: usize = 100;
 #[derive(Debug, Serialize)]
 pub(super) struct Rows {
     rows: Vec<Row>,
-    /// What can be chosen: verdicts with their numbers, and styles and scenes where there are several.
+    /// What the reader can choose: verdicts with their numbers, and styles and scenes if there are several.
     states: Vec<(State, usize)>,
     styles: Vec<String>,
     scenes: Vec<String>,
@@ -30,7 +30,7 @@ pub(super) struct Rows {
 #[derive(Debug, Serialize)]
 struct Row {
     state: State,
-    /// Where the walk is; none where there is no walk.
+    /// The link to the path; `None` if there is no path.
     href: Option<String>,
     id: String,
     scene: Option<String>,
@@ -67,7 +67,7 @@ impl From<TextState> for State {
 }
 
 impl Rows {
-    /// The list of a run; `href` tells where the item at a place (from 0) is.
+    /// The list of a run; `href` gives the link to the item at a place (from 0).
     pub(super) fn of(records: &Records, href: impl Fn(usize) -> String) -> Self {
         let mut rows: Vec<Row> = records.failed.iter().map(failed).collect();
         for (at, item) in records.items.iter().enumerate() {
@@ -91,7 +91,7 @@ impl Rows {
     }
 }
 
-/// Different names in their order; none where there is no choice, or too much of it.
+/// Different names in their order; empty if there is only one, or too many to choose from.
 fn several<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
     let names: BTreeSet<&str> = names.filter(|name| !name.is_empty()).collect();
     if (2..=MOST_CHOICES).contains(&names.len()) { names.into_iter().map(str::to_owned).collect() } else { Vec::new() }

@@ -1,33 +1,34 @@
-//! How the world lies on a map: metres to units of the drawing, north up.
+//! Puts world coordinates on a map: metres to units of the drawing, north up.
 
-/// What a sheet may be like.
+/// The limits of a sheet.
 pub(crate) struct Paper {
     /// Largest sheet.
     pub(crate) most: [f64; 2],
-    /// Smallest, so that north arrow and scale bar find room.
+    /// Smallest sheet, so that north arrow and scale bar fit.
     pub(crate) least: [f64; 2],
-    /// Around what is drawn: room for signs.
+    /// Room for signs around the drawing.
     pub(crate) padding: f64,
-    /// How much of the world is seen around what is drawn, metres.
+    /// How much of the scene is shown around the drawn places, metres.
     pub(crate) margin_m: f64,
-    /// Most units per metre: a short path does not become a huge one.
+    /// Most units per metre, so that a short path is not drawn huge.
     pub(crate) most_scale: f64,
 }
 
-/// How the world lies on the sheet.
+/// Where world coordinates are on the sheet.
 pub(crate) struct Sheet {
     /// Units per metre.
     pub(crate) scale: f64,
-    /// The sheet's upper left corner in the world, metres.
+    /// The sheet's upper left corner in world coordinates, metres.
     corner: [f64; 2],
     pub(crate) size: [f64; 2],
 }
 
-/// A scale bar is at most so long.
+/// Longest scale bar, units.
 const LONGEST_BAR: f64 = 90.0;
 
 impl Sheet {
-    /// The sheet for places of the world, metres; `None` where there are none, or they are too far apart for numbers.
+    /// The sheet for places in world coordinates, metres; `None` if there are none, or they are too far apart for
+    /// numbers.
     pub(crate) fn around(points: impl Iterator<Item = [f64; 2]>, paper: &Paper) -> Option<Self> {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for point in points {
@@ -51,12 +52,12 @@ impl Sheet {
         Some(Self { scale, corner: [low[0] - margin_m[0], high[1] + margin_m[1]], size })
     }
 
-    /// Where a place of the world lies on it.
+    /// Where a place in world coordinates is on the sheet.
     pub(crate) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [tenth((x - self.corner[0]) * self.scale), tenth((self.corner[1] - y) * self.scale)]
     }
 
-    /// The scale bar: its length, and what that is in the world, metres.
+    /// The scale bar: its length in units, and what that is in metres.
     pub(crate) fn bar(&self) -> (f64, u32) {
         let bars = [1, 2, 5, 10, 20, 50, 100, 200, 500];
         let bar_m = bars.into_iter().rfind(|m| f64::from(*m) * self.scale <= LONGEST_BAR).unwrap_or(1);

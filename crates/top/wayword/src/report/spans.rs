@@ -1,6 +1,6 @@
 //! A text cut where its mentions begin and end.
 //!
-//! Spans come from files that anyone may have written: they may overlap, lie outside the text or cut a character in two.
+//! Spans come from files that anyone may have written: they may overlap, be outside the text or cut a character in two.
 
 use std::collections::BTreeSet;
 use wayword_core::{Finding, Mention, Verdict};

@@ -1,4 +1,4 @@
-//! The page of a small run that was made up here.
+//! The page of a small made-up run.
 
 use super::*;
 use crate::{
@@ -158,7 +158,7 @@ fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
 fn the_page_of_a_small_run_is_as_before() {
     let run = run_of(&walk("a"), &good());
     let (page, _) = page_of(run.path(), 100);
-    // The style sheet is for the eye.
+    // Without the style sheet.
     let (head, rest) = page.split_once("<style>").unwrap();
     let (_, body) = rest.split_once("</style>").unwrap();
     insta::assert_snapshot!(format!("{head}{body}"));
@@ -171,11 +171,11 @@ fn a_walk_without_poses_shows_no_map_no_length_and_no_moves() {
     let run = run_of(&video, &good());
     let (page, _) = page_of(run.path(), 100);
     let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
-    assert!(page.contains("The recording has no poses: nothing is known of turns and distances."));
-    for told in [" m ·", " m</p>", "5.0 m", "0.0 m", "<svg viewBox", "floor 1", "class=\"then\"><svg", "make no map"] {
+    assert!(page.contains("The recording has no poses, so its turns and distances are not known."));
+    for told in [" m ·", " m</p>", "5.0 m", "0.0 m", "<svg viewBox", "storey 1", "class=\"then\"><svg", "as a map"] {
         assert!(!page.contains(told), "{told}: {page}");
     }
-    assert_eq!((page.matches("class=\"frame\"").count(), page.matches("the walk ends here").count()), (3, 1));
+    assert_eq!((page.matches("class=\"frame\"").count(), page.matches("the path ends here").count()), (3, 1));
 }
 
 #[test]
@@ -253,7 +253,7 @@ fn only_the_first_items_are_shown_and_the_page_says_so() {
     let (page, written) = page_of(run.path(), 1);
     assert_eq!((written.items, written.left_out), (1, 1));
     assert_eq!(page.matches("<article ").count(), 1);
-    assert!(page.contains("shows 1 of 2 walks") && page.contains("left out: 1 walk."), "{page}");
+    assert!(page.contains("shows 1 of 2 paths") && page.contains("left out: 1 path."), "{page}");
     let none = page_of(run.path(), 0).1;
     assert_eq!((none.items, none.left_out), (0, 2));
 }
@@ -277,7 +277,7 @@ fn hostile_frames_and_spans_do_no_harm() {
     ];
     let run = run_of(&wild, &bad);
     let (page, _) = page_of(run.path(), 100);
-    assert!(page.contains("The positions of this path make no map."));
+    assert!(page.contains("The positions of this path cannot be drawn as a map."));
     assert!(page.contains("Pass the mirror and turn right. Stop at the lamp."));
 }
 
@@ -292,7 +292,7 @@ fn a_folder_that_is_no_run_is_refused_and_the_old_page_stays() {
     assert!(write(&run.path().join("nothing"), &out, 100).is_err());
 }
 
-/// A run of so many items that pass; some are rejected or unverified, by their numbers.
+/// A run of `items` items that pass, but those with these numbers are rejected or unverified.
 fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile::TempDir {
     let run = run_of(&walk("a"), &good());
     let ids: Vec<String> = (0..items).map(|number| format!("item-{number}")).collect();
@@ -327,7 +327,7 @@ fn pages_of(run: &Path, most_items: usize, per_page: usize) -> (BTreeMap<String,
     (all.map(|page| (name(page), fs::read_to_string(page).unwrap())).collect(), written)
 }
 
-/// What stands behind each opening, up to the end of the line.
+/// The text after each opening, up to the end of the line.
 fn after<'a>(page: &'a str, opening: &str) -> Vec<&'a str> {
     page.split(opening).skip(1).filter_map(|rest| rest.lines().next()).collect()
 }
@@ -356,7 +356,7 @@ fn the_list_shows_text_scene_and_verdict_of_every_item_and_can_be_filtered() {
     ]) {
         assert!(told.iter().all(|told| row.contains(told)), "{row}");
     }
-    // Without a script: what is chosen hides the rows of another kind.
+    // Without a script: the choice hides the rows of another kind.
     for filter in ["id=\"state-rejected\"", "id=\"scene-2\"", ":root:has(#scene-2:checked) .row:not(.scene-2)"] {
         assert!(page.contains(filter), "{filter}");
     }
@@ -398,7 +398,7 @@ fn many_walks_are_split_into_pages_whose_links_all_lead_somewhere() {
         let places = values(page, "id");
         assert_eq!(places.iter().collect::<BTreeSet<_>>().len(), places.len(), "{name}: two places of one name");
     }
-    // A shorter report takes the longer one's pages away, and leaves nothing unfinished.
+    // A shorter report removes the longer one's pages, and leaves nothing unfinished.
     let (pages, _) = pages_of(run.path(), 2, 3);
     assert_eq!(pages.len(), 1);
     let left = fs::read_dir(run.path()).unwrap().filter_map(|entry| entry.unwrap().file_name().into_string().ok());
@@ -416,10 +416,10 @@ fn pages_of_another_run_are_neither_replaced_nor_removed() {
     let refused = write_paged(other.path(), &out, 100, 3).unwrap_err().to_string();
     assert!(refused.contains("page-1.html") && refused.contains("--out"), "{refused}");
     assert_eq!([&out, &first].map(|file| fs::read(file).unwrap()), before);
-    // One page of the other run needs no numbered ones, and takes none away.
+    // A report of one page needs no numbered pages, and removes none.
     write_paged(other.path(), &out, 2, 3).unwrap();
     assert_eq!(fs::read(&first).unwrap(), before[1]);
-    // What the same run left is replaced.
+    // Pages of the same run are replaced.
     write_paged(one.path(), &out, 100, 3).unwrap();
 }
 

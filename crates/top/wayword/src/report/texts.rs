@@ -19,7 +19,7 @@ pub(super) struct TextView {
     state: TextState,
     /// Why it was rejected.
     reason: Option<String>,
-    /// Empty where nothing could be written.
+    /// Empty if nothing could be written.
     parts: Vec<PartView>,
     findings: Vec<FindingView>,
     provenance: Option<String>,
@@ -43,7 +43,7 @@ struct PartView {
     text: String,
     is_flawed: bool,
     link: Option<LinkView>,
-    /// Whether the mention that `link` is ends here.
+    /// Whether the mention of `link` ends here.
     is_last: bool,
     /// Other mentions that end here.
     others: Vec<LinkView>,
@@ -55,7 +55,7 @@ struct LinkView {
     kind: &'static str,
     /// Of the frame, from 0.
     number: usize,
-    /// The frame's; none where the page does not show it.
+    /// The frame's; `None` if the page does not show the frame.
     anchor: Option<String>,
     colour: Colour,
     /// Name of the sign for a turn.
@@ -145,7 +145,7 @@ fn kind(kind: MentionKind) -> &'static str {
     }
 }
 
-/// The sign for the turn that the words tell; what the path does stands at the frame.
+/// The sign for the turn in the words. The frame shows what the path really does.
 fn told_turn(words: &str) -> &'static str {
     let words = words.to_lowercase();
     let tells = |word: &str| words.contains(word);
@@ -177,7 +177,7 @@ fn provenance(provenance: &Provenance) -> String {
     let after = provenance.finished_for.as_ref().map_or_else(String::new, |first| format!(" after {first} had failed"));
     let prompts = provenance.prompts_hash.as_ref().map_or_else(String::new, |hash| format!(", prompts {hash}"));
     format!(
-        "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summed up, {writer} wrote{after}, {repairs}; \
+        "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summarised, {writer} wrote{after}, {repairs}; \
          checked against {checked_against}; seed {seed}, style {style_hash}{prompts}"
     )
 }

@@ -1,9 +1,10 @@
-//! Makes sure that one process works in a folder.
+//! Makes sure that only one process works in a folder.
 //!
-//! On this machine's own disks a lock does that. On a network's file system a lock may hold for one machine alone, or not at all, so
-//! there a file stands beside it that only one process can make: `run.owner`, which says who that is. It is removed at the end.
-//! Where one is left behind, the process is looked for if it ran on this machine; one of another machine cannot be, so whoever
-//! knows that it is gone has to remove the file. Which file systems are a network's is known on Linux alone.
+//! On this machine's own disks a lock does that. On a network file system a lock may apply to one machine only, or not
+//! at all. There the process also makes the file `run.owner`, which only one process can make and which says who that
+//! is. The process removes it at the end. If one is left behind by a process of this machine, the program looks whether
+//! that process still runs. It cannot do so for another machine: the user, who knows that the process is gone, has to
+//! remove the file. The program recognises network file systems on Linux only.
 
 use super::file;
 use crate::{error::Error, interrupt};
@@ -17,31 +18,31 @@ use std::{
 /// A folder that no other process works in for as long as this lives.
 #[derive(Debug)]
 pub(crate) struct Held {
-    /// None where a network's file system has no locks.
+    /// `None` if a network file system has no locks.
     _lock: Option<File>,
     _mark: Option<Mark>,
 }
 
-/// The file that says who works in a folder on a network's file system.
+/// The file that says who works in a folder on a network file system.
 #[derive(Debug)]
 struct Mark(PathBuf);
 
 /// Who works in a folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Owner {
-    /// The name of its machine, for people.
+    /// The name of its machine, to be shown.
     host: String,
     /// What tells machines, their boots and their containers apart: processes have numbers within one of these.
     place: String,
     pid: u32,
-    /// When the process began, as its machine counts: another process of that number began at another time.
+    /// When the process began, as its machine counts. Another process of the same number began at another time.
     began: String,
 }
 
 /// Makes sure that no other process works in a folder, for as long as what is returned lives.
 ///
 /// # Errors
-/// When one does, or may do.
+/// When another process does, or may do.
 pub(crate) fn hold(folder: &Path) -> Result<Held, Error> {
     hold_on(folder, wayword_ledger::network_at(folder))
 }
@@ -53,7 +54,7 @@ fn hold_on(folder: &Path, network: Option<&'static str>) -> Result<Held, Error> 
     let lock = match lock.try_lock() {
         Ok(()) => Some(lock),
         Err(TryLockError::WouldBlock) => return Err(Error::Busy(folder.to_owned())),
-        // It is not what counts there.
+        // On a network the mark counts, not the lock.
         Err(TryLockError::Error(_)) if network.is_some() => None,
         Err(TryLockError::Error(source)) => return Err(Error::Io { path, doing: "lock", source }),
     };
@@ -69,7 +70,7 @@ impl Mark {
             doing: "write",
             source: error.into(),
         })?;
-        // Twice: once more where the first finds what somebody left behind.
+        // A second try, if the first finds and removes what a dead process left behind.
         for _ in 0..2 {
             match File::options().create_new(true).write(true).open(&path) {
                 Ok(mut file) => {
@@ -106,7 +107,7 @@ fn give_way(folder: &Path, path: &Path, kind: &'static str, we: &Owner) -> Resul
 
 impl Drop for Mark {
     fn drop(&mut self) {
-        // What stays is told to whoever comes next.
+        // If the file stays, the next process reports it.
         let _ = fs::remove_file(&self.0);
     }
 }

@@ -22,24 +22,24 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Opens or makes it, and cuts off a torn last line: what a killed process was writing.
+    /// Opens or makes the file, and cuts off an incomplete last line that a killed process was writing.
     ///
     /// # Errors
-    /// When it cannot be read or a whole line in it is not one of its kind.
+    /// When it cannot be read, or one of its whole lines is not of its kind.
     pub fn open(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, Error> {
         let file = appending(path)?;
         let whole = whole_bytes(path).map_err(Error::io(path, "read"))?;
-        file.set_len(whole).map_err(Error::io(path, "cut off a torn line of"))?;
+        file.set_len(whole).map_err(Error::io(path, "cut off an incomplete line of"))?;
         let mut keys = IndexSet::new();
         lines::each(path, |line| {
-            let key = key_of(&line.parse()?).ok_or_else(|| line.broken("it lacks the fields that name it"))?;
+            let key = key_of(&line.parse()?).ok_or_else(|| line.broken("it lacks the fields that identify it"))?;
             keys.insert(key);
             Ok(())
         })?;
         Ok(Self { path: path.to_owned(), file, keys, key_of })
     }
 
-    /// Makes it anew, empty.
+    /// Makes the file again, empty.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -48,25 +48,25 @@ impl Journal {
         Self::open(path, key_of)
     }
 
-    /// Whether it holds a line of that key.
+    /// Whether it has a line with that key.
     #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.keys.contains(key)
     }
 
-    /// How many lines it holds.
+    /// How many lines it has.
     #[must_use]
     pub fn len(&self) -> usize {
         self.keys.len()
     }
 
-    /// Whether it holds none.
+    /// Whether it has no lines.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.keys.is_empty()
     }
 
-    /// Appends a line in one write, unless one of its key is there.
+    /// Appends a line in one write, unless there is one with its key.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -87,8 +87,8 @@ impl Journal {
         self.file.write_all(&line).map_err(Error::io(&self.path, "write"))
     }
 
-    /// Puts the lines into the order of `place`, which says of a key where its line belongs, or that it is to go. The file is
-    /// there whole, in the old order or in the new one, whenever the process is killed.
+    /// Sorts the lines by `place`, which gives the place of a key's line, or `None` to drop the line. Whenever the
+    /// process is killed, the file is whole, in the old order or in the new one.
     ///
     /// # Errors
     /// When it cannot be read or written.
@@ -114,7 +114,7 @@ impl Journal {
         Ok(())
     }
 
-    /// Makes sure that it survives a crash of the machine.
+    /// Makes sure that the file survives a crash of the machine.
     ///
     /// # Errors
     /// When it cannot be flushed.
@@ -127,7 +127,8 @@ fn appending(path: &Path) -> Result<File, Error> {
     File::options().create(true).append(true).read(true).open(path).map_err(Error::io(path, "open"))
 }
 
-/// Writes parts of a file, each with its start and length in bytes, to another one that survives a crash of the machine.
+/// Writes parts of a file, each given by start and length in bytes, to another file, which then survives a crash of the
+/// machine.
 fn copy_spans(from: &Path, to: &Path, spans: &[(usize, u64, u64)]) -> io::Result<()> {
     let mut from = File::open(from)?;
     let mut to = BufWriter::new(File::create(to)?);
@@ -156,7 +157,7 @@ fn whole_bytes(path: &Path) -> io::Result<u64> {
     }
 }
 
-/// Reads every whole line of a file of records; a file that is not there holds none.
+/// Reads every whole line of a file of records; a missing file has none.
 ///
 /// # Errors
 /// When it cannot be read, or a line is not of the kind.

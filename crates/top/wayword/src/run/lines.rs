@@ -19,7 +19,7 @@ pub(crate) struct Line<'a> {
     bytes: &'a [u8],
 }
 
-/// Hands every whole line of a file to `take`. A file that is not there has none, and a torn last line is left out: a
+/// Hands every whole line of a file to `take`. A missing file has none. An incomplete last line is left out, because a
 /// stopped run will write it again.
 ///
 /// # Errors
@@ -52,15 +52,15 @@ impl Line<'_> {
         self.bytes.len()
     }
 
-    /// What it holds.
+    /// The value that the line holds.
     ///
     /// # Errors
-    /// When it is not of that kind.
+    /// When the value is not of that kind.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, Error> {
         serde_json::from_slice(self.bytes).map_err(|error| self.broken(error))
     }
 
-    /// The error that it is not what it should be.
+    /// The error for a line that is not what it should be.
     pub(crate) fn broken(&self, problem: impl Display) -> Error {
         let problem = format!("{}: line {}: {problem}", self.path.display(), self.number);
         Error::usage(problem, "the file was changed by hand or by another program: make the run again")

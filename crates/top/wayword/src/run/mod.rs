@@ -1,10 +1,11 @@
 //! The run folder: what a run was asked to do, and what it has done so far.
 //!
-//! `config.toml` as resolved, `walks.jsonl` (paths, captions and dialogues), `instructions.jsonl` (Wayword records),
-//! `rejected.jsonl` (texts that failed a check, with reasons), `errors.jsonl` (items that failed; the next command tries them
-//! again), `data.json` (hashes of the scenes' files), `frames/`. A process that is killed leaves at most one torn last line in each
-//! file; the next one cuts it off and goes on where it stopped. What was made late is put into its place, so the files end up the
-//! same byte for byte.
+//! It holds `config.toml` (the settings as resolved), `walks.jsonl` (paths, captions and dialogues),
+//! `instructions.jsonl` (Wayword records), `rejected.jsonl` (texts that failed a check, with reasons), `errors.jsonl`
+//! (items that failed; the next command tries them again), `data.json` (hashes of the scenes' files) and `frames/`. A
+//! process that is killed leaves at most one incomplete last line in each file; the next process cuts it off and goes
+//! on where the first stopped. At the end the lines are sorted, so the files are the same byte for byte however often
+//! the run was stopped.
 
 mod held;
 mod journal;
@@ -33,7 +34,7 @@ pub use journal::{Journal, read_lines};
 pub use record::{FailedItem, Map, Rejected, WalkRecord, extra};
 pub use world_data::WorldData;
 
-/// A run folder that this process alone works in.
+/// A run folder in which only this process works.
 #[derive(Debug)]
 pub struct RunFolder {
     folder: PathBuf,
@@ -43,13 +44,13 @@ pub struct RunFolder {
     pub instructions: Journal,
     /// Texts that failed their checks.
     pub rejected: Journal,
-    /// Items that failed. It begins empty with each command, which tries them again.
+    /// Items that failed. Each command empties it at the start, and tries them again.
     pub errors: Journal,
     /// Items that failed in the command before this one.
     failed_before: BTreeSet<String>,
-    /// Items whose walk is there, but not the pictures that belong to it.
+    /// Items that have a line in `walks.jsonl`, but not all the pictures that belong to it.
     without_pictures: BTreeSet<String>,
-    /// Held for as long as the folder is worked in.
+    /// Keeps other processes out for as long as this lives.
     _held: Held,
 }
 
@@ -65,7 +66,7 @@ pub mod file {
     pub const REJECTED: &str = "rejected.jsonl";
     /// Items that failed, to be tried again.
     pub const ERRORS: &str = "errors.jsonl";
-    /// The name under which the ledger keeps what the run has spent.
+    /// The name under which the ledger keeps the run's spending.
     pub const ID: &str = "run.id";
     /// Hashes of the files that scenes are read from.
     pub const DATA: &str = "data.json";
@@ -73,14 +74,14 @@ pub mod file {
     pub const FRAMES: &str = "frames";
     /// The report.
     pub const REPORT: &str = "report.html";
-    /// Held by the process that works in the folder.
+    /// Locked by the process that works in the folder.
     pub const LOCK: &str = "run.lock";
-    /// On a network's file system, where locks do not tell: who works in the folder.
+    /// On a network file system, where locks are not reliable: who works in the folder.
     pub const OWNER: &str = "run.owner";
 }
 
 impl RunFolder {
-    /// Opens a run folder for work: makes it, or goes on with what is there.
+    /// Opens a run folder for work: makes it, or continues the run in it.
     ///
     /// # Errors
     /// When another process works in it or may do, it holds a run with other settings, or it cannot be written.
@@ -101,7 +102,7 @@ impl RunFolder {
         })
     }
 
-    /// The name under which the ledger keeps what the run has spent.
+    /// The name under which the ledger keeps the run's spending.
     ///
     /// # Errors
     /// When it cannot be read or written.
@@ -115,7 +116,7 @@ impl RunFolder {
         self.folder.join(file::FRAMES)
     }
 
-    /// Whether an item needs no more work: its walk is there with its pictures, and each style has its line.
+    /// Whether an item needs no more work: its path and pictures are there, and each style has its line.
     #[must_use]
     fn is_done(&self, item: &str, styles: &[String]) -> bool {
         let has = |style: &str| {
@@ -125,7 +126,7 @@ impl RunFolder {
         self.walks.has(item) && !self.without_pictures.contains(item) && styles.iter().all(|style| has(style))
     }
 
-    /// The items that need more work. Those that failed last time come last, so that they hold up no others.
+    /// The items that need more work. Those that failed last time come last, so that they do not hold up the others.
     #[must_use]
     pub fn left<'a>(&self, items: &'a [Item], styles: &[String]) -> Vec<&'a Item> {
         let left = items.iter().filter(|item| !self.is_done(&item.id(), styles));
@@ -135,8 +136,8 @@ impl RunFolder {
         left
     }
 
-    /// Puts the lines of all files into the order of the items and styles: what was lost and made later stands behind what came
-    /// after it.
+    /// Puts the lines of all files into the order of the items and styles, because an item that failed at first and was
+    /// made later stands behind its successors.
     ///
     /// # Errors
     /// When a file cannot be read or written.
@@ -148,7 +149,7 @@ impl RunFolder {
             let item = places.get(item).copied().unwrap_or(places.len());
             match style {
                 None => Some(item),
-                // A whole item that an older version rejected: it has been tried again.
+                // A whole item that an older version rejected: this version has tried it again.
                 Some("") => None,
                 Some(style) => {
                     let style = styles.iter().position(|other| other == style).unwrap_or(styles.len());
@@ -173,8 +174,8 @@ impl RunFolder {
     }
 }
 
-/// The name under which the ledger keeps what a folder's work has spent: made when it is first asked for, kept in the folder. New
-/// work in the place of what was deleted has spent nothing.
+/// The name under which the ledger keeps a folder's spending: made when it is first asked for, and kept in the folder.
+/// A new run in place of a deleted one has another name, so it starts without spending.
 ///
 /// # Errors
 /// When it cannot be read or written.
@@ -188,7 +189,7 @@ pub(crate) fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
     Ok(id)
 }
 
-/// The items of which `errors.jsonl` tells.
+/// The items in `errors.jsonl`.
 fn keys_of(errors: &Path) -> Result<BTreeSet<String>, Error> {
     let mut keys = BTreeSet::new();
     lines::each(errors, |line| {
@@ -198,7 +199,7 @@ fn keys_of(errors: &Path) -> Result<BTreeSet<String>, Error> {
     Ok(keys)
 }
 
-/// The items whose walk has pictures that are not all there.
+/// The items whose pictures are not all there.
 fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, Error> {
     let mut without = BTreeSet::new();
     lines::each(walks, |line| {
@@ -213,7 +214,7 @@ fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, Err
     Ok(without)
 }
 
-/// What a walk's line says of its pictures.
+/// What a line of `walks.jsonl` says of its pictures.
 #[derive(Deserialize)]
 struct Pictured {
     path: PicturedPath,
@@ -226,14 +227,14 @@ struct PicturedPath {
     frames: Vec<IgnoredAny>,
 }
 
-/// A name that no other process gives: kind, time and process.
+/// A name that no other process makes: kind, time and process.
 #[must_use]
 pub fn fresh_id(kind: &str) -> String {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
     format!("{kind}-{:x}-{:x}", since.as_micros(), std::process::id())
 }
 
-/// Writes the settings, or holds them against those that are there.
+/// Writes the settings, or compares them with those that are there.
 pub(crate) fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), Error>
 where
     S: Serialize + DeserializeOwned + PartialEq,
@@ -254,7 +255,7 @@ fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Erro
     Error::usage(problem, "give the same command to continue it, or another --out for a new run")
 }
 
-/// The same for a run, of which more may be asked than before.
+/// As [`keep_config`] for a run, which may be asked for more than before.
 fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
     let path = folder.join(file::CONFIG);
     if !path.exists() {
@@ -263,7 +264,7 @@ fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
     let before: Settings = config_of(folder)?;
     if settings.paths < before.paths {
         let problem =
-            format!("{} holds a run of {} paths, and {} are asked for", folder.display(), before.paths, settings.paths);
+            format!("{} holds a run of {} paths, but {} are asked for", folder.display(), before.paths, settings.paths);
         return Err(Error::usage(
             problem,
             "ask for as many or more to continue it, or give another --out for a new run",
@@ -277,7 +278,7 @@ fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
 
 fn write_config<S: Serialize>(path: &Path, settings: &S) -> Result<(), Error> {
     let text = toml::to_string_pretty(settings)
-        .map_err(|error| Error::usage(format!("the settings cannot be kept: {error}"), "report this as a bug"))?;
+        .map_err(|error| Error::usage(format!("the settings cannot be written: {error}"), "report this as a bug"))?;
     write_whole(path, &text)
 }
 
@@ -293,7 +294,7 @@ pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> 
     Ok(Settings { raised_from, ..settings.clone() })
 }
 
-/// Writes a small file that is there whole or not at all, whenever the process is killed.
+/// Writes a small file so that it is whole or absent, whenever the process is killed.
 pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".new");
@@ -310,7 +311,7 @@ pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
 /// The settings of a run.
 ///
 /// # Errors
-/// When the folder is no run folder.
+/// When the folder is not a run folder.
 pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
     config_of(folder)
 }
@@ -334,9 +335,9 @@ fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
     keys.into_iter().filter(|key| a.get(*key) != b.get(*key)).cloned().collect()
 }
 
-/// The beginning of a file's hash, for settings that only name it.
+/// The beginning of the hash of a file that settings only name.
 pub(crate) fn hash_of_file(file: &Path) -> Result<String, Error> {
-    // A pipe would be waited for.
+    // Reading a pipe would wait for ever.
     let about = fs::metadata(file).map_err(Error::io(file, "read"))?;
     if let Some(reason) = files::irregular(&about) {
         return Err(Error::usage(format!("{}: it {reason}", file.display()), "name a file"));

@@ -13,7 +13,7 @@ pub struct WalkRecord {
     pub path: Path,
     /// One per frame.
     pub observations: Vec<Observation>,
-    /// What people said about the path, where the episodes have it.
+    /// What people said about the path, if the episodes have it.
     pub originals: Vec<String>,
     /// The viewpoint graph around the path.
     pub map: Map,
@@ -32,7 +32,7 @@ pub struct Map {
 
 /// How far from the path the map reaches, metres.
 const MAP_MARGIN_M: f64 = 4.0;
-/// Nodes that are higher or lower than the path by more than this belong to other floors, metres.
+/// Nodes that are higher or lower than the path by more than this belong to other storeys, metres.
 const MAP_HEIGHT_M: f64 = 1.6;
 
 /// A text that failed its checks: a line of `rejected.jsonl`.
@@ -49,12 +49,12 @@ pub struct Rejected {
     pub last: Option<Instruction>,
 }
 
-/// An item of which nothing could be made: a line of `errors.jsonl`. The same command tries it again.
+/// An item that failed: a line of `errors.jsonl`. The same command tries it again.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct FailedItem {
     /// The item.
     pub item: String,
-    /// What kind of failure it was. Older versions wrote none: they kept only what a model had not given.
+    /// What kind of failure it was. Older versions wrote no kind, and kept only failures of models.
     #[serde(default = "lost")]
     pub failure: Failure,
     /// What happened.
@@ -74,7 +74,7 @@ pub(super) fn instruction_key(value: &Value) -> Option<String> {
     Some(key(value.get("path")?.get("id")?.as_str()?, value.get("style")?.as_str()?))
 }
 
-/// The item of a key, and the style where it has one.
+/// The item of a key, and the style if it has one.
 pub(super) fn parts(key: &str) -> (&str, Option<&str>) {
     key.split_once('\u{1f}').map_or((key, None), |(item, style)| (item, Some(style)))
 }
@@ -97,7 +97,7 @@ impl Rejected {
     }
 }
 
-/// What an instruction's record holds beside the format's own fields.
+/// What an instruction's record holds besides the format's own fields.
 #[must_use]
 pub fn extra(path_id: &str) -> JsonMap<String, Value> {
     match json!({ "path_id": path_id }) {
@@ -107,7 +107,7 @@ pub fn extra(path_id: &str) -> JsonMap<String, Value> {
 }
 
 impl Map {
-    /// The graph around a path; empty where nobody knows where the path lies.
+    /// The graph around a path; empty if the path has no poses.
     ///
     /// # Errors
     /// When the platform cannot give it.
@@ -119,7 +119,7 @@ impl Map {
         Ok(Self::near(&stops, &*platform.graph(&path.scene)?))
     }
 
-    /// A graph around some places, on their floors.
+    /// A graph around some places, on their storeys.
     #[must_use]
     pub fn near(stops: &[DVec3], graph: &ViewpointGraph) -> Self {
         let near = |position: DVec3| {

@@ -1,4 +1,4 @@
-//! Hashes of the files that a run's scenes are read from, so that a run is not continued in another world.
+//! Hashes of the files that a run's scenes are read from, so that a run is not continued with other scenes.
 
 use super::{Sha256, file, short_hex, write_whole};
 use crate::{error::Error, text_file};
@@ -12,16 +12,17 @@ use std::{
 };
 use wayword_core::{Platform, PlatformError, SceneId};
 
-/// A file up to this size is hashed whole, bytes; of a larger one only its beginning, middle and end.
+/// A file up to this size, bytes, is hashed whole; of a larger one only its beginning, middle and end are hashed.
 const MOST_WHOLE: u64 = 8 << 20;
-/// How much of these, bytes.
+/// Size of each of these samples, bytes.
 const SAMPLE: u64 = 64 << 10;
-/// How much of the beginning of a picture, of which a scene may have thousands, bytes. Another picture has another length, too.
+/// How much of the beginning of a picture is hashed, bytes, because a scene may have thousands. Its length is hashed
+/// too.
 const PICTURE: u64 = 4 << 10;
 
-const HINT: &str = "see whether it may be read, or move it away";
+const HINT: &str = "make sure that you may read it, or move it away";
 
-/// The hashes of a run's scenes: those that its folder holds (`data.json`), and those of the files as they are now.
+/// The hashes of a run's scenes: those in its folder (`data.json`), and those of the files as they are now.
 #[derive(Debug)]
 pub struct WorldData {
     path: PathBuf,
@@ -30,23 +31,23 @@ pub struct WorldData {
 
 #[derive(Debug, Default)]
 struct State {
-    /// What stands in the folder.
+    /// The hashes in the folder.
     kept: BTreeMap<String, String>,
-    /// What the files are now; `None` for a scene that is read from none.
+    /// The hashes of the files now; `None` for a scene that is read from no file.
     now: BTreeMap<String, Option<String>>,
-    /// Of each file, since several scenes may share one.
+    /// The hash of each file, because several scenes may share one.
     files: BTreeMap<PathBuf, String>,
 }
 
 impl WorldData {
-    /// What a run folder holds.
+    /// The hashes that a run folder holds.
     ///
     /// # Errors
     /// When the file cannot be read.
     pub fn of(folder: &Path) -> Result<Self, Error> {
         let path = folder.join(file::DATA);
         let kept = if path.exists() {
-            let text = text_file::read(&path, "read the hashes of the world's data")?;
+            let text = text_file::read(&path, "read the hashes of the scenes")?;
             serde_json::from_str(&text).map_err(|error| {
                 let hint = "the file was changed by hand or by another program: make the run again";
                 Error::usage(format!("{}: {error}", path.display()), hint)
@@ -60,7 +61,7 @@ impl WorldData {
     /// Refuses a scene whose files are not those that the run was begun with.
     ///
     /// # Errors
-    /// When they are others, or cannot be read.
+    /// When the files are others, or cannot be read.
     pub fn check(&self, platform: &dyn Platform, scene: &SceneId) -> Result<(), Error> {
         let mut state = self.lock();
         if !state.now.contains_key(scene.as_str()) {
@@ -70,12 +71,12 @@ impl WorldData {
         }
         let (kept, now) = (state.kept.get(scene.as_str()), state.now.get(scene.as_str()).cloned().flatten());
         if kept.is_some() && kept != now.as_ref() {
-            return Err(Error::OtherWorld { scene: scene.to_string(), record: self.path.clone() });
+            return Err(Error::ChangedScene { scene: scene.to_string(), record: self.path.clone() });
         }
         Ok(())
     }
 
-    /// Keeps the hash of a scene before the first thing that was made in it.
+    /// Keeps the hash of a scene, before the first item of it is written.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -109,11 +110,11 @@ impl State {
     }
 }
 
-/// The hash of a file, which may be large: enough of it to tell it from another.
+/// The hash of a file. Of a large file it takes only samples, which are enough to recognise another file.
 fn hash_of(path: &Path) -> io::Result<String> {
-    // A pipe would be waited for.
+    // Reading a pipe would wait for ever.
     if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("it is no plain file"));
+        return Err(io::Error::other("it is not a plain file"));
     }
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();

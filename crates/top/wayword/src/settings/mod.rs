@@ -18,34 +18,34 @@ use wayword_synthesis::{
     walk::FrameSelection,
 };
 
-pub use asked::{Asked, Draw, Frames, Telling, Walks, World};
-pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, is_in_process, is_mind, is_model};
+pub use asked::{Asked, AskedPlatform, Draw, Frames, Walks, Writing};
+pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, can_play, is_in_process, is_model};
 pub use service::{Providers, Service};
 
 /// What a run does.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Its name: see `wayword platforms`.
+    /// Name of the platform: see `wayword platforms`.
     pub platform: String,
     /// Folder of the platform's data.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub data: Option<PathBuf>,
-    /// Address of a platform that runs.
+    /// Address of a running simulator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<String>,
-    /// The island of Habitat's ground that is walked on; chosen where none is named.
+    /// The island of a Habitat navmesh that paths are taken on; chosen by the platform if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub island: Option<usize>,
-    /// Dataset file whose paths are walked.
+    /// Dataset file whose paths are taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub episodes: Option<PathBuf>,
-    /// Number of random paths; 0 where episodes are walked.
+    /// Number of random paths; 0 with episodes.
     pub paths: usize,
-    /// Numbers of random paths that were asked for earlier, ascending: those that came later lie behind them.
+    /// Numbers of random paths that earlier commands asked for, ascending: later paths come after theirs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub raised_from: Vec<usize>,
-    /// Scenes to keep to; none means all.
+    /// Scenes to use; none means all.
     pub scan: Vec<String>,
     /// What random paths have to be like.
     pub request: PathRequest,
@@ -59,80 +59,80 @@ pub struct Settings {
     pub questions: usize,
     /// Whether the object of the closing task is given.
     pub target: TargetMode,
-    /// How often a text that failed is written again.
+    /// How often a text that failed a check is written again.
     pub repairs: u32,
     /// Seed of everything random.
     pub seed: u64,
-    /// Only so many items.
+    /// Only this many items.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<usize>,
-    /// What texts are held against.
+    /// What texts are checked against.
     #[serde(default)]
     pub evidence: Against,
-    /// Who asks, sees, sums up and writes.
+    /// Who asks, sees, summarises and writes.
     #[serde(default)]
     pub roles: Roles,
-    /// Hashes of the files and styles that the run was begun with, by name; a run is not continued with others.
+    /// Hashes of the files and styles that the run began with, by name. A run is not continued with others.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
 }
 
-/// How frames are asked about.
+/// How views are described.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Perception {
     /// Question by question, then a summary.
     #[default]
     Dialogue,
-    /// Fixed object and room queries without a dialogue: the paper's ablation.
+    /// Fixed queries for objects and room, without a dialogue: the paper's ablation.
     Fixed,
     /// One request for a description, whose answer is the caption.
     Single,
 }
 
-/// What texts are held against.
+/// What texts are checked against.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Against {
     /// The platform's labels where it has them, else the captions.
     #[default]
     Labels,
-    /// The captions alone, as in a world that nobody has labelled.
+    /// Only the captions, as on a platform without labels.
     Captions,
 }
 
-/// Whose choice the object of the closing task is.
+/// Who chooses the object of the closing task.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum TargetMode {
-    /// The episode's, or the random path's: it is named to the writer.
+    /// The episode or the random path gives it.
     #[default]
     Given,
-    /// The writer's, from what the final frame shows; exports then carry no object id.
+    /// The writer chooses it among what the last frame shows. Exports then carry no object id.
     Free,
 }
 
-/// Random paths where neither a number nor episodes are given.
+/// Default number of random paths, without episodes.
 const PATHS: usize = 10;
-/// How often a text that failed is written again, unless told otherwise.
+/// Default of how often a text that failed is written again.
 const REPAIRS: u32 = 8;
-/// The same where a model writes: each costs a call.
+/// The same if a model writes, because each repair costs a call.
 const REPAIRS_OF_MODELS: u32 = 3;
-/// Most repairs that can be asked for.
+/// Largest `--repairs`.
 const MOST_REPAIRS: u32 = 100;
-/// Most questions of a dialogue that can be asked for: each is told everything before it.
+/// Largest `--questions`: each question carries the whole dialogue before it.
 const MOST_QUESTIONS: usize = 100;
-/// Most random paths of a run.
+/// Largest `--paths`.
 const MOST_PATHS: usize = 1_000_000;
 
 /// A run, and how it may reach models.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Job {
-    /// What it does.
+    /// What the run does.
     pub settings: Settings,
-    /// How models are reached, and what may be spent.
+    /// How models are reached, and how much may be spent.
     pub service: Service,
-    /// Providers of the user's own.
+    /// The user's own providers.
     pub providers: Providers,
 }
 
@@ -140,7 +140,7 @@ impl Asked {
     /// Resolves it, together with how models are reached.
     ///
     /// # Errors
-    /// When a range cannot be read, a number makes no sense, or things exclude each other.
+    /// When a range cannot be read, a number is out of range, or two settings exclude each other.
     pub fn job(mut self) -> Result<Job, Error> {
         let service = std::mem::take(&mut self.service).checked()?;
         let providers = std::mem::take(&mut self.providers);
@@ -153,75 +153,75 @@ impl Asked {
         Ok(Job { settings, service, providers })
     }
 
-    /// Resolves it, with defaults for what nobody asked for.
+    /// Resolves it; what nobody asked for gets its default.
     ///
     /// # Errors
-    /// When a range cannot be read or things exclude each other.
+    /// When a range cannot be read, or two settings exclude each other.
     pub fn resolve(self) -> Result<Settings, Error> {
-        let Self { world, walks, telling, draw, roles, .. } = self;
+        let Self { platform, walks, writing, draw, roles, .. } = self;
         let paths = walks.paths.unwrap_or(if walks.episodes.is_some() { 0 } else { PATHS });
         if walks.episodes.is_some() && paths > 0 {
-            return Err(Error::usage("--episodes and --paths exclude each other", "give one of them"));
+            return Err(Error::usage("--episodes and --paths cannot be combined", "give one of them"));
         }
         if walks.paths == Some(0) {
-            return Err(Error::usage("--paths 0: no path would be walked", "give at least 1, or leave it out for 10"));
+            return Err(Error::usage("--paths 0 asks for no path", "give at least 1, or leave the flag out for 10"));
         }
         if draw.limit == Some(0) {
-            return Err(Error::usage("--limit 0: no item would be left", "give at least 1, or leave it out for all"));
+            return Err(Error::usage("--limit 0 leaves no item", "give at least 1, or leave the flag out for all"));
         }
         if paths > MOST_PATHS {
             return Err(Error::usage(
                 format!("--paths {paths} is more than {MOST_PATHS}"),
-                "make several runs with different seeds",
+                "make several runs, each with its own --seed",
             ));
         }
-        if telling.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
+        if writing.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
             return Err(Error::usage(
                 format!("--repairs is more than {MOST_REPAIRS}"),
-                "a text that fails so often will not come right",
+                "give fewer: a text that fails that often will not pass later",
             ));
         }
-        if telling.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
+        if writing.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
             return Err(Error::usage(
                 format!("--questions is more than {MOST_QUESTIONS}"),
-                "a dialogue brings little new after the ninth",
+                "give fewer: after about nine questions a dialogue brings little that is new",
             ));
         }
         let request = request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
         let repairs = if is_model(&roles.write) { REPAIRS_OF_MODELS } else { REPAIRS };
-        let styles = telling.style.filter(|styles| !styles.is_empty());
+        let styles = writing.style.filter(|styles| !styles.is_empty());
         Ok(Settings {
-            platform: world.name().to_owned(),
-            data: world.data,
-            at: world.at,
-            island: world.island,
+            platform: platform.name().to_owned(),
+            data: platform.data,
+            at: platform.at,
+            island: platform.island,
             episodes: walks.episodes,
             paths,
             raised_from: Vec::new(),
             scan: walks.scan.unwrap_or_default(),
             request,
             style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
-            frames: telling.frames.map(FrameSelection::from).unwrap_or_default(),
-            perception: telling.perception.unwrap_or_default(),
-            questions: telling.questions.unwrap_or(QUESTIONS),
-            target: telling.target.unwrap_or_default(),
-            repairs: telling.repairs.unwrap_or(repairs),
+            frames: writing.frames.map(FrameSelection::from).unwrap_or_default(),
+            perception: writing.perception.unwrap_or_default(),
+            questions: writing.questions.unwrap_or(QUESTIONS),
+            target: writing.target.unwrap_or_default(),
+            repairs: writing.repairs.unwrap_or(repairs),
             seed: draw.seed.unwrap_or(0),
             limit: draw.limit,
-            evidence: telling.evidence.unwrap_or_default(),
+            evidence: writing.evidence.unwrap_or_default(),
             roles,
             inputs: BTreeMap::new(),
         })
     }
 }
 
-/// Refuses a path that cannot be kept: settings are text in UTF-8, and a file system's names need not be.
+/// Refuses a path that a run folder cannot keep: settings are UTF-8 text, and a file's name need not be.
 pub(crate) fn nameable(flag: &str, path: Option<&Path>) -> Result<(), Error> {
     match path {
         Some(path) if path.to_str().is_none() => Err(Error::usage(
-            format!("{flag} {}: this name is not UTF-8, and a run keeps it as text", path.display()),
-            "rename it, or make a link to it and give the link's name",
+            format!("{flag} {}: this name is not valid UTF-8, and a run keeps it as text", path.display()),
+            "rename it, or give the name of a link to it",
         )),
         _ => Ok(()),
     }
@@ -236,11 +236,11 @@ fn request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, Erro
     }
     let hops = hops.map_or(Ok(default.hops), |text| range("--hops", text))?;
     if *hops.end() == 0 {
-        return Err(Error::usage("--hops 0: no path has as few", "write it as in --hops 4..7"));
+        return Err(Error::usage("--hops 0: a path has at least 1 hop", "write it as in --hops 4..7"));
     }
     if *length_m.end() <= 0.0 {
         return Err(Error::usage(
-            format!("--metres {}: no path is as short", metres.unwrap_or_default()),
+            format!("--metres {}: a path is longer than 0", metres.unwrap_or_default()),
             "write it as in --metres 5..20",
         ));
     }
@@ -248,13 +248,13 @@ fn request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, Erro
 }
 
 impl Settings {
-    /// Whether anybody asks and sums up.
+    /// Whether there is a dialogue.
     #[must_use]
     pub fn has_dialogue(&self) -> bool {
         self.perception == Perception::Dialogue
     }
 
-    /// These settings with as many paths and items as others ask for, if they ask for no fewer.
+    /// These settings with the numbers of paths and items of others, if those are larger.
     #[must_use]
     pub fn raised_to(&self, other: &Self) -> Self {
         let mut raised = self.clone();
@@ -269,7 +269,7 @@ impl Settings {
         raised
     }
 
-    /// How views are asked about.
+    /// How views are described.
     #[must_use]
     pub fn mode(&self) -> Mode {
         match self.perception {
@@ -280,14 +280,14 @@ impl Settings {
     }
 }
 
-/// A range as flags have it: "4..7", both ends included, or one number.
+/// A range as typed: "4..7", both ends included, or one number.
 fn range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<RangeInclusive<N>, Error> {
     let (from, to) = text.split_once("..").unwrap_or((text, text));
     let parsed = from.trim().parse::<N>().ok().zip(to.trim_start_matches('=').trim().parse::<N>().ok());
     let problem = match parsed {
         Some((from, to)) if from <= to => return Ok(from..=to),
-        Some((from, to)) if from > to => "nothing lies between these, because the first is larger",
-        _ => "that is no range",
+        Some((from, to)) if from > to => "the first number is larger than the second",
+        _ => "this is not a range",
     };
     Err(Error::usage(
         format!("{flag} {text}: {problem}"),
@@ -322,8 +322,8 @@ mod tests {
     #[test]
     fn ranges_that_no_path_fits_are_refused() {
         let told = |hops, metres| request(hops, metres).unwrap_err().to_string();
-        assert!(told(Some("9..3"), None).contains("the first is larger"));
-        assert!(told(Some("9-3"), None).contains("no range"));
+        assert!(told(Some("9..3"), None).contains("first number is larger"));
+        assert!(told(Some("9-3"), None).contains("not a range"));
         assert!(told(None, Some("20..5")).contains("--metres 20..5"));
         assert!(told(Some("0"), None).contains("--hops 0"));
         assert!(told(None, Some("-3..0")).contains("--metres -3..0"));
@@ -339,7 +339,7 @@ mod tests {
     #[test]
     fn dialogues_are_bounded() {
         let asked = |questions| {
-            Asked { telling: Telling { questions: Some(questions), ..Telling::default() }, ..Asked::default() }
+            Asked { writing: Writing { questions: Some(questions), ..Writing::default() }, ..Asked::default() }
                 .resolve()
         };
         assert!(asked(MOST_QUESTIONS).is_ok() && asked(MOST_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());

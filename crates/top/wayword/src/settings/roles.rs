@@ -1,4 +1,4 @@
-//! Who asks, sees, sums up and writes in a run, by name.
+//! Who asks, sees, summarises and writes in a run, by name.
 
 use super::asked::group;
 use crate::error::Error;
@@ -6,69 +6,70 @@ use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// The mind that answers from ground truth.
+/// Who answers from ground-truth labels.
 pub const LABELS: &str = "labels";
-/// The minds that work by rules.
+/// Who works by rules.
 pub const RULES: &str = "rules";
 
-/// Longer side of the pictures that models are sent, pixels, unless told otherwise.
+/// Default for the longer side of the pictures that models are sent, pixels.
 const PICTURE_PX: u32 = 512;
-/// Largest that can be asked for.
+/// Largest value that can be asked for.
 const MOST_PICTURE_PX: u32 = 4096;
 
 group! {
-    /// Which minds a run is asked to use: flags, and the table `[roles]` of a settings file.
+    /// Who plays which role in a run: flags, and the table `[roles]` of a settings file.
     #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
     #[serde(deny_unknown_fields, default)]
-    #[command(next_help_heading = "Minds")]
+    #[command(next_help_heading = "Roles")]
     pub struct AskedRoles {
-        /// The language model that asks, sums up and writes, as provider/model.
+        /// Language model that asks, summarises and writes, as provider/model.
         #[arg(long, value_name = "MODEL")]
         pub llm: Option<String>,
         /// Who asks about the views: rules, or a model. [default: rules]
         #[arg(long, value_name = "MODEL")]
         pub ask: Option<String>,
-        /// Who sees: labels (ground truth), or a model that sees pictures. [default: labels]
+        /// Who sees: labels (the platform's ground-truth labels answer), or a model that looks at pictures. [default: labels]
         #[arg(long, value_name = "MODEL")]
         pub see: Option<String>,
-        /// Who sums the answers up: rules, or a model. [default: rules]
+        /// Who summarises the answers: rules, or a model. [default: rules]
         #[arg(long, value_name = "MODEL")]
         pub summarise: Option<String>,
         /// Who writes: rules, or a model. [default: rules]
         #[arg(long, value_name = "MODEL")]
         pub write: Option<String>,
-        /// Who writes where all texts of the model failed their checks; the provenance says so. [default: rules]
+        /// Who writes the instruction if all texts of the model failed a check: rules, or nobody (it is rejected). The provenance
+        /// says who wrote it. [default: rules]
         #[arg(long)]
         pub finish: Option<Finish>,
-        /// Base URL of the provider, where exactly one is named (several: [providers.NAME] in the settings file).
+        /// Base URL of the provider. For several providers use [providers.NAME] in the settings file.
         #[arg(long, value_name = "URL")]
         pub base_url: Option<String>,
-        /// Longer side of the pictures that models are sent; smaller ones stay as they are. [default: 512]
+        /// Shrink the pictures that models are sent to this length of the longer side. [default: 512]
         #[arg(long, value_name = "PX")]
         pub picture_px: Option<u32>,
-        /// The numbers that hold the weights of a model in process: f32, bf16 or f16. [default: f32, and bf16 for BLIP-2]
+        /// Number format of the weights of a model in process: f32, bf16 or f16. [default: f32; for BLIP-2, bf16]
         #[arg(long, value_name = "NUMBERS")]
         pub precision: Option<Precision>,
-        /// Folder of prompt templates of your own: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
+        /// Folder with your own prompt templates: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
         /// summary.j2, condense.j2, write.j2.
         #[arg(long, value_name = "DIR")]
         pub prompts: Option<PathBuf>,
     }
 }
 
-/// The numbers that hold a model's weights.
+/// Number format of a model's weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
     /// 32 bits.
     F32,
-    /// 16 bits with the range of 32.
+    /// 16 bits, with the range of 32.
     Bf16,
     /// 16 bits.
     F16,
 }
 
-/// Who writes where a model's texts all failed.
+/// Who writes if all of a model's texts failed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Finish {
@@ -79,7 +80,7 @@ pub enum Finish {
     Nobody,
 }
 
-/// Who does what in a run.
+/// Who plays which role in a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Roles {
@@ -87,18 +88,18 @@ pub struct Roles {
     pub ask: String,
     /// Who sees.
     pub see: String,
-    /// Who sums up.
+    /// Who summarises.
     pub summarise: String,
     /// Who writes.
     pub write: String,
-    /// Who writes where all texts of a model failed.
+    /// Who writes if all texts of a model failed.
     pub finish: Finish,
-    /// Base URL of the one provider.
+    /// Base URL, if there is one provider.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base_url: Option<String>,
     /// Longer side of the pictures that models are sent.
     pub picture_px: u32,
-    /// The numbers that hold the weights of models in process, where not the usual ones.
+    /// Number format of the weights of models in process, if not the default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
     /// Folder of prompt templates.
@@ -123,7 +124,7 @@ impl Default for Roles {
 }
 
 impl AskedRoles {
-    /// What flags ask for, with the rest from a file. A flag `--llm` wins over the file's text roles.
+    /// What flags ask for, completed by a file. A flag `--llm` wins over the file's text roles.
     #[must_use]
     pub fn or(self, mut file: Self) -> Self {
         if self.llm.is_some() {
@@ -132,10 +133,10 @@ impl AskedRoles {
         self.over(file)
     }
 
-    /// Resolves it, with defaults for what nobody asked for.
+    /// Resolves it; what nobody asked for gets its default.
     ///
     /// # Errors
-    /// When a name is none that the role can have.
+    /// When a name is neither built in nor provider/model.
     pub fn resolve(self) -> Result<Roles, Error> {
         let default = Roles::default();
         let text = |role: Option<String>, flag, none: &str| match (role, &self.llm) {
@@ -164,26 +165,26 @@ impl AskedRoles {
     }
 }
 
-/// A role's name: the embedded mind's, or provider/model.
+/// A role's name: `rules` or `labels`, or provider/model.
 fn named(flag: &str, name: String, embedded: &str) -> Result<String, Error> {
-    if is_mind(&name, embedded) {
+    if can_play(&name, embedded) {
         return Ok(name);
     }
     Err(Error::usage(
-        format!("{flag} {name}: there is no such mind"),
-        format!("name {embedded}, or a model as provider/model, as in {flag} ollama/llava"),
+        format!("{flag} {name}: this is neither `{embedded}` nor a model as provider/model"),
+        format!("give {embedded}, or a provider and its model, as in {flag} ollama/llava"),
     ))
 }
 
-/// Whether a role can have that name: the embedded mind's, or provider/model.
+/// Whether a role can have that name: `rules` or `labels`, or provider/model.
 #[must_use]
-pub fn is_mind(name: &str, embedded: &str) -> bool {
+pub fn can_play(name: &str, embedded: &str) -> bool {
     let is_model = |(provider, model): (&str, &str)| !provider.is_empty() && !model.is_empty();
     name == embedded || name.split_once('/').is_some_and(is_model)
 }
 
 impl Roles {
-    /// The models among them, each once, in the order of the work.
+    /// The models among them, each once, in the order of their work.
     #[must_use]
     pub fn models(&self) -> Vec<&str> {
         let mut models: Vec<&str> = Vec::new();
@@ -196,7 +197,7 @@ impl Roles {
     }
 }
 
-/// Whether a model runs in process: its name begins with the place that it comes from.
+/// Whether a model runs in process: its name begins with `hf/`.
 #[must_use]
 pub fn is_in_process(name: &str) -> bool {
     name.starts_with("hf/")
@@ -233,11 +234,11 @@ mod tests {
     }
 
     #[test]
-    fn names_that_are_no_minds_are_refused() {
+    fn names_that_no_role_can_have_are_refused() {
         for bad in ["labels", "gpt", "/x", "x/", ""] {
             let told = |llm, write| asked(llm, write).resolve().unwrap_err().to_string();
             assert!(told(None, Some(bad)).starts_with("--write"), "{bad}");
-            assert!(told(Some(bad), None).starts_with("--llm"), "{bad}: the flag that was given is told");
+            assert!(told(Some(bad), None).starts_with("--llm"), "{bad}: the error names the flag that was given");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How models are reached and what may be spent. Nothing here changes an answer, so a run may be continued with other values.
+//! How models are reached, and how much may be spent. No value changes an answer, so a run may be continued with other values.
 
 use super::asked::group;
 use crate::error::Error;
@@ -12,56 +12,57 @@ group! {
     #[serde(deny_unknown_fields, default)]
     #[command(next_help_heading = "Calls to models")]
     pub struct Service {
-        /// Stop before the run as a whole has cost more, in US dollars; refuses models without a known price.
+        /// Stop before the run costs more than this, in US dollars, earlier commands included. Models without a known price are
+        /// refused.
         #[arg(long, value_name = "USD")]
         pub max_usd: Option<f64>,
-        /// Stop before the run as a whole has sent more requests.
+        /// Stop before the run has sent more requests than this, earlier commands included.
         #[arg(long, value_name = "N")]
         pub max_calls: Option<u64>,
-        /// Requests at a time for each provider. [default: found out, at most 64]
+        /// Number of requests at the same time, per provider. [default: raised step by step while the provider keeps up, at most 64]
         #[arg(long, value_name = "N")]
         pub concurrency: Option<usize>,
-        /// Most requests per minute for each provider.
+        /// Send at most this many requests per minute to a provider.
         #[arg(long, value_name = "N")]
         pub requests_per_minute: Option<f64>,
-        /// Most tokens per minute for each provider.
+        /// Send at most this many tokens per minute to a provider.
         #[arg(long, value_name = "N")]
         pub tokens_per_minute: Option<f64>,
-        /// How long a request may take, seconds. [default: 120]
+        /// Give up a request after this many seconds. [default: 120]
         #[arg(long, value_name = "S")]
         pub timeout_s: Option<f64>,
-        /// Environment variable that holds the key, where exactly one provider is named.
+        /// Environment variable that holds the key of the provider. For several providers use the settings file.
         #[arg(long, value_name = "NAME")]
         pub key_env: Option<String>,
-        /// Where models in process compute: cpu, cuda, cuda:1 or metal (builds with those features). [default: cpu]
+        /// Device for models in process: cpu, cuda, cuda:1 or metal (the last three need a build with that feature). [default: cpu]
         #[arg(long, value_name = "DEVICE")]
         pub device: Option<String>,
-        /// Most memory that models in process may take together, GiB. [default: what the machine has free]
+        /// Limit of the memory that all models in process take, in GiB. [default: the free memory of the machine]
         #[arg(long, value_name = "GIB")]
         pub memory_gib: Option<f64>,
-        /// Prices of your own, TOML (see docs/MODELS.md).
+        /// File with your own prices, TOML (see docs/MODELS.md).
         #[arg(long, value_name = "FILE")]
         pub prices: Option<PathBuf>,
-        /// The ledger that keeps every answer. [default: wayword/ledger.db in your data folder]
+        /// File of the ledger, which keeps every answer. [default: wayword/ledger.db where your system keeps data, as ~/.local/share]
         #[arg(long, value_name = "FILE")]
         pub ledger: Option<PathBuf>,
-        /// Write every answer that the run used to this file, for --replay.
+        /// Also write every answer that the run uses to this file, for --replay.
         #[arg(long, value_name = "FILE")]
         pub record: Option<PathBuf>,
-        /// Take every answer from such a file: no service is asked.
+        /// Take every answer from a file that --record wrote. No provider is called.
         #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "ledger"])]
         pub replay: Option<PathBuf>,
     }
 }
 
-/// Providers of the user's own, and changes to those that are known: tables `[providers.NAME]` of a settings file.
+/// The user's own providers, and changes to the built-in ones: tables `[providers.NAME]` of a settings file.
 pub type Providers = BTreeMap<String, toml::Table>;
 
 impl Service {
-    /// What flags ask for, with the rest from a file.
+    /// What flags ask for, completed by a file.
     #[must_use]
     pub fn or(self, mut file: Self) -> Self {
-        // A replay and what it excludes: a flag for one wins over a file's other, which could be the very recording.
+        // A replay excludes a recording and a ledger. A flag wins over the file, which could name the very same recording.
         if self.replay.is_some() {
             file = Self { record: None, ledger: None, ..file };
         }
@@ -74,9 +75,9 @@ impl Service {
     /// Refuses values that make no sense.
     ///
     /// # Errors
-    /// When a number is out of its range, or things exclude each other.
+    /// When a number is out of range, or two settings exclude each other.
     pub fn checked(self) -> Result<Self, Error> {
-        let refuse = |flag: &str, hint: &str| Err(Error::usage(format!("{flag} is out of its range"), hint));
+        let refuse = |flag: &str, hint: &str| Err(Error::usage(format!("{flag} is out of range"), hint));
         if self.max_usd.is_some_and(|usd| !usd.is_finite() || usd < 0.0) {
             return refuse("--max-usd", "give US dollars, as in --max-usd 2.50");
         }
@@ -95,15 +96,15 @@ impl Service {
         }
         if self.replay.is_some() && (self.record.is_some() || self.ledger.is_some()) {
             return Err(Error::usage(
-                "replay excludes record and ledger",
-                "a replay takes every answer from its file, and makes none to be kept: leave the others out",
+                "--replay cannot be combined with --record or --ledger",
+                "a replay makes no new answers that could be kept: leave the other flags out",
             ));
         }
         Ok(self)
     }
 }
 
-/// Most requests at a time that can be asked for.
+/// Largest `--concurrency`.
 const MOST_CONCURRENCY: usize = 512;
 
 #[cfg(test)]

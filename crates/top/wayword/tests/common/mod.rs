@@ -1,4 +1,4 @@
-//! What the tests of the binary share: a made-up building in a folder of its own, and the binary run on it.
+//! Shared by the tests of the binary: a made-up building in its own folder, and a way to run the binary on it.
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
@@ -13,12 +13,12 @@ use std::{
 use tempfile::TempDir;
 use wayword_formats::jsonl::{self, Record};
 
-/// A folder with the made-up building below `data`; gone when it is dropped.
+/// A folder with the made-up building in `data`. Dropping it removes the folder.
 pub(crate) struct Building {
     folder: TempDir,
 }
 
-/// How a command ended, and what it said.
+/// How a command ended, and what it printed.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) code: Option<i32>,
@@ -68,7 +68,7 @@ impl Building {
         self.wayword(&all)
     }
 
-    /// A run over the REVERIE episodes in both styles, which every text passes.
+    /// A run over the REVERIE episodes in both styles, in which every text passes.
     pub(crate) fn run_over_episodes(&self, out: &str) -> Vec<Record> {
         let ran = self.generate(out, &["--episodes", EPISODES, "--style", "reverie", "--style", "r2r"]);
         assert_eq!(ran.code, Some(0), "{ran:?}");
@@ -107,13 +107,13 @@ pub(crate) fn run(command: &mut Command) -> Ran {
 }
 
 impl Ran {
-    /// Standard output as the one JSON value that it has to be.
+    /// Standard output, which must be one JSON value.
     pub(crate) fn json(&self) -> Value {
         assert_eq!(self.out.lines().count(), 1, "{self:?}");
         serde_json::from_str(&self.out).unwrap()
     }
 
-    /// Asserts that the command refused its input as it has to: exit code 1, one error, nothing on standard output, no panic.
+    /// Asserts that the command refused its input: exit code 1, one error, nothing on standard output, no panic.
     pub(crate) fn refused(&self) -> &str {
         assert_eq!(self.code, Some(1), "{self:?}");
         assert_eq!(self.err.lines().filter(|line| line.starts_with("error: ")).count(), 1, "{self:?}");

@@ -1,4 +1,4 @@
-//! What the tests with models share: a provider that plays every role, and runs of the binary against it.
+//! Shared by the tests with models: a provider that plays every role, and runs of the binary against it.
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
@@ -11,7 +11,7 @@ use wayword_testkit::provider::{
 
 /// The variable that holds the provider's key.
 pub(crate) const KEY_ENV: &str = "WAYWORD_TEST_KEY";
-/// The key: nobody else says this.
+/// The key. No other text contains this string.
 pub(crate) const KEY: &str = "sk-test-7f3b19c2d4e5f6a7";
 
 /// A provider's behaviour with a careless cast behind two names.
@@ -74,7 +74,7 @@ impl Stage {
         run(&mut self.generating(out, args))
     }
 
-    /// Whether a run here and one elsewhere came to the same files, byte for byte but for the port of the provider.
+    /// Whether a run here and a run of `other` wrote the same files, byte for byte.
     pub(crate) fn same_results(&self, other: &Self, out: &str) -> bool {
         ["walks.jsonl", "instructions.jsonl", "rejected.jsonl"].iter().all(|name| {
             let read = |stage: &Self| std::fs::read(stage.building.path(out).join(name)).unwrap();

@@ -1,4 +1,4 @@
-//! What the tests of `wayword evaluate` share: trajectories through the building, scored by the binary.
+//! Shared by the tests of `wayword evaluate`: trajectories through the building, scored by the binary.
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
@@ -19,7 +19,7 @@ fn id(item: &Value) -> String {
     item["id"].as_str().map_or_else(|| item["path_id"].to_string(), str::to_owned)
 }
 
-/// Both instructions of every item, walked as the items' annotated paths lead.
+/// The annotated path of every item, once for each of its two instructions.
 pub(crate) fn annotated(building: &Building, episodes: &str) -> Vec<Value> {
     let walk = |item: &Value| {
         let pose = |viewpoint: &Value| json!([viewpoint, 0.5, 0.0]);
@@ -51,7 +51,7 @@ pub(crate) fn report(ran: &Ran) -> Value {
     ran.json()
 }
 
-/// What is told of a submission that is refused: instruction and problem.
+/// The problems of a submission that is refused: instruction and problem.
 pub(crate) fn problems(ran: &Ran) -> Vec<(String, String)> {
     assert_eq!(ran.code, Some(1), "{ran:?}");
     assert!(ran.err.contains("nothing was scored") && ran.err.contains("hint:"), "{ran:?}");

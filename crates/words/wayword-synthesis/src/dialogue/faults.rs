@@ -1,4 +1,4 @@
-//! Holds a summary against what was said.
+//! Checks a summary against what was said.
 
 use super::answers::{Mention, denies, mentions};
 use std::{collections::BTreeSet, fmt};
@@ -8,20 +8,21 @@ use wayword_language::{
     text::words,
 };
 
-/// Something that a caption says and its dialogue does not hold. As text, it is a reason that a model understands.
+/// Something that a caption says and its dialogue does not. As text, it is a reason that a model understands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CaptionFault {
-    /// It names an object that was said not to be there, or says of one that it is not there: a caption tells what is there.
+    /// It names an object that was said not to be there, or says of one that it is not there: a caption only says what
+    /// is there.
     Denied {
         /// As the caption names it.
         name: String,
     },
-    /// It names an object of which nobody was sure.
+    /// It names an object of which no answer was sure.
     Unsure {
         /// As the caption names it.
         name: String,
     },
-    /// It names an object that nobody spoke of.
+    /// It names an object that no answer named.
     Invented {
         /// As the caption names it.
         name: String,
@@ -31,14 +32,14 @@ pub enum CaptionFault {
 impl fmt::Display for CaptionFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Denied { name } => write!(f, "it speaks of \"{name}\", which is said not to be there"),
-            Self::Unsure { name } => write!(f, "it speaks of \"{name}\", of which nobody was sure"),
-            Self::Invented { name } => write!(f, "it speaks of \"{name}\", which nobody named"),
+            Self::Denied { name } => write!(f, "it names \"{name}\", and an answer says that it is not there"),
+            Self::Unsure { name } => write!(f, "it names \"{name}\", and no answer was sure of it"),
+            Self::Invented { name } => write!(f, "it names \"{name}\", and no answer named it"),
         }
     }
 }
 
-/// What a text says that the sightings of its dialogue do not hold, each name once.
+/// What a text says that the sightings of its dialogue do not support, each name once.
 ///
 /// Objects are words that the lexicon or a sighting names. Walls, floors and ceilings are not looked at, nor are rooms; a name
 /// that may mean a room as well is taken for one where the text begins with it ("A staircase with a window").
@@ -55,7 +56,7 @@ pub fn caption_faults(text: &str, sightings: &[Sighting]) -> Vec<CaptionFault> {
     found
 }
 
-/// Whether a text is a name alone, or begins with it and a "with".
+/// Whether a text is just a name, or begins with it and a "with".
 fn begins_with_room(text: &str, name: &str) -> bool {
     let text = words(text);
     let name = words(name);
@@ -84,7 +85,7 @@ fn fault(mention: &Mention, sightings: &[Sighting]) -> Option<CaptionFault> {
     }
 }
 
-/// Whether something of that very name is there: one lamp may be denied on the left and seen on the right.
+/// Whether something of exactly that name is there: one lamp may be denied on the left and seen on the right.
 fn seen_by_name(sightings: &[Sighting], name: &str) -> bool {
     sightings.iter().any(|sighting| sighting.witness == Witness::Seen && normal(&sighting.name) == normal(name))
 }
@@ -93,7 +94,7 @@ fn speaks_of(sighting: &Sighting, name: &str) -> bool {
     agree(&sighting.name, name) || holds(&sighting.name, name)
 }
 
-/// Whether a name holds another as words of its own: "cup and plate" holds "cup".
+/// Whether a name contains another as whole words: "cup and plate" contains "cup".
 fn holds(name: &str, part: &str) -> bool {
     format!(" {} ", normal(name)).contains(&format!(" {} ", normal(part)))
 }
@@ -152,6 +153,6 @@ mod tests {
     #[test]
     fn a_fault_is_a_reason_in_words() {
         let fault = CaptionFault::Denied { name: "mirror".into() };
-        assert_eq!(fault.to_string(), "it speaks of \"mirror\", which is said not to be there");
+        assert_eq!(fault.to_string(), "it names \"mirror\", and an answer says that it is not there");
     }
 }

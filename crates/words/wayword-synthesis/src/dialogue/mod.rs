@@ -1,7 +1,7 @@
 //! The dialogue about one view: questions, answers, a caption.
 //!
-//! It is a state machine without input or output of its own: it says what it needs and is told. So it runs in the same
-//! way against a model, a recording or a test.
+//! It is a state machine without input or output of its own: it says what it needs, and the caller gives it. So it runs
+//! in the same way with a model, a recording or a test.
 
 mod answers;
 mod clean;
@@ -25,7 +25,7 @@ pub const OPENING: &str = "Describe in detail what you see.";
 /// The two fixed queries of the variant without a dialogue (arXiv 2403.11487, ablation "BLIP alone").
 pub const FIXED_QUERIES: [&str; 2] = ["What objects are there?", "Which room is this?"];
 
-/// Most questions after the opening, unless told otherwise (ChatCaptioner asks nine).
+/// Most questions after the opening, by default (ChatCaptioner asks nine).
 pub const QUESTIONS: usize = 9;
 
 /// Chooses the questions.
@@ -35,7 +35,7 @@ pub trait Asker: Send + Sync {
     /// The next question after what was said so far, or `None` where nothing is left to ask.
     ///
     /// # Errors
-    /// When a model was to choose it and gave nothing.
+    /// When the model that chooses it gives nothing.
     fn next_question(&self, transcript: &[Exchange]) -> Result<Option<String>, ModelError>;
 }
 
@@ -46,14 +46,14 @@ pub trait Summariser: Send + Sync {
     /// A caption of what `answerer` said. It holds no object that was denied.
     ///
     /// # Errors
-    /// When a model was to write it and gave nothing.
+    /// When the model that writes it gives nothing.
     fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError>;
 
-    /// Captions of one place, each with its direction in words ("north"), as one description of fewer words than that; and who
-    /// made it, where that is another.
+    /// Condenses captions of one place, each with its direction in words ("north"), into one description of fewer than
+    /// `fewer_words_than` words. The result names who made it, where that is not this summariser.
     ///
     /// # Errors
-    /// When a model was to write it and gave nothing.
+    /// When the model that writes it gives nothing.
     fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError>;
 }
 
@@ -62,14 +62,14 @@ pub trait Summariser: Send + Sync {
 pub struct Condensed {
     /// The description.
     pub text: String,
-    /// Who made it, where that is another than the summariser, which failed.
+    /// Who made it, where the summariser failed and another did.
     pub by: Option<String>,
 }
 
 /// How a view is asked about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// An opening, then up to so many questions of the asker's.
+    /// An opening, then the asker's questions, up to a number.
     Dialogue {
         /// Most questions after the opening.
         questions: usize,
@@ -83,9 +83,9 @@ pub enum Mode {
 /// What a dialogue needs next.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Need {
-    /// A question from the asker: tell it with [`Dialogue::ask`].
+    /// A question from the asker: give it to [`Dialogue::ask`].
     Question,
-    /// The answer to this question: tell it with [`Dialogue::answer`].
+    /// The answer to this question: give it to [`Dialogue::answer`].
     Answer(String),
     /// A caption from the summariser; the dialogue is over.
     Summary,
@@ -110,12 +110,12 @@ struct Pending {
     trouble: Option<Trouble>,
 }
 
-/// Whether a question is the one that asks for a description, first or once more.
+/// Whether a question is the one that asks for a description, the first time or again.
 pub(crate) fn is_opening(question: &str) -> bool {
     question == OPENING || question == trouble::rephrased(OPENING)
 }
 
-/// After so many rounds in a row that bring nothing new the asking ends.
+/// After this many rounds in a row that bring nothing new, the asking ends.
 const STALE_ROUNDS: usize = 2;
 
 impl Dialogue {
@@ -142,8 +142,8 @@ impl Dialogue {
         }
     }
 
-    /// Tells it the asker's question, with whatever a model has put around it. `None`, no question, or one that was asked
-    /// before in the same words ends the asking.
+    /// Takes the asker's question, with whatever a model has put around it. `None`, a text without a question, or a
+    /// question that was asked before in the same words ends the asking.
     pub fn ask(&mut self, question: Option<String>) {
         let question = question.and_then(|question| clean::question(&question));
         let is_new = |question: &String| {
@@ -153,8 +153,8 @@ impl Dialogue {
         self.put(question);
     }
 
-    /// Tells it the answer to the question that it needed one for. The same question is asked once more, in other words, where
-    /// the answer cannot be used.
+    /// Takes the answer to the pending question. Where the answer cannot be used, the dialogue asks the same question
+    /// once more, in other words.
     pub fn answer(&mut self, answer: &str) {
         let Some(Pending { question, trouble }) = self.pending.take() else { return };
         let asked = if trouble.is_some() { trouble::rephrased(&question) } else { question.clone() };
@@ -174,7 +174,8 @@ impl Dialogue {
     fn go_on(&mut self) {
         match self.mode {
             Mode::Dialogue { questions } => {
-                // The opening has nothing before it, and the first question often is a formality: which room it is.
+                // The first two exchanges do not count: the opening has nothing before it, and the first question is
+                // often a formality (which room it is).
                 let counts = self.transcript.len() > 2 && !news::is_new(&self.transcript);
                 self.stale = if counts { self.stale + 1 } else { 0 };
                 self.exhausted = self.transcript.len() > questions || self.stale >= STALE_ROUNDS;
@@ -197,7 +198,7 @@ impl Dialogue {
     }
 }
 
-/// The words of a question but for articles: by these two are the same.
+/// The words of a question without articles. Questions with the same words are the same question.
 fn same_words(question: &str) -> Vec<String> {
     let is_article = |word: &String| matches!(word.as_str(), "a" | "an" | "the" | "any" | "some");
     words(question).into_iter().filter(|word| !is_article(word)).collect()

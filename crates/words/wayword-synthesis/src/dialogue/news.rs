@@ -9,8 +9,8 @@ use wayword_language::{
     text::words,
 };
 
-/// Whether the last exchange of a transcript changes what the whole says of things or the room, or has a word that neither its
-/// question nor anything before it had.
+/// Whether the last exchange of a transcript changes what the whole says of things or the room, settles a doubt, or has
+/// a word that neither its question nor anything before it had.
 pub(super) fn is_new(transcript: &[Exchange]) -> bool {
     let Some((last, before)) = transcript.split_last() else { return false };
     if last.answer.is_empty() {
@@ -27,8 +27,8 @@ pub(super) fn is_new(transcript: &[Exchange]) -> bool {
         || settles_a_doubt(last, before)
 }
 
-/// Whether the exchange is the first to ask straight out whether a thing is there, and has an answer: that a description holds
-/// no ghost is worth knowing, even where it changes nothing.
+/// Whether the exchange is the first to ask directly whether a thing is there, and has an answer. A confirmed object is
+/// worth knowing, even where it changes nothing.
 fn settles_a_doubt(last: &Exchange, before: &[Exchange]) -> bool {
     let doubted = |exchange: &Exchange| match asked(&exchange.question) {
         Asked::Presence { wanted, .. } => wanted.into_iter().map(|wanted| wanted.name).collect(),

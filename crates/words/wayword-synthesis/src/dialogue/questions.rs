@@ -7,17 +7,18 @@ use super::{
 use wayword_core::{Exchange, ModelError, Sighting, Witness};
 use wayword_language::lexicon::{Class, agree, is_plural, plural, room_name, thing, with_article};
 
-/// Asks which room it is, whether what the opening named is really there, where that may be doubted, looks for what such a room
-/// usually has and nobody named, and asks for colours of landmarks.
+/// Asks which room it is; whether what the opening named is really there, where that may be doubted; whether there is
+/// what such a room usually has and no answer named; and which colours landmarks have.
 ///
 /// The default doubts nothing, which suits an answerer that names only what is there, as `labels` does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesAsker {
-    /// Most things whose presence is asked about though the opening named them.
+    /// Most objects of the opening that it asks about again, to learn whether they are really there.
     doubts: usize,
 }
 
-/// A model's description holds ghosts: most of nine questions go against them, and two are left for colours.
+/// A model's description may name hallucinated objects, so most of the nine questions check for them, and two are left
+/// for colours.
 const DOUBTS: usize = 6;
 
 impl RulesAsker {
@@ -33,7 +34,7 @@ const PROBES: usize = 3;
 /// Most landmarks whose colour is asked for.
 const COLOURS: usize = 2;
 
-/// What rooms usually have; asked for where nobody named it.
+/// What rooms usually have; asked for where no answer named it.
 const USUAL: &[(&str, &[&str])] = &[
     ("bedroom", &["bed", "wardrobe", "nightstand", "mirror"]),
     ("bathroom", &["sink", "mirror", "bathtub", "toilet"]),
@@ -73,7 +74,7 @@ impl Asker for RulesAsker {
     }
 }
 
-/// Questions for what the opening named, the most salient first. Neither walls nor small things are worth one.
+/// Questions whether what the opening named is there, the most salient first. Walls, doors and small things get none.
 fn doubts(transcript: &[Exchange]) -> Vec<String> {
     let opening = transcript.get(..1).unwrap_or_default();
     let named = sightings(opening, "");

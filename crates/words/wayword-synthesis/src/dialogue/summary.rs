@@ -34,8 +34,8 @@ impl Summariser for RulesSummariser {
     }
 }
 
-/// The caption of what was seen. Names are any words, and two that stand side by side may read as a third: what would make a
-/// fault is left out, and at last the room.
+/// The caption of what was seen. Names may be any words, and two names side by side may read as a third. So names that
+/// would make a fault are left out, and in the end the room too.
 fn held(room: Option<&str>, told: &[Sighting]) -> String {
     let is_denied = |seen: &Sighting| told.iter().any(|other| denies(other, &seen.name, seen.colour.as_deref()));
     let mut seen: Vec<&Sighting> =

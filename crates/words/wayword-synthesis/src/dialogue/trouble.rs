@@ -3,9 +3,9 @@
 use wayword_core::{Exchange, Trouble};
 use wayword_language::text::words;
 
-/// Longest phrase, in words, of an answer that says the same over and over.
+/// Longest phrase, in words, of an answer that repeats itself.
 const LOOP_WORDS: usize = 8;
-/// How often it has to say it.
+/// How often the answer has to say the phrase.
 const LOOP_TIMES: usize = 3;
 /// Fewer words than this may well be the answer to two questions ("They are made of wood").
 const REPEAT_WORDS: usize = 6;
@@ -32,7 +32,7 @@ pub(super) fn rephrased(question: &str) -> String {
     format!("Look again and answer in one short sentence: {question}")
 }
 
-/// The question itself, once or more, or most of its words in a row, and nothing else.
+/// Whether the answer is the question itself, once or more, or most of its words in a row, and nothing else.
 fn is_echo(asked: &[String], said: &[String]) -> bool {
     if asked.is_empty() {
         return false;
@@ -42,7 +42,7 @@ fn is_echo(asked: &[String], said: &[String]) -> bool {
     again || part
 }
 
-/// A run of up to eight words, said at least three times in a row, that makes up most of the answer.
+/// Whether a run of up to eight words, said at least three times in a row, makes up most of the answer.
 fn is_loop(said: &[String]) -> bool {
     (1..=LOOP_WORDS.min(said.len() / LOOP_TIMES)).any(|length| {
         let mut longest = 0;
@@ -56,7 +56,7 @@ fn is_loop(said: &[String]) -> bool {
     })
 }
 
-/// Word for word the answer to an earlier and different question, and no short one.
+/// Whether the answer is long enough, and word for word the answer to an earlier and different question.
 fn is_repeat(question: &str, said: &[String], before: &[Exchange]) -> bool {
     let is_unsure = said.len() <= 8 && said.windows(2).any(|pair| pair[0] == "not" && pair[1] == "sure");
     said.len() >= REPEAT_WORDS

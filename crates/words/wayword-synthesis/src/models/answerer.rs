@@ -13,11 +13,11 @@ pub struct ModelAnswerer {
     manner: Manner,
 }
 
-/// The likeliest answer: what is there does not change with a draw.
+/// The likeliest answer, because what is in a picture does not change with a random draw.
 const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
 
 impl ModelAnswerer {
-    /// An answerer behind a model that wants to be spoken to in a manner.
+    /// An answerer that asks a model, with prompts of the form that it expects.
     #[must_use]
     pub fn new(model: Arc<dyn LanguageModel>, prompts: Arc<Prompts>, manner: Manner) -> Self {
         Self { model, prompts, manner }
@@ -25,7 +25,7 @@ impl ModelAnswerer {
 
     fn request(&self, ask: &Ask<'_>) -> Result<Request, ModelError> {
         let image = ask.view.image.clone().ok_or_else(|| ModelError::NothingToSee {
-            mind: self.model.name().to_owned(),
+            name: self.model.name().to_owned(),
             needs: "a picture",
             hint: "use a platform or data folder with pictures, or `--see labels` where there are labels",
         })?;
@@ -44,7 +44,7 @@ impl Answerer for ModelAnswerer {
         let requests: Vec<Result<Request, ModelError>> = asks.iter().map(|ask| self.request(ask)).collect();
         let good: Vec<Request> = requests.iter().filter_map(|request| request.as_ref().ok().cloned()).collect();
         let mut replies = self.model.complete(&good).into_iter();
-        let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it left a question out".to_owned() };
+        let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it gave no answer".to_owned() };
         let answer = |request: Result<Request, ModelError>| {
             request?;
             replies.next().unwrap_or_else(|| Err(lost())).map(|reply| whole_sentences(&reply).to_owned())

@@ -5,14 +5,15 @@ use crate::{dialogue::Asker, prompts::Prompts};
 use std::sync::Arc;
 use wayword_core::{Exchange, LanguageModel, Message, ModelError, Sampling};
 
-/// Has a language model choose the questions. The dialogue cleans what it says.
+/// Lets a language model choose the questions. The dialogue cleans what it says.
 #[derive(Clone)]
 pub struct ModelAsker {
     model: Arc<dyn LanguageModel>,
     prompts: Arc<Prompts>,
 }
 
-/// ChatCaptioner asks at 0.6, so that questions differ from frame to frame. Its 30 tokens cut long questions off, ours don't.
+/// As in ChatCaptioner, temperature 0.6, so that questions differ from frame to frame. ChatCaptioner's 30 tokens cut
+/// long questions off; 60 do not.
 const SAMPLING: Sampling = Sampling { temperature: 0.6, max_tokens: 60, seed: PERCEPTION_SEED };
 
 impl ModelAsker {

@@ -2,13 +2,14 @@
 
 use wayword_core::{Finish, Reply};
 
-/// What a reply says: of one that was cut off, the part up to the end of its last sentence, or all of it where none ended.
+/// The text of a reply. Of a reply that was cut off: up to the end of its last sentence, or all of it where no sentence
+/// ended.
 pub(super) fn whole_sentences(reply: &Reply) -> &str {
     let text = reply.text.trim();
     if reply.finish == Finish::Stop {
         return text;
     }
-    // The dot of "2.5 metres" ends nothing.
+    // The dot of "2.5 metres" ends no sentence.
     let ends = |(at, _): &(usize, &str)| text[at + 1..].chars().next().is_none_or(|next| !next.is_alphanumeric());
     text.rmatch_indices(['.', '!', '?']).find(ends).map_or(text, |(end, _)| &text[..=end])
 }

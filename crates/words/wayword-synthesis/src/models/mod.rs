@@ -1,6 +1,7 @@
 //! The roles of asking, seeing, summing up and writing, played by a language model with our prompts.
 //!
-//! Perception draws with a seed of its own, the same in every run: a view that was talked about once is not paid for again.
+//! Calls about views have a seed of their own, the same in every run, so that a view that a model has already talked
+//! about is not paid for again.
 
 mod answerer;
 mod asker;
@@ -15,10 +16,10 @@ pub use asker::ModelAsker;
 pub use summariser::ModelSummariser;
 pub use writer::ModelWriter;
 
-/// Seed of every draw that belongs to perception.
+/// Seed of every call about a view.
 const PERCEPTION_SEED: u64 = 0;
 
-/// Puts one message to a model.
+/// Sends one message to a model.
 fn say(model: &dyn LanguageModel, message: Message, sampling: Sampling) -> Result<Reply, ModelError> {
     let request = Request { messages: vec![message], sampling, replicate: 0 };
     let nothing = || ModelError::Failed {

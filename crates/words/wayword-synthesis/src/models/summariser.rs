@@ -1,4 +1,4 @@
-//! A language model that sums dialogues up, held to what was said.
+//! A language model that summarises dialogues, and is checked against what was said.
 
 use super::{
     PERCEPTION_SEED,
@@ -15,15 +15,15 @@ use wayword_core::{
 };
 use wayword_language::{lexicon::agree, text::word_count};
 
-/// Has a language model sum up. A caption that names what was denied, or what nobody named, is asked for once more with the
-/// reason; if it still does, rules sum up, and the caption says so.
+/// Lets a language model summarise. If a caption names what was denied, or what no answer named, the model is asked once
+/// more, with the reason. If it fails again, rules summarise, and the caption says so.
 #[derive(Clone)]
 pub struct ModelSummariser {
     model: Arc<dyn LanguageModel>,
     prompts: Arc<Prompts>,
 }
 
-/// As ChatCaptioner's, with room for the whole of two or three sentences.
+/// As in ChatCaptioner, with room for two or three whole sentences.
 const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
 /// How often a caption is asked for.
 const ATTEMPTS: usize = 2;
@@ -99,7 +99,7 @@ impl Summariser for ModelSummariser {
     }
 }
 
-/// Who sums up instead of a model, and why.
+/// Who summarises instead of a model, and why.
 fn instead(reasons: &[String]) -> String {
     format!("rules, because {}", reasons.join("; "))
 }
@@ -108,7 +108,8 @@ fn faults(text: &str, told: &[Sighting]) -> Vec<String> {
     caption_faults(text, told).iter().map(ToString::to_string).collect()
 }
 
-/// What was told in any direction: a thing that one view lacks may be in the next.
+/// What was said of any direction. A thing that one view lacks may be in the next, so a denial counts only where no
+/// view shows the thing.
 fn together(captions: &[(&str, &Caption)]) -> Vec<Sighting> {
     let all: Vec<&Sighting> = captions.iter().flat_map(|(_, caption)| &caption.sightings).collect();
     let seen = |name: &str| all.iter().any(|other| other.witness == Witness::Seen && agree(&other.name, name));

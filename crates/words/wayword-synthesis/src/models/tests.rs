@@ -8,7 +8,7 @@ use crate::{
 use std::sync::{Arc, Mutex};
 use wayword_core::{Answerer, Ask, Exchange, Finish, Heading, Image, Motion, Pose, View};
 
-/// A model that says what it was told to say, in order, and keeps what it heard.
+/// A model that gives prepared replies in their order, and keeps the requests.
 pub(crate) struct Scripted {
     replies: Mutex<Vec<Result<Reply, ModelError>>>,
     pub(crate) heard: Mutex<Vec<Request>>,

@@ -8,7 +8,7 @@ use crate::{
 use std::sync::Arc;
 use wayword_core::{Finish, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling};
 
-/// Has a language model write. What was wrong with earlier texts stands in its prompt.
+/// Lets a language model write. Its prompt says what was wrong with earlier texts.
 #[derive(Clone)]
 pub struct ModelWriter {
     model: Arc<dyn LanguageModel>,

@@ -1,8 +1,9 @@
-//! What a prompt of a user's own may take: so much text, so many steps, and nothing that grows by itself.
+//! The limits of a user's own prompt: how much text, how many steps, and nothing that grows by itself.
 //!
-//! minijinja bounds the steps of a template (`fuel`), and none of the bytes that one step makes: a single `indent` takes as
-//! many gigabytes as it is told. So what a prompt writes is bounded here, within filters too, and what makes a value out of
-//! itself (variables, macros, repetition) is not offered: forty lines of it fill any memory.
+//! minijinja limits the steps of a template (`fuel`), but not the bytes that one step makes: a single `indent` takes as
+//! many gigabytes as its argument says. So this module limits what a prompt writes, within filters too. It offers
+//! nothing that makes a value out of itself (variables, macros, repetition), because forty lines of that fill any
+//! memory.
 
 use super::PromptError;
 use minijinja::{
@@ -18,18 +19,18 @@ use std::{
 
 /// Longest template, bytes.
 const SOURCE_BYTES: usize = 1 << 16;
-/// Most that a prompt writes, bytes; and again, what its filters make on the way. Twice the longest style.
+/// Most bytes that a prompt writes, and most bytes that its filters make on the way. Twice the longest style.
 const MOST_BYTES: usize = 8 << 20;
-/// Most steps of a prompt. One of a thousand references and a thousand frames takes a tenth.
+/// Most steps of a prompt. A prompt with a thousand references and a thousand frames takes a tenth of them.
 const MOST_STEPS: u64 = 200_000;
 /// Most numbers of a `range`.
 const MOST_NUMBERS: usize = 1000;
 /// Most `~` and `+` of a template: each may add what it joins once more.
 const MOST_JOINS: usize = 64;
-/// What an item of a list takes beside its text, bytes.
+/// What an item of a list takes besides its text, bytes.
 const ITEM_BYTES: usize = 32;
 
-/// The statements of a prompt.
+/// The statements that prompts offer.
 const STATEMENTS: [&str; 6] = ["for", "endfor", "if", "elif", "else", "endif"];
 
 pub(super) fn too_many_bytes() -> String {
@@ -40,7 +41,7 @@ pub(super) fn too_many_steps() -> String {
     format!("it takes more than {MOST_STEPS} steps")
 }
 
-/// Refuses a template that asks for what has no bound.
+/// Refuses a template that uses something without a bound.
 pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
     let refused = |line: usize, what: String| Err(PromptError::Refused { name: name.to_owned(), line, what });
     if source.len() > SOURCE_BYTES {
@@ -49,7 +50,7 @@ pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
     let mut joins = 0;
     let mut before = None;
     for token in tokenize(source, false, Default::default(), WhitespaceConfig::default()) {
-        // What is no template at all is told when it is read.
+        // If this is no template, parsing it says so later.
         let Ok((token, span)) = token else { return Ok(()) };
         let line = usize::from(span.start_line);
         match (&before, &token) {
@@ -69,14 +70,14 @@ pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
             _ => {}
         }
         if joins > MOST_JOINS {
-            return refused(line, format!("`~` and `+` may stand at most {MOST_JOINS} times in a prompt"));
+            return refused(line, format!("a prompt may use `~` and `+` at most {MOST_JOINS} times"));
         }
         before = Some(token);
     }
     Ok(())
 }
 
-/// What prompts are filled in: with bounds, and with those filters alone that keep to them.
+/// The environment in which prompts are filled: with limits, and only with filters that keep to them.
 pub(super) fn environment() -> Environment<'static> {
     let mut environment = Environment::new();
     environment.set_fuel(Some(MOST_STEPS));
@@ -95,11 +96,12 @@ pub(super) fn environment() -> Environment<'static> {
 const NOT_OFFERED: [&str; 11] =
     ["safe", "escape", "e", "batch", "slice", "groupby", "chain", "zip", "pprint", "format", "dictsort"];
 
-/// Makes the filters as they are, each with what it makes counted: those that make a text of one, then those that take any
-/// value. A name with a space cannot be written as a template's filter; `map`, which takes names as text, is kept from it.
+/// Adds the filters of minijinja, each wrapped so that what it makes is counted: first those that make a text out of a
+/// text, then those that take any value, then our own. The original is added under a name with a space, which a
+/// template cannot write as a filter. `map` takes names as text, so `counted` refuses such names there.
 macro_rules! filters {
     ($($text:ident)*; $($any:ident)*; $($own:ident)*) => {
-        /// The filters of a prompt.
+        /// The filters that prompts offer.
         const FILTERS: &[&str] =
             &[$(stringify!($text),)* $(stringify!($any),)* $(stringify!($own),)* "count", "d"];
 
@@ -127,7 +129,7 @@ filters! {
     join replace indent tojson string
 }
 
-/// What a filter makes, and what came to it as a list of letters, counted.
+/// Applies a filter, and counts the bytes of the text that it gets and of what it makes.
 fn counted(state: &State<'_, '_>, filter: &str, value: Value, more: &[Value]) -> Result<Value, Error> {
     if let Some(text) = value.as_str() {
         write(state, text.len())?;
@@ -162,7 +164,7 @@ fn replace(state: &State<'_, '_>, value: &Value, from: &Value, to: &Value) -> Re
     Ok(text.replace(&from, &to))
 }
 
-// minijinja gives named arguments away.
+// minijinja passes named arguments by value.
 #[allow(clippy::needless_pass_by_value)]
 fn indent(
     state: &State<'_, '_>,
@@ -206,7 +208,7 @@ fn range(lower: isize, upper: Option<isize>, step: Option<isize>) -> Result<Valu
     Ok(numbers)
 }
 
-/// A value as text; one that is none is written within the bound.
+/// A value as text. A value that is no text is written within the limit.
 fn text_of(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
     if value.kind() == ValueKind::Undefined {
         return Err(Error::from(ErrorKind::UndefinedError));
@@ -216,13 +218,13 @@ fn text_of(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
     Ok(text.text)
 }
 
-/// What the filters of one prompt have made.
+/// The bytes that the filters of one prompt have made.
 #[derive(Debug, Default)]
 struct Made(AtomicUsize);
 
 impl Object for Made {}
 
-/// Counts what a filter makes.
+/// Counts bytes that a filter makes.
 fn write(state: &State<'_, '_>, bytes: usize) -> Result<(), Error> {
     let made = state.get_or_set_temp_object("made by filters", Made::default);
     let before = made.0.fetch_add(bytes.min(MOST_BYTES + 1), Ordering::Relaxed);

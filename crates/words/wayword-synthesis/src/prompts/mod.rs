@@ -1,7 +1,7 @@
 //! Prompts for language models: templates, each of which can be overridden, and what they are filled with.
 //!
-//! The parts of the writing prompt and their order follow arXiv 2403.11487; the words are ours. Beyond it: measured moves,
-//! so that no turn is guessed, and the reasons for which an earlier text was refused.
+//! The parts of the writing prompt and their order follow arXiv 2403.11487; the wording is our own. Beyond the paper,
+//! the prompt has measured moves, so that the model guesses no turn, and the reasons why an earlier text was refused.
 
 mod bounds;
 pub(crate) mod trial;
@@ -24,19 +24,19 @@ const BUILT_IN: [(&str, &str); 7] = [
     ("write", include_str!("templates/write.j2")),
 ];
 
-/// How a model that sees wants to be spoken to.
+/// The form of prompt that a model that sees expects.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Manner {
-    /// It follows instructions, and is told how to answer (`answer`).
+    /// It follows instructions: the prompt says how to answer (`answer`).
     #[default]
     Chat,
-    /// It takes a bare question, and describes where there are no words (`answer_question`): BLIP.
+    /// It takes a bare question, and describes the picture where the prompt is empty (`answer_question`): BLIP.
     Question,
-    /// It goes on with a text (`answer_completion`): BLIP-2. The form is the one of ChatCaptioner.
+    /// It continues a text (`answer_completion`): BLIP-2. The form is ChatCaptioner's.
     Completion,
 }
 
-/// Filled templates, and the hash that tells which ones they were.
+/// The templates, and a hash that identifies them.
 #[derive(Debug)]
 pub struct Prompts {
     templates: Environment<'static>,
@@ -52,28 +52,28 @@ pub enum PromptError {
         /// The name.
         name: String,
     },
-    /// It is no template, or asks for what it is not given.
+    /// It is no valid template, or asks for a variable that it does not get.
     #[error("prompt {name}: {source}")]
     Template {
-        /// Which.
+        /// Which prompt.
         name: String,
         /// What is wrong with it.
         source: minijinja::Error,
     },
-    /// It asks for something that takes memory or time without bound.
+    /// It uses something that takes memory or time without bound.
     #[error("prompt {name}, line {line}: {what}")]
     Refused {
-        /// Which.
+        /// Which prompt.
         name: String,
-        /// Where.
+        /// The line, from 1.
         line: usize,
-        /// What it asks for, and what prompts offer.
+        /// What it uses, and what prompts offer.
         what: String,
     },
     /// It writes or does more than any prompt needs.
     #[error("prompt {name}: {what}; write a shorter one")]
     TooMuch {
-        /// Which.
+        /// Which prompt.
         name: String,
         /// What it does, with the bound.
         what: String,
@@ -89,16 +89,16 @@ impl From<PromptError> for ModelError {
 }
 
 impl Prompts {
-    /// The built-in prompts, with those of a user's own (name and source) in their stead.
+    /// The built-in prompts, with the user's own (name and source) in place of those of the same name.
     ///
     /// # Errors
-    /// When a name is unknown, a source is no template, or one asks for what it is not given.
+    /// When a name is unknown, a source is no template, or one asks for a variable that it does not get.
     pub fn new(own: &[(String, String)]) -> Result<Self, PromptError> {
         if let Some((name, _)) = own.iter().find(|(name, _)| !BUILT_IN.iter().any(|(built_in, _)| built_in == name)) {
             return Err(PromptError::Unknown { name: name.clone() });
         }
         let mut templates = bounds::environment();
-        // A template that asks for what it is not given is a mistake to be told, not a gap in a prompt.
+        // A template that asks for a variable that it does not get is an error, because the prompt would have a gap.
         templates.set_undefined_behavior(UndefinedBehavior::Strict);
         let mut hash = Sha256::new();
         for (name, source) in BUILT_IN {
@@ -122,7 +122,7 @@ impl Prompts {
         BUILT_IN.iter().map(|(name, _)| *name)
     }
 
-    /// Tells which templates these are, for provenance.
+    /// Identifies the templates, for provenance.
     #[must_use]
     pub fn hash(&self) -> &str {
         &self.hash
@@ -143,7 +143,7 @@ impl Prompts {
     /// Asks a language model for the next question.
     ///
     /// # Errors
-    /// When an overridden template does not fit.
+    /// When an overridden template cannot be filled.
     pub fn question(&self, transcript: &[Exchange]) -> Result<String, PromptError> {
         self.fill("question", context! { transcript })
     }
@@ -151,7 +151,7 @@ impl Prompts {
     /// Puts a question to a model that sees.
     ///
     /// # Errors
-    /// When an overridden template does not fit.
+    /// When an overridden template cannot be filled.
     pub fn answer(&self, manner: Manner, question: &str, history: &[Exchange]) -> Result<String, PromptError> {
         let name = match manner {
             Manner::Chat => "answer",
@@ -161,11 +161,11 @@ impl Prompts {
         self.fill(name, context! { question, history, is_opening => is_opening(question) })
     }
 
-    /// Asks a language model to sum a dialogue up; what was denied is named, so that it stays out, and so is what was wrong
-    /// with an earlier summary.
+    /// Asks a language model to summarise a dialogue. The prompt names what was denied, so that it stays out, and what was
+    /// wrong with an earlier summary.
     ///
     /// # Errors
-    /// When an overridden template does not fit.
+    /// When an overridden template cannot be filled.
     pub fn summary(
         &self,
         transcript: &[Exchange],
@@ -183,7 +183,7 @@ impl Prompts {
     /// Asks a language model to condense captions of several directions.
     ///
     /// # Errors
-    /// When an overridden template does not fit.
+    /// When an overridden template cannot be filled.
     pub fn condense(
         &self,
         captions: &[(&str, &str)],
@@ -197,7 +197,7 @@ impl Prompts {
     /// Asks a language model to write an instruction, or to write it again.
     ///
     /// # Errors
-    /// When an overridden template does not fit.
+    /// When an overridden template cannot be filled.
     pub fn write(&self, brief: &Brief<'_>) -> Result<String, PromptError> {
         self.fill("write", writing::context(brief))
     }

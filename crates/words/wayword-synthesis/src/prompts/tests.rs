@@ -121,7 +121,7 @@ fn a_prompt_of_ones_own_takes_the_place_of_the_built_in_one_and_changes_the_hash
     assert_ne!(own.hash(), Prompts::new(&[]).unwrap().hash());
 }
 
-/// Why a prompt of one's own is refused.
+/// Why a user's own prompt is refused.
 fn refused(source: &str) -> String {
     Prompts::new(&[("answer".into(), source.into())]).unwrap_err().to_string()
 }

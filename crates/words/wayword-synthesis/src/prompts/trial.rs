@@ -1,5 +1,5 @@
-//! Fills every prompt once when they are loaded: a template that asks for what it is not given is told before a run begins,
-//! not at its first frame.
+//! Fills every prompt once when the prompts are loaded. So a template that asks for a variable that it does not get is
+//! reported before a run begins, not at its first frame.
 
 use super::{Manner, PromptError, Prompts};
 use crate::{
@@ -29,7 +29,7 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     }
     prompts.summary(&transcript, &[denied], &complaints)?;
     prompts.condense(&[("ahead", "A hallway.")], 20, &complaints)?;
-    // Names that every build holds; without them there is nothing to try the template on.
+    // Every build has this style.
     let Ok(style) = built_in("r2r") else { return Ok(()) };
     let finding = Finding { check: Check::Form, verdict: Verdict::Fail, reason: "too long".to_owned(), span: None };
     let complaints = [Complaint { text: "Go.".to_owned(), findings: vec![finding] }];

@@ -22,8 +22,8 @@ pub(super) fn context(brief: &Brief<'_>) -> Value {
     }
 }
 
-/// Whether the style's texts end in a task: by its rule, or because most of its references do. To others a target is a thing
-/// like any other.
+/// Whether the style's texts end in a task: by its rule, or because most of its references do. In other styles a target
+/// is an object like any other.
 fn ends_in_task(brief: &Brief<'_>) -> bool {
     brief.style.constraints.ends_in_task || brief.profile.tasks >= 0.5
 }
@@ -69,7 +69,8 @@ fn target(target: &Target) -> String {
     }
 }
 
-/// The style's rules in words. The sentence on fine-grained texts and the shape of coarse ones follow the paper's own.
+/// The style's rules in words. The sentence on fine-grained texts and the shape of coarse ones follow the paper (arXiv
+/// 2403.11487).
 fn constraints(rules: &Constraints, tells_turns: bool) -> Vec<String> {
     let mut told = Vec::new();
     if tells_turns {

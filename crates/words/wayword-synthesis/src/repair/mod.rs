@@ -2,7 +2,7 @@
 
 use crate::{
     dialogue::Mode,
-    observe::Minds,
+    observe::Observers,
     style::{Profile, hash},
     walk::Walk,
     writer::{Brief, Complaint, RulesWriter, WriteError, Writer},
@@ -32,18 +32,19 @@ pub struct Order<'a> {
 pub struct Writers<'a> {
     /// Writes first, and again with the reasons where its text fails.
     pub writer: &'a dyn Writer,
-    /// Writes where every text of the first failed; the provenance says so.
+    /// Writes where every text of the first writer failed; the provenance says so.
     pub finisher: Option<&'a dyn Writer>,
 }
 
-/// A walk in words: accepted, or rejected with the reasons.
+/// What came of one instruction: accepted, or rejected with the reasons.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// No check failed. "Unverified" is accepted where nothing could be checked, and says so.
+    /// No check failed. A text is accepted as "unverified" where something could not be checked, and its verdict says
+    /// so.
     Accepted(Instruction),
     /// The best text still fails, or there is none.
     Rejected {
-        /// The last text, where there is one.
+        /// The best text, where there is one.
         last: Option<Instruction>,
         /// Why.
         reason: String,
@@ -53,12 +54,16 @@ pub enum Outcome {
 /// Writes an instruction and repairs it.
 ///
 /// # Errors
-/// When a model that was to write gave nothing.
-pub fn write_and_repair(writers: Writers<'_>, minds: Minds<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
-    let first = attempts(writers.writer, minds, order)?;
+/// When the model that writes gives nothing.
+pub fn write_and_repair(
+    writers: Writers<'_>,
+    observers: Observers<'_>,
+    order: Order<'_>,
+) -> Result<Outcome, ModelError> {
+    let first = attempts(writers.writer, observers, order)?;
     let (Outcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
     let free = Order { repairs: order.repairs.max(FREE_REPAIRS), ..order };
-    let finished = attempts(finisher, minds, free)?;
+    let finished = attempts(finisher, observers, free)?;
     Ok(match finished {
         Outcome::Accepted(mut instruction) => {
             instruction.provenance.finished_for = Some(writers.writer.name().to_owned());
@@ -68,11 +73,11 @@ pub fn write_and_repair(writers: Writers<'_>, minds: Minds<'_>, order: Order<'_>
     })
 }
 
-/// A finisher that works by rules writes again for nothing, however few times a model may.
+/// How often a finisher by rules writes again, at least. It costs nothing, so the limit for a model does not apply.
 const FREE_REPAIRS: u32 = 8;
 
 /// One writer's texts until one passes.
-fn attempts(writer: &dyn Writer, minds: Minds<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
+fn attempts(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
     let mut complaints: Vec<Complaint> = Vec::new();
     let mut least_bad: Option<Instruction> = None;
     for repairs in 0..=order.repairs {
@@ -87,8 +92,8 @@ fn attempts(writer: &dyn Writer, minds: Minds<'_>, order: Order<'_>) -> Result<O
             }
             Err(WriteError::Model(error)) => return Err(error),
         };
-        let instruction = checked(text, provenance(writer, minds, order, repairs), order);
-        // Rules write again for nothing; a model is only sent back what failed.
+        let instruction = checked(text, provenance(writer, observers, order, repairs), order);
+        // Rules write again for nothing, until every check passes. A model only writes again what failed a check.
         let good_enough = if writer.name() == RulesWriter.name() { Verdict::Pass } else { Verdict::Unverified };
         if instruction.verdict <= good_enough {
             return Ok(Outcome::Accepted(instruction));
@@ -126,7 +131,7 @@ fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instructio
     }
 }
 
-/// What the best text fails in, or the last of those that could not be used.
+/// The checks that the best text fails, with the reasons; where there is no text, why the last one could not be used.
 fn reasons(best: Option<&Instruction>, complaints: &[Complaint]) -> String {
     let unusable = || complaints.last().map_or(&[][..], |complaint| &complaint.findings);
     let findings = best.map_or_else(unusable, |instruction| &instruction.findings);
@@ -134,26 +139,26 @@ fn reasons(best: Option<&Instruction>, complaints: &[Complaint]) -> String {
     failed.map(|finding| format!("{}: {}", finding.check.name(), finding.reason)).collect::<Vec<_>>().join("; ")
 }
 
-fn provenance(writer: &dyn Writer, minds: Minds<'_>, order: Order<'_>, repairs: u32) -> Provenance {
-    let asker = match minds.mode {
-        Mode::Dialogue { .. } => minds.asker.name(),
+fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, repairs: u32) -> Provenance {
+    let asker = match observers.mode {
+        Mode::Dialogue { .. } => observers.asker.name(),
         Mode::Fixed => "fixed queries",
         Mode::Single => "one fixed request",
     };
-    // The looks of a frame are condensed even where each was described at once.
+    // Several looks of a frame are condensed even where one answer described each.
     let condensed = order.walk.observations.iter().any(|observation| observation.looks.len() > 1);
-    let summed_up = minds.mode != Mode::Single || condensed;
-    let summariser = if summed_up { minds.summariser.name() } else { "nobody" };
+    let summed_up = observers.mode != Mode::Single || condensed;
+    let summariser = if summed_up { observers.summariser.name() } else { "nobody" };
     Provenance {
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
         asker: asker.to_owned(),
-        answerer: minds.answerer.name().to_owned(),
+        answerer: observers.answerer.name().to_owned(),
         summariser: summariser.to_owned(),
         writer: writer.name().to_owned(),
         checked_against: order.evidence.source.name().to_owned(),
         seed: order.seed,
         style_hash: hash(order.style),
-        prompts_hash: minds.prompts_hash.map(str::to_owned),
+        prompts_hash: observers.prompts_hash.map(str::to_owned),
         repairs,
         finished_for: None,
     }

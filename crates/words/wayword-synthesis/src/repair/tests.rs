@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     dialogue::{RulesAsker, RulesSummariser},
-    minds::Labels,
+    offline::Labels,
     style::built_in,
     writer::RulesWriter,
 };
@@ -11,7 +11,7 @@ use wayword_core::{
     Caption, DVec3, Gaze, Look, Motion, Observation, Path, SceneId, Sighting, Where, Witness, path::Stop,
 };
 
-/// A writer that says what it was told to say, in order, and counts the complaints that it heard.
+/// A writer that gives prepared texts in their order, and counts the complaints that it gets.
 struct Scripted {
     texts: Mutex<Vec<Result<String, WriteError>>>,
     complaints: Mutex<Vec<usize>>,
@@ -88,11 +88,11 @@ fn outcome_against(
     let profile = Profile::measure(&style.references);
     let order = Order { walk, evidence, style: &style, profile: &profile, seed: 0, repairs };
     let asker = RulesAsker::default();
-    let minds =
-        Minds { asker: &asker, answerer: &Labels, summariser: &RulesSummariser, mode, prompts_hash: Some("hash") };
+    let observers =
+        Observers { asker: &asker, answerer: &Labels, summariser: &RulesSummariser, mode, prompts_hash: Some("hash") };
     let writer = Scripted::new(texts);
     let finisher = finisher.then_some(&RulesWriter as &dyn Writer);
-    let outcome = write_and_repair(Writers { writer: &writer, finisher }, minds, order);
+    let outcome = write_and_repair(Writers { writer: &writer, finisher }, observers, order);
     (outcome, writer.complaints.into_inner().unwrap())
 }
 
@@ -101,12 +101,12 @@ fn said(text: &str) -> Result<String, WriteError> {
 }
 
 const GOOD: &str = "Walk past the sofa to the lamp and turn right. Stop at the sink.";
-const GHOST: &str = "Walk past the piano to the lamp and turn right. Stop at the sink.";
+const WITH_A_PIANO: &str = "Walk past the piano to the lamp and turn right. Stop at the sink.";
 
 #[test]
-fn a_text_with_a_ghost_goes_back_with_the_reason_until_it_is_right() {
+fn a_text_with_a_hallucinated_object_goes_back_with_the_reason_until_it_is_right() {
     let cut_off = Err(WriteError::Unusable { text: "Walk past".into(), reason: "it was cut off".into() });
-    let (outcome, complaints) = outcome(vec![said(GHOST), cut_off, said(GOOD)], true, 3);
+    let (outcome, complaints) = outcome(vec![said(WITH_A_PIANO), cut_off, said(GOOD)], true, 3);
     let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert_eq!((instruction.text.as_str(), instruction.provenance.repairs), (GOOD, 2));
     assert_eq!(instruction.provenance.writer, "test/scripted");
@@ -117,7 +117,7 @@ fn a_text_with_a_ghost_goes_back_with_the_reason_until_it_is_right() {
 
 #[test]
 fn rules_finish_what_a_model_cannot_and_say_so() {
-    let (outcome, complaints) = outcome(vec![said(GHOST), said(GHOST)], true, 1);
+    let (outcome, complaints) = outcome(vec![said(WITH_A_PIANO), said(WITH_A_PIANO)], true, 1);
     let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert!(!instruction.text.contains("piano"), "{}", instruction.text);
     assert_eq!(instruction.provenance.writer, "rules");
@@ -127,9 +127,9 @@ fn rules_finish_what_a_model_cannot_and_say_so() {
 
 #[test]
 fn without_a_finisher_it_is_rejected_with_the_reason() {
-    let (outcome, _) = outcome(vec![said(GHOST)], false, 0);
+    let (outcome, _) = outcome(vec![said(WITH_A_PIANO)], false, 0);
     let Outcome::Rejected { last, reason } = outcome.unwrap() else { panic!("it was accepted") };
-    assert!(reason.contains("piano") && last.unwrap().text == GHOST, "{reason}");
+    assert!(reason.contains("piano") && last.unwrap().text == WITH_A_PIANO, "{reason}");
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn a_model_is_not_asked_again_where_nothing_failed() {
     let walk = walk();
     let nothing = Evidence::of_path_alone(&walk.path);
     let mode = Mode::Dialogue { questions: 9 };
-    let (outcome, complaints) = outcome_against(&walk, &nothing, mode, vec![said(GHOST)], true, 3);
+    let (outcome, complaints) = outcome_against(&walk, &nothing, mode, vec![said(WITH_A_PIANO)], true, 3);
     let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert_eq!((instruction.verdict, complaints.len()), (Verdict::Unverified, 1));
 }
@@ -174,7 +174,7 @@ fn who_condensed_the_looks_around_is_told_even_without_a_dialogue() {
 
 #[test]
 fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
-    let minds = Minds {
+    let observers = Observers {
         asker: &RulesAsker::default(),
         answerer: &Labels,
         summariser: &RulesSummariser,
@@ -191,7 +191,7 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
                 let order =
                     Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 0 };
                 let writers = Writers { writer: &RulesWriter, finisher: None };
-                let outcome = write_and_repair(writers, minds, order).unwrap();
+                let outcome = write_and_repair(writers, observers, order).unwrap();
                 let Outcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
                 assert_eq!(instruction.verdict, Verdict::Pass, "{instruction:?}");
                 for word in ["go", "walk", "head", "enter", "straight", "move", "proceed", "step"] {
@@ -206,7 +206,7 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
     }
 }
 
-/// The same pictures as a video shows them: in their order, and with no pose.
+/// The same pictures as a video shows them: in their order, and without poses.
 fn on_video(walk: &Walk) -> Walk {
     Walk::new(Path { motion: Motion::Unknown, ..walk.path.clone() }, walk.observations.clone())
 }
@@ -222,8 +222,8 @@ fn a_turn_that_nobody_knows_goes_back_with_the_reason() {
     assert_eq!((instruction.text.as_str(), instruction.verdict, complaints.len()), (told, Verdict::Pass, 2));
     let (outcome, _) = outcome_against(&walk, &evidence, mode, vec![said(GOOD)], false, 0);
     let Outcome::Rejected { reason, .. } = outcome.unwrap() else { panic!("it was accepted") };
-    assert!(reason.contains("nobody knows how the walk turns"), "{reason}");
-    // Where nothing at all is known, a turn is made up all the same.
+    assert!(reason.contains("it is not known how the path turns"), "{reason}");
+    // A turn counts as made up even where there is no evidence at all.
     let nothing = Evidence::of_path_alone(&walk.path);
     let (outcome, _) = outcome_against(&walk, &nothing, mode, vec![said(GOOD)], false, 0);
     assert!(matches!(outcome.unwrap(), Outcome::Rejected { .. }));
@@ -252,15 +252,15 @@ proptest! {
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let asker = RulesAsker::default();
         let (answerer, summariser) = (&Labels, &RulesSummariser);
-        let minds = Minds { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
+        let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
             let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8 };
             let writers = Writers { writer: &RulesWriter, finisher: None };
-            let text = match write_and_repair(writers, minds, order).unwrap() {
+            let text = match write_and_repair(writers, observers, order).unwrap() {
                 Outcome::Accepted(instruction) => instruction.text,
                 Outcome::Rejected { reason, .. } => {
-                    prop_assert!(!reason.contains("nobody knows"), "{}", reason);
+                    prop_assert!(!reason.contains("it is not known"), "{}", reason);
                     continue;
                 }
             };

@@ -28,13 +28,13 @@ pub enum StyleError {
         /// What is wrong, with line and field.
         reason: String,
     },
-    /// No name to tell it by.
+    /// It has no name.
     #[error("a style has no name: give it one")]
     Unnamed,
-    /// Nothing to imitate.
+    /// It has no reference texts.
     #[error("style {0} has no reference texts: give at least one in `references`")]
     NoReferences(String),
-    /// Too much to imitate.
+    /// It has too many or too long reference texts.
     #[error("style {0} has too many or too long reference texts: at most 1000 of 4000 bytes each")]
     TooLarge(String),
 }
@@ -55,7 +55,7 @@ pub fn built_in(name: &str) -> Result<Style, StyleError> {
     parse(name, text)
 }
 
-/// A style from the text of a TOML file; `name` is told in errors.
+/// A style from the text of a TOML file; errors show `name`.
 ///
 /// # Errors
 /// When it is no style, or has no or too many references.
@@ -68,7 +68,7 @@ pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
     })
 }
 
-/// A style as it may be used: with a name and references, and within bounds.
+/// Checks that a style can be used: that it has a name and references, and keeps to the bounds.
 ///
 /// # Errors
 /// When it has no name, or no or too many references.

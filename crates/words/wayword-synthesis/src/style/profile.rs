@@ -1,4 +1,4 @@
-//! What the reference texts of a style are like: the parameters that the writer interprets.
+//! What the reference texts of a style are like: the parameters of the rules writer.
 
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -27,7 +27,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// Measures texts; at least one has to hold a word.
+    /// Measures texts; at least one has to have a word.
     #[must_use]
     pub fn measure(references: &[String]) -> Self {
         let texts: Vec<&String> = references.iter().filter(|text| word_count(text) > 0).collect();
@@ -53,7 +53,7 @@ impl Profile {
         }
     }
 
-    /// Whether the texts tell the way turn by turn.
+    /// Whether the texts describe the way turn by turn.
     #[must_use]
     pub fn tells_turns(&self) -> bool {
         self.turns >= 0.4

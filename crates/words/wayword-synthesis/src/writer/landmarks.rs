@@ -14,7 +14,7 @@ pub(super) struct Landmarks<'a> {
     avoided: Vec<String>,
 }
 
-/// A landmark as it is told.
+/// A landmark in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Landmark {
     /// "the sofa", "the two lamps".
@@ -24,7 +24,8 @@ pub(super) struct Landmark {
 }
 
 impl<'a> Landmarks<'a> {
-    /// Nothing chosen yet. What earlier texts were blamed for is avoided, and so is the target, which has its own place.
+    /// Nothing chosen yet. It avoids names about which checks complained in earlier texts, and the target, which the
+    /// task names.
     pub(super) fn new(brief: &'a Brief<'a>) -> Self {
         let blamed = brief.complaints.iter().flat_map(|complaint| {
             let failed = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
@@ -34,19 +35,19 @@ impl<'a> Landmarks<'a> {
         Self { brief, used: target.into_iter().collect(), avoided: blamed.collect() }
     }
 
-    /// Whether a name may be told.
+    /// Whether a name may still be used.
     fn is_free(&self, name: &str) -> bool {
         let known = |names: &[String]| names.iter().any(|other| agree(other, name));
         !known(&self.used)
             && !self.avoided.iter().any(|blamed| *blamed == normal(name) || blamed.ends_with(&normal(name)))
     }
 
-    /// Keeps a name from being told as a landmark.
+    /// Keeps a name from being used as a landmark.
     pub(super) fn reserve(&mut self, name: &str) {
         self.used.push(normal(name));
     }
 
-    /// The landmark of at least that salience that tells a frame best, if there is one.
+    /// The landmark of at least that salience that identifies a frame best, if there is one.
     pub(super) fn choose(&mut self, frame: usize, salience: u8, rng: &mut ChaCha8Rng) -> Option<Landmark> {
         let walk = self.brief.walk;
         let told = walk

@@ -1,4 +1,4 @@
-//! Writing: what a writer is told, and the writer that works by rules.
+//! Writing: what a writer gets, and the writer that works by rules.
 
 mod landmarks;
 mod phrases;
@@ -23,7 +23,7 @@ pub trait Writer: Send + Sync {
     fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError>;
 }
 
-/// All that a writer is told.
+/// All that a writer gets.
 #[derive(Debug, Clone, Copy)]
 pub struct Brief<'a> {
     /// The path and what was seen along it; its target, where one is given.
@@ -47,21 +47,21 @@ pub struct Complaint {
     pub findings: Vec<Finding>,
 }
 
-/// No text came of a brief.
+/// A writer gave no text that can be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WriteError {
     /// The style ends in a task, and no object is known at the end.
-    #[error("the style ends in a task, and no object was seen from the final frame to give one about")]
+    #[error("the style ends in a task, but no object for one was seen from the last frame")]
     NoObject,
-    /// A text came that is none; another may be better.
+    /// The text is unusable; another attempt may be better.
     #[error("the text cannot be used: {reason}")]
     Unusable {
-        /// What came.
+        /// The text.
         text: String,
         /// What is wrong with it.
         reason: String,
     },
-    /// The model that was to write it gave nothing.
+    /// The model that writes gave nothing.
     #[error(transparent)]
     Model(#[from] ModelError),
 }

@@ -161,7 +161,7 @@ pub(super) fn pick<'a, T: ?Sized>(rng: &mut ChaCha8Rng, of: &[&'a T]) -> &'a T {
     of[rng.random_range(0..of.len())]
 }
 
-/// Those ways to say a step that suit a motion: where nobody knows how a walk bends, nothing is said to be straight.
+/// The ways to say a step that fit a motion: where the motion is unknown, none says "straight".
 pub(super) fn unbent(of: &[&'static str], motion: Motion) -> Vec<&'static str> {
     of.iter().copied().filter(|way| motion.is_known() || !way.contains("straight")).collect()
 }
@@ -233,7 +233,7 @@ pub(super) fn turn_again(side: Side, rng: &mut ChaCha8Rng) -> String {
     fill(pick(rng, TURN_AGAIN), &[("{s}", side_word(side))])
 }
 
-/// A floor in words: "level 2", "the second floor".
+/// A storey in words: "level 2", "the second floor".
 pub(super) fn level_phrase(level: u32, rng: &mut ChaCha8Rng) -> String {
     match ordinal(level).filter(|_| rng.random_bool(0.5)) {
         Some(ordinal) => format!("the {ordinal} floor"),
@@ -241,7 +241,7 @@ pub(super) fn level_phrase(level: u32, rng: &mut ChaCha8Rng) -> String {
     }
 }
 
-/// The ordinal of a floor.
+/// The ordinal of a storey.
 pub(super) fn ordinal(level: u32) -> Option<&'static str> {
     ["first", "second", "third", "fourth", "fifth"].get(level.checked_sub(1)? as usize).copied()
 }
@@ -255,7 +255,7 @@ fn pass_phrase(landmark: &Landmark, motion: Motion, rng: &mut ChaCha8Rng) -> Str
     }
 }
 
-/// Nowhere to go, in a room where its name is known.
+/// A phrase for a path that goes nowhere, with its room where the name is known.
 pub(super) fn stay_phrase(room: Option<&str>, rng: &mut ChaCha8Rng) -> String {
     match room {
         Some(room) => fill(pick(rng, STAY_IN), &[("{r}", &the(room))]),
@@ -275,7 +275,7 @@ fn stop_phrase(by: Option<&Landmark>, room: Option<&str>, climbed: Option<Climb>
     }
 }
 
-/// A template with its gaps filled. One steps onto a balcony, not into it.
+/// A template with its gaps filled. One is "on" a balcony or porch, not "in" it.
 pub(super) fn fill(template: &str, gaps: &[(&str, &str)]) -> String {
     let text = gaps.iter().fold(template.to_owned(), |text, (gap, value)| text.replace(gap, value));
     let open_air = gaps.iter().any(|(gap, room)| {

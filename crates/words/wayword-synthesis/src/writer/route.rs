@@ -1,4 +1,4 @@
-//! What there is to tell about a walk, step by step.
+//! What there is to say about a path, step by step.
 
 use super::landmarks::{Landmark, Landmarks};
 use crate::walk::Walk;
@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use wayword_core::{Climb, Motion, Side, Turn, motion};
 use wayword_language::lexicon::room_name;
 
-/// Something to tell.
+/// Something to say.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Step {
     /// A turn on the spot, perhaps at a landmark, into a room, or within or out of one.
@@ -36,7 +36,7 @@ pub(super) struct Within {
     pub(super) out: bool,
 }
 
-/// A step with how much it matters: 3 must be told, 1 is told where there is room.
+/// A step with how much it matters: 3 must be said, 1 is said where there is room.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Weighed {
     pub(super) step: Step,
@@ -47,10 +47,10 @@ pub(super) struct Weighed {
 const WALKED_PAST: u8 = 2;
 /// Least salience of one that is stopped at.
 const STOPPED_AT: u8 = 1;
-/// Something longer than this between two turns is worth a word, metres.
+/// A move longer than this is worth a phrase, metres.
 const LONG_M: f64 = 3.5;
 
-/// The steps of a walk, the stop last.
+/// The steps of a path, the stop last.
 pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Weighed> {
     let (mut steps, climbed) = match walk.path.motion {
         _ if stands_still(walk) => (Vec::new(), None),
@@ -68,7 +68,7 @@ pub(super) fn steps(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha
     steps
 }
 
-/// The steps of a walk whose moves are known, and which way it climbs at last.
+/// The steps of a path whose moves are known, and the climb with which it ends, if any.
 fn by_moves(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> (Vec<Weighed>, Option<Climb>) {
     let mut steps: Vec<Weighed> = Vec::new();
     let (mut climbed, mut at) = (None, 0);
@@ -86,7 +86,7 @@ fn by_moves(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) ->
             let is_bare = anchor.is_none() && into.is_none() && turn != Turn::Around && rng.random_bool(0.5);
             let room = is_bare.then(|| walk.room(at).and_then(usable_room)).flatten();
             let within = room.map(|room| Within { room, out: changed_room(walk, at, at + 1).is_some() });
-            // Two turns in a row need a way between them.
+            // Two turns in a row need something between them.
             if matches!(steps.last(), Some(Weighed { step: Step::Turn { into: None, .. }, .. })) {
                 steps.push(Weighed { step: Step::On, weight: 1 });
             }
@@ -118,7 +118,7 @@ fn by_moves(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) ->
     (steps, climbed)
 }
 
-/// The steps of a walk of which there are pictures and no poses: rooms and landmarks in their order.
+/// The steps of a path without poses: rooms and landmarks in their order.
 fn by_sight(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Weighed> {
     let mut steps: Vec<Weighed> = Vec::new();
     let end = walk.path.frames.len() - 1;
@@ -131,14 +131,15 @@ fn by_sight(walk: &Walk, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) ->
             steps.extend(onwards(walk, at, &steps, landmarks, rng));
         }
     }
-    // However short the text has to be, there is something to tell before the end.
+    // However short the text has to be, there is something to say before the end.
     if let Some(last) = steps.last_mut() {
         last.weight = 3;
     }
     steps
 }
 
-/// What to tell of a walk straight on: a landmark at its end, the room that it leads through, or at least that it goes on.
+/// What to say of a straight stretch: a landmark at its end, the room that it leads through, or at least that it goes
+/// on.
 fn onwards(
     walk: &Walk,
     at: usize,
@@ -165,12 +166,12 @@ fn onwards(
     }
 }
 
-/// Whether a walk goes nowhere: that of a path with a single viewpoint does.
+/// Whether a path goes nowhere, as one with a single viewpoint does.
 pub(super) fn stands_still(walk: &Walk) -> bool {
     !walk.path.motion.goes_anywhere(&walk.moves, walk.path.frames.len())
 }
 
-/// Which way the last flight of stairs of a walk goes.
+/// Which way the last flight of stairs of a path goes.
 pub(super) fn last_climb(walk: &Walk) -> Option<Climb> {
     (0..walk.moves.len()).rev().find_map(|at| motion::flight(&walk.moves, at)).map(|(_, climb)| climb)
 }

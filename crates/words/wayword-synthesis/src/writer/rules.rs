@@ -1,4 +1,4 @@
-//! The writer that works by rules: an interpreter of what a style's references are like.
+//! The writer that works by rules, which follow what a style's references are like.
 
 use super::{
     Brief, WriteError, Writer,
@@ -15,8 +15,9 @@ use wayword_language::{
     text::{capital, word_count},
 };
 
-/// Writes from captions and moves. Where the references tell turns it tells the way step by step; where they don't, it
-/// names the place at the end. Length, sentences, floors, task and full stop are drawn from the references too.
+/// Writes from captions and moves. Where the references name turns, it describes the way step by step; where they
+/// don't, it names the place at the end. Length, sentences, storeys, task and full stop are drawn from the references
+/// too.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesWriter;
 
@@ -41,7 +42,7 @@ fn drawn(values: &[usize], rng: &mut ChaCha8Rng) -> usize {
     if values.is_empty() { 1 } else { values[rng.random_range(0..values.len())] }
 }
 
-/// Step by step.
+/// A text that describes the way step by step.
 fn the_way(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
     let mut landmarks = Landmarks::new(brief);
     let task = if ends_in_task(brief, rng) { Some(task::task(brief, rng)?) } else { None };
@@ -79,14 +80,14 @@ struct Phrase {
     weight: u8,
 }
 
-/// What is never left out: the end.
+/// Weight of what is never left out: the end.
 const KEPT: u8 = 4;
-/// Steps that matter less than this are left out of a text that is longer than its style's.
+/// Steps of less weight than this are left out of a text that is longer than its style's.
 const OPTIONAL: u8 = 3;
 /// No text is cut shorter than this, words.
 const LEAST_WORDS: usize = 8;
 
-/// Leaves out the steps that matter least until the rest has about so many words. Turns are kept.
+/// Leaves out the steps that matter least until the rest has about that many words. Turns are kept.
 fn keep_within(phrases: &mut Vec<Phrase>, words: usize) {
     while phrases.iter().map(|phrase| word_count(&phrase.text) + 1).sum::<usize>() > words + 1
         && drop_least(phrases, OPTIONAL)
@@ -155,7 +156,7 @@ const GO_BY: &[&str] = &[
     "go by {l} into {r}",
 ];
 
-/// The place at the end, and what to do there.
+/// A text that names the place at the end, and what to do there.
 fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
     let mut landmarks = Landmarks::new(brief);
     let task = if ends_in_task(brief, rng) { Some(task::task(brief, rng)?) } else { None };
@@ -168,7 +169,7 @@ fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteErr
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
     let fits = |text: &str| word_count(text) + task_words <= words.max(task_words + 5).min(limit.saturating_sub(1));
     let options = goals(brief, &mut landmarks, rng);
-    // The richest description that fits; the first is the barest and always stands.
+    // The richest description that fits. The first is the barest, and is used where none fits.
     let goal = options.iter().rev().find(|text| fits(text)).or(options.first()).cloned().unwrap_or_default();
     let count = sentence_target(brief, rng);
     let phrases: Vec<String> = match task {
@@ -273,7 +274,7 @@ fn sentences(phrases: &[String], count: usize, full_stop: bool, rng: &mut ChaCha
     text
 }
 
-/// Phrases as one sentence without its full stop. A phrase that holds an "and" of its own is set off by "then".
+/// Phrases as one sentence without its full stop. Where a phrase has an "and" of its own, "then" joins them.
 fn join(phrases: &[String], rng: &mut ChaCha8Rng) -> String {
     let Some((last, before)) = phrases.split_last() else { return String::new() };
     if before.is_empty() {

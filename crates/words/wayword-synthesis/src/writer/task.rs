@@ -10,9 +10,9 @@ use rand_chacha::ChaCha8Rng;
 use wayword_core::{Distinction, Side, Verdict};
 use wayword_language::lexicon::{Class, agree, normal, thing};
 
-/// Things to do with a class of things; `{o}` is the thing with its article. They are what people ask for most in REVERIE's train
-/// split, where a class comes up often enough there, the commonest first: a picture is brought, taken down or removed far more
-/// often than admired.
+/// Things to do with a class of things; `{o}` is the thing with its article. Where a class is common enough in
+/// REVERIE's train split, they are what people ask for most there, the commonest first: a picture is brought, taken
+/// down or removed far more often than admired.
 fn affordances(class: Class) -> &'static [&'static str] {
     match class {
         Class::Seat => &[
@@ -131,7 +131,7 @@ pub(super) fn task(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<(String, S
     Ok((pick(rng, affordances(class)).replace("{o}", &object), name))
 }
 
-/// A thing with what tells it from its likes.
+/// A thing with what sets it apart from others of its name.
 fn told(name: &str, told_by: &Distinction, rng: &mut ChaCha8Rng) -> String {
     match told_by {
         Distinction::Colour { colour } => format!("the {colour} {name}"),
@@ -152,7 +152,7 @@ fn told(name: &str, told_by: &Distinction, rng: &mut ChaCha8Rng) -> String {
     }
 }
 
-/// Something that was seen alone of its kind from the last frame, the more of a landmark the better.
+/// An object for the task that was seen from the last frame: best the only one of its kind, and a good landmark.
 fn free_object(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Option<String> {
     let last = brief.walk.path.frames.len() - 1;
     let blamed = |name: &str| {

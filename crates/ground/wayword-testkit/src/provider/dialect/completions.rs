@@ -1,4 +1,4 @@
-//! OpenAI's legacy completions: one prompt, and what a model writes behind it.
+//! OpenAI's legacy completions: one prompt, which the model continues.
 
 use super::{End, Said, openai, parts};
 use crate::provider::Heard;

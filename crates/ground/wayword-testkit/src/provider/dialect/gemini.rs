@@ -12,7 +12,7 @@ pub(super) fn heard(body: &Value, model: &str) -> Result<Heard, &'static str> {
         heard.messages.push((Role::System, text));
     }
     for message in parts::list(body, "contents")? {
-        // A lone content may leave its role out.
+        // A single content may lack its role.
         let role = if message.get("role").is_some() { parts::role(message)? } else { Role::User };
         let text = content(message, &mut heard.pictures)?;
         heard.messages.push((role, text));
@@ -76,7 +76,7 @@ pub(super) fn error(wrong: Wrong, message: &str, details: Option<Value>, code: u
     json!({ "error": error })
 }
 
-/// Only the quota's name tells it from a rate.
+/// The details of a used-up quota. Only the quota's name distinguishes it from a rate.
 fn day_is_over() -> Value {
     let violation = json!({ "quotaId": "GenerateRequestsPerDayPerProjectPerModel-FreeTier", "quotaValue": "250" });
     json!([{ "@type": "type.googleapis.com/google.rpc.QuotaFailure", "violations": [violation] }])

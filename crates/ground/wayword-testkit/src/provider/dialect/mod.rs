@@ -1,4 +1,5 @@
-//! What providers speak: one file per dialect, with a request's parts and the shapes of replies, errors and lists of models.
+//! The dialects of providers: one file each, with the parts of requests and the shapes of replies, errors and lists of
+//! models.
 
 mod anthropic;
 mod completions;
@@ -15,7 +16,7 @@ use axum::{
 use serde_json::Value;
 use std::time::Duration;
 
-/// What a provider speaks.
+/// The API of a provider.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
     /// OpenAI's chat completions.
@@ -64,14 +65,14 @@ pub(super) enum Wrong {
     Overloaded,
 }
 
-/// What a model that will not answer says where its dialect has no mark for that.
+/// A refusal in words, for dialects that have no mark for one.
 const SORRY: &str = "I'm sorry, but I can't help with that.";
 
 impl Dialect {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::OpenAi, Self::Completions, Self::Anthropic, Self::Gemini, Self::Ollama];
 
-    /// Its name, as settings have it.
+    /// Its name in settings.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -91,7 +92,7 @@ impl Dialect {
         }
     }
 
-    /// The header that carries the key, and what stands before the key in it.
+    /// The header of the key, and the text before the key in it.
     pub(super) fn key_header(self) -> (&'static str, &'static str) {
         match self {
             Self::Anthropic => ("x-api-key", ""),
@@ -120,7 +121,7 @@ impl Dialect {
         }
     }
 
-    /// A reply without anything said in it.
+    /// A reply without an answer in it.
     pub(super) fn no_choices(self) -> Value {
         match self {
             Self::OpenAi | Self::Completions => openai::no_choices(),
@@ -153,7 +154,7 @@ impl Dialect {
         self.refusal(wrong, message, Vec::new(), None)
     }
 
-    /// A 429 that tells when to come back.
+    /// A 429 that says when to come back.
     pub(super) fn too_many(self, form: RetryAfter, wait: Duration) -> Response {
         let message = "Rate limit reached: too many requests.";
         self.refusal(Wrong::TooMany, message, form.headers(wait, self), form.details(wait))
@@ -182,7 +183,7 @@ impl Dialect {
             Wrong::Request => 400,
             Wrong::Key => 401,
             Wrong::Model => 404,
-            // An empty account is no matter of rate to some.
+            // Some services do not answer 429 where the account is empty.
             Wrong::Quota if self == Self::Anthropic => 400,
             Wrong::Quota if self == Self::Ollama => 402,
             Wrong::Quota | Wrong::TooMany => 429,
@@ -192,7 +193,7 @@ impl Dialect {
         }
     }
 
-    /// How it says that the account is empty.
+    /// The message that the account is empty.
     pub(super) fn quota_message(self) -> &'static str {
         match self {
             Self::Anthropic => "Your credit balance is too low to access the Anthropic API.",

@@ -12,7 +12,7 @@ pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
     for message in parts::list(body, "messages")? {
         heard.messages.push((parts::role(message)?, parts::text(message, "content")?));
         for image in message.get("images").and_then(Value::as_array).into_iter().flatten() {
-            heard.pictures.push(parts::picture(image.as_str().ok_or("An image is no text.")?)?);
+            heard.pictures.push(parts::picture(image.as_str().ok_or("An image is not a text.")?)?);
         }
     }
     parts::sampling(&mut heard, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
@@ -20,7 +20,7 @@ pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
 }
 
 pub(super) fn answer(said: &Said) -> Value {
-    // It has no filter of its own: a model that will not answer says so.
+    // Ollama has no filter: a model that refuses says so in words.
     let (text, reason) = match said.end {
         End::Stop => (said.text.as_str(), "stop"),
         End::Length => (said.text.as_str(), "length"),

@@ -55,7 +55,7 @@ pub(super) fn finish(end: End) -> &'static str {
     }
 }
 
-/// A choice with what stands around it.
+/// A choice within a whole reply.
 pub(super) fn envelope(said: &Said, object: &str, choice: &Value) -> Value {
     json!({
         "id": "chatcmpl-test", "object": object, "created": 1_767_225_600, "model": said.model,

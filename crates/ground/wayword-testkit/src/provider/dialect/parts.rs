@@ -1,4 +1,4 @@
-//! What several dialects have in their requests.
+//! Parts of requests that several dialects share.
 
 use super::super::Heard;
 use base64::prelude::{BASE64_STANDARD, Engine};
@@ -27,10 +27,10 @@ pub(super) fn role(message: &Value) -> Result<Role, &'static str> {
 
 /// A picture's bytes.
 pub(super) fn picture(base64: &str) -> Result<Vec<u8>, &'static str> {
-    BASE64_STANDARD.decode(base64).map_err(|_| "A picture is no base64.")
+    BASE64_STANDARD.decode(base64).map_err(|_| "A picture is not base64.")
 }
 
-/// The sampling of a table that has it under these names.
+/// Takes the sampling settings from `table`; `max_tokens` lists the possible names of that setting.
 pub(super) fn sampling(heard: &mut Heard, table: &Value, max_tokens: &[&str]) {
     heard.temperature = table.get("temperature").and_then(Value::as_f64);
     heard.max_tokens = max_tokens.iter().find_map(|name| table.get(name)?.as_u64());

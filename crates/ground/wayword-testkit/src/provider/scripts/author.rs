@@ -1,20 +1,20 @@
-//! Writes instructions from captions and moves, and is careless now and then.
+//! Writes instructions from captions and moves, with mistakes now and then.
 
 use super::{Script, prompt::things, rng};
 use crate::provider::Heard;
 use rand::{Rng, seq::IndexedRandom};
 
-/// Writes a sentence for each move with a landmark of the frame. Careless, it names a treadmill that nobody saw, or turns the
-/// wrong way.
+/// Writes a sentence for each move, with a landmark of the frame. When it is careless, it names a treadmill or piano
+/// that no caption names.
 #[derive(Debug, Clone, Copy)]
 pub struct Author {
     /// Seed of its draws.
     pub seed: u64,
-    /// How often it is careless. Told what was wrong, it is half as often.
+    /// How often it is careless. When the prompt says what was wrong before, it is so half as often.
     pub carelessness: f64,
 }
 
-/// A frame of the prompt: what is seen, and the move that follows.
+/// A frame of the prompt: its caption, and the move that follows.
 struct Frame<'a> {
     caption: &'a str,
     then: Option<&'a str>,
@@ -46,7 +46,7 @@ fn frames(prompt: &str) -> Vec<Frame<'_>> {
     frames
 }
 
-/// The first thing of a caption that is no room.
+/// The first thing of a caption that is not a room.
 fn landmark(caption: &str) -> Option<String> {
     things(caption).into_iter().find(|name| !name.ends_with("room") && !name.ends_with("way") && name != "place")
 }
@@ -60,7 +60,7 @@ fn coarse_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool) -> St
 
 fn fine_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool, rng: &mut impl Rng) -> String {
     let wrong = careless.then(|| rng.random_range(0..frames.len().max(1)));
-    let ghost = ["treadmill", "piano"].choose(rng).copied().unwrap_or("piano");
+    let absent = ["treadmill", "piano"].choose(rng).copied().unwrap_or("piano");
     let mut sentences = Vec::new();
     for (at, frame) in frames.iter().enumerate() {
         let Some(then) = frame.then else { continue };
@@ -77,7 +77,7 @@ fn fine_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool, rng: &m
             sentences.push("Turn around.".to_owned());
         }
         if wrong == Some(at) {
-            sentences.push(format!("Walk past the {ghost}."));
+            sentences.push(format!("Walk past the {absent}."));
         } else if let Some(name) = landmark(frame.caption).filter(|_| turn.is_none() && at > 0) {
             sentences.push(format!("Walk past the {name}."));
         }

@@ -1,40 +1,41 @@
-//! A flawed eye: it answers about a picture from what is known to be there, with ghosts, misses and contradictions by seed.
+//! A flawed eye: it answers about a picture from the gallery, with hallucinated objects, misses and contradictions by
+//! seed.
 
 use crate::provider::{Gallery, Heard, Scenery, Script, Thing, barcode};
 use rand::{Rng, SeedableRng, seq::SliceRandom};
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
-/// Answers questions about the pictures of a gallery, wrongly now and then. The same question about the same picture gets the
-/// same answer.
+/// Answers questions about the pictures of a gallery, with mistakes now and then. The same question about the same
+/// picture gets the same answer.
 #[derive(Debug, Clone)]
 pub struct FlawedEye {
     /// What is really there.
     pub gallery: Gallery,
     /// Seed of all draws.
     pub seed: u64,
-    /// Share of the objects of a free description that are not there, on average.
-    pub ghost_share: f64,
-    /// Share of the objects that are there and left out of a free description.
+    /// Share of the objects in a free description that are not there, on average.
+    pub hallucinated_share: f64,
+    /// Share of the objects that are there and that a free description leaves out.
     pub miss_share: f64,
-    /// How often, asked whether one of its ghosts is there, it says no and contradicts itself. Whoever asks about a ghost finds
-    /// it out with this probability.
+    /// How often it says no, and so contradicts itself, when it is asked whether one of its hallucinated objects is
+    /// there. A question about such an object exposes it with this probability.
     pub contradiction_share: f64,
-    /// How often, asked whether something is there that is, it says no.
+    /// How often it says no when it is asked whether something is there that is.
     pub blindness_share: f64,
 }
 
 impl FlawedEye {
-    /// An eye with so many ghosts, which admits most of them when it is asked: 70 %. It misses a tenth of what is there and
-    /// denies 3 % of it.
+    /// An eye that hallucinates this share of the objects that it names. When it is asked, it admits 70 % of them. It
+    /// misses a tenth of the objects that are there and denies 3 % of them.
     #[must_use]
-    pub fn new(gallery: Gallery, seed: u64, ghost_share: f64) -> Self {
-        Self { gallery, seed, ghost_share, miss_share: 0.1, contradiction_share: 0.7, blindness_share: 0.03 }
+    pub fn new(gallery: Gallery, seed: u64, hallucinated_share: f64) -> Self {
+        Self { gallery, seed, hallucinated_share, miss_share: 0.1, contradiction_share: 0.7, blindness_share: 0.03 }
     }
 }
 
-/// Things that are seen where they are not.
-const GHOSTS: [&str; 16] = [
+/// The objects that it can hallucinate.
+const HALLUCINATED: [&str; 16] = [
     "piano",
     "treadmill",
     "fireplace",
@@ -67,7 +68,7 @@ impl Script for FlawedEye {
     }
 }
 
-/// Any other picture is dreamt up from its bytes: the same picture always shows the same.
+/// What a picture shows that is not in the gallery: made up from its bytes, always the same for the same picture.
 fn dream(picture: &[u8]) -> (u64, Scenery) {
     const DREAMS: [&str; 12] =
         ["sofa", "lamp", "table", "chair", "bed", "mirror", "plant", "desk", "cabinet", "picture", "rug", "sink"];
@@ -116,19 +117,19 @@ impl Look<'_> {
         noticed
     }
 
-    /// The things that it sees and that are not there.
-    fn ghosts(&self) -> Vec<(&'static str, u8)> {
-        let is_there = |ghost: &str| {
-            let last = ghost.rsplit(' ').next().unwrap_or(ghost);
-            self.scenery.things.iter().any(|thing| thing.name.contains(last) || ghost.contains(thing.name.as_str()))
+    /// The objects that it hallucinates in this picture.
+    fn hallucinated(&self) -> Vec<(&'static str, u8)> {
+        let is_there = |object: &str| {
+            let last = object.rsplit(' ').next().unwrap_or(object);
+            self.scenery.things.iter().any(|thing| thing.name.contains(last) || object.contains(thing.name.as_str()))
         };
         let mut rng = self.rng("ghosts");
-        let share = self.eye.ghost_share.clamp(0.0, 0.9);
+        let share = self.eye.hallucinated_share.clamp(0.0, 0.9);
         let mean = self.noticed().len() as f64 * share / (1.0 - share);
         let count = mean.floor() as usize + usize::from(rng.random_bool(mean.fract()));
-        let mut candidates: Vec<&'static str> = GHOSTS.into_iter().filter(|ghost| !is_there(ghost)).collect();
+        let mut candidates: Vec<&'static str> = HALLUCINATED.into_iter().filter(|object| !is_there(object)).collect();
         candidates.shuffle(&mut rng);
-        candidates.into_iter().take(count).map(|ghost| (ghost, rng.random_range(0..3))).collect()
+        candidates.into_iter().take(count).map(|object| (object, rng.random_range(0..3))).collect()
     }
 
     fn answer(&self, question: &str) -> String {
@@ -155,7 +156,7 @@ impl Look<'_> {
 
     fn describe(&self) -> String {
         let mut named: Vec<(&str, u8)> = self.noticed();
-        named.extend(self.ghosts());
+        named.extend(self.hallucinated());
         named.shuffle(&mut self.rng("order"));
         let items: Vec<String> =
             named.iter().map(|(name, third)| format!("{} {}", article(name), place(*third))).collect();
@@ -167,15 +168,15 @@ impl Look<'_> {
     }
 
     fn part(&self, third: u8, lead: &str) -> String {
-        let all = self.noticed().into_iter().chain(self.ghosts());
+        let all = self.noticed().into_iter().chain(self.hallucinated());
         let there: Vec<String> = all.filter(|(_, at)| *at == third).map(|(name, _)| article(name)).collect();
         if there.is_empty() { "I am not sure.".to_owned() } else { format!("{lead} there is {}.", there.join(" and ")) }
     }
 
     fn presence(&self, question: &str) -> String {
         let real = self.scenery.things.iter().find(|thing| mentions(question, &thing.name));
-        let ghost = self.ghosts().into_iter().find(|(name, _)| mentions(question, name));
-        let (seen, third) = match (real, ghost) {
+        let object = self.hallucinated().into_iter().find(|(name, _)| mentions(question, name));
+        let (seen, third) = match (real, object) {
             (Some(Thing { name, third, .. }), _) => {
                 (!self.is(self.eye.blindness_share, &format!("blind {name}")), *third)
             }
@@ -229,14 +230,14 @@ mod tests {
         Thing { name: name.to_owned(), third: 1, colour: None }
     }
 
-    fn eye(ghost_share: f64) -> FlawedEye {
+    fn eye(hallucinated_share: f64) -> FlawedEye {
         let gallery = Gallery::default();
         for id in 0..500 {
             let names = ["bed", "lamp", "wardrobe", "mirror", "door", "table"];
             let things = names.iter().take(2 + id as usize % 5).map(|name| thing(name)).collect();
             gallery.hang(id, Scenery { room: Some("bedroom".into()), things });
         }
-        FlawedEye::new(gallery, 3, ghost_share)
+        FlawedEye::new(gallery, 3, hallucinated_share)
     }
 
     fn look<T>(eye: &FlawedEye, id: u64, see: impl FnOnce(&Look<'_>) -> T) -> T {
@@ -245,24 +246,24 @@ mod tests {
     }
 
     #[test]
-    fn ghosts_have_their_share_of_what_is_named() {
+    fn hallucinated_objects_have_their_share_of_what_is_named() {
         let eye = eye(0.15);
-        let counts = (0..500).map(|id| look(&eye, id, |look| (look.ghosts().len(), look.noticed().len())));
-        let (ghosts, real) = counts.fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
-        let share = ghosts as f64 / (ghosts + real) as f64;
+        let counts = (0..500).map(|id| look(&eye, id, |look| (look.hallucinated().len(), look.noticed().len())));
+        let (hallucinated, real) = counts.fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+        let share = hallucinated as f64 / (hallucinated + real) as f64;
         assert!((0.12..0.18).contains(&share), "{share}");
     }
 
     #[test]
-    fn most_ghosts_are_admitted_and_what_is_not_there_is_denied() {
+    fn most_hallucinated_objects_are_admitted_and_what_is_not_there_is_denied() {
         let eye = eye(0.3);
         let (mut admitted, mut asked) = (0, 0);
         for id in 0..500 {
             look(&eye, id, |look| {
-                for (ghost, _) in look.ghosts() {
+                for (object, _) in look.hallucinated() {
                     asked += 1;
                     admitted +=
-                        i32::from(look.answer(&format!("is there really {}?", article(ghost))).starts_with("No"));
+                        i32::from(look.answer(&format!("is there really {}?", article(object))).starts_with("No"));
                 }
                 assert!(look.answer("is there an elephant?").starts_with("No"));
             });

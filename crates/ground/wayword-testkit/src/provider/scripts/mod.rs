@@ -1,4 +1,5 @@
-//! Scripts for the roles of a run: they ask, sum up and write as a careless language model might, always in the same way.
+//! Scripts for the roles of a run. They ask, summarise and write like a careless language model, in the same way in every
+//! run.
 
 mod author;
 mod eye;
@@ -18,7 +19,8 @@ pub use questioner::Questioner;
 pub use summariser::Summariser;
 pub use troubles::Troubled;
 
-/// All roles behind one model name: a picture goes to the eye, and words to whoever the prompt is for.
+/// All roles behind one model name. A request with a picture goes to the eye, and any other to the role that its prompt
+/// is for.
 #[derive(Debug, Clone)]
 pub struct Cast {
     /// Sees.
@@ -32,7 +34,7 @@ pub struct Cast {
 }
 
 impl Cast {
-    /// A cast whose text roles each make a mistake with this probability.
+    /// A cast whose text roles make mistakes with this probability.
     #[must_use]
     pub fn new(eye: FlawedEye, seed: u64, carelessness: f64) -> Self {
         Self {
@@ -69,7 +71,7 @@ impl<F: Fn(&Heard) -> String + Send + Sync> Script for F {
     }
 }
 
-/// Chance that is the same for the same words.
+/// A generator whose draws are the same for the same words.
 fn rng(seed: u64, about: &str) -> ChaCha8Rng {
     let mut hash = Sha256::new();
     hash.update(seed.to_le_bytes());

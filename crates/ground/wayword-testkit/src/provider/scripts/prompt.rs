@@ -50,7 +50,7 @@ pub(super) fn denies(answer: &str) -> bool {
     answer.to_lowercase().starts_with("no")
 }
 
-/// The room that a transcript tells of.
+/// The room that a transcript names.
 pub(super) fn room<'a>(exchanges: &[(&str, &'a str)]) -> Option<&'a str> {
     let (_, answer) =
         exchanges.iter().find(|(question, answer)| question.contains("room") && answer.starts_with("This is a "))?;
@@ -71,7 +71,7 @@ pub(super) fn enumerate(items: &[String]) -> String {
     }
 }
 
-/// The first things of a panorama, in one sentence.
+/// The first four things of a panorama, in one sentence.
 pub(super) fn condensed(prompt: &str) -> String {
     let seen =
         prompt.split("It sees:").nth(1).and_then(|rest| rest.split("Describe the place").next()).unwrap_or_default();

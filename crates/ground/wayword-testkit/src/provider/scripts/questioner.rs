@@ -8,12 +8,12 @@ use super::{
 use crate::provider::Heard;
 use rand::Rng;
 
-/// Asks which room it is, whether what was named is really there, and what is on either side.
+/// Asks which room it is, whether the named objects are really there, and what is on either side.
 #[derive(Debug, Clone, Copy)]
 pub struct Questioner {
     /// Seed of its draws.
     pub seed: u64,
-    /// How often it talks around its question.
+    /// How often it adds other words to its question.
     pub chatter: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Sums a dialogue up, and is careless now and then.
+//! Sums up a dialogue, with mistakes now and then.
 
 use super::{
     Script,
@@ -8,12 +8,12 @@ use super::{
 use crate::provider::Heard;
 use rand::Rng;
 
-/// Names what was said to be there. Careless, it keeps what was denied, or adds a grand piano.
+/// Names the objects that were said to be there. When it is careless, it keeps those that were denied, or adds a piano.
 #[derive(Debug, Clone, Copy)]
 pub struct Summariser {
     /// Seed of its draws.
     pub seed: u64,
-    /// How often it is careless. Told what was wrong, it is not.
+    /// How often it is careless. When the prompt says what was wrong before, it never is.
     pub carelessness: f64,
 }
 

@@ -5,9 +5,9 @@ use crate::provider::Heard;
 use rand::Rng;
 use std::sync::Arc;
 
-/// Another script, but a share of its answers cannot be used: an equal part of them each is empty, the question, a loop of a few
-/// words, and one and the same sentence whatever was asked. The same request fares the same each time; the question in other
-/// words is another draw, so that asking again may help.
+/// Another script, but a share of its answers cannot be used. A quarter of these each is empty, the question, a loop of
+/// a few words, or one fixed sentence. The same request gets the same answer each time. The question in other words is
+/// another draw, so asking again may help.
 #[derive(Clone)]
 pub struct Troubled {
     script: Arc<dyn Script>,

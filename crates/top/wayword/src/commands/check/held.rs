@@ -1,22 +1,22 @@
-//! The style that each text is held to.
+//! The style that each text is checked against.
 
 use super::{CheckReport, walks::Text};
 use crate::{error::Error, styles};
 use wayword_core::{Constraints, Style};
 use wayword_synthesis::style::{built_in, built_in_names, hash};
 
-/// The styles that texts are held to.
+/// The styles that texts are checked against.
 pub(super) struct Held {
-    /// The one that was asked for, which holds for all.
+    /// The style that was asked for; it applies to all texts.
     given: Option<Style>,
-    /// The built-in ones with their hashes. A style of a user's own may have the name of one, never the hash.
+    /// The built-in styles with their hashes. A user's own style may have the name of one, but never its hash.
     known: Vec<(String, Style)>,
-    /// Asks for nothing.
+    /// A style without constraints.
     any: Style,
 }
 
 impl Held {
-    /// To a style by its name, or each text to its own.
+    /// Checks against a style by its name, or each text against its own.
     pub(super) fn to(style: Option<&str>, seed: u64) -> Result<Self, Error> {
         let given = style.map(|name| styles::find(&[name.to_owned()], seed)).transpose()?;
         let given = given.and_then(|mut styles| styles.pop()).map(|measured| measured.style);
@@ -26,7 +26,7 @@ impl Held {
         Ok(Self { given, known, any })
     }
 
-    /// The style of a text, or one that asks for nothing.
+    /// The style of a text, or one without constraints.
     pub(super) fn style_of(&self, text: &Text) -> &Style {
         self.given.as_ref().or_else(|| self.own(text)).unwrap_or(&self.any)
     }
@@ -36,7 +36,7 @@ impl Held {
         self.known.iter().find(|(hash, style)| *hash == named.hash && style.name == named.name).map(|(_, style)| style)
     }
 
-    /// Counts a text under its style; one of a dataset that names none is counted nowhere.
+    /// Counts a text under its style. A text of a dataset that names no style is not counted.
     pub(super) fn count(&self, text: &Text, report: &mut CheckReport) {
         let (styles, name) = match (self.given.as_ref().or_else(|| self.own(text)), &text.style) {
             (Some(style), _) => (&mut report.styles, &style.name),

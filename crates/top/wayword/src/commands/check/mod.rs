@@ -9,8 +9,8 @@ use crate::{
     error::{Error, Exit},
     output::Output,
     pipeline::panoramas,
+    platforms::{self, Remembering},
     settings::{Asked, Settings},
-    world::{self, Remembering},
 };
 use held::Held;
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ use wayword_checks::{Evidence, Subject, check};
 use wayword_core::{Check, Finding, Platform, Verdict};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
-    let report = check_file(&args.file, &Asked::from(args.world.clone()).resolve()?, args.style.as_deref(), output)?;
+    let report = check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, args.style.as_deref(), output)?;
     output.data(&report, Shown { report: &report, most: args.show });
     Ok(if report.failed == 0 { Exit::Done } else { Exit::WithLoss })
 }
@@ -35,11 +35,12 @@ pub struct CheckReport {
     pub unverified: usize,
     /// Texts that failed a check.
     pub failed: usize,
-    /// What the texts were held against.
+    /// What the texts were checked against.
     pub checked_against: Vec<String>,
-    /// The styles that texts were held against, with the number of texts; none of a dataset without `--style`.
+    /// The styles that texts were checked against, with the number of texts; empty for a dataset without `--style`.
     pub styles: BTreeMap<String, usize>,
-    /// The styles that texts name and that are not the built-in ones of that name, so that those texts were held against none.
+    /// Styles that texts name, but that differ from the built-in style of that name; those texts were checked against
+    /// none.
     pub unknown_styles: BTreeMap<String, usize>,
     /// Per check, the texts that passed, were unverified, or failed it.
     pub by_check: BTreeMap<&'static str, Counts>,
@@ -74,15 +75,15 @@ pub struct CheckedText {
 /// Checks every instruction of a file.
 ///
 /// # Errors
-/// When the file, the world or the style cannot be read. A path that does not fit the world is an error too: nothing about
-/// it could be checked.
+/// When the file, the platform's data or the style cannot be read. A path that does not fit the data is an error too,
+/// because nothing about it could be checked.
 pub fn check_file(
     file: &FilePath,
     settings: &Settings,
     style: Option<&str>,
     output: &Output,
 ) -> Result<CheckReport, Error> {
-    let platform = world::open(settings)?;
+    let platform = platforms::open(settings)?;
     let held = Held::to(style, settings.seed)?;
     let walks = walks(file, platform.as_ref())?;
     let bar = output.progress(walks.len(), "paths");
@@ -106,7 +107,7 @@ pub fn check_file(
     for text in walks.iter().flat_map(|walk| &walk.texts) {
         held.count(text, &mut report);
     }
-    // As the file has them, whichever were looked at together.
+    // Back into the order of the file: the texts of one path were checked together.
     texts.sort_by_key(|(at, _, _)| *at);
     for (_, text, findings) in texts {
         report.add(text, &findings);
@@ -114,7 +115,7 @@ pub fn check_file(
     Ok(report)
 }
 
-/// What texts were held against, and each with its place in the file and everything that was found.
+/// What texts were checked against, and each text with its place in the file and everything that was found.
 type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<Finding>)>);
 
 fn check_walk(platform: &dyn Platform, walk: &Walk, held: &Held) -> Result<CheckedWalk, Error> {
@@ -123,7 +124,7 @@ fn check_walk(platform: &dyn Platform, walk: &Walk, held: &Held) -> Result<Check
     let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
     let checked = walk.texts.iter().map(|text| {
         let style = held.style_of(text);
-        // People call a target what they like, so any object of the final viewpoint will do.
+        // People name a target as they like, so any object of the final viewpoint is accepted.
         let checked = check(&text.words, Subject { evidence: &evidence, style, target: None });
         let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
         let (path, words) = (text.path.clone(), text.words.clone());
@@ -191,8 +192,8 @@ impl fmt::Display for Shown<'_> {
         for (name, texts) in &report.unknown_styles {
             write!(
                 f,
-                "\nstyle {name} of this file is not the built-in one (a style of your own, or of another version), so the form \
-                 of {} was not checked: name the style with --style",
+                "\nstyle {name} in this file differs from the built-in one (it is your own, or of another version), so \
+                 the form of {} was not checked: name the style with --style",
                 count(*texts, "text")
             )?;
         }

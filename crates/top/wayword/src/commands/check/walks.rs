@@ -1,4 +1,4 @@
-//! The texts of a file, gathered by the way that they are about.
+//! The texts of a file, gathered by the path that they are about.
 
 use crate::error::Error;
 use std::{collections::BTreeMap, path::Path as FilePath};
@@ -9,7 +9,7 @@ use wayword_formats::{
 };
 use wayword_world::path_of;
 
-/// A way through the world, and every text about it: what is seen along it is looked up once for all of them.
+/// A path, and every text about it: what is seen along the path is looked up once for all of them.
 pub(super) struct Walk {
     pub(super) path: Path,
     pub(super) texts: Vec<Text>,
@@ -32,7 +32,7 @@ pub(super) struct Named {
     pub(super) hash: String,
 }
 
-/// The walks of a file, in their order.
+/// The paths of a file with their texts, in the order of the file.
 pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk>, Error> {
     let mut walks = Walks::default();
     if wayword_formats::detect(file)? == Format::Wayword {
@@ -43,7 +43,7 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
         return Ok(walks.all);
     }
     for episode in wayword_formats::read(file)? {
-        // A scene that is not here is told once, with its name.
+        // The first scene that is not there ends the check, with its name.
         let path = path_of(
             platform,
             &episode.id,
@@ -59,7 +59,7 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
     Ok(walks.all)
 }
 
-/// Walks, gathered from texts.
+/// Paths, gathered from texts.
 #[derive(Default)]
 struct Walks {
     all: Vec<Walk>,
@@ -67,7 +67,7 @@ struct Walks {
     texts: usize,
 }
 
-/// What evidence depends on: the scene, whether the motion is known, and each frame's place, heading and floor.
+/// What evidence depends on: the scene, whether the motion is known, and each frame's place, heading and storey.
 type Key = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
 
 impl Walks {
@@ -84,11 +84,12 @@ impl Walks {
     }
 }
 
-/// A record's path with the platform's own poses and floors where its frames are viewpoints: a file is not believed.
+/// A record's path with the platform's own poses and storeys if its frames are viewpoints: the file is not trusted.
 fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
     let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
     let Some(viewpoints) = viewpoints else { return Ok(path) };
-    // Names of pictures are no viewpoints. The world says whether it has any: a file is not believed in this either.
+    // Names of pictures are not viewpoints. The platform says whether it has any: the file is not trusted in this
+    // either.
     if !path.motion.is_known() && platform.graph(&path.scene)?.is_empty() {
         return Ok(path);
     }
@@ -123,6 +124,6 @@ mod tests {
         let mut other = path("1_7", 2.0);
         other.motion = Motion::Unknown;
         walks.add(other, "Stop.".into(), None);
-        assert_eq!(walks.all.len(), 3, "what is known of the motion is held against texts too");
+        assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
     }
 }

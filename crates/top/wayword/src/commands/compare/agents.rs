@@ -1,4 +1,4 @@
-//! Agents by their names, and what they decide by.
+//! Agents by their names, and their thresholds.
 
 use crate::{error::Error, text_file};
 use std::{collections::BTreeMap, path::Path};
@@ -7,12 +7,12 @@ use wayword_navigation::{
     comparison::{AgentKind, Walker},
 };
 
-/// The agent that walks by a detector.
+/// The agent that uses a detector.
 pub(super) const BY_DETECTOR: &str = "glip-nav";
 
-/// Hops of the random walks that stand beside the agents.
+/// Hops of the random baselines.
 pub(super) const RANDOM_HOPS: [usize; 2] = [5, 10];
-/// Hops of the walk straight ahead.
+/// Most hops of the baseline that walks straight ahead.
 pub(super) const STRAIGHT_HOPS: usize = 10;
 /// Random walks per item.
 pub(super) const RANDOM_WALKS: usize = 10;
@@ -20,11 +20,11 @@ pub(super) const RANDOM_WALKS: usize = 10;
 /// An agent.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Agent {
-    /// Walks by phrases; with a detector's grounder or that of whole views.
+    /// Walks by phrases, with the grounder of boxes or that of whole views.
     Phrases { name: String, parameters: Parameters, by_detector: bool },
-    /// So many random hops.
+    /// This many random hops.
     Random(usize),
-    /// So many hops straight ahead.
+    /// At most this many hops straight ahead.
     Straight(usize),
     /// To the nearest room of the kind that the text names.
     NearestRoom,
@@ -33,7 +33,7 @@ pub(super) enum Agent {
 }
 
 impl Agent {
-    /// The agents that were asked for, with the floors and ceilings that stand beside any.
+    /// The agents that were asked for, with the lower-bound baselines and upper bounds.
     pub(super) fn all(parameters: &BTreeMap<String, Parameters>, asked: &[String]) -> Vec<Self> {
         let reader = |name: &String| {
             let parameters = *parameters.get(name)?;
@@ -56,22 +56,22 @@ impl Agent {
         }
     }
 
-    /// What the comparison has to know of it.
+    /// The agent as the comparison takes it.
     pub(super) fn walker(&self) -> Walker {
         let (kind, reads) = match self {
             Self::Phrases { .. } => (AgentKind::Agent, true),
-            Self::Random(_) | Self::Straight(_) => (AgentKind::Floor, false),
+            Self::Random(_) | Self::Straight(_) => (AgentKind::LowerBound, false),
             Self::NearestRoom => (AgentKind::Informed, true),
-            Self::Oracle => (AgentKind::Ceiling, false),
+            Self::Oracle => (AgentKind::UpperBound, false),
         };
         Walker { name: self.name(), kind, reads }
     }
 }
 
-/// What each agent decides by: the defaults of its grounder, with what a file says instead.
+/// The thresholds of each agent: the defaults of its grounder, changed by a file.
 ///
 /// # Errors
-/// When an agent comes twice, or the file names what there is not.
+/// When an agent is named twice, or the file names an unknown agent or threshold.
 pub(super) fn parameters(
     names: &[String],
     grounder: &str,
@@ -89,11 +89,11 @@ pub(super) fn parameters(
         let own =
             own.map(|own| changed(&default, own).map_err(|problem| wrong(file.unwrap_or(Path::new("")), &problem)));
         if all.insert(name.clone(), own.transpose()?.unwrap_or(default)).is_some() {
-            return Err(Error::usage(format!("--agents {name}: it comes twice"), "name it once"));
+            return Err(Error::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
         }
     }
     match (tables.keys().next(), file) {
-        (Some(unused), Some(file)) => Err(wrong(file, &format!("no agent named {unused} walks"))),
+        (Some(unused), Some(file)) => Err(wrong(file, &format!("no agent of this command is named {unused}"))),
         _ => Ok(all),
     }
 }
@@ -106,7 +106,7 @@ fn wrong(file: &Path, problem: &str) -> Error {
 /// Parameters with some of their values changed.
 fn changed(default: &Parameters, own: toml::Value) -> Result<Parameters, String> {
     let mut table = toml::Table::try_from(default).map_err(|error| error.to_string())?;
-    let toml::Value::Table(own) = own else { return Err("an agent's parameters are a table".to_owned()) };
+    let toml::Value::Table(own) = own else { return Err("the thresholds of an agent must be a table".to_owned()) };
     for (name, value) in own {
         match (table.get_mut(&name), value) {
             (Some(toml::Value::Table(inner)), toml::Value::Table(own)) => inner.extend(own),
@@ -119,13 +119,13 @@ fn changed(default: &Parameters, own: toml::Value) -> Result<Parameters, String>
     let thresholds = [parameters.phrase_threshold, parameters.stop_threshold, threshold];
     let is_sane = parameters.max_hops <= 1000 && (1..=1000).contains(&window);
     if !is_sane {
-        return Err("max_hops is at most 1000, and back.window from 1 to 1000".to_owned());
+        return Err("max_hops must be at most 1000, and back.window from 1 to 1000".to_owned());
     }
     if thresholds.iter().any(|threshold| !threshold.is_finite()) {
-        return Err("a threshold is a finite number".to_owned());
+        return Err("a threshold must be a finite number".to_owned());
     }
     if default.back.is_none() && parameters.back.is_some() {
-        return Err("this agent never goes back: seq-clip-nav does".to_owned());
+        return Err("this agent never goes back; seq-clip-nav does".to_owned());
     }
     Ok(parameters)
 }

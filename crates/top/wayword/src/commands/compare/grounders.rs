@@ -6,7 +6,7 @@ use std::sync::Arc;
 use wayword_core::Grounder;
 use wayword_navigation::grounders::{Lexical, Sees, Similar};
 
-/// Who scores views for a comparison.
+/// What scores views in a comparison.
 pub(super) struct Grounders {
     /// For agents that look at whole views.
     pub(super) views: Box<dyn Grounder>,
@@ -20,7 +20,7 @@ impl Grounders {
     /// The grounders that a comparison names.
     ///
     /// # Errors
-    /// When there is none of that name, or its model cannot be had.
+    /// When there is none of that name, or its model cannot be loaded.
     pub(super) fn open(kept: &Kept, output: &Output) -> Result<Self, Error> {
         match (kept.grounder.as_str(), &kept.encoder) {
             ("labels", Some(encoder)) => {
@@ -37,16 +37,16 @@ impl Grounders {
                 if by_detector {
                     return Err(Error::usage(
                         format!("--grounder {name}: glip-nav needs a detector, and this program has no GLIP network"),
-                        "leave it out with --agents clip-nav,seq-clip-nav, or let it look for labels with --grounder labels",
+                        "leave glip-nav out with --agents clip-nav,seq-clip-nav, or use --grounder labels, whose detector reads labels",
                     ));
                 }
-                // Nobody looks for boxes then.
+                // No agent looks for boxes then.
                 let boxes = Box::new(Lexical::new(Sees::Boxes));
                 Ok(Self { views: clip(name, output)?, boxes, need_pictures: true })
             }
             (name, _) => Err(Error::usage(
                 format!("--grounder {name}: there is no such grounder"),
-                "name labels, labels/lexical, or a CLIP as hf/openai/clip-vit-base-patch32",
+                "give labels, labels/lexical, or a CLIP model as hf/openai/clip-vit-base-patch32",
             )),
         }
     }

@@ -1,11 +1,11 @@
-//! What a comparison was asked for: kept in its folder, so that it is continued as it was begun.
+//! The settings of a comparison, kept in its folder so that it is continued as it was begun.
 
 use crate::{
     cli::{Compare, SwapName},
     error::Error,
+    platforms,
     run::hash_of_file,
     settings::{Settings, nameable},
-    world,
 };
 use serde::{Deserialize, Serialize};
 use std::{
@@ -19,56 +19,56 @@ use wayword_navigation::{agents::Parameters, comparison::UNREAD, swap::Swap};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Kept {
-    /// Of the walks: those of another are not continued.
+    /// Format of the walks. Those of another format are not continued.
     pub(crate) format: u32,
     /// The platform's name.
     pub(crate) platform: String,
     /// Folder of its data.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) data: Option<PathBuf>,
-    /// Address of a platform that runs.
+    /// Address of a running simulator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) at: Option<String>,
-    /// The island of Habitat's ground that is walked on, where one is named.
+    /// The island of a Habitat navmesh, if one was named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) island: Option<usize>,
     /// The items.
     pub(crate) episodes: PathBuf,
-    /// Sets of instructions: name and source, in order; no source for the episodes' own.
+    /// Sets of instructions: name and source, in order. The source of `original` is empty.
     pub(crate) instructions: Vec<(String, String)>,
-    /// Who walks.
+    /// The agents.
     pub(crate) agents: Vec<String>,
-    /// Who scores views.
+    /// What scores views.
     pub(crate) grounder: String,
-    /// The sentence encoder, where the grounder needs one.
+    /// The sentence encoder, if the grounder needs one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) encoder: Option<String>,
-    /// Who takes instructions apart.
+    /// What splits instructions into phrases.
     pub(crate) split: String,
-    /// Where that model is reached, where not at its provider's own address.
+    /// Base URL of that model, if it is not its provider's default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) base_url: Option<String>,
     /// Swaps of the first set.
     pub(crate) swaps: Vec<Swap>,
-    /// Only so many items.
+    /// Only this many items.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limit: Option<usize>,
     /// Seed of everything random.
     pub(crate) seed: u64,
-    /// What the agents decide by.
+    /// Thresholds of the agents.
     pub(crate) parameters: BTreeMap<String, Parameters>,
     /// Hashes of the files that are read; a comparison is not continued with others.
     pub(crate) inputs: BTreeMap<String, String>,
 }
 
-/// Format of the walks, and of what agents make of what they see.
+/// Format of the walks. It also changes when agents decide otherwise.
 const FORMAT: u32 = 1;
 
 /// The set of the episodes' own instructions.
 pub(super) const ORIGINAL: &str = "original";
 
 impl Kept {
-    /// What the flags ask for, and what they resolve to where other commands have the same.
+    /// The settings that the flags ask for.
     ///
     /// # Errors
     /// When a set is named twice or not as it should be, an agent is not known, or a file cannot be read.
@@ -80,9 +80,12 @@ impl Kept {
         let mut inputs = BTreeMap::from([("episodes".to_owned(), hash_of_file(&args.episodes)?)]);
         for set in asked {
             let (name, source) = named(set)?;
-            // Submissions are named by their set, and not every file system tells cases apart.
+            // Submissions are named after their set, and some file systems ignore case.
             if instructions.iter().any(|(other, _)| other.to_lowercase() == name.to_lowercase()) {
-                return Err(Error::usage(format!("--instructions: {name} comes twice"), "give each set its own name"));
+                return Err(Error::usage(
+                    format!("--instructions: the name {name} is used twice"),
+                    "give each set its own name",
+                ));
             }
             if !source.is_empty() {
                 inputs.insert(format!("instructions {name}"), hash_of_file(&crate::texts::file_of(&source))?);
@@ -111,28 +114,31 @@ impl Kept {
         })
     }
 
-    /// The world that is walked.
+    /// The platform.
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub(super) fn world(&self) -> Result<Box<dyn Platform>, Error> {
-        world::open_to_tell(&self.platform, self.data.as_deref(), self.at.as_deref(), self.island)
+    pub(super) fn platform(&self) -> Result<Box<dyn Platform>, Error> {
+        platforms::open_and_warn(&self.platform, self.data.as_deref(), self.at.as_deref(), self.island)
     }
 }
 
-/// Whether a set can be called so: a file is named after it, and some names mean something else.
+/// Whether a set can have this name: a file is named after it, and some names have a meaning of their own.
 fn is_name(name: &str) -> bool {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     let is_taken = [ORIGINAL, UNREAD].contains(&name.to_lowercase().as_str());
     name.starts_with(char::is_alphanumeric) && name.chars().all(is_plain) && !is_taken
 }
 
-/// The swaps that were asked for; `none` stands alone.
+/// The swaps that were asked for. `none` cannot be combined.
 fn swaps(asked: &[SwapName]) -> Result<Vec<Swap>, Error> {
     let swaps: Vec<Swap> = asked.iter().filter_map(|swap| swap.swap()).collect();
     let is_twice = (1..swaps.len()).any(|at| swaps[..at].contains(&swaps[at]));
     if is_twice || (swaps.len() < asked.len() && asked.len() > 1) {
-        return Err(Error::usage("--swaps names a swap twice, or none beside others", "name each once, or none alone"));
+        return Err(Error::usage(
+            "--swaps names a swap twice, or `none` together with others",
+            "name each swap once, or only `none`",
+        ));
     }
     Ok(swaps)
 }
@@ -150,13 +156,13 @@ fn named(set: &str) -> Result<(String, String), Error> {
     match set.split_once('=') {
         Some((name, source)) if is_name(name) && !source.is_empty() => Ok((name.to_owned(), source.to_owned())),
         _ => Err(Error::usage(
-            format!("--instructions {set}: that names no set"),
-            "write original, or NAME=RUN#STYLE, as in --instructions central=runs/central#reverie",
+            format!("--instructions {set}: this does not name a set"),
+            "give `original` or NAME=RUN#STYLE, as in --instructions central=runs/central#reverie",
         )),
     }
 }
 
-/// A source's last part, for a page that is passed on should not tell of its maker's machine.
+/// The last part of a source, because a page that is passed on should not show the folders of its maker.
 pub(super) fn last_part(source: &str) -> String {
     Path::new(source).file_name().map_or_else(|| source.to_owned(), |name| name.to_string_lossy().into_owned())
 }

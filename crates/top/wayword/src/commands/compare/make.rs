@@ -3,19 +3,19 @@
 use super::{
     agents::{Agent, RANDOM_WALKS},
     grounders::Grounders,
-    sets::{Item, Told},
+    sets::{Item, Text},
 };
 use std::collections::BTreeMap;
 use wayword_core::{Platform, rng};
 use wayword_navigation::{
-    Eyes, WalkError,
+    AgentView, WalkError,
     agents::{Walked, last_room_in, nearest_room, oracle, random, straight, walk_by_phrases},
     comparison::UNREAD,
     directions::{Directions, Splitter},
     walk::Walk,
 };
 
-/// Who takes part.
+/// What makes the walks.
 pub(super) struct Crew<'a> {
     pub(super) platform: &'a dyn Platform,
     pub(super) grounders: &'a Grounders,
@@ -29,8 +29,8 @@ impl Crew<'_> {
     pub(super) fn names(&self, item: &Item) -> Vec<(String, String, usize)> {
         let of_agent = |agent: &Agent| {
             let read = |swapped_too: bool| {
-                let told = item.told.iter().filter(|told| swapped_too || !told.is_swapped);
-                told.map(|told| (told.set.clone(), told.index)).collect::<Vec<_>>()
+                let texts = item.texts.iter().filter(|text| swapped_too || !text.is_swapped);
+                texts.map(|text| (text.set.clone(), text.index)).collect::<Vec<_>>()
             };
             let unread = |walks| (0..walks).map(|index| (UNREAD.to_owned(), index)).collect();
             let places = match agent {
@@ -47,26 +47,27 @@ impl Crew<'_> {
     /// Every agent's walks for an item, in the order of agents, sets and texts.
     ///
     /// # Errors
-    /// When the world cannot be looked at, or a model fails.
+    /// When a view cannot be had, or a model fails.
     pub(super) fn walks(&self, item: &Item) -> Result<Vec<Walk>, WalkError> {
         let directions = self.directions(item)?;
-        let eyes = |grounder| Eyes::new(self.platform, grounder, self.grounders.need_pictures, &item.start.scene);
-        let (views, boxes) = (eyes(self.grounders.views.as_ref())?, eyes(self.grounders.boxes.as_ref())?);
+        let look_with =
+            |grounder| AgentView::new(self.platform, grounder, self.grounders.need_pictures, &item.start.scene);
+        let (views, boxes) = (look_with(self.grounders.views.as_ref())?, look_with(self.grounders.boxes.as_ref())?);
         let mut walks = Vec::new();
         for agent in self.agents {
             match agent {
                 Agent::Phrases { parameters, by_detector, .. } => {
-                    let eyes = if *by_detector { &boxes } else { &views };
-                    for told in &item.told {
-                        let directions = &directions[told.text.as_str()];
-                        let walked = walk_by_phrases(eyes, &item.start, directions, parameters)?;
-                        walks.push(walk(agent, item, told, Some(directions.clone()), walked));
+                    let agent_view = if *by_detector { &boxes } else { &views };
+                    for text in &item.texts {
+                        let directions = &directions[text.text.as_str()];
+                        let walked = walk_by_phrases(agent_view, &item.start, directions, parameters)?;
+                        walks.push(walk(agent, item, text, Some(directions.clone()), walked));
                     }
                 }
                 Agent::NearestRoom => {
-                    for told in item.told.iter().filter(|told| !told.is_swapped) {
-                        let walked = nearest_room(self.platform, &item.start, last_room_in(&told.text).as_deref())?;
-                        walks.push(walk(agent, item, told, None, walked));
+                    for text in item.texts.iter().filter(|text| !text.is_swapped) {
+                        let walked = nearest_room(self.platform, &item.start, last_room_in(&text.text).as_deref())?;
+                        walks.push(walk(agent, item, text, None, walked));
                     }
                 }
                 Agent::Random(_) | Agent::Straight(_) | Agent::Oracle => walks.extend(self.blind(agent, item)?),
@@ -75,20 +76,20 @@ impl Crew<'_> {
         Ok(walks)
     }
 
-    /// Each text of an item, taken apart once.
+    /// The texts of an item, each split once.
     fn directions<'i>(&self, item: &'i Item) -> Result<BTreeMap<&'i str, Directions>, WalkError> {
-        let mut texts: Vec<&str> = item.told.iter().map(|told| told.text.as_str()).collect();
+        let mut texts: Vec<&str> = item.texts.iter().map(|text| text.text.as_str()).collect();
         texts.sort_unstable();
         texts.dedup();
         let parts = self.splitter.split(&texts).into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(texts.into_iter().zip(parts).collect())
     }
 
-    /// Walks by nothing that anybody said.
+    /// The walks of an agent that reads no instruction.
     fn blind(&self, agent: &Agent, item: &Item) -> Result<Vec<Walk>, WalkError> {
         let graph = self.platform.graph(&item.start.scene)?;
         let goal = &item.episode.viewpoints[item.episode.viewpoints.len() - 1];
-        let unread = |index| Told { set: UNREAD.to_owned(), index, text: String::new(), is_swapped: false };
+        let unread = |index| Text { set: UNREAD.to_owned(), index, text: String::new(), is_swapped: false };
         let one = |walked| vec![walk(agent, item, &unread(0), None, walked)];
         Ok(match agent {
             Agent::Random(hops) => {
@@ -105,13 +106,13 @@ impl Crew<'_> {
     }
 }
 
-fn walk(agent: &Agent, item: &Item, told: &Told, directions: Option<Directions>, walked: Walked) -> Walk {
+fn walk(agent: &Agent, item: &Item, text: &Text, directions: Option<Directions>, walked: Walked) -> Walk {
     Walk {
         agent: agent.name(),
-        set: told.set.clone(),
+        set: text.set.clone(),
         item: item.episode.id.clone(),
-        text_index: told.index,
-        text: told.text.clone(),
+        text_index: text.index,
+        text: text.text.clone(),
         scene: item.start.scene.clone(),
         directions,
         steps: walked.steps,

@@ -42,7 +42,7 @@ pub(super) use page::{is_comparison, write_of_folder};
 
 /// Names of the files in a comparison's folder, beside `config.toml`.
 pub(crate) mod file {
-    /// Every walk, one line each.
+    /// The walks, one line each.
     pub(crate) const WALKS: &str = "walks.jsonl";
     /// The result.
     pub(crate) const COMPARISON: &str = "comparison.json";
@@ -53,7 +53,7 @@ pub(crate) mod file {
     pub(super) const SUBMISSIONS: &str = "submissions";
 }
 
-/// So many items that fail, and none that does not, end the work.
+/// The command gives up when this many items have failed and none was walked.
 const FRUITLESS: usize = 20;
 
 /// Items between two flushes to the disk.
@@ -63,12 +63,14 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
     Calls::ready(&job, output)?;
     let kept = Kept::of(args, &job.settings)?;
-    let platform = kept.world()?;
+    let platform = kept.platform()?;
     let demands = Demands::new(platform.as_ref());
     let (items, sizes, of_episodes) = sets::load(&kept, platform.as_ref(), &demands)?;
     let judge = Judge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
-        output.say(format_args!("success is judged by distance: item {item} names no object whose place is known"));
+        output.say(format_args!(
+            "success is judged by distance, because item {item} names no object whose place is known"
+        ));
     }
     let models = Models::of(&job)?;
     let grounders = Grounders::open(&kept, output)?;
@@ -93,7 +95,7 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let gathered = Gathered::of(&args.out, &judge)?;
     if gathered.results.extent().0 == 0 {
         let problem = "no item could be walked: a model failed on every one of them";
-        return Err(Error::usage(problem, "see what it said above; the same command tries again"));
+        return Err(Error::usage(problem, "see the reasons above; give the same command again to try again"));
     }
     let sets = sets::described(&kept, &items, &sizes, |item| gathered.results.has(item));
     let (resamples, results) = (args.resamples as usize, &gathered.results);
@@ -106,12 +108,13 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let walked = gathered.results.extent().0;
     if walked < of_episodes {
         let of = count(of_episodes, "item");
-        output.say(format_args!("submissions cover {walked} of {of}: `wayword evaluate` takes them with --partial"));
+        output
+            .say(format_args!("the submissions cover {walked} of {of}; score them with `wayword evaluate --partial`"));
     }
     Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
 }
 
-/// Who takes instructions apart.
+/// What splits instructions into phrases.
 fn splitter(name: &str, calls: Option<&Calls>) -> Result<Box<dyn Splitter>, Error> {
     match calls.filter(|_| name != RULES) {
         Some(calls) => Ok(Box::new(ByModel::new(calls.model(name)?))),
@@ -155,8 +158,7 @@ fn walk_all(
                     walked += 1;
                     made.iter().try_for_each(|walk| walks.append(walk))?;
                 }
-                // Nobody answers: the others would wait for the same.
-                // Nobody answers any more.
+                // The service is gone: the other items would wait for it too.
                 Err(error) if is_gone => return Err(error.into()),
                 Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == FRUITLESS => return Err(error.into()),
                 Err(error) if is_of_item(&error) => {
@@ -178,7 +180,7 @@ fn walk_all(
     Ok(failed)
 }
 
-/// What kind of failure it is, where a model failed.
+/// The kind of a failure, if a model failed.
 fn loss(error: &WalkError) -> Option<Failure> {
     match error {
         WalkError::Model(error) => Some(error.failure()),
@@ -186,7 +188,7 @@ fn loss(error: &WalkError) -> Option<Failure> {
     }
 }
 
-/// Whether a failure is one item's, so that the others may still be walked.
+/// Whether a failure concerns one item only, so that the others may still be walked.
 fn is_of_item(error: &WalkError) -> bool {
     matches!(error, WalkError::Model(ModelError::Failed { .. } | ModelError::Lost { .. }))
 }

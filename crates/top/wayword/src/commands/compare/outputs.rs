@@ -1,4 +1,4 @@
-//! What a comparison leaves in its folder.
+//! The files that a comparison writes to its folder.
 
 use super::{file, score::Judge};
 use crate::{error::Error, report, run::write_whole};
@@ -10,7 +10,7 @@ use wayword_navigation::{
     walk::Walk,
 };
 
-/// What is taken from the walks on the way.
+/// What one reading of the walks gathers.
 #[derive(Default)]
 pub(super) struct Gathered {
     pub(super) results: Results,

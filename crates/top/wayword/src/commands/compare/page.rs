@@ -26,38 +26,38 @@ pub(in crate::commands) fn is_comparison(folder: &Path) -> bool {
     kept.is_ok_and(|kept| kept.contains_key("agents"))
 }
 
-/// Writes the page of a comparison as its folder holds it; it needs the world and the episodes, not the sets of instructions.
+/// Writes the page of a finished comparison from its folder. It needs the platform and the episodes, but not the sets of instructions.
 ///
 /// # Errors
-/// When the folder, the world or the episodes cannot be read, or the page not written.
+/// When the folder, the platform or the episodes cannot be read, or the page cannot be written.
 pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<Written, Error> {
     let kept: Kept = run::config_of(folder)?;
     let path = folder.join(file::COMPARISON);
     if !path.is_file() {
         let problem = format!("{} holds a comparison that was not finished", folder.display());
-        return Err(Error::usage(problem, "give the command that began it again"));
+        return Err(Error::usage(problem, "give the command that began it once more"));
     }
     if kept.inputs.get("episodes") != Some(&run::hash_of_file(&kept.episodes)?) {
-        let problem = format!("{} is not the file that was compared on: it has changed", kept.episodes.display());
-        return Err(Error::usage(problem, "bring it back as it was, or compare anew in another folder"));
+        let problem = format!("{}: the file has changed since the comparison", kept.episodes.display());
+        return Err(Error::usage(problem, "put the old file back, or compare again in another folder"));
     }
     let found: Comparison = serde_json::from_str(&text_file::read(&path, "read the comparison")?).map_err(|error| {
         Error::usage(format!("{}: {error}", path.display()), "run `wayword compare` with the same --out again")
     })?;
-    let platform = kept.world()?;
+    let platform = kept.platform()?;
     let mut episodes = episodes::read(&kept.episodes, platform.as_ref())?;
     episodes.truncate(kept.limit.unwrap_or(usize::MAX));
     let items: Vec<_> = episodes.into_iter().map(|episode| sets::item(episode, &[])).collect();
-    // Not asked for by the rule: items that no set has may not be fit for it, and nobody walks them.
+    // Without the rule, because it may not apply to items that no set has, and those are not walked.
     let mut judge = Judge::new(&kept, &items, &Demands::new(platform.as_ref()), None)?;
     judge.rule = found.about.rule;
     write(folder, out, &found, &judge, platform.as_ref(), most)
 }
 
-/// Writes the page of a comparison with at most so many replays.
+/// Writes the page of a comparison with at most `most` replays.
 ///
 /// # Errors
-/// When the walks cannot be read, or the page not written.
+/// When the walks cannot be read, or the page cannot be written.
 pub(super) fn write(
     folder: &Path,
     out: &Path,
@@ -92,7 +92,7 @@ struct Shown {
     reference: Vec<ViewpointId>,
 }
 
-/// Goes over the walks twice, so that no more of them are held than are shown.
+/// Reads the walks twice, so that only those that are shown are kept in memory.
 fn choose(folder: &Path, judge: &Judge<'_>, most: usize) -> Result<(Vec<Shown>, usize), Error> {
     let mut sample = Sample::of(most);
     let mut at = 0_usize;

@@ -16,7 +16,7 @@ use wayword_navigation::{
     walk::Walk,
 };
 
-/// What intervals cover.
+/// Level of the intervals.
 const LEVEL: f64 = 0.95;
 
 /// Judges walks.
@@ -33,7 +33,7 @@ pub(super) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// A judge of these items, by the rule that was asked for; where nobody says, by visibility if every item has an object.
+    /// A judge of these items by the rule that was asked for; without one, by visibility if every item has an object.
     ///
     /// # Errors
     /// When a scene cannot be read, or the rule cannot be applied.
@@ -44,7 +44,7 @@ impl<'a> Judge<'a> {
             if let Some(unknown) = demand.reference.iter().find(|viewpoint| !distances.has(viewpoint)) {
                 let (file, id) = (kept.episodes.display(), &item.episode.id);
                 let problem = format!("{file}: episode {id}: scene {} has no viewpoint {unknown}", item.episode.scene);
-                return Err(Error::usage(problem, "take episodes and graphs of one release"));
+                return Err(Error::usage(problem, "use episodes and viewpoint graphs of the same release"));
             }
             demands.insert(item.episode.id.as_str(), (distances, demand));
         }
@@ -59,16 +59,16 @@ impl<'a> Judge<'a> {
             (None, None) => Rule::Visible,
         };
         let clusters = items.iter().map(|item| (item.episode.id.as_str(), episodes::cluster(&item.episode))).collect();
-        // What goes by labels can name an object; what looks at pictures cannot.
+        // A grounder of labels can name an object; one that looks at pictures cannot.
         let names_objects = kept.grounder.starts_with("labels");
         let without_object = blind.map(|item| item.episode.id.as_str());
         Ok(Self { demands, clusters, rule, names_objects, without_object })
     }
 
-    /// Hands every walk of a folder on, with its score and its item's demand.
+    /// Calls `take` with every walk of a folder, its score and the demand of its item.
     ///
     /// # Errors
-    /// When the walks cannot be read, or one is none over its scene's graph.
+    /// When the walks cannot be read, or one leaves the graph of its scene.
     pub(super) fn each(
         &self,
         folder: &Path,
@@ -76,7 +76,7 @@ impl<'a> Judge<'a> {
     ) -> Result<(), Error> {
         lines::each(&folder.join(file::WALKS), |line| {
             let walk: Walk = line.parse()?;
-            // The same folder may hold walks of more items, where --limit was changed by hand.
+            // The folder can hold walks of more items, if somebody edited the limit in config.toml.
             let Some((distances, demand)) = self.demands.get(walk.item.as_str()) else { return Ok(()) };
             let viewpoints = walk.steps.iter().map(|step| step.viewpoint.clone()).collect();
             let trajectory = Trajectory { viewpoints, object: walk.object.clone() };
@@ -129,7 +129,7 @@ pub(super) fn comparison(
     compare(about, sets, &walkers, &kept.swaps, results)
 }
 
-/// Whether the agents decide by defaults that were swept for their grounder.
+/// Whether the agents use thresholds that were chosen for their grounder.
 fn is_swept(kept: &Kept) -> bool {
     let has_sweep =
         kept.grounder == "labels/lexical" || kept.encoder.as_deref().is_some_and(|encoder| encoder != "words");

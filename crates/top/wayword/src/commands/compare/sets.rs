@@ -1,4 +1,4 @@
-//! Sets of instructions, brought together item by item.
+//! Sets of instructions, joined by item.
 
 use super::kept::{Kept, last_part};
 use crate::{cli::By, demands::Demands, episodes, error::Error, texts};
@@ -13,7 +13,7 @@ use wayword_navigation::{
     swap::{Candidate, Swap, other_path, swapped},
 };
 
-/// Goals nearer to each other than this are one goal, metres: what R2R takes for an arrival.
+/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
 const SAME_GOAL_M: f64 = 3.0;
 
 /// An item that every set has.
@@ -21,22 +21,22 @@ const SAME_GOAL_M: f64 = 3.0;
 pub(super) struct Item {
     pub(super) episode: Episode,
     pub(super) start: Start,
-    /// Everything that agents are told about it, in the order of the sets; then the swaps of the first.
-    pub(super) told: Vec<Told>,
+    /// Its instructions in the order of the sets, then the swapped ones of the first set.
+    pub(super) texts: Vec<Text>,
 }
 
 /// An instruction.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Told {
+pub(super) struct Text {
     pub(super) set: String,
     /// Its place among the item's texts in that set.
     pub(super) index: usize,
     pub(super) text: String,
-    /// Whether it is one of the first set, swapped.
+    /// Whether it is a swapped text of the first set.
     pub(super) is_swapped: bool,
 }
 
-/// The common items, how many items each set has by itself, and how many the episodes have.
+/// The common items, the number of items of each set, and the number of episodes.
 ///
 /// # Errors
 /// When a set cannot be read, or the sets have no item in common.
@@ -50,7 +50,7 @@ pub(super) fn load(
     let ids: BTreeSet<String> = episodes.iter().map(|episode| episode.id.clone()).collect();
     let mut all: Vec<(&str, BTreeMap<String, Vec<String>>)> = Vec::new();
     for (name, source) in &kept.instructions {
-        // The episodes' own texts are read as any set is: those of several styles are not mixed.
+        // The texts of the episodes are read like any set, because styles must not be mixed there either.
         let source = if source.is_empty() { kept.episodes.to_string_lossy().into_owned() } else { source.clone() };
         let mut texts = texts_of(&source)?;
         texts.retain(|item, texts| ids.contains(item) && !texts.is_empty());
@@ -60,7 +60,10 @@ pub(super) fn load(
     episodes.retain(|episode| all.iter().all(|(_, texts)| texts.contains_key(&episode.id)));
     if episodes.is_empty() {
         let problem = "the sets of instructions and the episodes have no item in common";
-        return Err(Error::usage(problem, "items are matched by id: give runs over the same --episodes"));
+        return Err(Error::usage(
+            problem,
+            "items are matched by id: give runs that were made with the same --episodes",
+        ));
     }
     let sizes = all.iter().map(|(_, texts)| texts.len()).collect();
     let mut items: Vec<Item> = episodes.into_iter().map(|episode| item(episode, &all)).collect();
@@ -68,21 +71,21 @@ pub(super) fn load(
     Ok((items, sizes, of_episodes))
 }
 
-/// What there is to say of each set, over the items that were walked.
+/// A description of each set, over the items that were walked.
 pub(super) fn described(kept: &Kept, items: &[Item], sizes: &[usize], is_walked: impl Fn(&str) -> bool) -> Vec<Set> {
     let describe = |((name, source), size): (&(String, String), &usize)| {
-        let told = || {
+        let texts = || {
             let walked = items.iter().filter(|item| is_walked(&item.episode.id));
-            walked.flat_map(|item| &item.told).filter(|told| told.set == *name)
+            walked.flat_map(|item| &item.texts).filter(|text| text.set == *name)
         };
-        let words: usize = told().map(|told| word_count(&told.text)).sum();
+        let words: usize = texts().map(|text| word_count(&text.text)).sum();
         let source = if source.is_empty() { kept.episodes.to_string_lossy().into_owned() } else { source.clone() };
         Set {
             name: name.clone(),
             source: last_part(&source),
-            texts: told().count(),
+            texts: texts().count(),
             left_out: size - items.len(),
-            words: words as f64 / told().count().max(1) as f64,
+            words: words as f64 / texts().count().max(1) as f64,
         }
     };
     kept.instructions.iter().zip(sizes).map(describe).collect()
@@ -95,21 +98,21 @@ fn texts_of(source: &str) -> Result<BTreeMap<String, Vec<String>>, Error> {
 /// An item with its texts of some sets.
 pub(super) fn item(episode: Episode, sets: &[(&str, BTreeMap<String, Vec<String>>)]) -> Item {
     let of_set = |(set, texts): &(&str, BTreeMap<String, Vec<String>>)| {
-        let told = |(index, text): (usize, &String)| Told {
+        let of_item = |(index, text): (usize, &String)| Text {
             set: (*set).to_owned(),
             index,
             text: text.clone(),
             is_swapped: false,
         };
-        texts.get(&episode.id).into_iter().flatten().enumerate().map(told).collect::<Vec<_>>()
+        texts.get(&episode.id).into_iter().flatten().enumerate().map(of_item).collect::<Vec<_>>()
     };
-    let told = sets.iter().flat_map(of_set).collect();
+    let texts = sets.iter().flat_map(of_set).collect();
     let start = Start {
         scene: episode.scene.clone(),
         viewpoint: episode.viewpoints[0].clone(),
         heading: episode.start_heading.unwrap_or(wayword_core::Heading::NORTH),
     };
-    Item { episode, start, told }
+    Item { episode, start, texts }
 }
 
 /// Adds each text of the first set in every swap that changes it.
@@ -117,7 +120,7 @@ fn add_swaps(items: &mut [Item], kept: &Kept, demands: &Demands<'_>) -> Result<(
     let Some((first, _)) = kept.instructions.first() else { return Ok(()) };
     let of_first: Vec<Vec<String>> = items
         .iter()
-        .map(|item| item.told.iter().filter(|told| told.set == *first).map(|told| told.text.clone()).collect())
+        .map(|item| item.texts.iter().filter(|text| text.set == *first).map(|text| text.text.clone()).collect())
         .collect();
     let elsewhere = if kept.swaps.contains(&Swap::OtherPath) { other_items(items, kept, demands)? } else { Vec::new() };
     for (at, item) in items.iter_mut().enumerate() {
@@ -130,15 +133,15 @@ fn add_swaps(items: &mut [Item], kept: &Kept, demands: &Demands<'_>) -> Result<(
                     }),
                     swap => swapped(*swap, text, kept.seed, &format!("{}_{index}", item.episode.id)),
                 };
-                let told = |text| Told { set: swapped_set(first, *swap), index, text, is_swapped: true };
-                item.told.extend(wrong.map(told));
+                let added = |text| Text { set: swapped_set(first, *swap), index, text, is_swapped: true };
+                item.texts.extend(wrong.map(added));
             }
         }
     }
     Ok(())
 }
 
-/// For each item, one of the same scene on another path whose goal is another; none where the scene has none.
+/// For each item, another of the same scene with another path and goal; `None` if the scene has none.
 fn other_items(items: &[Item], kept: &Kept, demands: &Demands<'_>) -> Result<Vec<Option<usize>>, Error> {
     let mut distances: BTreeMap<&wayword_core::SceneId, std::sync::Arc<Distances>> = BTreeMap::new();
     for item in items {

@@ -9,10 +9,10 @@ use std::{
 };
 use wayword_metrics::{Estimate, Metric, Rule, clustered_interval};
 
-/// What the intervals cover.
+/// Confidence level of the intervals.
 const LEVEL: f64 = 0.95;
 
-/// Figures that go by a rule of success; the others are the same for each.
+/// Figures that depend on the rule of success; the others are the same under every rule.
 const BY_RULE: [Metric; 4] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl, Metric::Sdtw];
 
 /// How the intervals are drawn.
@@ -33,23 +33,23 @@ pub(super) struct Report {
     /// Instructions and items that the episodes have, with or without a trajectory.
     of_instructions: usize,
     of_items: usize,
-    /// The items that count at most: the first of the episodes.
+    /// At most so many items count: the first of the episodes.
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<u32>,
-    /// Trajectories for later items than these.
+    /// Trajectories for later items, which do not count.
     left_out: usize,
     /// Instructions for which an object was named.
     objects_named: usize,
-    /// What the intervals cover. They are clustered by path.
+    /// Confidence level of the intervals, which are clustered by path.
     level: f64,
     #[serde(flatten)]
     drawn: Drawn,
     rules: Vec<ByRule>,
-    /// What goes by no rule of success.
+    /// Figures that do not depend on the rule of success.
     whatever_the_rule: BTreeMap<Metric, Figure>,
 }
 
-/// What goes by a rule of success.
+/// The figures under one rule of success.
 #[derive(Debug, Serialize)]
 struct ByRule {
     rule: Rule,
@@ -95,7 +95,7 @@ impl Report {
     }
 }
 
-/// A rule of success in words, with what it is to such episodes.
+/// A rule of success in words, and whether it is the official one for such episodes.
 fn words(rule: Rule, has_objects: bool) -> &'static str {
     match (rule, has_objects) {
         (Rule::Visible, _) => "the target is visible from the last viewpoint (REVERIE's official rule)",
@@ -106,7 +106,7 @@ fn words(rule: Rule, has_objects: bool) -> &'static str {
     }
 }
 
-/// The figures that some instruction has.
+/// The figures that at least one instruction has.
 fn figures(
     scored: &[Scored<'_>],
     rule: Rule,
@@ -135,7 +135,7 @@ impl fmt::Display for Report {
         if self.instructions < self.of_instructions {
             writeln!(
                 f,
-                "partial: these are {} of {} and {} of {} of {}; the figures are of these alone",
+                "partial: {} of {} and {} of {} of {} are scored; the figures are of these only",
                 self.instructions,
                 count(self.of_instructions, "instruction"),
                 self.items,
@@ -146,7 +146,7 @@ impl fmt::Display for Report {
         if let Some(limit) = self.limit {
             writeln!(
                 f,
-                "only the first {} of {} count; left out for later ones: {}",
+                "only the first {} of {} count; left out, because they are for later items: {}",
                 count(u64::from(limit), "item"),
                 self.episodes,
                 count(self.left_out, "trajectory")
@@ -156,12 +156,12 @@ impl fmt::Display for Report {
             writeln!(f, "\nsuccess: {words}")?;
             table(f, figures)?;
         }
-        writeln!(f, "\nwhatever counts as success")?;
+        writeln!(f, "\nindependent of the rule of success")?;
         table(f, &self.whatever_the_rule)?;
         if self.whatever_the_rule.contains_key(&Metric::Rgs) && self.objects_named == 0 {
             writeln!(f, "no trajectory names an object (predObjId), so RGS and RGSPL are 0")?;
         }
-        write!(f, "\nmeans over instructions; intervals of {:.0} %, clustered by path", self.level * 100.0)
+        write!(f, "\nmeans over instructions, with {:.0} % intervals, clustered by path", self.level * 100.0)
     }
 }
 

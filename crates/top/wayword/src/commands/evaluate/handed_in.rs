@@ -1,4 +1,4 @@
-//! What was handed in, held against the episodes: all of it is scored, or all that is wrong is told.
+//! Compares a submission with the episodes: all of it is scored, or all its problems are listed.
 
 use super::refusal::{Problem, Problems};
 use crate::{demands::Demands, episodes, error::Error};
@@ -16,7 +16,7 @@ pub(super) struct Scored<'e> {
     pub(super) instr_id: String,
     /// The item that the instruction belongs to.
     pub(super) item: &'e str,
-    /// The path that the item lies on, by its scene.
+    /// Scene and path of the item: figures are clustered by it.
     pub(super) path: String,
     /// Whether an object was named.
     #[serde(skip)]
@@ -25,21 +25,22 @@ pub(super) struct Scored<'e> {
     pub(super) score: Score,
 }
 
-/// All that counts of a submission, scored.
+/// The scored part of a submission.
 #[derive(Debug)]
 pub(super) struct All<'e> {
     /// In the order of the episodes.
     pub(super) scored: Vec<Scored<'e>>,
     /// Trajectories for items beyond the limit.
     pub(super) left_out: usize,
-    /// Instructions that there are, with or without a trajectory.
+    /// All instructions, with or without a trajectory.
     pub(super) instructions: usize,
-    /// Items that there are.
+    /// All items.
     pub(super) items: usize,
 }
 
-/// Scores every instruction of `episodes`; where `is_partial`, those that have a trajectory. What was handed in for the items
-/// `beyond` these is left out. Where anything is wrong: all problems, of the file and then in the order of the episodes.
+/// Scores every instruction of `episodes`, or if `is_partial` only those that have a trajectory. Trajectories for the
+/// items `beyond` these are left out. If anything is wrong, gives all problems: those of the file, then the others in
+/// the order of the episodes.
 ///
 /// # Errors
 /// When a scene cannot be read.
@@ -62,7 +63,8 @@ pub(super) fn score_all<'e>(
         let (distances, demand) = demands.of(episode)?;
         for instr_id in names(episode) {
             let Some(submitted) = by_id.remove(&instr_id) else {
-                // What was handed in wrongly is not missing, and what follows where the file broke off may not be.
+                // A flawed trajectory is not missing, and after the place where the file broke off it may not be
+                // either.
                 if is_whole && !is_partial && !flawed.contains(&instr_id) {
                     problems.add_missing(instr_id);
                 }
@@ -86,7 +88,7 @@ pub(super) fn score_all<'e>(
             }
         }
     }
-    // What nobody asked for and is not unknown either.
+    // What is left over are trajectories for the items beyond the limit.
     let all = All { scored, left_out: by_id.len(), instructions, items: episodes.len() };
     Ok(if problems.count() == 0 { Ok(all) } else { Err(problems) })
 }

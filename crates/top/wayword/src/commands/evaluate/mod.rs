@@ -10,8 +10,8 @@ use crate::{
     episodes,
     error::{Error, Exit},
     output::Output,
+    platforms,
     run::write_whole,
-    world,
 };
 use figures::{Drawn, Report};
 use handed_in::{Scored, score_all};
@@ -22,8 +22,12 @@ use wayword_metrics::Rule;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     refuse_to_overwrite(args)?;
-    let platform =
-        world::open_named(args.world.name(), args.world.data.as_deref(), args.world.at.as_deref(), args.world.island)?;
+    let platform = platforms::open_named(
+        args.platform.name(),
+        args.platform.data.as_deref(),
+        args.platform.at.as_deref(),
+        args.platform.island,
+    )?;
     let episodes = episodes::read(&args.episodes, platform.as_ref())?;
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
     let (episodes, beyond) = episodes.split_at(limit);
@@ -41,7 +45,7 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     };
     if all.scored.is_empty() {
         let problem = format!("{}: no instruction has a trajectory; nothing was scored", args.submission.display());
-        return Err(Error::usage(problem, "see that submission and --episodes belong to the same split"));
+        return Err(Error::usage(problem, "check that the submission and --episodes belong to the same split"));
     }
     let rules = rules(args, &all.scored)?;
     if let Some(file) = &args.per_item {
@@ -53,22 +57,22 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     Ok(Exit::Done)
 }
 
-/// The figures of each instruction must not take the place of what they are made from, by whatever name.
+/// Refuses a `--per-item` file that is one of the inputs, under whatever name.
 fn refuse_to_overwrite(args: &Args) -> Result<(), Error> {
     let Some(Ok(per_item)) = args.per_item.as_ref().map(fs::canonicalize) else {
-        // What is not there yet is no input.
+        // A file that does not exist yet is no input.
         return Ok(());
     };
     for input in [&args.submission, &args.episodes] {
         if fs::canonicalize(input).is_ok_and(|input| input == per_item) {
-            let problem = format!("--per-item would overwrite {}, which is to be read", input.display());
-            return Err(Error::usage(problem, "give --per-item a file of its own"));
+            let problem = format!("--per-item would overwrite {}, which this command reads", input.display());
+            return Err(Error::usage(problem, "give --per-item another file name"));
         }
     }
     Ok(())
 }
 
-/// The rules that are asked for and can be applied.
+/// The rules of success that are asked for and can be applied.
 fn rules(args: &Args, scored: &[Scored<'_>]) -> Result<Vec<Rule>, Error> {
     let has_visible = scored.iter().any(|scored| scored.score.visible.is_some());
     match args.rule.map(Rule::from) {

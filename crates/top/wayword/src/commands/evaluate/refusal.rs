@@ -13,17 +13,17 @@ const KEPT: usize = 100_000;
 /// Something that is wrong.
 #[derive(Debug, Serialize)]
 pub(super) struct Problem {
-    /// The instruction; none where the file itself is wrong, and says where.
+    /// The instruction; `None` if the file itself is wrong, and `problem` says where.
     instr_id: Option<String>,
     problem: String,
 }
 
-/// What is wrong, as far as it is kept.
+/// What is wrong, up to [`KEPT`] problems.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Problems {
     #[serde(rename = "problems")]
     told: Vec<Problem>,
-    /// How many more there are than are told.
+    /// How many more there are than are kept.
     untold: usize,
     /// How many of all are instructions without a trajectory.
     missing: usize,
@@ -61,7 +61,7 @@ impl Problems {
         self.add(|| Problem::new(instr_id, "it is missing: every instruction needs a trajectory"));
     }
 
-    /// Takes one; beyond the limit it is only counted, and not even made.
+    /// Takes a problem; beyond the limit it is only counted, and not even made.
     pub(super) fn add(&mut self, problem: impl FnOnce() -> Problem) {
         if self.told.len() < KEPT {
             self.told.push(problem());
@@ -92,7 +92,7 @@ impl Refusal {
                     format!("{without} without a trajectory: hand in all, or score the others with --partial")
                 }
                 _ if missing > 0 => {
-                    format!("fix the problems listed above; --partial overlooks {without} without a trajectory")
+                    format!("fix the problems listed above; --partial skips {without} without a trajectory")
                 }
                 _ => "fix the problems listed above; --json lists more of them".to_owned(),
             },
@@ -100,28 +100,28 @@ impl Refusal {
     }
 }
 
-/// Why a file is not taken for a submission at all, where it is something else that this program knows.
+/// The error for a file that is no submission, but something else that this program knows.
 pub(super) fn no_submission(file: &Path, reading: &Reading) -> Option<Error> {
     const HINT: &str = "give what an agent walked: a JSON list of {\"instr_id\": ..., \"trajectory\": [...]}, see \
                         `wayword evaluate --help`";
     if file.is_dir() {
         let folder = file.join("submissions");
         let hint = if folder.is_dir() { format!("name one of the files in {}", folder.display()) } else { HINT.into() };
-        return Some(Error::usage(format!("{}: it is a folder, and no submission", file.display()), hint));
+        return Some(Error::usage(format!("{}: it is a folder, not a submission", file.display()), hint));
     }
     if !reading.submitted.is_empty() || !reading.flawed.is_empty() {
         return None;
     }
     let format = wayword_formats::detect(file).ok()?;
     format.read(file).ok()?;
-    let problem = format!("{}: it is a dataset (format {format}), and no submission", file.display());
-    Some(Error::usage(problem, format!("{HINT}; the dataset belongs behind --episodes")))
+    let problem = format!("{}: it is a dataset (format {format}), not a submission", file.display());
+    Some(Error::usage(problem, format!("{HINT}; give the dataset with --episodes")))
 }
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Problem { instr_id, problem } in self.problems.told.iter().take(SHOWN) {
-            // A file's keys are quoted, and may hold what a terminal obeys.
+            // The problem quotes keys of the file, which may hold control characters that a terminal obeys.
             let problem = problem.replace(char::is_control, "\u{fffd}");
             match instr_id {
                 Some(instr_id) => writeln!(f, "{instr_id}: {problem}")?,

@@ -1,25 +1,26 @@
-//! What VLN-CE is told of a run's world: the scene's file, the corners of the way, the distance over the navmesh.
+//! What VLN-CE episodes say of a run's scenes: the scene's file, the corners of the path, the distance over the
+//! navmesh.
 
-use crate::{error::Error, run::settings_of, world};
+use crate::{error::Error, platforms, run::settings_of};
 use std::path::{Path, PathBuf};
 use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
 use wayword_formats::{Episode, InHabitat, jsonl::Record};
 
 /// Where habitat-lab keeps scenes: `scene_id` counts from there.
 const SCENES: &str = "scene_datasets";
-/// Corners that lie nearer to one another than this are one, metres.
+/// Corners that are nearer to each other than this are one corner, metres.
 const SAME_M: f64 = 1e-3;
 
-/// The world that a run was made in, as far as Habitat knows it.
+/// The platform that a run was made on, as far as Habitat knows its scenes.
 pub(super) struct World {
     /// Habitat's own scenes, with the folder or file that they come from.
     scenes: Option<(Box<dyn Platform>, PathBuf)>,
-    /// Why a scene of Habitat's was not asked, the first time that this was so.
+    /// Why the first Habitat scene that failed could not be read.
     lack: Option<String>,
 }
 
 impl World {
-    /// The world of a run's records. Where Habitat's scenes cannot be opened, it is a world without them.
+    /// The platform of a run's records. If Habitat's scenes cannot be opened, it has none.
     pub(super) fn of(run: &Path, records: &[Record]) -> Self {
         if !records.iter().any(|record| record.platform == "habitat") {
             return Self { scenes: None, lack: None };
@@ -30,7 +31,7 @@ impl World {
         }
     }
 
-    /// Tells an episode what Habitat needs of its world.
+    /// Adds to an episode what Habitat needs to know of its scene.
     pub(super) fn tell(&mut self, record: &Record, episode: &mut Episode) {
         let scene = &record.path.scene;
         match (record.platform.as_str(), &self.scenes) {
@@ -47,12 +48,12 @@ impl World {
         }
     }
 
-    /// What a reader has to know where scenes of Habitat's could not be opened.
+    /// The warning if Habitat scenes could not be opened.
     pub(super) fn warning(&self) -> Option<String> {
         let told = |lack: &String| {
             format!(
-                "warning: Habitat's scenes cannot be opened ({lack}): the corners and distances of their episodes are those of the \
-                 frames, and not of the navmesh"
+                "warning: the Habitat scenes cannot be opened ({lack}), so the corners and distances of their episodes \
+                 come from the frames, not from the navmesh"
             )
         };
         self.lack.as_ref().map(told)
@@ -63,7 +64,7 @@ impl World {
 fn scenes(run: &Path) -> Result<(Box<dyn Platform>, PathBuf), Error> {
     let settings = settings_of(run)?;
     let data = settings.data.clone().unwrap_or_default();
-    Ok((world::open(&settings)?, data))
+    Ok((platforms::open(&settings)?, data))
 }
 
 /// What is wrong, without the hint: a warning is one line.
@@ -71,7 +72,7 @@ fn first_line(error: &impl ToString) -> String {
     error.to_string().lines().next().unwrap_or_default().to_owned()
 }
 
-/// Tells an episode of its scene; where that fails, the episode is as before.
+/// Adds the scene to an episode; if that fails, the episode is as before.
 fn tell_of_scene(
     platform: &dyn Platform,
     data: &Path,
@@ -84,7 +85,8 @@ fn tell_of_scene(
     Ok(())
 }
 
-/// A scene's file as `scene_id` has it: below habitat-lab's folder of scenes where it lies in one, else below the run's data.
+/// A scene's file as `scene_id` names it: below habitat-lab's folder of scenes if it is in one, else below the run's
+/// data.
 fn below_scenes(file: &Path, data: &Path) -> String {
     let parts: Vec<_> = file.iter().map(|part| part.to_string_lossy()).collect();
     let below = match parts.iter().rposition(|part| part == SCENES) {
@@ -97,7 +99,7 @@ fn below_scenes(file: &Path, data: &Path) -> String {
     below.join("/")
 }
 
-/// A generated house, which Habitat can draw once it is saved.
+/// A generated house, which Habitat can show once it is saved.
 fn house(scene: &SceneId) -> InHabitat {
     let seed = scene.as_str().strip_prefix("house-").unwrap_or_default();
     InHabitat {
@@ -107,22 +109,23 @@ fn house(scene: &SceneId) -> InHabitat {
     }
 }
 
-/// A scene of Habitat's whose file cannot be found.
+/// A Habitat scene whose file cannot be found.
 fn without_scene(scene: &SceneId) -> InHabitat {
     let scene_id = format!("habitat/{scene}/{scene}.glb");
-    let needs = format!("put the scene's file at SCENES/{scene_id}, or export where the run's scenes can be opened");
+    let needs = format!("put the scene's file at SCENES/{scene_id}, or export on a machine that has the run's scenes");
     InHabitat { scene_id: Some(scene_id), scene_needs: Some(needs), geodesic_m: None }
 }
 
-/// A world of which Habitat has no scene.
+/// A platform whose scenes Habitat cannot read.
 fn unknown(platform: &str, scene: &SceneId) -> InHabitat {
     let scene_id = format!("{platform}/{scene}/{scene}.glb");
-    let needs = format!("put a scene of yours at SCENES/{scene_id}: platform {platform} gives none that Habitat reads");
+    let needs =
+        format!("put your own scene at SCENES/{scene_id}, because platform {platform} has none that Habitat can read");
     InHabitat { scene_id: Some(scene_id), scene_needs: Some(needs), geodesic_m: None }
 }
 
-/// Puts every corner of the way between two frames into the path, so that each hop is a straight walk, and the distance from start
-/// to goal over the navmesh beside it; nothing where a way cannot be asked for.
+/// Puts every corner of the way between two frames into the path, so that each hop is a straight walk, and adds the
+/// distance from start to goal over the navmesh. Does neither if the platform knows no ways.
 fn walk_around_corners(platform: &dyn Platform, walk: &Walk, episode: &mut Episode) -> Result<(), PlatformError> {
     let floors = &episode.floor_positions;
     let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();

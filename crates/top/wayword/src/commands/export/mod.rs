@@ -24,9 +24,10 @@ use wayword_formats::{
     write_sidecar,
 };
 
-/// Height of the eye over the floor, metres: Matterport3D's camera and the houses' walker. VLN-CE's positions lie on the floor.
+/// Height of the eye over the floor, metres: Matterport3D's camera, and the eye in houses. VLN-CE's positions are on
+/// the floor.
 const EYE_HEIGHT_M: f64 = 1.5;
-/// Scenes of which the screen says what they need.
+/// Most scenes for which the screen says what they need.
 const NEEDS_SHOWN: usize = 5;
 
 /// What was written.
@@ -36,7 +37,7 @@ struct Written {
     file: PathBuf,
     #[serde(skip_serializing_if = "Option::is_none")]
     provenance: Option<PathBuf>,
-    /// What has to be done before Habitat finds the scenes.
+    /// What the user has to do before Habitat finds the scenes.
     #[serde(skip_serializing_if = "BTreeSet::is_empty")]
     scene_needs: BTreeSet<String>,
 }
@@ -46,13 +47,13 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
         args.format.parse().map_err(|error| Error::usage(format!("{error}"), "see wayword export --help"))?;
     let mut records = records(&args.run, args.style.as_deref())?;
     if args.out.exists() {
-        output.say(format_args!("{} is replaced", args.out.display()));
+        output.say(format_args!("{} exists and is replaced", args.out.display()));
     }
     let mut scene_needs = BTreeSet::new();
     let provenance = if format == Format::Wayword {
         if let Some(share) = args.val_share {
             if !(0.0..=1.0).contains(&share) {
-                return Err(Error::usage(format!("--val-share {share} is no share"), "give a number from 0 to 1"));
+                return Err(Error::usage(format!("--val-share {share} is not a share"), "give a number from 0 to 1"));
             }
             split(&mut records, share, args.seed);
         }
@@ -66,23 +67,23 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
         write_as(format, &args.out, &records, episodes)?
     };
     if !scene_needs.is_empty() {
-        output.say(format_args!("before Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"));
+        output.say(format_args!("to do before Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"));
         scene_needs.iter().take(NEEDS_SHOWN).for_each(|needs| output.say(format_args!("  {needs}")));
         if let Some(more) = scene_needs.len().checked_sub(NEEDS_SHOWN).filter(|more| *more > 0) {
-            output.say(format_args!("  and {more} more: info.scene_needs of each episode"));
+            output.say(format_args!("  and {more} more; info.scene_needs of each episode says what it needs"));
         }
     }
     let written = Written { instructions: records.len(), file: args.out.clone(), provenance, scene_needs };
     let beside =
-        written.provenance.as_ref().map_or(String::new(), |file| format!(", provenance in {}", file.display()));
+        written.provenance.as_ref().map_or(String::new(), |file| format!("; provenance in {}", file.display()));
     output.data(
         &written,
-        format_args!("{} in {}{beside}", count(written.instructions, "instruction"), args.out.display()),
+        format_args!("{} written to {}{beside}", count(written.instructions, "instruction"), args.out.display()),
     );
     Ok(Exit::Done)
 }
 
-/// The records of runs, merged; only those of a style where one is named.
+/// The records of runs, merged; only those of one style if it is named.
 fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> {
     let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();
     let mut records = jsonl::merge(&files)?;
@@ -97,7 +98,8 @@ fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> 
 
 fn refuse_what_only_records_bear(args: &Export) -> Result<(), Error> {
     if args.run.len() > 1 {
-        return Err(Error::usage(format!("format {} holds one run", args.format), "merge runs with --format wayword"));
+        let problem = format!("format {} takes one run only", args.format);
+        return Err(Error::usage(problem, "merge runs with --format wayword"));
     }
     if args.val_share.is_some() {
         return Err(Error::usage(
@@ -114,7 +116,8 @@ fn refuse_what_only_records_bear(args: &Export) -> Result<(), Error> {
     Ok(())
 }
 
-/// Whether items have a place for provenance: VLN-CE's loader chokes on unknown fields, and R2R's items gather several instructions.
+/// Whether items have a place for provenance: VLN-CE's loader fails on unknown fields, and an R2R item holds several
+/// instructions.
 fn bears_provenance(format: Format) -> bool {
     matches!(format, Format::Reverie | Format::Rxr)
 }
@@ -134,7 +137,7 @@ fn episodes(format: Format, runs: &[PathBuf], records: &[Record], output: &Outpu
     if format == Format::Reverie { gathered(episodes) } else { episodes }
 }
 
-/// Writes one of the field's formats, and provenance beside it where its items have no place for it.
+/// Writes one of the field's formats, and a file of provenance beside it if the format's items have no place for that.
 fn write_as(format: Format, file: &Path, records: &[Record], episodes: Vec<Episode>) -> Result<Option<PathBuf>, Error> {
     match format {
         Format::R2r => r2r::write(file, &episodes)?,
@@ -153,11 +156,11 @@ fn write_as(format: Format, file: &Path, records: &[Record], episodes: Vec<Episo
     Ok(Some(write_sidecar(file, &lines)?))
 }
 
-/// All of the field's formats say where a walker stands and looks.
+/// Refuses recordings without poses, because all of the field's formats say where the agent stands and looks.
 fn refuse_without_poses(format: Format, records: &[Record]) -> Result<(), Error> {
     match records.iter().find(|record| !record.path.motion.is_known()) {
         Some(record) => Err(Error::usage(
-            format!("format {format} demands poses, and path {} is from a recording without any", record.path.id),
+            format!("format {format} needs poses, and path {} is from a recording without poses", record.path.id),
             "use --format wayword",
         )),
         None => Ok(()),

@@ -4,7 +4,7 @@ use crate::{
     error::Error,
     item::Item,
     pictures,
-    pipeline::{Made, RunWorld},
+    pipeline::{Made, RunPlatform},
     run::{FailedItem, Map, Rejected, RunFolder, WalkRecord, extra},
     styles::Measured,
 };
@@ -14,18 +14,18 @@ use wayword_synthesis::repair::Outcome;
 
 /// What became of an item.
 pub(super) enum Fate {
-    /// It stands in the run folder, as instructions and rejected texts.
+    /// The run folder holds it, as instructions and rejected texts.
     Made,
-    /// It stands in the run folder as one that failed. The same command takes it up again.
+    /// The run folder holds it as an item that failed. The same command tries it again.
     Failed(Failure, String),
-    /// It was given up because nothing more can be asked for, with the reason. The same command takes it up again.
+    /// It was given up because no more calls are possible, with the reason. The same command tries it again.
     Stopped(Error),
 }
 
-/// Writes what became of an item: pictures and walk first, so that an instruction never stands without its evidence.
+/// Writes what became of an item: pictures and path first, so that no instruction is there without its evidence.
 pub(super) fn keep(
     run: &mut RunFolder,
-    world: RunWorld<'_>,
+    world: RunPlatform<'_>,
     item: &Item,
     made: Result<Made, Error>,
     styles: &[Measured],
@@ -46,7 +46,7 @@ pub(super) fn keep(
 
 fn made_item(
     run: &mut RunFolder,
-    world: RunWorld<'_>,
+    world: RunPlatform<'_>,
     item: &Item,
     made: Made,
     styles: &[Measured],

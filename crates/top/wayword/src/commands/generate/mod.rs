@@ -14,12 +14,12 @@ use crate::{
     interrupt,
     item::Item,
     output::Output,
-    pipeline::{RunWorld, make},
+    pipeline::{RunPlatform, make},
     plan::Plan,
+    platforms,
     run::{RunFolder, WorldData, continued},
     settings::Job,
     team::Team,
-    world,
 };
 use keep::keep;
 use progress::Progress;
@@ -31,7 +31,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
     if args.dry_run {
         Calls::rehearse(&job)?;
-        let platform = world::open(&job.settings)?;
+        let platform = platforms::open(&job.settings)?;
         let estimate = Plan::writing(&job, platform.as_ref())?.estimate()?;
         output.data(&estimate, &estimate);
         return Ok(Exit::Done);
@@ -47,12 +47,12 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
 /// Makes or continues a run.
 ///
 /// # Errors
-/// When the settings, the world, the styles, the folder or the ledger are wrong. An item that fails is a line of
+/// When the settings, the platform, the styles, the folder or the ledger are wrong. An item that fails is a line of
 /// `errors.jsonl`, and the next command tries it again.
 pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summary, Error> {
     Calls::ready(job, output)?;
     let job = &Job { settings: continued(folder, &job.settings)?, ..job.clone() };
-    let platform = world::open(&job.settings)?;
+    let platform = platforms::open(&job.settings)?;
     let plan = Plan::writing(job, platform.as_ref())?;
     let settings = &plan.settings()?;
     let mut run = RunFolder::open(folder, settings)?;
@@ -64,12 +64,14 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
     let left = run.left(items, &names);
     if left.len() < items.len() {
-        output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
+        let done = items.len() - left.len();
+        let (all, left) = (count(items.len(), "item"), left.len());
+        output.say(format_args!("continuing: {done} of {all} done and kept, {left} to do"));
     }
     let _graceful = interrupt::finish_first(calls.as_ref());
     let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
-    let world = RunWorld { platform: platform.as_ref(), data: Some(&data) };
+    let world = RunPlatform { platform: platform.as_ref(), data: Some(&data) };
     let making = |item: &&Item| {
         interrupt::check()?;
         make(item, settings, world, &team, styles)

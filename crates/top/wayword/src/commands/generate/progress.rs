@@ -12,7 +12,7 @@ use crate::{
 use indicatif::ProgressBar;
 use wayword_core::Failure;
 
-/// Items between two flushes to the disk: few enough to lose little when the machine fails.
+/// Items between two flushes to the disk: few, so that little is lost when the machine fails.
 const FLUSH: usize = 16;
 
 /// Why a run stopped before its end.
@@ -25,11 +25,11 @@ pub(super) struct Stop {
 pub(super) struct Progress<'a> {
     bar: ProgressBar,
     calls: Option<&'a Calls>,
-    /// Items that nobody has taken up yet in this command.
+    /// Items that are not finished yet.
     left: usize,
     unflushed: usize,
     losses: Losses,
-    /// Why every item so far has failed, where it is the same for all, and how many these are.
+    /// Why every item so far has failed, if the reason is the same for all, and how many items these are.
     nothing_but: Option<(String, usize)>,
     stop: Option<Stop>,
 }
@@ -38,7 +38,7 @@ impl<'a> Progress<'a> {
     pub(super) fn new(output: &Output, items: usize, left: usize, calls: Option<&'a Calls>) -> Self {
         let bar = output.progress(items, "items");
         bar.set_position((items - left) as u64);
-        // What earlier commands did tells nothing of the pace.
+        // The items that earlier commands finished say nothing about the pace.
         bar.reset_eta();
         Self {
             bar,
@@ -55,7 +55,7 @@ impl<'a> Progress<'a> {
     pub(super) fn takes_note(&mut self, run: &mut RunFolder, fate: Fate) -> Result<bool, Error> {
         let failed = match fate {
             Fate::Stopped(error) => {
-                // A call that an interrupt cut off looks like one that the ledger did not let out.
+                // A call that an interrupt cut off looks like one that the ledger refused to send.
                 self.stop = interrupted().or_else(|| Some(Stop { reason: error.to_string(), exit: Exit::Stopped }));
                 return Ok(false);
             }
@@ -76,15 +76,16 @@ impl<'a> Progress<'a> {
             let (_, reason) = failed?;
             let (what, exit) = match (is_lost, lacks) {
                 (true, _) => ("were lost", Exit::Lost),
-                (false, true) => ("have failed alike", Exit::BadInput),
+                (false, true) => ("failed for the same reason", Exit::BadInput),
                 (false, false) => return None,
             };
-            Some(Stop { reason: format!("{MOST_IN_A_ROW} items in a row {what}, the last with: {reason}"), exit })
+            Some(Stop { reason: format!("{MOST_IN_A_ROW} items in a row {what}; the last reason: {reason}"), exit })
         });
         Ok(self.stop.is_none())
     }
 
-    /// Whether the first items of a run all lack the same, so that the others will, too: a model that sees, say.
+    /// Whether the first items of a run all failed because the same is missing (a model that sees, say), so that the
+    /// others would fail too.
     fn lacks_for_all(&mut self, failed: Option<&(Failure, String)>) -> bool {
         self.nothing_but = match (self.nothing_but.take(), failed) {
             (Some((_, 0)), Some((Failure::Missing, reason))) => Some((reason.clone(), 1)),
@@ -94,7 +95,7 @@ impl<'a> Progress<'a> {
         self.nothing_but.as_ref().is_some_and(|(_, number)| *number >= MOST_IN_A_ROW)
     }
 
-    /// Why the run stopped before its end, where it did.
+    /// Why the run stopped before its end, if it did.
     pub(super) fn end(self) -> Option<Stop> {
         self.bar.finish_and_clear();
         self.stop
@@ -110,5 +111,6 @@ impl<'a> Progress<'a> {
 }
 
 fn interrupted() -> Option<Stop> {
-    interrupt::is_asked().then(|| Stop { reason: Error::Interrupted.to_string(), exit: Exit::Interrupted })
+    let reason = "interrupted\nhint: give the same command again; it keeps the finished items and makes the others";
+    interrupt::is_asked().then(|| Stop { reason: reason.to_owned(), exit: Exit::Interrupted })
 }

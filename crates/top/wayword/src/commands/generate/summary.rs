@@ -1,4 +1,4 @@
-//! What a run came to.
+//! The summary of a run.
 
 use super::progress::Stop;
 use crate::{
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{fmt, path::Path};
 use wayword_core::{Provenance, Verdict};
 
-/// What a run came to.
+/// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// The run folder.
@@ -27,17 +27,18 @@ pub struct Summary {
     pub finished_by_rules: usize,
     /// Instructions, or whole items, that were rejected.
     pub rejected: usize,
-    /// Items that failed: something is missing or broken, or the world or a service was lost. The same command tries them again.
+    /// Items that failed: something is missing or broken, or the platform or a service was lost. The same command tries
+    /// them again.
     pub errors: usize,
     /// What became of the first item that failed, else of the first that was rejected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first_loss: Option<String>,
-    /// Who perceived and wrote.
-    pub minds: String,
-    /// What the calls of this command came to, where models took part.
+    /// Who asked, answered, summarised and wrote.
+    pub roles: String,
+    /// Calls, tokens and money of this command, if models took part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spent: Option<Spent>,
-    /// Why the run stopped before its end, where it did.
+    /// Why the run stopped before its end, if it did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
     /// The exit code that says so.
@@ -52,13 +53,13 @@ pub(super) fn summary(
     spent: Option<Spent>,
     stopped: Option<Stop>,
 ) -> Result<Summary, Error> {
-    let (mut passed, mut unverified, mut finished, mut minds) = (0, 0, 0, None);
+    let (mut passed, mut unverified, mut finished, mut roles) = (0, 0, 0, None);
     lines::each(&folder.join(file::INSTRUCTIONS), |line| {
         let Told { verdict, provenance } = line.parse()?;
         passed += usize::from(verdict == Verdict::Pass);
         unverified += usize::from(verdict == Verdict::Unverified);
         finished += usize::from(provenance.finished_for.is_some());
-        minds.get_or_insert_with(|| told(&provenance));
+        roles.get_or_insert_with(|| told(&provenance));
         Ok(())
     })?;
     let exit = match (&stopped, run.rejected.len() + run.errors.len()) {
@@ -78,7 +79,7 @@ pub(super) fn summary(
             None => first_rejection(&folder.join(file::REJECTED))?,
             failed => failed,
         },
-        minds: minds.unwrap_or_default(),
+        roles: roles.unwrap_or_default(),
         spent,
         stopped: stopped.map(|stop| stop.reason),
         exit,
@@ -106,7 +107,7 @@ fn first_line<T: DeserializeOwned>(file: &Path) -> Result<Option<T>, Error> {
     Ok(first)
 }
 
-/// The fields of an instruction's line that are counted and told.
+/// The fields of an instruction's line that the summary counts and shows.
 #[derive(Deserialize)]
 struct Told {
     verdict: Verdict,
@@ -115,7 +116,7 @@ struct Told {
 
 fn told(provenance: &Provenance) -> String {
     format!(
-        "{} asked, {} answered, {} summed up, {} wrote, checked against {}",
+        "{} asked, {} answered, {} summarised, {} wrote, checked against {}",
         provenance.asker,
         provenance.answerer,
         provenance.summariser,
@@ -126,26 +127,27 @@ fn told(provenance: &Provenance) -> String {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let so_far = if self.stopped.is_some() { " in the run, so far" } else { "" };
         writeln!(
             f,
-            "{}: {} passed every check, {} unverified, {} rejected",
+            "{}{so_far}: {} passed every check, {} unverified, {} rejected",
             count(self.items, "item"),
             count(self.passed, "instruction"),
             self.unverified,
             self.rejected
         )?;
         if self.errors > 0 {
-            writeln!(f, "{} failed (errors.jsonl); the same command tries again", count(self.errors, "item"))?;
+            writeln!(f, "{} failed (see errors.jsonl); the same command tries again", count(self.errors, "item"))?;
         }
         if let Some(loss) = &self.first_loss {
-            writeln!(f, "the first of them, {}", tame(loss))?;
+            writeln!(f, "the first of them: {}", tame(loss))?;
         }
-        if !self.minds.is_empty() {
-            writeln!(f, "minds: {}", self.minds)?;
+        if !self.roles.is_empty() {
+            writeln!(f, "roles: {}", self.roles)?;
         }
         if self.finished_by_rules > 0 {
             let finished = count(self.finished_by_rules, "instruction");
-            writeln!(f, "{finished} written by rules, after the model's had failed")?;
+            writeln!(f, "{finished} written by rules, because every text of the model failed a check")?;
         }
         if let Some(spent) = &self.spent {
             writeln!(f, "models: {spent}")?;

@@ -13,10 +13,10 @@ use crate::{
     losses::Losses,
     output::Output,
     plan::Plan,
+    platforms,
     run::fresh_id,
     settings::{Job, Perception, Settings},
     team::Team,
-    world,
 };
 use serde::Serialize;
 use table::Table;
@@ -36,8 +36,8 @@ pub struct Measured {
     pub platform: String,
     /// Views with labels that were captioned.
     pub views: usize,
-    /// Who asked, answered and summed up.
-    pub minds: String,
+    /// Who asked, answered and summarised.
+    pub roles: String,
     /// One per way of asking.
     pub rows: Vec<Row>,
     /// Captions, where they were asked for.
@@ -55,10 +55,10 @@ struct Shown {
     heading_deg: f64,
     perception: Perception,
     caption: String,
-    ghosts: Vec<String>,
+    hallucinated: Vec<String>,
 }
 
-/// What became of a view.
+/// The caption of a view, and how well it fits the labels.
 struct Captioned {
     caption: Caption,
     score: Score,
@@ -66,11 +66,11 @@ struct Captioned {
 
 pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
     let mut asked = args.asked().or(config::read(args.config.as_deref())?);
-    // As many random paths as views are enough: each new one gives at least a view.
+    // As many random paths as views are enough, because each new path gives at least one view.
     asked.walks.paths = asked.walks.episodes.is_none().then_some(args.views);
     let job = asked.job()?;
     Calls::ready(&job, output)?;
-    let platform = world::open(&job.settings)?;
+    let platform = platforms::open(&job.settings)?;
     let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or(WAYS.to_vec());
     let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;
     output.data(&measured, Table(&measured));
@@ -86,10 +86,10 @@ pub struct Extent {
     pub show: usize,
 }
 
-/// Captions views in several ways, and holds the captions against the views' labels.
+/// Captions views in several ways, and checks the captions against the views' labels.
 ///
 /// # Errors
-/// When no view has labels, a model cannot be reached, or nothing more can be asked for.
+/// When no view has labels, a model cannot be reached, or no more calls are possible.
 pub fn perceive(
     platform: &dyn Platform,
     job: &Job,
@@ -104,7 +104,7 @@ pub fn perceive(
     let mut measured = Measured {
         platform: job.settings.platform.clone(),
         views: views.len(),
-        minds: minds(&job.settings),
+        roles: roles(&job.settings),
         rows: Vec::new(),
         shown: Vec::new(),
     };
@@ -119,7 +119,7 @@ pub fn perceive(
                 heading_deg: view.view.pose.heading.rad().to_degrees().round(),
                 perception,
                 caption: caption.text.clone(),
-                ghosts: score.ghosts.clone(),
+                hallucinated: score.hallucinated.clone(),
             })
         });
         measured.shown.extend(shown.take(extent.show));
@@ -131,9 +131,9 @@ pub fn perceive(
     Ok(measured)
 }
 
-fn minds(settings: &Settings) -> String {
+fn roles(settings: &Settings) -> String {
     let roles = &settings.roles;
-    format!("asked by {}, answered by {}, summed up by {}", roles.ask, roles.see, roles.summarise)
+    format!("asked by {}, answered by {}, summarised by {}", roles.ask, roles.see, roles.summarise)
 }
 
 /// Captions every view in one way.
@@ -148,14 +148,14 @@ fn measure(
     let before = asked();
     let bar = output.progress(views.len(), "views");
     let mut captions = Vec::new();
-    let make = |view: &Labelled| talk_about(&view.view, team.minds());
+    let make = |view: &Labelled| talk_about(&view.view, team.observers());
     let mut losses = Losses::default();
     in_order(views, calls.map_or_else(cores, Calls::workers), make, |view, caption| {
         bar.inc(1);
         if losses.are_enough(caption.as_ref().err().map(ModelError::failure))
             && let Err(error) = caption
         {
-            // Nobody answers any more.
+            // The model does not answer any more.
             return Err(error.into());
         }
         captions.push(captioned(view, caption, output)?);
@@ -166,7 +166,8 @@ fn measure(
     Ok((captions, row))
 }
 
-/// A view that a model would not caption is left out, and counted; when nothing more can be asked for, the measurement ends.
+/// A view that the model did not caption is left out and counted. When no more calls are possible, the measurement
+/// ends.
 fn captioned(
     view: &Labelled,
     caption: Result<Caption, ModelError>,

@@ -15,18 +15,18 @@ pub struct Row {
     pub perception: Perception,
     /// Views that were captioned.
     pub captions: usize,
-    /// Views that a model would not caption.
+    /// Views that the model did not caption.
     pub failed: usize,
     /// Different objects that captions named, summed over captions.
     pub named: usize,
     /// Share of them that a label agrees with.
     pub precision: f64,
-    /// Share of them that are not there.
-    pub ghost_rate: f64,
+    /// Share of them that no label confirms.
+    pub hallucination_rate: f64,
     /// Share of the different labels of a view that its caption names.
     pub recall: f64,
-    /// Share of captions that hold a ghost.
-    pub captions_with_ghosts: f64,
+    /// Share of captions that name a hallucinated object.
+    pub captions_with_hallucinations: f64,
     /// Questions per view that were answered, the opening among them.
     pub questions_per_view: f64,
     /// Calls to models per view, those among them that the ledger answered.
@@ -38,17 +38,17 @@ impl Row {
         let captioned: Vec<&Captioned> = captions.iter().flatten().collect();
         let sum = |count: fn(&Captioned) -> usize| captioned.iter().map(|one| count(one)).sum::<usize>();
         let named = sum(|one| one.score.named);
-        let ghosts = sum(|one| one.score.ghosts.len());
-        let haunted = sum(|one| usize::from(!one.score.ghosts.is_empty()));
+        let hallucinated = sum(|one| one.score.hallucinated.len());
+        let with_hallucinations = sum(|one| usize::from(!one.score.hallucinated.is_empty()));
         Self {
             perception,
             captions: captioned.len(),
             failed: captions.len() - captioned.len(),
             named,
-            precision: share(named - ghosts, named),
-            ghost_rate: share(ghosts, named),
+            precision: share(named - hallucinated, named),
+            hallucination_rate: share(hallucinated, named),
             recall: share(sum(|one| one.score.found), sum(|one| one.score.labelled)),
-            captions_with_ghosts: share(haunted, captioned.len()),
+            captions_with_hallucinations: share(with_hallucinations, captioned.len()),
             questions_per_view: share(sum(|one| one.caption.transcript.len()), captioned.len()),
             calls_per_view: calls as f64 / captions.len().max(1) as f64,
         }
@@ -65,37 +65,45 @@ pub(super) struct Table<'a>(pub(super) &'a Measured);
 
 impl fmt::Display for Table<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Measured { platform, views, minds, rows, shown } = self.0;
-        writeln!(f, "{} of {platform}; {minds}", count(*views, "view"))?;
-        if minds.contains(&format!("answered by {LABELS}")) {
-            writeln!(f, "labels answer: this measures how words come through, not perception")?;
+        let Measured { platform, views, roles, rows, shown } = self.0;
+        writeln!(f, "{} of {platform}; {roles}", count(*views, "view"))?;
+        if roles.contains(&format!("answered by {LABELS}")) {
+            writeln!(
+                f,
+                "The ground-truth labels answered here, and no model: the figures show what the dialogue loses, not \
+                 how well a model sees."
+            )?;
         }
         writeln!(f)?;
-        writeln!(f, "asked      objects  precision  recall  ghosts  with ghost  questions  calls")?;
+        writeln!(f, "asked      objects  precision  recall  hallucinated  with one  questions  calls")?;
         for row in rows {
             writeln!(
                 f,
-                "{:<10} {:>7}  {:>8.1}%  {:>5.1}%  {:>5.1}%  {:>9.1}%  {:>9.1}  {:>5.1}",
+                "{:<10} {:>7}  {:>8.1}%  {:>5.1}%  {:>11.1}%  {:>7.1}%  {:>9.1}  {:>5.1}",
                 name(row.perception),
                 row.named,
                 100.0 * row.precision,
                 100.0 * row.recall,
-                100.0 * row.ghost_rate,
-                100.0 * row.captions_with_ghosts,
+                100.0 * row.hallucination_rate,
+                100.0 * row.captions_with_hallucinations,
                 row.questions_per_view,
                 row.calls_per_view
             )?;
             if row.failed > 0 {
                 let views = count(row.failed, "view");
-                writeln!(f, "           no caption for {views}; each with its reason above")?;
+                writeln!(f, "           no caption for {views}; the reasons are printed above")?;
             }
         }
         writeln!(f)?;
         writeln!(
             f,
-            "ghosts: named objects that no label of the view agrees with; where labels leave things out, a ghost"
+            "hallucinated: share of the named objects that no label of the view confirms. Labels can leave things out, \
+             so some"
         )?;
-        write!(f, "may be there. with ghost: captions that hold one. questions and calls: per view.")?;
+        write!(
+            f,
+            "of them may be there. with one: share of captions that name such an object. questions, calls: per view."
+        )?;
         for one in shown {
             write!(
                 f,
@@ -105,8 +113,8 @@ impl fmt::Display for Table<'_> {
                 name(one.perception),
                 one.caption
             )?;
-            if !one.ghosts.is_empty() {
-                write!(f, "\n  ghosts: {}", one.ghosts.join(", "))?;
+            if !one.hallucinated.is_empty() {
+                write!(f, "\n  hallucinated: {}", one.hallucinated.join(", "))?;
             }
         }
         Ok(())

@@ -12,7 +12,7 @@ pub(super) struct Labelled {
     pub(super) labels: Vec<SeenThing>,
 }
 
-/// The first so many, in the order of the paths.
+/// The first `most` views with labels, in the order of the paths.
 pub(super) fn labelled_views(plan: &Plan<'_>, most: usize) -> Result<Vec<Labelled>, Error> {
     let (settings, platform) = (&plan.job.settings, plan.platform);
     let mut views = Vec::new();
@@ -36,14 +36,14 @@ pub(super) fn labelled_views(plan: &Plan<'_>, most: usize) -> Result<Vec<Labelle
     }
     if views.is_empty() {
         return Err(Error::usage(
-            format!("none of {} has labels to hold a caption against", count(blind, "view")),
+            format!("none of {} has labels to check a caption against", count(blind, "view")),
             "give a platform or data folder with labels, or other --episodes or --scan",
         ));
     }
     Ok(views)
 }
 
-/// An item's path; a scene without one of the kind asked for has nothing to look at.
+/// An item's path; `None` if its scene has no path of the kind that was asked for.
 fn path(item: &Item, settings: &Settings, platform: &dyn Platform) -> Result<Option<Path>, Error> {
     match item.path(settings, platform) {
         Ok(path) => Ok(Some(path)),

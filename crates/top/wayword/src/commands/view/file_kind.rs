@@ -1,4 +1,4 @@
-//! Kinds of files that are written, by their endings, and what they may take the place of.
+//! Kinds of files that `view` writes, by their endings, and which files they may overwrite.
 
 use crate::error::Error;
 use std::{
@@ -17,7 +17,7 @@ pub(super) enum FileKind {
     Mp4,
 }
 
-/// How an SVG begins that was written here.
+/// How an SVG of this program begins.
 pub(super) const SVG_START: &str = "<svg ";
 
 impl FileKind {
@@ -33,16 +33,16 @@ impl FileKind {
         }
     }
 
-    /// The kind of a file's ending, if it is one.
+    /// The kind that a file's ending names, if any.
     pub(super) fn of(file: &Path) -> Option<Self> {
         let ending = file.extension()?.to_str()?.to_ascii_lowercase();
         Self::ALL.into_iter().find(|kind| kind.endings().contains(&ending.as_str()))
     }
 
-    /// The kind of `out`, which has to be one of those.
+    /// The kind of `out`, which has to be one of `kinds`.
     ///
     /// # Errors
-    /// When its ending is another.
+    /// When its ending names no such kind.
     pub(super) fn among(kinds: &[Self], out: &Path) -> Result<Self, Error> {
         let kind = Self::of(out).filter(|kind| kinds.contains(kind));
         kind.ok_or_else(|| {
@@ -64,18 +64,18 @@ impl FileKind {
         }
     }
 
-    /// Refuses to take the place of what cannot have been written here, and of the world's own data.
+    /// Refuses to overwrite a file that this program cannot have written, and the platform's data.
     ///
     /// # Errors
-    /// When `out` is there and is no file of this kind, or lies within `data`.
+    /// When `out` exists and is not a file of this kind, or is within `data`.
     pub(super) fn check_free(self, out: &Path, data: Option<&Path>) -> Result<(), Error> {
         let Ok(real) = fs::canonicalize(out) else {
-            // What is not there is in nobody's way.
+            // What does not exist cannot be overwritten.
             return Ok(());
         };
         check_foreign(out, data)?;
         if !real.is_file() {
-            return Err(in_the_way(out, "it is there and no file"));
+            return Err(in_the_way(out, "it exists and is not a file"));
         }
         let mut start = Vec::new();
         let read = File::open(&real).and_then(|file| file.take(16).read_to_end(&mut start));
@@ -83,20 +83,20 @@ impl FileKind {
         if start.is_empty() || self.begins(&start) {
             return Ok(());
         }
-        Err(in_the_way(out, &format!("what is there is no .{} file", self.endings()[0])))
+        Err(in_the_way(out, &format!("the file there is not a .{} file", self.endings()[0])))
     }
 }
 
-/// Refuses to write over the world's own data, whatever it is.
+/// Refuses to overwrite the platform's data, whatever it is.
 ///
 /// # Errors
-/// When `out` is there and lies within `data`.
+/// When `out` exists and is within `data`.
 pub(super) fn check_foreign(out: &Path, data: Option<&Path>) -> Result<(), Error> {
     let (Ok(out_is), Some(Ok(data_is))) = (fs::canonicalize(out), data.map(fs::canonicalize)) else { return Ok(()) };
     if out_is.starts_with(data_is) { Err(in_the_way(out, "it belongs to --data")) } else { Ok(()) }
 }
 
 fn in_the_way(out: &Path, problem: &str) -> Error {
-    let problem = format!("--out {}: {problem}, and would be overwritten", out.display());
-    Error::usage(problem, "give --out a name of its own")
+    let problem = format!("--out {}: {problem}, and this command would overwrite it", out.display());
+    Error::usage(problem, "give --out another name")
 }

@@ -14,8 +14,8 @@ use crate::{
     count::count,
     error::{Error, Exit},
     output::Output,
-    settings::World,
-    world,
+    platforms,
+    settings::AskedPlatform,
 };
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
@@ -25,14 +25,14 @@ use wayword_core::{Island, Platform, SceneId};
 #[derive(Debug, Serialize)]
 struct Written {
     scene: SceneId,
-    /// The files, in the order of the walk where there are several.
+    /// The files; several are in the order of the path.
     files: Vec<PathBuf>,
     /// Pixels, or units of an SVG.
     width: u32,
     height: u32,
-    /// Pictures, one after the other.
+    /// How many pictures, in order.
     frames: usize,
-    /// The pieces of ground of the scene, where a map is drawn and the world knows them.
+    /// The islands of the scene, if a map is drawn and the platform knows them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     islands: Vec<Island>,
 }
@@ -45,7 +45,7 @@ impl fmt::Display for Written {
         let frames = if self.frames == 1 { String::new() } else { format!(", {}", count(self.frames, "frame")) };
         write!(f, "{}: {} x {} pixels{frames}", self.scene, self.width, self.height)?;
         for island in &self.islands {
-            write!(f, "\n{island}{}", if island.is_walked { ", which walks keep to" } else { "" })?;
+            write!(f, "\n{island}{}", if island.is_walked { ", used for random paths" } else { "" })?;
         }
         Ok(())
     }
@@ -61,11 +61,11 @@ pub(super) fn run(args: &View, output: &Output) -> Result<Exit, Error> {
     Ok(Exit::Done)
 }
 
-fn open(world: &World) -> Result<Box<dyn Platform>, Error> {
-    world::open_named(world.name(), world.data.as_deref(), world.at.as_deref(), world.island)
+fn open(asked: &AskedPlatform) -> Result<Box<dyn Platform>, Error> {
+    platforms::open_named(asked.name(), asked.data.as_deref(), asked.at.as_deref(), asked.island)
 }
 
-/// The scene of a name, or the world's first.
+/// The scene of a name, or the platform's first.
 fn scene(platform: &dyn Platform, name: Option<&str>) -> Result<SceneId, Error> {
     match name {
         Some(name) => SceneId::new(name)

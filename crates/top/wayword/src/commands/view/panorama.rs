@@ -6,17 +6,17 @@ use std::sync::Arc;
 use wayword_core::{Frame, Gaze, Heading, Image, PathRequest, Platform, Pose, SceneId, Side, View, ViewpointId};
 use wayword_render::{Quarter, panorama};
 
-/// The colour where a view has no picture.
+/// The colour of a view without a picture.
 const GREY: [u8; 3] = [128; 3];
 /// How far a view may be from what was asked for, radians: less than a pixel.
 const NEAR_RAD: f64 = 1e-4;
-/// Viewpoints that an error names.
+/// Most viewpoints that an error names.
 const TOLD: usize = 5;
 
 pub(super) fn write(args: &ViewPanorama, output: &Output) -> Result<Written, Error> {
     let kind = FileKind::among(&[FileKind::Png, FileKind::Jpeg], &args.out)?;
-    kind.check_free(&args.out, args.world.data.as_deref())?;
-    let platform = open(&args.world)?;
+    kind.check_free(&args.out, args.platform.data.as_deref())?;
+    let platform = open(&args.platform)?;
     let scene = scene(&*platform, args.scan.as_deref())?;
     let mut frame = stand(args, &*platform, &scene)?;
     if let Some(degrees) = args.heading_deg {
@@ -47,7 +47,8 @@ fn stand(args: &ViewPanorama, platform: &dyn Platform, scene: &SceneId) -> Resul
     let Some((position, viewpoint)) = found else {
         let some: Vec<&str> = graph.viewpoints().take(TOLD).map(ViewpointId::as_str).collect();
         let name = args.viewpoint.as_deref().unwrap_or_default();
-        let hint = format!("there are {}: {} ...; a map in SVG names them all", graph.len(), some.join(", "));
+        let (all, some) = (graph.len(), some.join(", "));
+        let hint = format!("it has {all}: {some} ...; `wayword view map --out map.svg` draws and names them all");
         return Err(Error::usage(format!("scene {scene} has no viewpoint {name}"), hint));
     };
     let level = graph.level(&viewpoint);
@@ -72,17 +73,17 @@ fn around(
         Side::ALL.into_iter().zip(&images).filter(|(_, image)| image.is_none()).map(word).collect();
     match missing.len() {
         0 => {}
-        1 => output.say(format_args!("what is {} has no picture, and is grey", missing[0])),
+        1 => output.say(format_args!("the view {} has no picture and is drawn grey", missing[0])),
         4 => {
-            let problem = format!("scene {scene} has no pictures there");
+            let problem = format!("scene {scene} has no pictures at this place");
             return Err(Error::usage(
                 problem,
-                "`wayword platforms` says what pictures need; `wayword view path` shows what a recording has",
+                "`wayword platforms` says what pictures need; `wayword view path` shows the pictures of a recording",
             ));
         }
         _ => {
-            let problem = format!("scene {scene}: there is no picture of what is {}", missing.join(", "));
-            let hint = "a panorama takes at least three of four sides; `wayword view path` shows what there is";
+            let problem = format!("scene {scene}: these views have no picture: {}", missing.join(", "));
+            let hint = "a panorama needs pictures of at least three sides; `wayword view path` shows which there are";
             return Err(Error::usage(problem, hint));
         }
     }
@@ -90,7 +91,8 @@ fn around(
         let image = image.as_deref()?;
         Some(Quarter { width: image.width_px(), height: image.height_px(), rgb: image.rgb() })
     });
-    let unfit = |error: String| Error::usage(format!("the views make no panorama: {error}"), "try another --width");
+    let unfit =
+        |error: String| Error::usage(format!("the views cannot become a panorama: {error}"), "try another --width");
     let whole = panorama(quarters, args.width, GREY).map_err(|error| unfit(error.to_string()))?;
     Image::new(whole.width, whole.height, whole.rgb).map_err(|error| unfit(error.to_string()))
 }
@@ -104,7 +106,7 @@ fn word((side, _): (Side, &Option<Arc<Image>>)) -> &'static str {
     }
 }
 
-/// A view that is not what was asked for would be put where it does not belong.
+/// Refuses a view that is not what was asked for, because it would be put in the wrong place.
 fn check(view: &View, gaze: Gaze) -> Result<(), Error> {
     let is_turned =
         view.pose.heading.turn_to(gaze.heading).abs() > NEAR_RAD || view.pose.elevation_rad.abs() > NEAR_RAD;
@@ -112,9 +114,10 @@ fn check(view: &View, gaze: Gaze) -> Result<(), Error> {
     if view.image.is_some() && (is_turned || is_wider) {
         let (heading, fov) = (view.pose.heading.deg(), view.horizontal_fov_rad.to_degrees());
         let problem = format!(
-            "this world shows only what a camera saw, {fov:.1} degrees wide along {heading:.1}, and a panorama needs four views of 90"
+            "this platform shows only what a camera saw ({fov:.1} degrees wide, heading {heading:.1}), and a panorama \
+             needs four views of 90 degrees"
         );
-        return Err(Error::usage(problem, "`wayword view path` shows what there is"));
+        return Err(Error::usage(problem, "`wayword view path` shows which pictures there are"));
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Pictures to bytes.
+//! Encodes pictures as PNG and JPEG.
 
 use crate::error::Error;
 use image::{
@@ -13,7 +13,7 @@ const JPEG_QUALITY: u8 = 90;
 /// A picture as a PNG file's bytes.
 ///
 /// # Errors
-/// When it cannot be one.
+/// When it cannot be encoded.
 pub(super) fn png(picture: &Image) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     encoded(picture, PngEncoder::new(&mut bytes)).map(|()| bytes)
@@ -22,7 +22,7 @@ pub(super) fn png(picture: &Image) -> Result<Vec<u8>, Error> {
 /// A picture as a JPEG file's bytes.
 ///
 /// # Errors
-/// When it cannot be one.
+/// When it cannot be encoded.
 pub(super) fn jpeg(picture: &Image) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     encoded(picture, JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)).map(|()| bytes)
@@ -33,7 +33,7 @@ fn encoded(picture: &Image, encoder: impl ImageEncoder) -> Result<(), Error> {
     encoder.write_image(picture.rgb(), width, height, ExtendedColorType::Rgb8).map_err(unfit)
 }
 
-/// A picture that a format cannot hold.
+/// The error for a picture that a format cannot hold.
 // A closure's argument cannot be a reference where `map_err` gives the value away.
 #[allow(clippy::needless_pass_by_value)]
 pub(super) fn unfit(error: ImageError) -> Error {

@@ -1,4 +1,4 @@
-//! A file that takes its place once it is whole.
+//! A file that is moved to its place once it is complete.
 
 use crate::error::Error;
 use std::{
@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A file beside its place. Dropped before it is finished, it is removed, and what was there stays.
+/// A file beside its place. If dropped before it is finished, it is removed, and the old file stays.
 pub(super) struct Unfinished {
     file: BufWriter<File>,
     beside: PathBuf,
@@ -59,7 +59,7 @@ impl Write for Unfinished {
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
-        // Of a finished one there is nothing left; what cannot be removed stays.
+        // A finished file is no longer here. A file that cannot be removed stays.
         let _ = fs::remove_file(&self.beside);
     }
 }

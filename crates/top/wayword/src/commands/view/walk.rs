@@ -4,24 +4,24 @@ use crate::{
     cli::Walk,
     error::Error,
     item::{self, Item},
-    settings::{Asked, Draw, Walks, World},
+    settings::{Asked, AskedPlatform, Draw, Walks},
 };
 use std::path::Path as FilePath;
 use wayword_core::{Path, Platform};
 use wayword_formats::{Format, detect, jsonl};
 
-/// Names of items that an error tells.
+/// Most items that an error names.
 const TOLD: usize = 5;
 
 /// The path that is asked for.
 ///
 /// # Errors
-/// When there is none of that kind or name, or files cannot be read.
-pub(super) fn path(walk: &Walk, world: &World, platform: &dyn Platform) -> Result<Path, Error> {
+/// When there is no path of that kind or name, or files cannot be read.
+pub(super) fn path(walk: &Walk, asked: &AskedPlatform, platform: &dyn Platform) -> Result<Path, Error> {
     if let Some(file) = &walk.episodes
         && detect(file)? == Format::Wayword
     {
-        // Its records hold their paths frame by frame, which lead over viewpoints only in some worlds.
+        // Its records hold their paths frame by frame; only on some platforms do these follow viewpoints.
         return recorded(file, walk);
     }
     let asked = Asked {
@@ -33,7 +33,7 @@ pub(super) fn path(walk: &Walk, world: &World, platform: &dyn Platform) -> Resul
             metres: walk.metres.clone(),
         },
         draw: Draw { seed: walk.seed, ..Draw::default() },
-        ..Asked::from(world.clone())
+        ..Asked::from(asked.clone())
     };
     let settings = asked.resolve()?;
     let items = item::items(&settings, platform)?;

@@ -1,4 +1,4 @@
-//! Figures as tables have them, and the lines that hold them: the same for every format.
+//! The figures and lines of the tables, the same for every format.
 
 use std::{collections::BTreeMap, fmt};
 use wayword_metrics::{Estimate, McNemar, Metric};
@@ -7,9 +7,9 @@ use wayword_navigation::{
     swap::Swap,
 };
 
-/// The figures of the table; all others are in the full one.
+/// The metrics of the short table. The full table has all.
 pub(super) const SHOWN: [Metric; 3] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl];
-/// Longest name, characters: names come from files.
+/// Longest name, characters, because names come from files.
 const MOST_NAME_CHARS: usize = 80;
 
 /// A figure with its interval, rounded: shares in per cent, lengths in metres.
@@ -26,7 +26,7 @@ impl Figure {
         Self { mean: rounded(estimate.mean), low: rounded(estimate.low), high: rounded(estimate.high) }
     }
 
-    /// From where to where.
+    /// As `[low, high]`.
     pub(super) fn interval(&self) -> String {
         format!("[{}, {}]", self.low, self.high)
     }
@@ -38,7 +38,7 @@ impl fmt::Display for Figure {
     }
 }
 
-/// What a column is called: shares are in per cent.
+/// The heading of a column. Shares are in per cent.
 pub(super) fn heading(metric: Metric) -> String {
     if is_share(metric) { format!("{} %", metric.short()) } else { metric.short().to_owned() }
 }
@@ -49,7 +49,7 @@ fn is_share(metric: Metric) -> bool {
 
 fn rounded(metric: Metric, value: f64) -> String {
     let value = if is_share(metric) { 100.0 * value } else { value };
-    // A comparison's file may hold any number.
+    // A comparison's file can contain any number.
     if value.abs() >= 1e6 {
         return format!("{value:.1e}");
     }
@@ -57,7 +57,7 @@ fn rounded(metric: Metric, value: f64) -> String {
     if text == "-0.0" { "0.0".to_owned() } else { text }
 }
 
-/// A p as people write it.
+/// McNemar's p as papers write it.
 fn p(test: &McNemar) -> String {
     match test.p {
         _ if test.only_first + test.only_second == 0 => "-".to_owned(),
@@ -78,7 +78,7 @@ pub(super) struct Line<'a> {
     /// The set, or the swap.
     pub(super) label: String,
     figures: &'a BTreeMap<Metric, Estimate>,
-    /// What stands to the right of the figures.
+    /// Cells to the right of the figures.
     pub(super) beside: Vec<String>,
 }
 
@@ -91,33 +91,33 @@ impl Line<'_> {
         Some(Figure::of(metric, self.estimate(metric)?))
     }
 
-    /// The agent, with what has to be known of it wherever it is named.
+    /// The agent with its kind.
     pub(super) fn who(&self) -> String {
         let kind = match self.kind {
-            AgentKind::Floor => ", floor",
+            AgentKind::LowerBound => ", lower bound",
             AgentKind::Agent => "",
             AgentKind::Informed => ", knows the map",
-            AgentKind::Ceiling => ", ceiling",
+            AgentKind::UpperBound => ", upper bound",
         };
         format!("{}{}{kind}", self.agent, if self.is_deaf { DEAF } else { "" })
     }
 }
 
-/// Stands beside an agent that is not shown to do worse with another path's instruction.
+/// Marks an agent that is not shown to do worse with another path's instruction.
 pub(super) const DEAF: &str = "†";
 /// The label of an agent that reads no set.
 pub(super) const READS_NOTHING: &str = "reads nothing";
 /// Columns to the right of the differences.
-pub(super) const BESIDE_DIFFERENCES: [&str; 3] = ["it alone", "first alone", "p"];
+pub(super) const BESIDE_DIFFERENCES: [&str; 3] = ["only this", "only first", "p"];
 /// Columns to the right of the swaps.
-pub(super) const BESIDE_SWAPS: [&str; 3] = ["changed", "p", "listens"];
+pub(super) const BESIDE_SWAPS: [&str; 3] = ["changed", "p", "follows"];
 
 /// The table itself.
 pub(super) fn rows(comparison: &Comparison) -> Vec<Line<'_>> {
     opened(comparison.rows.iter().map(|row| of_row(comparison, row, &row.figures, vec![])))
 }
 
-/// Each set less the first, with the items on which only one of the two leads to success.
+/// Each set minus the first, with the numbers of items on which only one of the two succeeds.
 pub(super) fn differences(comparison: &Comparison) -> Vec<Line<'_>> {
     opened(comparison.rows.iter().filter_map(|row| {
         let difference = row.against_first.as_ref()?;
@@ -190,7 +190,7 @@ fn is_deaf(comparison: &Comparison, agent: &str) -> bool {
     deaf(comparison).any(|swapped| swapped.agent == agent)
 }
 
-/// What a swap did, in words.
+/// A swap in words.
 fn swap_words(swap: Swap) -> &'static str {
     match swap {
         Swap::Directions => "directions swapped",
@@ -200,7 +200,7 @@ fn swap_words(swap: Swap) -> &'static str {
     }
 }
 
-/// A name as it may be shown: names come from files, and a terminal obeys control characters.
+/// A name without control characters, because names come from files and a terminal would obey them.
 pub(super) fn name(name: &str) -> String {
     let mut shown: String =
         name.chars().take(MOST_NAME_CHARS).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();

@@ -63,7 +63,7 @@ pub(super) struct Plot<'a> {
 
 /// Most steps of an axis.
 const MOST_TICKS: f64 = 8.0;
-/// How far above the axis' end a line may lie for the axis to be drawn out to it: a ceiling of 100 would press all else together.
+/// How far above the axis' end a line may lie for the axis to be drawn out to it: an upper bound of 100 would press all else together.
 const NEAR: f64 = 1.5;
 /// How much of the plot's width is left free on either side, so that no dot is cut.
 const EDGE: f64 = 2.0;

@@ -2,7 +2,7 @@
 
 use super::{
     figures::{Line, SHOWN, heading, rows},
-    told,
+    notes,
 };
 use std::fmt::Write;
 use wayword_navigation::comparison::Comparison;
@@ -22,13 +22,13 @@ pub fn latex(comparison: &Comparison) -> String {
         add(&mut table, format_args!("{agent} & {} & {} \\\\\n", escaped(&line.label), figures(&line)));
     }
     table.push_str("\\bottomrule\n\\end{tabular}\n\\caption{");
-    for warning in told::warnings(comparison) {
+    for warning in notes::warnings(comparison) {
         add(&mut table, format_args!("\\textbf{{{}}}\n", escaped(&warning)));
     }
-    let subject = told::subject(&comparison.about);
-    add(&mut table, format_args!("{}. {}}}\n", escaped(&subject), escaped(&told::success(comparison.about.rule))));
+    let subject = notes::subject(&comparison.about);
+    add(&mut table, format_args!("{}. {}}}\n", escaped(&subject), escaped(&notes::success(comparison.about.rule))));
     table.push_str("\\par\\smallskip{\\footnotesize\n");
-    for note in told::listeners(comparison).into_iter().chain(told::notes_of_table(comparison)) {
+    for note in notes::listeners(comparison).into_iter().chain(notes::notes_of_table(comparison)) {
         add(&mut table, format_args!("{}\n", escaped(&note)));
     }
     table.push_str("\\par}\n\\end{table}\n");

@@ -2,34 +2,34 @@
 
 use super::{
     figures::{BESIDE_DIFFERENCES, BESIDE_SWAPS, Line, SHOWN, differences, heading, name, rows, swaps},
-    told,
+    notes,
 };
 use std::fmt::Write;
 use wayword_metrics::Metric;
 use wayword_navigation::comparison::Comparison;
 
-/// The comparison as Markdown: tables, and what has to be known to read them.
+/// The comparison as Markdown: tables, and notes on how to read them.
 #[must_use]
 pub fn markdown(comparison: &Comparison) -> String {
-    let mut page = format!("# {}\n\n", escaped(&told::subject(&comparison.about)));
-    for warning in told::warnings(comparison) {
+    let mut page = format!("# {}\n\n", escaped(&notes::subject(&comparison.about)));
+    for warning in notes::warnings(comparison) {
         add(&mut page, format_args!("> **{}**\n>\n", escaped(&warning)));
     }
-    add(&mut page, format_args!("\n{}\n\n", told::success(comparison.about.rule)));
+    add(&mut page, format_args!("\n{}\n\n", notes::success(comparison.about.rule)));
     table(&mut page, "Instructions", &rows(comparison), &SHOWN, &[]);
     let first = comparison.sets.first().map_or_else(String::new, |set| escaped(&name(&set.name)));
     let less = differences(comparison);
     if !less.is_empty() {
-        add(&mut page, format_args!("\n## Less {first}\n\n"));
+        add(&mut page, format_args!("\n## Minus {first}\n\n"));
         table(&mut page, "Instructions", &less, &SHOWN, &BESIDE_DIFFERENCES);
     }
     let lost = swaps(comparison);
     if !lost.is_empty() {
-        add(&mut page, format_args!("\n## Lost by swaps of {first}\n\n"));
+        add(&mut page, format_args!("\n## Lost if {first} is swapped\n\n"));
         table(&mut page, "Swap", &lost, &SHOWN, &BESIDE_SWAPS);
     }
-    list(&mut page, "Sets", comparison.sets.iter().map(told::set));
-    list(&mut page, "How to read it", told::listeners(comparison).into_iter().chain(told::notes(comparison)));
+    list(&mut page, "Sets", comparison.sets.iter().map(notes::set));
+    list(&mut page, "How to read it", notes::listeners(comparison).into_iter().chain(notes::notes(comparison)));
     let has = |metric: &Metric| comparison.rows.iter().any(|row| row.figures.contains_key(metric));
     let others: Vec<Metric> = Metric::ALL.into_iter().filter(|metric| !SHOWN.contains(metric) && has(metric)).collect();
     if !others.is_empty() {
@@ -65,7 +65,7 @@ fn add(page: &mut String, text: std::fmt::Arguments<'_>) {
     let _ = page.write_fmt(text);
 }
 
-/// Text that Markdown takes for nothing but text.
+/// Text without a meaning in Markdown.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {

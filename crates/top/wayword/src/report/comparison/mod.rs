@@ -1,12 +1,12 @@
-//! A comparison as people look at it: for a terminal, a text, a paper, and as a page.
+//! A comparison for people: for a terminal, as Markdown, as LaTeX, and as a page.
 
 mod figures;
 mod forest;
 mod latex;
 mod markdown;
+mod notes;
 mod page;
 mod screen;
-mod told;
 
 pub use latex::latex;
 pub use markdown::markdown;
@@ -29,9 +29,9 @@ use wayword_navigation::comparison::Comparison;
 pub struct Written {
     /// The page.
     pub page: String,
-    /// Walks that it shows step by step.
+    /// Number of walks that it shows step by step.
     pub replays: usize,
-    /// Walks that it leaves out.
+    /// Number of walks that it leaves out.
     pub left_out: usize,
 }
 
@@ -55,8 +55,8 @@ pub fn html(comparison: &Comparison) -> Result<String, Error> {
     Ok(page)
 }
 
-/// Writes the page of a comparison with the replays of some walks, `left_out` of which it does not show; what was there before is
-/// replaced once the page is whole.
+/// Writes the page of a comparison with the replays of some walks; `left_out` others are not shown. An old page is replaced once the
+/// new one is complete.
 ///
 /// # Errors
 /// When the page cannot be written.
@@ -65,7 +65,7 @@ pub fn write(out: &Path, comparison: &Comparison, replays: &[Replay<'_>], left_o
     Ok(Written { page: out.display().to_string(), replays: replays.len(), left_out })
 }
 
-/// Hands the page to `take`, part by part.
+/// Gives the page to `take`, part by part.
 fn render(
     comparison: &Comparison,
     replays: &[Replay<'_>],

@@ -1,17 +1,17 @@
-//! The comparison as a page shows it.
+//! The comparison as the page shows it.
 
 use super::{
     figures::{
         BESIDE_DIFFERENCES, BESIDE_SWAPS, Figure, Line, READS_NOTHING, SHOWN, differences, heading, name, rows, swaps,
     },
     forest::{Forest, Plot},
-    told,
+    notes,
 };
 use serde::Serialize;
 use wayword_metrics::Metric;
 use wayword_navigation::comparison::{AgentKind, Comparison};
 
-/// The comparison, ready for its template.
+/// The comparison as its template takes it.
 #[derive(Debug, Serialize)]
 pub(in super::super) struct PageView {
     subject: String,
@@ -22,7 +22,7 @@ pub(in super::super) struct PageView {
     notes: Vec<String>,
     table: TableView,
     forests: Vec<Forest>,
-    /// Titles and tables of everything else, folded.
+    /// Titles of the folded tables, with the tables.
     folded: Vec<(String, TableView)>,
     parameters: Vec<(String, Vec<(String, String)>)>,
 }
@@ -54,19 +54,19 @@ impl PageView {
             vec![("All figures".to_owned(), TableView::new("Instructions", &table, &present(&table), vec![]))];
         if !less.is_empty() {
             let view = TableView::new("Instructions", &less, &present(&less), BESIDE_DIFFERENCES.to_vec());
-            folded.push((format!("All differences from {first}, and McNemar's test"), view));
+            folded.push((format!("All differences to {first}, and McNemar's test"), view));
         }
         if !lost.is_empty() {
             let view = TableView::new("Swap", &lost, &present(&lost), BESIDE_SWAPS.to_vec());
-            folded.push((format!("All that swaps of {first} cost"), view));
+            folded.push((format!("All losses by swaps of {first}"), view));
         }
         Self {
-            subject: told::subject(&comparison.about),
-            success: told::success(comparison.about.rule),
-            warnings: told::warnings(comparison),
-            listeners: told::listeners(comparison),
-            sets: comparison.sets.iter().map(told::set).collect(),
-            notes: told::notes(comparison),
+            subject: notes::subject(&comparison.about),
+            success: notes::success(comparison.about.rule),
+            warnings: notes::warnings(comparison),
+            listeners: notes::listeners(comparison),
+            sets: comparison.sets.iter().map(notes::set).collect(),
+            notes: notes::notes(comparison),
             table: TableView::new("Instructions", &table, &SHOWN, vec![]),
             forests: forests(&first, &table, &less, &lost),
             folded,
@@ -113,9 +113,9 @@ fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]
     let read: Vec<Line<'_>> = table.iter().filter(|line| line.kind == AgentKind::Agent).cloned().collect();
     let mark = |line: &Line<'_>| {
         let class = match line.kind {
-            AgentKind::Floor => "floor",
+            AgentKind::LowerBound => "lower-bound",
             AgentKind::Agent => return None,
-            AgentKind::Informed | AgentKind::Ceiling => "ceiling",
+            AgentKind::Informed | AgentKind::UpperBound => "upper-bound",
         };
         let figure = line.figure(Metric::SuccessRate)?;
         let by = if line.label == READS_NOTHING { String::new() } else { format!(" by {}", line.label) };
@@ -131,20 +131,20 @@ fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]
             caption: "Dot: mean over items. Bar: its interval.",
         },
         Plot {
-            title: format!("Success rate less {first}'s, points"),
+            title: format!("Success rate minus that of {first}, points"),
             label: "Instructions",
             lines: less,
             marks: vec![],
             has_zero: true,
-            caption: "Right of the line: better than the first set. Hollow: the interval holds 0, so no difference is shown.",
+            caption: "Right of the line: better than the first set. Hollow: the interval includes 0, so no difference is shown.",
         },
         Plot {
-            title: format!("Success rate lost by swaps of {first}, points"),
+            title: format!("Success rate lost when {first} is swapped, points"),
             label: "Swap",
             lines: lost,
             marks: vec![],
             has_zero: true,
-            caption: "Right of the line: the agent does worse by swapped texts, so it listens to what was swapped. Hollow: the interval holds 0, so that is not shown.",
+            caption: "Right of the line: the agent does worse by swapped texts, so it follows what was swapped. Hollow: the interval includes 0, so that is not shown.",
         },
     ];
     plots.into_iter().filter_map(Plot::draw).collect()

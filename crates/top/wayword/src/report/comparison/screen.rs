@@ -2,7 +2,7 @@
 
 use super::{
     figures::{BESIDE_DIFFERENCES, BESIDE_SWAPS, Line, SHOWN, differences, heading, name, rows, swaps},
-    told,
+    notes,
 };
 use std::fmt::Write;
 use wayword_navigation::comparison::Comparison;
@@ -10,27 +10,28 @@ use wayword_navigation::comparison::Comparison;
 /// The comparison as plain text.
 #[must_use]
 pub fn screen(comparison: &Comparison) -> String {
-    let mut text = format!("{}\n{}\n\n", told::subject(&comparison.about), told::success(comparison.about.rule));
+    let mut text = format!("{}\n{}\n\n", notes::subject(&comparison.about), notes::success(comparison.about.rule));
     table(&mut text, "instructions", &rows(comparison), &[]);
     let first = comparison.sets.first().map_or_else(String::new, |set| name(&set.name));
     let less = differences(comparison);
     if !less.is_empty() {
-        table(&mut text, &format!("less {first}"), &less, &BESIDE_DIFFERENCES);
+        table(&mut text, &format!("minus {first}"), &less, &BESIDE_DIFFERENCES);
     }
     let lost = swaps(comparison);
     if !lost.is_empty() {
-        table(&mut text, &format!("lost by swaps of {first}"), &lost, &BESIDE_SWAPS);
+        table(&mut text, &format!("lost if {first} is swapped"), &lost, &BESIDE_SWAPS);
     }
-    let sets = comparison.sets.iter().map(told::set);
-    let told = told::notes(comparison).into_iter().chain(told::listeners(comparison)).chain(told::warnings(comparison));
-    for line in sets.chain(told) {
+    let sets = comparison.sets.iter().map(notes::set);
+    let after =
+        notes::notes(comparison).into_iter().chain(notes::listeners(comparison)).chain(notes::warnings(comparison));
+    for line in sets.chain(after) {
         text.push_str(&line);
         text.push('\n');
     }
     text
 }
 
-/// Columns as wide as what stands in them; words to the left, figures to the right.
+/// Columns as wide as their cells; words are aligned to the left, figures to the right.
 fn table(text: &mut String, label: &str, lines: &[Line<'_>], beside: &[&str]) {
     let mut grid: Vec<Vec<String>> = Vec::with_capacity(lines.len() + 1);
     let words = ["agent".to_owned(), label.to_owned()].into_iter();

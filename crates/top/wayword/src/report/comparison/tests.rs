@@ -81,9 +81,9 @@ fn comparison() -> Comparison {
             row("clip-nav", agent, Some("central"), 0.062, Some(-0.008)),
             row("glip-nav", agent, Some("original"), 0.17, None),
             row("glip-nav", agent, Some("central"), 0.12, Some(-0.05)),
-            row("random/5", AgentKind::Floor, None, 0.012, None),
+            row("random/5", AgentKind::LowerBound, None, 0.012, None),
             row("nearest-room", AgentKind::Informed, None, 0.25, None),
-            row("oracle", AgentKind::Ceiling, None, 0.97, None),
+            row("oracle", AgentKind::UpperBound, None, 0.97, None),
         ],
         swaps: vec![
             swapped("clip-nav", Swap::Directions, 0.0, Listening::NotShown),
@@ -149,18 +149,18 @@ fn the_text_is_as_before() {
 }
 
 #[test]
-fn every_form_says_what_has_to_be_known() {
+fn every_form_has_the_notes() {
     let comparison = comparison();
     for text in [markdown(&comparison), latex(&comparison), screen(&comparison), html(&comparison).unwrap()] {
         for told in [
-            "target visible at the stopping viewpoint",
+            "the target is visible where the agent stops",
             "501 items on 126 paths",
             "clustered by path",
             "mean over its texts",
-            "ground truth, not perception",
+            "ground-truth labels, not perception",
             "the GLIP network is not in this program",
             "not shown to do worse with another path",
-            "nothing about the instructions can be read from its rows",
+            "its rows say nothing about the instructions",
             "encoded by some-encoder",
             "2 items could not be walked",
         ] {
@@ -173,25 +173,25 @@ fn every_form_says_what_has_to_be_known() {
 }
 
 #[test]
-fn an_agent_that_listens_is_not_called_deaf_and_one_that_was_not_tried_is_named() {
+fn an_agent_that_follows_has_no_warning_and_one_that_was_not_tested_has_its_own() {
     let mut comparison = comparison();
-    let warnings = told::warnings(&comparison);
-    assert!(warnings.len() == 1 && warnings[0].starts_with("† clip-nav: not shown to do worse"), "{warnings:?}");
-    assert!(told::listeners(&comparison)[0].starts_with("glip-nav listens"));
+    let warnings = notes::warnings(&comparison);
+    assert!(warnings.len() == 1 && warnings[0].starts_with("† clip-nav is not shown to do worse"), "{warnings:?}");
+    assert!(notes::listeners(&comparison)[0].starts_with("glip-nav follows its instructions"));
     comparison.swaps[1].listening = Listening::TooFew;
-    let warnings = told::warnings(&comparison);
-    assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav: not tried"), "{warnings:?}");
+    let warnings = notes::warnings(&comparison);
+    assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav: the swap test"), "{warnings:?}");
     comparison.swaps.clear();
-    let warnings = told::warnings(&comparison);
-    assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav, glip-nav: not tried"), "{warnings:?}");
+    let warnings = notes::warnings(&comparison);
+    assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav, glip-nav: the swap test"), "{warnings:?}");
 }
 
 #[test]
 fn another_rule_is_named() {
     let mut comparison = comparison();
     comparison.about.rule = Rule::Distance;
-    assert!(screen(&comparison).contains("under 3 m of the goal"));
-    assert!(!screen(&comparison).contains("target visible"));
+    assert!(screen(&comparison).contains("less than 3 m from the goal"));
+    assert!(!screen(&comparison).contains("target is visible"));
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn the_page_is_whole_and_loads_nothing() {
 fn plots_show_agents_lines_and_what_lies_beyond() {
     let page = html(&comparison()).unwrap();
     assert_eq!(page.matches("<section class=\"panel forest\">").count(), 3);
-    assert!(page.contains("class=\"line floor\"") && page.contains("Beyond the axis: <bdi>oracle 97.0</bdi>"));
+    assert!(page.contains("class=\"line lower-bound\"") && page.contains("Beyond the axis: <bdi>oracle 97.0</bdi>"));
     // One row of the differences and one of the swaps lie beside zero.
     assert_eq!(page.matches("class=\"dot\"").count(), 4 + 1 + 1);
     assert_eq!(page.matches("class=\"dot hollow\"").count(), 1 + 3);

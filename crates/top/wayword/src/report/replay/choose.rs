@@ -1,21 +1,21 @@
-//! Which walks are shown: some of each agent and set, successes and failures, as many of the one as of the other.
+//! Chooses the walks that are shown: of each agent and set, as many successes as failures.
 
 use std::collections::BTreeMap;
 use wayword_navigation::walk::Walk;
 
-/// Most agents and sets, successes and failures apart, of which walks are shown.
+/// Most groups (agent, set, success or failure) whose walks are shown.
 const MOST_GROUPS: usize = 1_000;
 
-/// A sample of walks, taken while they pass by: what is kept of each says where it can be found again.
+/// A sample of walks, taken while they are read. It keeps the positions of walks, not the walks.
 #[derive(Debug, Clone)]
 pub struct Sample<T> {
     most: usize,
     groups: BTreeMap<Group, Kept<T>>,
-    /// How many walks passed by.
+    /// Number of walks that were offered.
     offered: usize,
 }
 
-/// What is kept of a group: one walk of each item, for the next item's tell more than the same item's by another text.
+/// One walk of each item of a group, because a walk of another item shows more than a second one of the same item.
 #[derive(Debug, Clone)]
 struct Kept<T> {
     last_item: String,
@@ -26,13 +26,13 @@ struct Kept<T> {
 type Group = (bool, String, String, bool);
 
 impl<T: Ord> Sample<T> {
-    /// A sample of at most so many walks.
+    /// A sample of at most `most` walks.
     #[must_use]
     pub fn of(most: usize) -> Self {
         Self { most, groups: BTreeMap::new(), offered: 0 }
     }
 
-    /// A walk passes by.
+    /// Offers a walk to the sample.
     pub fn offer(&mut self, walk: &Walk, is_success: bool, place: T) {
         self.offered += 1;
         // The sets of walks by swapped texts are named SET~SWAP.
@@ -47,7 +47,7 @@ impl<T: Ord> Sample<T> {
         }
     }
 
-    /// The places of the chosen walks, in their order, and how many walks are left out.
+    /// The positions of the chosen walks in their order, and the number of walks that are left out.
     #[must_use]
     pub fn chosen(self) -> (Vec<T>, usize) {
         let mut groups: Vec<_> = self.groups.into_values().map(|kept| kept.places.into_iter()).collect();

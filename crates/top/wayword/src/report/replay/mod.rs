@@ -1,4 +1,4 @@
-//! Walks of agents, shown again step by step: what each saw, how it scored it, where it went, and where it turned back.
+//! Replays of agents' walks, step by step: the scores of the views, the choices, and where the agent went back.
 
 mod choose;
 mod steps;
@@ -26,7 +26,7 @@ const MOST_PHRASES: usize = 50;
 /// Longest text, characters.
 const MOST_TEXT_CHARS: usize = 2_000;
 
-/// A walk, with what it is held against.
+/// A walk, with the path that it is compared with.
 #[derive(Debug, Clone, Copy)]
 pub struct Replay<'a> {
     /// The walk.
@@ -46,7 +46,7 @@ pub struct Replay<'a> {
 pub(super) struct Entry {
     anchor: String,
     title: String,
-    /// What came of it: class and words of its mark.
+    /// The outcome: class and words of its mark.
     class: &'static str,
     sign: &'static str,
 }
@@ -60,7 +60,7 @@ impl Entry {
         let names: Vec<String> =
             [Some(&walk.agent), set, Some(&walk.item)].into_iter().flatten().map(|name| short(name)).collect();
         let names = names.join(", ");
-        // Numbered and not named, for names come from anywhere.
+        // Anchors are numbers, because names come from files.
         Self { anchor: format!("r{number}"), title: format!("{names} (text {})", walk.text_index + 1), class, sign }
     }
 }
@@ -76,7 +76,7 @@ pub(super) struct ReplayView {
     text: String,
     phrases: Vec<String>,
     phrases_left_out: usize,
-    /// `None` where the agent does not read.
+    /// `None` if the agent does not read.
     activity: Option<String>,
     map: Option<MapView>,
     map_radius: f64,
@@ -84,7 +84,7 @@ pub(super) struct ReplayView {
     map_words: String,
     steps: Vec<StepView>,
     steps_left_out: usize,
-    /// From where to where bars go, where anything was scored.
+    /// Lowest and highest score, between which bars are drawn; `None` without scores.
     score_range: Option<(String, String)>,
 }
 
@@ -123,16 +123,16 @@ impl Replay<'_> {
         }
     }
 
-    /// What came of the walk, in words.
+    /// The outcome of the walk, in words.
     fn meta(&self) -> Vec<String> {
         let (walk, score) = (self.walk, self.score);
         let end = match walk.end {
             End::Stopped => "the agent stopped",
-            End::Cap => "it had made as many steps as it may",
-            End::DeadEnd => "there was nowhere to go",
+            End::Cap => "it reached the limit of its steps",
+            End::DeadEnd => "it reached a dead end",
         };
         let off = score.navigation_error_m.map_or_else(
-            || "no way leads from its end to the goal".to_owned(),
+            || "its end has no connection to the goal".to_owned(),
             |error_m| format!("ends {error_m:.1} m from the goal"),
         );
         let mut meta = vec![
@@ -145,7 +145,7 @@ impl Replay<'_> {
         match self.outcome() {
             Some(outcome) if outcome.success => meta.push(format!("SPL {:.0} %", 100.0 * outcome.spl)),
             Some(outcome) if outcome.oracle_success => {
-                meta.push("it came past a place that would have counted".to_owned());
+                meta.push("it passed a viewpoint that counts as success".to_owned());
             }
             _ => {}
         }
@@ -155,7 +155,7 @@ impl Replay<'_> {
                 Some(_) => ", not the target",
                 None => "",
             };
-            meta.push(format!("takes object {object} for the target{judged}"));
+            meta.push(format!("names object {object} as the target{judged}"));
         }
         meta
     }
@@ -192,12 +192,12 @@ fn mark(outcome: Option<Outcome>) -> (&'static str, &'static str) {
     }
 }
 
-/// A text, for a page has to open on a phone.
+/// A text, cut so that the page stays small enough for a phone.
 fn bounded(text: &str) -> String {
     text.chars().take(MOST_TEXT_CHARS).collect()
 }
 
-/// A name, for headings.
+/// A name, cut for headings.
 fn short(name: &str) -> String {
     name.chars().take(80).collect()
 }

@@ -1,4 +1,4 @@
-//! The steps of a walk: where the agent stood, what it scored, and what it did then.
+//! The steps of a walk: where the agent stood, its scores, and its choice.
 
 use crate::report::palette::{Colour, colour};
 use serde::Serialize;
@@ -14,13 +14,13 @@ pub(super) struct StepView {
     /// From 1.
     number: usize,
     anchor: String,
-    /// The step (from 1) that stood here first, and has its number on the map.
+    /// The first step (from 1) at this viewpoint, whose number is on the map.
     again: Option<usize>,
     colour: Colour,
     heading: String,
-    /// The phrase in hand; none where the agent does not look.
+    /// The current phrase; `None` if the agent does not look.
     phrase: Option<String>,
-    /// Empty where it does not look.
+    /// Empty if the agent does not look.
     views: Vec<ViewView>,
     class: &'static str,
     then: String,
@@ -40,18 +40,18 @@ struct ViewView {
 #[derive(Debug, Serialize)]
 struct Bar {
     score: String,
-    /// How long its bar is, in per cent.
+    /// Length of its bar, in per cent.
     long: u32,
 }
 
-/// The lowest and the highest score of a walk: what bars are drawn between.
+/// The lowest and the highest score of a walk, between which bars are drawn.
 #[derive(Debug, Clone, Copy)]
 struct Range {
     low: f32,
     high: f32,
 }
 
-/// The first `shown` steps of a walk, and between which scores bars are drawn.
+/// The first `shown` steps of a walk, and the range of the bars.
 pub(super) fn steps(
     walk: &Walk,
     shown: usize,
@@ -119,7 +119,7 @@ impl Range {
 
     fn long(self, score: f32) -> u32 {
         let (low, high) = (f64::from(self.low), f64::from(self.high));
-        // Where all scores are one, a bar tells only whether there is any.
+        // If all scores are equal, a bar is either full or empty.
         let share = if high > low { (f64::from(score) - low) / (high - low) } else { f64::from(score) };
         (100.0 * share).clamp(0.0, 100.0).round() as u32
     }

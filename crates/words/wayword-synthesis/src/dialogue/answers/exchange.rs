@@ -39,7 +39,7 @@ fn of_answer(exchange: &Exchange) -> Vec<Told> {
     }
 }
 
-/// The things that an answer names. Walls, floors, ceilings and corners are everywhere, and are none.
+/// The things that an answer names. Walls, floors, ceilings and corners are everywhere, and do not count.
 fn things(answer: &str, known: &BTreeSet<String>) -> Vec<Mention> {
     let everywhere =
         |name: &str| thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"));
@@ -55,12 +55,12 @@ fn told(mentions: Vec<Mention>, place: Option<Where>) -> Vec<Told> {
     mentions.into_iter().map(aside).collect()
 }
 
-/// Said of what the question asks for.
+/// A sighting of what the question asks for.
 fn direct(sighting: Sighting) -> Told {
     Told { sighting, direct: true }
 }
 
-/// Said beside it.
+/// A sighting of something else.
 fn aside(sighting: Sighting) -> Told {
     Told { sighting, direct: false }
 }
@@ -104,7 +104,7 @@ fn witness(own: &[Mention], polarity: Polarity, or: bool, of_several: bool) -> O
         _ if says(Witness::Denied) => Some(Witness::Denied),
         Polarity::No if of_several && !or => says(Witness::Seen).then_some(Witness::Seen),
         Polarity::No => Some(Witness::Denied),
-        // "Yes, there might be one": how the thing itself is spoken of tells more.
+        // "Yes, there might be one": what is said of the thing itself counts more.
         Polarity::Yes if says(Witness::Unsure) && !says(Witness::Seen) => Some(Witness::Unsure),
         Polarity::Yes if !or => Some(Witness::Seen),
         Polarity::Unsure => Some(Witness::Unsure),
@@ -139,8 +139,8 @@ fn words(answer: &str) -> Vec<&str> {
 
 /// The answer to "What colour is the lamp?": the question takes the lamp to be there, and the answer may deny it.
 fn colour(name: &str, guesses: &[String], answer: &str) -> Vec<Told> {
-    // The form of our own `labels`, in which names may be any words. Shades are left out: the light brown of one eye is the
-    // brown of another.
+    // The form in which `labels` answers, where names may be any words. Shades are left out, because what one model
+    // calls light brown another calls brown.
     let exact = answer.strip_prefix("The ").and_then(|rest| rest.strip_prefix(name)?.strip_prefix(" is "));
     if let Some(word) = exact.and_then(|said| bare_colour(said.trim_end_matches('.'))) {
         let colour = Some(word.to_lowercase());
@@ -193,7 +193,7 @@ fn place(wanted: &Wanted, answer: &str) -> Vec<Told> {
         _ => lower.clone(),
     };
     let told = presence(std::slice::from_ref(wanted), false, &bare);
-    // Without a place or a no the answer tells nothing of the thing itself.
+    // Without a place or a no the answer says nothing of the thing itself.
     told.into_iter().filter(|told| !told.direct || told.sighting.witness != Witness::Unsure).collect()
 }
 

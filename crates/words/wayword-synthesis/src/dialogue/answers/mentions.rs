@@ -1,4 +1,4 @@
-//! Free words: whatever they name, and what they say of it.
+//! Free text: what it names, and what it says of that.
 
 use super::{
     phrases::{PlacePhrase, colour_said_of, place_phrases},
@@ -19,7 +19,7 @@ use wayword_language::{
 /// Something that a text names.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::dialogue) struct Mention {
-    /// Its name in the singular, where it is no plural by nature. What is denied keeps what sets it apart: "red chair".
+    /// Its name, in the singular where it has one. What is denied keeps what sets it apart: "red chair".
     pub(in crate::dialogue) name: String,
     pub(in crate::dialogue) is_thing: bool,
     pub(in crate::dialogue) is_room: bool,
@@ -27,13 +27,13 @@ pub(in crate::dialogue) struct Mention {
     pub(in crate::dialogue) colour: Option<String>,
     pub(in crate::dialogue) place: Option<Where>,
     pub(in crate::dialogue) several: bool,
-    /// The word before it but for articles and adjectives: "to", "of" ...
+    /// The word before it without articles and adjectives: "to", "of" ...
     pub(in crate::dialogue) before: String,
 }
 
 /// Longest name that counts as one, bytes.
 const MOST_NAME_BYTES: usize = 60;
-/// Longest text that is read, bytes; answers are shorter, and what is behind it is left out.
+/// Longest text that is read, bytes; answers are shorter, and what comes after is left out.
 const MOST_BYTES: usize = 16_384;
 
 /// Reads a text. `known` holds names, in normal spelling, that the lexicon may lack.
@@ -96,7 +96,8 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Me
     }
 }
 
-/// "A sofa or a bench": nobody knows which, so neither is sure. "A sofa or couch" is one thing; its second name is given back.
+/// "A sofa or a bench": it is not known which, so both are unsure. "A sofa or couch" is one thing; its second name is
+/// returned.
 fn alternatives(words: &[&str], nouns: &[Range<usize>], witnesses: &mut [Witness]) -> Vec<usize> {
     let mut doubles = Vec::new();
     for at in 1..nouns.len() {
@@ -122,7 +123,7 @@ fn begins(word: &str) -> bool {
     TELLS_NOTHING.contains(&word) || BREAKERS.contains(&word) || PERCEIVING.contains(&word)
 }
 
-/// The words that tell which of its kind is meant: colours, materials, uses.
+/// The words that say which of its kind is meant: colours, materials, uses.
 fn which<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
     let from = (0..noun.start)
         .rev()
@@ -155,7 +156,7 @@ fn is_counted(words: &[&str], noun: usize) -> bool {
     false
 }
 
-/// The place of each noun of a sentence: told behind it, or at the head of the part of the sentence that it stands in.
+/// The place of each noun of a sentence: said after it, or at the head of its part of the sentence.
 fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
     let mut places = vec![None; nouns.len()];
     let told = place_phrases(words);
@@ -180,7 +181,8 @@ fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
     places
 }
 
-/// Whether a phrase of place stands before what it places: at the start, or behind a comma or an "and", with a noun to come.
+/// Whether a phrase of place comes before what it places: at the start, or after a comma or an "and", with a noun to
+/// come.
 fn is_head(words: &[&str], phrase: &PlacePhrase, nouns: &[Range<usize>]) -> bool {
     let before = phrase.from.checked_sub(1).map_or("", |at| words[at]);
     let begins = !nouns.iter().any(|noun| noun.end <= phrase.from) && !matches!(before, "it" | "one" | "them" | "they");
@@ -224,7 +226,7 @@ fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>)
         .collect()
 }
 
-/// "The picture shows", "in this photo", "a picture of a kitchen": the view itself and nothing on a wall of it.
+/// "The picture shows", "in this photo", "a picture of a kitchen": the view itself, not something on a wall of it.
 fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
     let single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph");
     let word = |at: usize| words.get(at).copied().unwrap_or("");
@@ -236,7 +238,7 @@ fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
     single && !hangs && (matches!(before, "the" | "this") || of_all || shows)
 }
 
-/// "A painting of a horse": the horse is on it and not there.
+/// "A painting of a horse": the horse is in the painting and not in the room.
 fn is_depicted(words: &[&str], from: usize) -> bool {
     let picture = |word: &str| {
         matches!(
@@ -266,7 +268,8 @@ fn is_manner_of_speaking(words: &[&str], from: usize, to: usize) -> bool {
     }
 }
 
-/// A noun that the lexicon lacks counts where it is said to be there or not, and is no word of describing.
+/// A noun that the lexicon lacks counts where the text says that it is there or not, and where it is no word of
+/// describing.
 fn is_brought_in(words: &[&str], from: usize, to: usize) -> bool {
     let head = normal(words[to - 1]);
     let start = (0..from).rev().find(|at| matches!(words[*at], "." | "!" | "?" | ";")).map_or(0, |at| at + 1);

@@ -1,7 +1,7 @@
 //! What a dialogue says: its things, each once, and its room.
 //!
-//! [`question`] tells what was asked for, [`exchange`] what one answer says to that. [`mentions`] reads free words, [`polarity`]
-//! what they affirm and deny, [`phrases`] their places, colours and names.
+//! [`question`] reads what was asked for, [`exchange`] what one answer says to that. [`mentions`] reads free text,
+//! [`polarity`] what it affirms and denies, [`phrases`] its places, colours and names.
 
 mod exchange;
 mod mentions;
@@ -27,17 +27,17 @@ pub(crate) use {
     question::{Asked, asked},
 };
 
-/// A sighting, and whether it answers a question for that very thing.
+/// A sighting, and whether it answers a question about the thing itself.
 pub(super) struct Told {
     pub(super) sighting: Sighting,
     pub(super) direct: bool,
 }
 
-/// Everything that a dialogue says of objects, each once, in the order in which it was told.
+/// Everything that a dialogue says of objects, each once, in the order in which it was said.
 ///
-/// Any denial outweighs whatever else is said of a thing, before or after it: a robot is better told too little than sent to a
-/// ghost. Between seen and not sure, the later answer to a question for the thing itself decides; to be unsure of it in passing
-/// takes nothing back.
+/// A denial outweighs whatever else is said of a thing, before or after it, because it is better to say too little to a
+/// robot than to send it to a hallucinated object. Between seen and not sure, the later answer to a question about the
+/// thing itself decides; doubt in passing changes nothing.
 pub(crate) fn sightings(transcript: &[Exchange], by: &str) -> Vec<Sighting> {
     let mut joined: Vec<Sighting> = Vec::new();
     for exchange in transcript {
@@ -53,8 +53,8 @@ pub(crate) fn sightings(transcript: &[Exchange], by: &str) -> Vec<Sighting> {
     joined
 }
 
-/// Whether a denial speaks of a thing: "no chair" denies a dining chair, but neither "no dining chair" nor "no red chair" denies
-/// a chair.
+/// Whether a denial applies to a thing: "no chair" denies a dining chair, but neither "no dining chair" nor "no red
+/// chair" denies a chair.
 pub(super) fn denies(denial: &Sighting, name: &str, colour: Option<&str>) -> bool {
     if denial.witness != Witness::Denied {
         return false;
@@ -64,7 +64,7 @@ pub(super) fn denies(denial: &Sighting, name: &str, colour: Option<&str>) -> boo
         return true;
     }
     let general = kinds(&denied);
-    // More words than a name of the lexicon tell one of its kind from others.
+    // A name with more words than the lexicon's sets one of its kind apart from others.
     let is_one_of_many = !is_thing(&denied) && general[0] != denied;
     !is_one_of_many && kinds(&name).contains(&general[0])
 }
@@ -78,7 +78,7 @@ fn deny(joined: &mut Vec<Sighting>, denial: Sighting) {
     for before in joined.iter_mut() {
         let other = before.witness != Witness::Denied && !places_agree(before, &denial);
         if denies(&denial, &before.name, before.colour.as_deref()) {
-            // "No chair on the left" takes nothing from a chair on the right, and has no more to say.
+            // "No chair on the left" takes nothing from a chair on the right, and adds nothing.
             known |= other || kinds(&before.name)[0] == kinds(&denial.name)[0] || before.name == denial.name;
             if !other {
                 before.witness = Witness::Denied;
@@ -125,7 +125,7 @@ fn add(joined: &mut Vec<Sighting>, earlier: usize, told: Told) {
 /// Longest name of a room, bytes.
 const MOST_BYTES: usize = 40;
 
-/// The room that was told: to a question for it, else in the first description.
+/// The room that was named: in answer to a question for it, else in the first description.
 pub(super) fn room(transcript: &[Exchange]) -> Option<String> {
     let asked_for = transcript.iter().find_map(|exchange| match asked(&exchange.question) {
         Asked::Room => answered(&exchange.answer),
@@ -165,7 +165,8 @@ fn is_sentence(said: &str) -> bool {
         || words(said).iter().any(|word| TELLING.contains(&word.as_str()))
 }
 
-/// The first room that a text names as the one it speaks of. `ambiguous`: names that may be a thing's count too ("stairs").
+/// The first room that a text names as the one it is about. `ambiguous`: names that may be a thing's count too
+/// ("stairs").
 fn first_named(text: &str, ambiguous: bool) -> Option<String> {
     const ELSEWHERE: [&str; 10] =
         ["to", "into", "through", "toward", "towards", "from", "beyond", "adjoining", "next", "onto"];

@@ -15,7 +15,7 @@ pub(super) struct PlacePhrase {
     pub(super) place: Where,
 }
 
-/// The place that a phrase beginning at a word tells, and where it ends. `Some((None, _))` for a place in relation to
+/// The place that a phrase beginning at a word names, and where it ends. `Some((None, _))` for a place in relation to
 /// something else.
 fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
     let word = |at: usize| words.get(at).copied().unwrap_or("");
@@ -86,7 +86,7 @@ pub(super) fn colour_at(words: &[&str]) -> Option<(String, usize)> {
     }
 }
 
-/// The colour that a phrase is, without its shade, where it is nothing else.
+/// The colour of a phrase that is nothing but a colour, without its shade.
 pub(super) fn bare_colour(phrase: &str) -> Option<&str> {
     let words: Vec<&str> = phrase.split(' ').collect();
     colour_at(&words).filter(|(_, length)| *length == words.len()).and_then(|_| words.last().copied())
@@ -120,7 +120,7 @@ const MOST_THINGS: usize = 8;
 pub(crate) struct Wanted {
     /// Its name as it is asked for, without article and adjectives of size.
     pub(crate) said: String,
-    /// The name without its colour, in the singular where it is no plural by nature.
+    /// The name without its colour, in the singular where it has one.
     pub(crate) name: String,
     /// The colour that is asked for.
     pub(crate) colour: Option<String>,

@@ -1,7 +1,7 @@
 //! Yes, no and not sure: what an answer says as a whole, and how far a "no" or a "maybe" reaches in a sentence.
 //!
-//! Triggers and the words that end their reach, after NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029), for the ways in
-//! which people and models speak of pictures.
+//! Triggers and the words that end their reach follow NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029), for the
+//! ways in which people and models describe pictures.
 
 use std::ops::Range;
 use wayword_core::Witness;
@@ -23,8 +23,8 @@ pub(super) enum Polarity {
     Open,
 }
 
-/// What an answer says, by how it begins, or by the yes or no behind its first comma ("Looking again, no."). Not to be sure, in its
-/// first sentence, outweighs that.
+/// What an answer says, by how it begins, or by the yes or no after its first comma ("Looking again, no."). Doubt in
+/// its first sentence outweighs that.
 pub(super) fn polarity_of(answer: &str) -> Polarity {
     let answer = answer.replace('’', "'");
     let first = answer.split_inclusive(['.', '!', '?', '\n']).find(|part| part.contains(char::is_alphanumeric));
@@ -64,7 +64,7 @@ fn of_words(words: &[String]) -> Polarity {
     }
 }
 
-/// Whether words hold a phrase of not knowing.
+/// Whether words contain a phrase of doubt.
 pub(super) fn is_unsure(words: &[&str]) -> bool {
     (0..words.len()).any(|at| doubt_at(&words[at..]).is_some())
 }
@@ -89,7 +89,7 @@ struct Reach {
 
 const NOT: [&str; 2] = ["not", "never"];
 
-/// Whether words hold one of the phrases of not knowing.
+/// The length of the phrase of doubt with which words begin, if they do.
 pub(super) fn doubt_at(words: &[&str]) -> Option<usize> {
     DOUBTS.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
 }
@@ -164,7 +164,7 @@ impl Sentence<'_> {
         matches!(self.word(at), "a" | "an" | "any" | "one")
     }
 
-    /// Where the object of a verb begins that stands behind a "not".
+    /// Where the object of a negated verb begins; `after` is behind the "not".
     fn negated_verb(&self, after: usize) -> Option<usize> {
         let mut at = after;
         while at < after + 5 && MEANWHILE.contains(&self.word(at)) {

@@ -39,7 +39,7 @@ pub(crate) enum Asked {
 
 /// What a question asks for.
 pub(crate) fn asked(question: &str) -> Asked {
-    // "Look again and answer in one short sentence: ..." asks for what stands behind it.
+    // "Look again and answer in one short sentence: ..." asks for what follows the colon.
     let question = question.rsplit_once(": ").map_or(question, |(_, rest)| rest);
     let tokens = tokens(question);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
@@ -74,7 +74,7 @@ fn room(words: &[&str]) -> Option<Asked> {
 
 /// "What colour is the lamp?", "Is the sofa brown or black?".
 fn colour(question: &str, words: &[&str]) -> Option<Asked> {
-    // A name of any words, marks and spelling, as our own asker puts it.
+    // The form of the asker by rules, where a name may have any words, marks and spelling.
     if let Some(name) = question.strip_prefix("What colour is the ").and_then(|rest| rest.strip_suffix('?')) {
         return Some(Asked::Colour { name: name.to_owned(), guesses: Vec::new() });
     }
@@ -97,7 +97,7 @@ fn colour(question: &str, words: &[&str]) -> Option<Asked> {
     Some(Asked::Colour { name: wanted.name, guesses })
 }
 
-/// Whether the colour at a word is said of what stands before it, and not of a noun behind it.
+/// Whether the colour at a word describes what is before it, and not a noun after it.
 fn ends_phrase(words: &[&str], at: usize) -> bool {
     at > 1 && words.get(at + 1).is_none_or(|next| matches!(*next, "or" | "?" | "and" | "in" | ","))
 }
@@ -158,7 +158,7 @@ fn presence_of((wanted, or): (Vec<Wanted>, bool)) -> Asked {
     Asked::Presence { wanted, or }
 }
 
-/// What stands behind one of some verbs that comes early.
+/// What follows one of these verbs, where it comes early.
 fn after_verb<'a, 'b>(words: &'a [&'b str], verbs: &[&str]) -> Option<&'a [&'b str]> {
     let at = words.iter().take(5).position(|word| verbs.contains(word))?;
     Some(&words[at + 1..])

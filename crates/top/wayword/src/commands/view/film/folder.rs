@@ -12,10 +12,10 @@ pub(super) struct Folder {
 }
 
 impl Folder {
-    /// A folder for at most so many pictures; it is made with the first of them.
+    /// A folder for at most `most` pictures; it is made with the first of them.
     ///
     /// # Errors
-    /// When it is there and holds anything but pictures of this kind, or more of them: old and new ones would be mixed.
+    /// When it exists and holds anything but such pictures, or more of them, because old and new ones would be mixed.
     pub(super) fn new(folder: PathBuf, most: usize) -> Result<Self, Error> {
         if folder.exists() {
             for entry in fs::read_dir(&folder).map_err(Error::io(&folder, "read"))? {
@@ -23,7 +23,7 @@ impl Folder {
                 let number = name.to_str().and_then(number_of);
                 if number.is_none_or(|number| number > most) {
                     let problem =
-                        format!("--out {}: the folder holds {} already", folder.display(), name.to_string_lossy());
+                        format!("--out {}: the folder already holds {}", folder.display(), name.to_string_lossy());
                     return Err(Error::usage(problem, "give an empty folder, or the name of a new one"));
                 }
             }

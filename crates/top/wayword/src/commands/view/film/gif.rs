@@ -1,4 +1,4 @@
-//! An animated GIF that starts anew when it is over.
+//! An animated GIF that loops.
 
 use super::{super::picture::unfit, super::unfinished::Unfinished, FilmWriter};
 use crate::error::Error;
@@ -13,7 +13,7 @@ use std::{
 };
 use wayword_core::Image;
 
-/// How quickly the 256 colours of a picture are chosen, 1 to 30: those of 10 are as good to the eye as those of 1.
+/// How quickly the 256 colours of a picture are chosen, 1 to 30. At 10 they look as good as at 1.
 const SPEED: i32 = 10;
 
 pub(super) struct Gif {
@@ -23,7 +23,7 @@ pub(super) struct Gif {
     delay: Delay,
 }
 
-/// The file, of which the encoder does not give back what it has.
+/// The file, shared because the encoder does not give it back.
 #[derive(Clone)]
 struct Shared(Arc<Mutex<Option<Unfinished>>>);
 

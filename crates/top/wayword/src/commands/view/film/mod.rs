@@ -1,4 +1,4 @@
-//! Pictures one after the other: in a folder, a GIF or a video.
+//! Pictures in order: in a folder, a GIF or a video.
 
 mod folder;
 mod gif;
@@ -35,10 +35,10 @@ pub(super) enum FilmPlace {
 }
 
 impl FilmPlace {
-    /// What `out` asks for: a folder where it has no ending or is one, else a file by its ending.
+    /// What `out` asks for: a folder if it is one or has no ending, else a file by its ending.
     ///
     /// # Errors
-    /// When the ending is no such file's, this build cannot write it, or what is there must not be overwritten.
+    /// When the ending names no such file, this build cannot write it, or what is there must not be overwritten.
     pub(super) fn of(out: &Path, data: Option<&Path>) -> Result<Self, Error> {
         let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
         if is_folder || (out.extension().is_none() && !out.exists()) {
@@ -56,13 +56,13 @@ impl FilmPlace {
             _ => Ok(Self::Mp4(out.to_owned())),
             #[cfg(not(feature = "video"))]
             _ => Err(Error::usage(
-                "this build writes no video",
+                "this build cannot write videos",
                 "build it with `cargo build --release --features full`, or end --out in .gif or /",
             )),
         }
     }
 
-    /// Begins to write: so many pictures for each second, and at most so many.
+    /// Begins to write at most `most` pictures, `fps` for each second.
     ///
     /// # Errors
     /// When the place cannot be written.

@@ -11,11 +11,11 @@ use openh264::{
 use std::path::{Path, PathBuf};
 use wayword_core::Image;
 
-/// Least frames for each second: players stumble over fewer, so that a picture is shown several times instead.
+/// Least frames for each second. Some players cannot show fewer, so a picture is shown several times instead.
 const LEAST_FPS: f64 = 10.0;
-/// A picture that can be jumped to comes at least so often, seconds.
+/// Most seconds between two key frames, to which players can jump.
 const KEY_EVERY_S: f64 = 5.0;
-/// How coarse pictures are: the encoder's scale of 0 to 51.
+/// How coarse pictures may be: quantisation on the encoder's scale of 0 to 51.
 const COARSENESS: [u8; 2] = [18, 24];
 
 pub(super) fn open(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Error> {
@@ -28,7 +28,7 @@ pub(super) fn open(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Error> {
         .skip_frames(false)
         // One thread and no choice by load: the same pictures give the same file.
         .num_threads(1)
-        // What the conversion below makes of RGB.
+        // The colours that the conversion below gives.
         .vui(VuiConfig::bt601());
     let encoder = Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|error| refused(&error))?;
     Ok(Box::new(Mp4 {
@@ -44,9 +44,9 @@ pub(super) fn open(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Error> {
 
 struct Mp4 {
     encoder: Encoder,
-    /// There until the first picture, which says the size.
+    /// `Some` until the first picture, which sets the size.
     file: Option<Unfinished>,
-    /// There from then on.
+    /// `Some` from then on.
     muxer: Option<Muxer<Unfinished>>,
     out: PathBuf,
     /// Frames for each second.
@@ -85,8 +85,8 @@ impl FilmWriter for Mp4 {
     }
 }
 
-/// The picture in even sides, which H.264's colours need: the last column and row are left out, or shown twice where they are the
-/// only ones.
+/// The picture with even sides, which H.264's colours need: an odd last column or row is left out, or shown twice if it
+/// is the only one.
 fn even(picture: &Image) -> (Vec<u8>, [usize; 2]) {
     let given = [picture.width_px() as usize, picture.height_px() as usize];
     let size = given.map(|side| (side - side % 2).max(2));
@@ -100,7 +100,7 @@ fn even(picture: &Image) -> (Vec<u8>, [usize; 2]) {
 
 fn refused(error: &openh264::Error) -> Error {
     let hint = "give pictures of at most 3840 x 2160 pixels with --width";
-    Error::usage(format!("the pictures make no video: {error}"), hint)
+    Error::usage(format!("the pictures cannot become a video: {error}"), hint)
 }
 
 // A closure's argument cannot be a reference where `map_err` gives the value away.

@@ -4,10 +4,10 @@ use super::sketch::Point;
 
 /// Width of a glyph and of the gap after it, in heights of a digit.
 const ADVANCE: f64 = 0.78;
-/// Height of a digit in sizes of its text, as in common fonts.
+/// Height of a digit in font sizes, as in common fonts.
 const DIGIT: f64 = 0.72;
 
-/// The strokes of a character within 0..=4 by 0..=6, from the top left; none for one that is not known.
+/// The strokes of a character within 0..=4 by 0..=6, from the top left; none for an unknown character.
 fn strokes(character: char) -> &'static [&'static [[u8; 2]]] {
     match character {
         '0' => &[&[[1, 0], [3, 0], [4, 1], [4, 5], [3, 6], [1, 6], [0, 5], [0, 1], [1, 0]]],

@@ -11,7 +11,7 @@ use wayword_core::{Climb, DVec3, FromAbove, Heading, Path, ViewpointGraph, Viewp
 /// A page.
 const PAPER: Paper =
     Paper { most: [800.0, 760.0], least: [240.0, 160.0], padding: 26.0, margin_m: 0.5, most_scale: 64.0 };
-/// Below the map: scale bar and north arrow.
+/// Height below the map for scale bar and north arrow.
 const FOOT: f64 = 36.0;
 const DARK: Ink = [30, 38, 52];
 const GREY: Ink = [96, 112, 136];
@@ -21,14 +21,14 @@ const STAIRS: [f64; 2] = [1.0, 7.0];
 /// What is to be drawn.
 pub(super) struct Plan<'a> {
     pub(super) graph: &'a ViewpointGraph,
-    /// Only this storey; all where the world knows none.
+    /// Only this storey; all if the platform knows no storeys.
     pub(super) level: Option<u32>,
     /// How it looks from above.
     pub(super) above: Option<&'a FromAbove>,
     pub(super) path: Option<&'a Path>,
 }
 
-/// The drawing, or `None` where the places make none.
+/// The drawing, or `None` if the places cannot be drawn.
 pub(super) fn sketch(plan: &Plan<'_>) -> Option<Sketch> {
     let stops: Vec<DVec3> =
         plan.path.into_iter().flat_map(|path| &path.frames).map(|frame| frame.pose.position).collect();
@@ -61,7 +61,7 @@ pub(super) fn sketch(plan: &Plan<'_>) -> Option<Sketch> {
 }
 
 impl Plan<'_> {
-    /// Whether something on a level is drawn; what nobody knows the level of is.
+    /// Whether something on a storey is drawn. What has no known storey is always drawn.
     fn is_here(&self, level: Option<u32>) -> bool {
         level.zip(self.level).is_none_or(|(level, here)| level == here)
     }
@@ -106,7 +106,7 @@ fn walk(plan: &Plan<'_>, path: &Path, stops: &[DVec3], sheet: &Sheet, marks: &mu
     }
 }
 
-/// A frame's number; of a frame on another storey it is hollow.
+/// A frame's number; it is hollow if the frame is on another storey.
 fn badge(spot: &Spot, is_here: bool, marks: &mut Vec<Mark>) {
     let (at, fill) = (spot.badge, ink(&spot.colour.fill));
     let mut disc = |radius: f64, ink: Ink| marks.push(Mark::Disc { at, radius, ink, title: None });
@@ -123,7 +123,7 @@ fn badge(spot: &Spot, is_here: bool, marks: &mut Vec<Mark>) {
     marks.push(Mark::Text { at, size: 10.5, text: spot.number.to_string(), ink, is_centred: true });
 }
 
-/// Which way the walker looks at first.
+/// The heading at the start.
 fn facing(at: Point, heading: Heading) -> Mark {
     let (sin, cos) = (heading.direction().x, heading.direction().y);
     let turned = |[x, y]: Point| [at[0] + x * cos - y * sin, at[1] + x * sin + y * cos];

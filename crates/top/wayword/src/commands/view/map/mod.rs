@@ -18,23 +18,24 @@ use wayword_core::{Path, SceneId, ViewpointGraph};
 
 pub(super) fn write(args: &ViewMap, output: &Output) -> Result<Written, Error> {
     let kind = FileKind::among(&[FileKind::Svg, FileKind::Png], &args.out)?;
-    kind.check_free(&args.out, args.world.data.as_deref())?;
-    let platform = open(&args.world)?;
-    let path = asks_for_path(&args.walk).then(|| walk::path(&args.walk, &args.world, &*platform)).transpose()?;
+    kind.check_free(&args.out, args.platform.data.as_deref())?;
+    let platform = open(&args.platform)?;
+    let path = asks_for_path(&args.walk).then(|| walk::path(&args.walk, &args.platform, &*platform)).transpose()?;
     let scene = match &path {
         Some(path) => path.scene.clone(),
         None => scene(&*platform, args.walk.scan.as_deref())?,
     };
     if let Some(path) = path.as_ref().filter(|path| !path.motion.is_known()) {
-        let problem = format!("path {}: nobody knows where its frames are", path.id);
-        return Err(Error::usage(problem, "without poses there is no map; `wayword view path` shows the frames"));
+        let problem = format!("path {}: it has no poses, so there is no map", path.id);
+        return Err(Error::usage(problem, "`wayword view path` shows its frames"));
     }
     let graph = platform.graph(&scene)?;
     let level = level(args.level, &scene, &graph, path.as_ref(), output)?;
     let above = level.map(|level| platform.look_down(&scene, level)).transpose()?.flatten();
     let plan = Plan { graph: &graph, level, above: above.as_ref(), path: path.as_ref() };
     let sketch = layout::sketch(&plan).ok_or_else(|| {
-        Error::usage(format!("scene {scene}: its places make no map"), "there are none, or they are too far apart")
+        let hint = "it has no viewpoints, or they are too far apart";
+        Error::usage(format!("scene {scene} cannot be drawn as a map"), hint)
     })?;
     let (bytes, [width, height]) = if kind == FileKind::Svg {
         let size = sketch.size.map(|side| side.ceil() as u32);
@@ -48,12 +49,12 @@ pub(super) fn write(args: &ViewMap, output: &Output) -> Result<Written, Error> {
     Ok(Written { scene, files: vec![args.out.clone()], width, height, frames: 1, islands })
 }
 
-/// Whether any flag speaks of a path.
+/// Whether any flag asks for a path.
 fn asks_for_path(walk: &Walk) -> bool {
     walk.seed.is_some() || walk.hops.is_some() || walk.metres.is_some() || walk.episodes.is_some()
 }
 
-/// The level that is drawn; none where the world knows no levels.
+/// The storey that is drawn; `None` if the platform knows no storeys.
 fn level(
     asked: Option<u32>,
     scene: &SceneId,
@@ -66,18 +67,18 @@ fn level(
     match asked {
         Some(level) if levels.contains(&level) => Ok(Some(level)),
         Some(level) if levels.is_empty() => {
-            let problem = format!("--level {level}: the world does not know the levels of scene {scene}");
+            let problem = format!("--level {level}: the platform does not know the storeys of scene {scene}");
             Err(Error::usage(problem, "leave --level out"))
         }
         Some(level) => Err(Error::usage(
-            format!("--level {level}: scene {scene} has none of that number"),
+            format!("--level {level}: scene {scene} has no storey of that number"),
             format!("there are: {told}"),
         )),
         None => {
             let starts = path.and_then(|path| path.frames.first()?.level).filter(|level| levels.contains(level));
             let level = starts.or_else(|| levels.first().copied());
             if let Some(level) = level.filter(|_| levels.len() > 1) {
-                output.say(format_args!("level {level} of {told}: choose with --level"));
+                output.say(format_args!("drawing storey {level} of {told}; choose another with --level"));
             }
             Ok(level)
         }
@@ -86,7 +87,7 @@ fn level(
 
 /// What the map shows, in words.
 fn title(scene: &SceneId, level: Option<u32>, path: Option<&Path>) -> String {
-    let level = level.map_or(String::new(), |level| format!(", level {level}"));
+    let level = level.map_or(String::new(), |level| format!(", storey {level}"));
     let path = path.map_or(String::new(), |path| format!(", path {}", path.id));
     format!("{scene}{level}{path}")
 }

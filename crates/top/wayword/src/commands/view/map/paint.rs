@@ -76,7 +76,7 @@ impl Canvas {
         let reach = radius + 1.0;
         for y in self.span(1, from[1].min(to[1]) - reach, from[1].max(to[1]) + reach) {
             let middle = f64::from(y) + 0.5;
-            // Only the part of the line that is near the row, so that a long one does not cost its whole box.
+            // Only the part of the line that is near the row, because its whole box can be large.
             let along = |at: f64| if way[1].abs() > 1e-9 { ((at - from[1]) / way[1]).clamp(0.0, 1.0) } else { 0.0 };
             let shares = if way[1].abs() > 1e-9 { [along(middle - reach), along(middle + reach)] } else { [0.0, 1.0] };
             let xs = shares.map(|share| from[0] + share * way[0]);
@@ -105,7 +105,7 @@ impl Canvas {
         for y in self.span(1, top, bottom) {
             for x in self.span(0, left, right) {
                 let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
-                // How far inside of the side that is nearest.
+                // How far inside the nearest side.
                 let inside = (0..3).map(|side| {
                     let (a, b) = (corners[side], corners[(side + 1) % 3]);
                     sign * cross(a, b, at) / (b[0] - a[0]).hypot(b[1] - a[1]).max(1e-9)

@@ -1,4 +1,4 @@
-//! What is drawn, before it is an SVG or pixels. Units are those of the sheet, (0, 0) is the upper left corner.
+//! What is drawn, before it becomes an SVG or pixels. Units are those of the sheet; (0, 0) is the upper left corner.
 
 use std::sync::Arc;
 use wayword_core::Image;
@@ -13,15 +13,15 @@ pub(super) struct Sketch {
     pub(super) size: Point,
     /// A picture below everything, with its upper left and lower right corners.
     pub(super) picture: Option<(Arc<Image>, [Point; 2])>,
-    /// From the lowest.
+    /// From the lowest to the topmost.
     pub(super) marks: Vec<Mark>,
 }
 
-/// Something on it.
+/// Something on the drawing.
 pub(super) enum Mark {
     /// Straight lines with round ends.
     Line { points: Vec<Point>, width: f64, ink: Ink, dash: Option<[f64; 2]> },
-    /// A disc; its title is told where somebody points at it.
+    /// A disc; its title is shown when the user points at it.
     Disc { at: Point, radius: f64, ink: Ink, title: Option<String> },
     /// A filled triangle.
     Triangle { corners: [Point; 3], ink: Ink },
@@ -29,7 +29,7 @@ pub(super) enum Mark {
     Text { at: Point, size: f64, text: String, ink: Ink, is_centred: bool },
 }
 
-/// The colour of a CSS one, as `#rgb` or `#rrggbb`; black where it is none.
+/// The colour of a CSS text, `#rgb` or `#rrggbb`; black for any other.
 pub(super) fn ink(css: &str) -> Ink {
     let digits: Vec<u8> = css.trim_start_matches('#').chars().filter_map(|c| Some(c.to_digit(16)? as u8)).collect();
     match digits[..] {

@@ -1,4 +1,4 @@
-//! A sketch as an SVG that needs nothing but itself.
+//! A sketch as an SVG that loads nothing else.
 
 use super::{
     super::{file_kind::SVG_START, picture},
@@ -7,7 +7,7 @@ use super::{
 use crate::{error::Error, report::data_uri};
 use std::fmt::Write;
 
-/// The drawing as text; `title` is told where somebody points at it.
+/// The drawing as text; `title` is shown when the user points at it.
 ///
 /// # Errors
 /// When the picture below cannot be encoded.

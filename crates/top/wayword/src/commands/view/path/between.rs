@@ -4,28 +4,28 @@ use crate::error::Error;
 use std::f64::consts::FRAC_PI_2;
 use wayword_core::{Frame, Move, Path, Pose};
 
-/// How fast the walker turns on the spot, radians for each second.
+/// How fast the camera turns on the spot, radians for each second.
 const TURNS_RAD: f64 = FRAC_PI_2;
-/// How fast it walks, metres for each second.
+/// How fast it moves, metres for each second.
 const WALKS_M: f64 = 1.0;
 
 /// Where a picture is taken.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Step {
     pub(super) frame: Frame,
-    /// Whether it is none of the path's own frames.
+    /// Whether it is not one of the path's own frames.
     pub(super) is_between: bool,
 }
 
-/// The frames of a path with so many places between each two of them. The walker turns on the spot and then walks, as moves do, at
-/// an even pace.
+/// The frames of a path with `between` places between each two of them. As in a move, the camera turns on the spot and
+/// then moves straight, at an even pace.
 ///
 /// # Errors
-/// When there are to be places between frames of which nobody knows where they are.
+/// When places between frames are asked for, but the path has no poses.
 pub(super) fn steps(path: &Path, between: usize) -> Result<Vec<Step>, Error> {
     if between > 0 && !path.motion.is_known() {
-        let problem = format!("path {}: nobody knows how it was walked", path.id);
-        return Err(Error::usage(problem, "leave --smooth out: the frames themselves can be seen"));
+        let problem = format!("path {}: without poses there are no pictures between its frames", path.id);
+        return Err(Error::usage(problem, "leave --smooth out to see the frames only"));
     }
     let own = |frame: &Frame| Step { frame: frame.clone(), is_between: false };
     let mut steps = Vec::new();

@@ -11,9 +11,9 @@ use wayword_core::{Gaze, Image, Platform, PlatformError, SceneId};
 
 /// Most pictures of a path.
 const MOST_STEPS: usize = 20_000;
-/// Pictures for each second, where only the path's own frames are shown, and where there are pictures between.
+/// Pictures for each second: with the path's own frames only, and with pictures between them.
 const FPS: [f64; 2] = [1.0, 12.0];
-/// What can be asked for: a GIF counts in hundredths of a second.
+/// The rates that can be asked for: a GIF counts in hundredths of a second.
 const FPS_RANGE: std::ops::RangeInclusive<f64> = 0.1..=50.0;
 /// Widest pictures, pixels.
 const WIDEST_PX: u32 = 8192;
@@ -21,21 +21,21 @@ const WIDEST_PX: u32 = 8192;
 pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> {
     let fps = args.fps.unwrap_or(FPS[usize::from(args.smooth.is_some_and(|between| between > 0))]);
     if !FPS_RANGE.contains(&fps) {
-        return Err(Error::usage(format!("--fps {fps} cannot be shown"), "give a number from 0.1 to 50"));
+        return Err(Error::usage(format!("--fps {fps} is out of range"), "give a number from 0.1 to 50"));
     }
     if args.width.is_some_and(|width| !(1..=WIDEST_PX).contains(&width)) {
-        return Err(Error::usage("--width cannot be that", format!("give a number from 1 to {WIDEST_PX}")));
+        return Err(Error::usage("--width is out of range", format!("give a number from 1 to {WIDEST_PX}")));
     }
-    let place = film::FilmPlace::of(&args.out, args.world.data.as_deref())?;
-    let platform = open(&args.world)?;
-    let path = walk::path(&args.walk, &args.world, &*platform)?;
+    let place = film::FilmPlace::of(&args.out, args.platform.data.as_deref())?;
+    let platform = open(&args.platform)?;
+    let path = walk::path(&args.walk, &args.platform, &*platform)?;
     let steps = between::steps(&path, args.smooth.unwrap_or(0))?;
     if steps.len() > MOST_STEPS {
-        let problem = format!("that is {} pictures, more than {MOST_STEPS}", steps.len());
+        let problem = format!("the path would need {} pictures, and {MOST_STEPS} are the most", steps.len());
         return Err(Error::usage(problem, "ask for a shorter path, or a smaller --smooth"));
     }
     let mut film = place.open(fps, steps.len())?;
-    let bar = output.progress(steps.len(), "looking");
+    let bar = output.progress(steps.len(), "pictures");
     let (mut size, mut frames) = (None, 0);
     for step in &steps {
         if let Some(image) = look(&*platform, &path.scene, step)? {
@@ -48,21 +48,23 @@ pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> 
     }
     bar.finish_and_clear();
     let Some((width, height)) = size else {
-        let problem = format!("path {}: no picture of any of its {}", path.id, count(steps.len(), "frame"));
-        return Err(Error::usage(problem, "`wayword platforms` says which worlds have pictures, and what they need"));
+        let problem = format!("path {}: there is no picture for any of its {}", path.id, count(steps.len(), "frame"));
+        let hint = "`wayword platforms` says which platforms have pictures, and what they need";
+        return Err(Error::usage(problem, hint));
     };
     if frames < steps.len() {
-        output.say(format_args!("no picture of {} of {}, left out", steps.len() - frames, count(steps.len(), "frame")));
+        let without = steps.len() - frames;
+        output.say(format_args!("no picture for {without} of {}; left out", count(steps.len(), "frame")));
     }
     Ok(Written { scene: path.scene, files: film.finish()?, width, height, frames, islands: Vec::new() })
 }
 
-/// What is seen ahead; of a place between two frames there has to be a picture.
+/// The picture of the view ahead. At a place between two frames it is an error if there is none.
 fn look(platform: &dyn Platform, scene: &SceneId, step: &Step) -> Result<Option<Arc<Image>>, Error> {
     let view = platform.look(scene, &step.frame, Gaze::quarter(step.frame.pose.heading));
     let nothing_between = || {
-        let problem = format!("{} shows nothing between a path's frames", platform.name());
-        Err(Error::usage(problem, "leave --smooth out: the frames themselves can be seen"))
+        let problem = format!("platform {} has no pictures between the frames of a path", platform.name());
+        Err(Error::usage(problem, "leave --smooth out to see the frames only"))
     };
     match view {
         Err(PlatformError::NotAViewpoint { .. } | PlatformError::UnknownViewpoint { .. }) if step.is_between => {
@@ -88,7 +90,7 @@ fn fitted(image: Arc<Image>, (width, height): (u32, u32)) -> Result<Arc<Image>, 
     if (image.width_px(), image.height_px()) == (width, height) {
         return Ok(image);
     }
-    let broken = || Error::usage("a picture has no pixels", "look at the world's files");
+    let broken = || Error::usage("a picture has no pixels", "check the platform's files");
     let given = image::RgbImage::from_raw(image.width_px(), image.height_px(), image.rgb().to_vec());
     let given = given.filter(|given| given.width() > 0 && given.height() > 0).ok_or_else(broken)?;
     let scaled = imageops::resize(&given, width, height, FilterType::Triangle);

@@ -1,0 +1,101 @@
+//! Lower-bound baselines, which read nothing, and agents that know more than an agent may: the map, or the goal. A
+//! figure of an agent means little without both.
+
+use super::{Start, Walked};
+use crate::{
+    error::WalkError,
+    sight::{frame_at, heading_to},
+    walk::{Choice, End, Step},
+};
+use rand::{Rng, seq::IndexedRandom};
+use wayword_core::{Gaze, Heading, Platform, ViewpointGraph, ViewpointId};
+use wayword_language::lexicon::same_room;
+
+/// `hops` hops, each to a random neighbour, all equally likely.
+#[must_use]
+pub fn random(graph: &ViewpointGraph, start: &Start, hops: usize, rng: &mut impl Rng) -> Walked {
+    follow(graph, start, hops, |here, _| graph.neighbours(here).choose(rng).map(|to| (*to).clone()))
+}
+
+/// Up to `hops` hops, each to the neighbour nearest to straight ahead, as long as one lies in the quarter ahead.
+#[must_use]
+pub fn straight(graph: &ViewpointGraph, start: &Start, hops: usize) -> Walked {
+    follow(graph, start, hops, |here, heading| {
+        let ahead = Gaze::quarter(heading);
+        let bearing = |to: &ViewpointId| heading_to(graph, here, to).filter(|to| ahead.holds(*to));
+        let off_rad = |to: Heading| heading.turn_to(to).abs();
+        let near = graph.neighbours(here).into_iter().filter_map(|to| Some((off_rad(bearing(to)?), to)));
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, to)| to.clone())
+    })
+}
+
+/// The shortest path to the annotated goal; the start alone where there is no way.
+///
+/// # Errors
+/// When the start or the goal is not in the graph.
+pub fn oracle(graph: &ViewpointGraph, start: &Start, goal: &ViewpointId) -> Result<Walked, WalkError> {
+    to(graph, start, goal)
+}
+
+/// The shortest path to the nearest node of a room, by the platform's labels; the start alone where there is none. It knows the map
+/// and every room, and reads nothing but the room's name.
+///
+/// # Errors
+/// When the platform gives no view.
+pub fn nearest_room(platform: &dyn Platform, start: &Start, wanted: Option<&str>) -> Result<Walked, WalkError> {
+    let graph = platform.graph(&start.scene)?;
+    let distances = graph.distances_from(&start.viewpoint).map_err(|_| unknown(start, &start.viewpoint))?;
+    let mut near: Vec<(&ViewpointId, f64)> = distances.into_iter().collect();
+    near.sort_by(|a, b| a.1.total_cmp(&b.1).then_with(|| a.0.cmp(b.0)));
+    for (viewpoint, _) in near {
+        let frame = frame_at(&graph, &start.scene, viewpoint)?;
+        let view = platform.look_without_picture(&start.scene, &frame, Gaze::quarter(Heading::NORTH))?;
+        let room = view.ground_truth().and_then(|truth| truth.room.as_deref());
+        if room.zip(wanted).is_some_and(|(room, wanted)| same_room(room, wanted)) {
+            return to(&graph, start, viewpoint);
+        }
+    }
+    Ok(follow(&graph, start, 0, |_, _| None))
+}
+
+fn unknown(start: &Start, viewpoint: &ViewpointId) -> WalkError {
+    WalkError::Unknown { scene: start.scene.clone(), viewpoint: viewpoint.clone() }
+}
+
+fn to(graph: &ViewpointGraph, start: &Start, goal: &ViewpointId) -> Result<Walked, WalkError> {
+    let route = graph.shortest_path(&start.viewpoint, goal).map_err(|_| unknown(start, goal))?;
+    let mut rest = route.map(|route| route.viewpoints).unwrap_or_default().into_iter().skip(1);
+    Ok(follow(graph, start, usize::MAX, |_, _| rest.next()))
+}
+
+/// Follows `next` until it gives no node, or the hops are used up.
+fn follow(
+    graph: &ViewpointGraph,
+    start: &Start,
+    hops: usize,
+    mut next: impl FnMut(&ViewpointId, Heading) -> Option<ViewpointId>,
+) -> Walked {
+    let mut steps = Vec::new();
+    let (mut here, mut heading) = (start.viewpoint.clone(), start.heading);
+    let stand = |here: &ViewpointId, heading, choice| Step {
+        viewpoint: here.clone(),
+        heading_rad: heading,
+        views: Vec::new(),
+        phrase: 0,
+        choice,
+    };
+    while let Some(to) = (steps.len() < hops).then(|| next(&here, heading)).flatten() {
+        steps.push(stand(&here, heading, Choice::Unseeing));
+        heading = heading_to(graph, &here, &to).unwrap_or(heading);
+        here = to;
+    }
+    steps.push(stand(&here, heading, Choice::Stop));
+    Walked { steps, end: End::Stopped, object: None }
+}
+
+/// The room that an instruction names last: the rooms before it are left or passed.
+#[must_use]
+pub fn last_room_in(text: &str) -> Option<String> {
+    let rooms = crate::directions::places(text).into_iter().filter(|place| place.is_room);
+    rooms.map(|place| place.name).next_back()
+}

@@ -1,0 +1,99 @@
+//! How an agent that walks by phrases decides, node by node.
+//!
+//! CLIP-Nav (arXiv 2211.16649, section 3): the current key phrase is scored on four views, and the agent goes to the
+//! nearest neighbour in the best one. After a phrase that fits well enough comes the next phrase. An activity that fits
+//! well enough ends the walk. Seq-CLIP-Nav goes back where the mean of the last scores is too low.
+//!
+//! The papers leave these open, and they are decided here. A phrase that fits still chooses the view, and the next
+//! phrase is current only after that. Going back keeps the phrases that were done. Of views that tie in score and
+//! angle, the later one by the compass is taken.
+
+use super::Parameters;
+use crate::sight::{Seen, Sight};
+use std::collections::BTreeMap;
+use wayword_core::{Compass, Heading, ViewpointId};
+
+/// An agent's memory of one walk.
+pub(crate) struct Policy<'p> {
+    parameters: &'p Parameters,
+    /// Number of key phrases; the activity comes after them.
+    phrases: usize,
+    /// The current key phrase.
+    phrase: usize,
+    visits: BTreeMap<ViewpointId, usize>,
+    /// The nodes on the way here, without those that it went back over.
+    trail: Vec<ViewpointId>,
+    recent: Vec<f32>,
+}
+
+/// What the agent does at a node.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Decision {
+    /// Go to a neighbour that lies in a view.
+    Onward { view: usize, to: ViewpointId },
+    /// Go back over these nodes, in this order.
+    Back(Vec<ViewpointId>),
+    /// End the walk here.
+    Stop,
+    /// There is no neighbour.
+    DeadEnd,
+}
+
+impl<'p> Policy<'p> {
+    pub(crate) fn new(parameters: &'p Parameters, phrases: usize) -> Self {
+        Self { parameters, phrases, phrase: 0, visits: BTreeMap::new(), trail: Vec::new(), recent: Vec::new() }
+    }
+
+    /// The current key phrase, from 0; the number of phrases when only the activity is left.
+    pub(crate) fn phrase(&self) -> usize {
+        self.phrase
+    }
+
+    /// Decides at a node that was entered along `heading`.
+    pub(crate) fn decide(&mut self, here: &ViewpointId, heading: Heading, sight: &Sight) -> Decision {
+        *self.visits.entry(here.clone()).or_default() += 1;
+        self.trail.push(here.clone());
+        let best = |of: usize| sight.views.iter().map(|view| view.scores[of]).fold(f32::NEG_INFINITY, f32::max);
+        let listens = self.phrases - self.phrase <= self.parameters.stop_with_phrases_left;
+        if listens && best(self.phrases) >= self.parameters.stop_threshold {
+            return Decision::Stop;
+        }
+        let in_hand = self.phrase;
+        let fit = best(in_hand);
+        if in_hand < self.phrases && fit >= self.parameters.phrase_threshold {
+            self.phrase += 1;
+        }
+        self.back(fit).unwrap_or_else(|| self.onward(heading, sight, in_hand))
+    }
+
+    /// The nodes to go back over, where the last looks say that the way is wrong.
+    fn back(&mut self, fit: f32) -> Option<Decision> {
+        let back = self.parameters.back?;
+        self.recent.push(fit);
+        let from = self.recent.len().checked_sub(back.window.max(1))?;
+        let mean = self.recent[from..].iter().sum::<f32>() / back.window.max(1) as f32;
+        let keep = self.trail.len().checked_sub(back.nodes + 1)?;
+        if mean >= back.threshold || back.nodes == 0 {
+            return None;
+        }
+        // The mean starts anew with the next look.
+        self.recent.clear();
+        // The agent looks again from the last of them, which then joins the trail.
+        let over: Vec<ViewpointId> = self.trail.drain(keep..).rev().skip(1).collect();
+        Some(Decision::Back(over))
+    }
+
+    /// The best view's nearest neighbour. Of views that fit equally well, the one that lies nearest to straight ahead.
+    fn onward(&self, heading: Heading, sight: &Sight, in_hand: usize) -> Decision {
+        let visits = |id: &ViewpointId| self.visits.get(id).copied().unwrap_or_default();
+        let neighbours = || sight.views.iter().flat_map(|view| &view.onward);
+        let least = neighbours().map(visits).min().unwrap_or_default();
+        let may = |id: &&ViewpointId| !self.parameters.shun_visited || visits(id) == least;
+        let off_rad = |view: usize| heading.turn_to(Compass::ALL[view].heading()).abs();
+        let worth =
+            |(at, view): (usize, &Seen)| Some((at, view.scores[in_hand], view.onward.iter().find(may)?.clone()));
+        let open = sight.views.iter().enumerate().filter_map(worth);
+        let chosen = open.max_by(|a, b| a.1.total_cmp(&b.1).then_with(|| off_rad(b.0).total_cmp(&off_rad(a.0))));
+        chosen.map_or(Decision::DeadEnd, |(view, _, to)| Decision::Onward { view, to })
+    }
+}

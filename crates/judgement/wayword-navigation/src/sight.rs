@@ -1,0 +1,210 @@
+//! What an agent gets at a node: how well its phrases fit four views, and which neighbours lie in each.
+
+use crate::error::WalkError;
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    Frame, Gaze, Grounder, Heading, ObjectId, Platform, Pose, SceneId, View, ViewpointGraph, ViewpointId,
+};
+
+/// What an agent looks at one scene with: a platform, and a grounder that scores how well phrases fit what is seen.
+///
+/// The four views are those of the compass, so that a node looks the same wherever the agent comes from. Views and
+/// scores are kept, so that all agents that walk by one instruction share them.
+pub struct AgentView<'a> {
+    platform: &'a dyn Platform,
+    grounder: &'a dyn Grounder,
+    scene: SceneId,
+    graph: Arc<ViewpointGraph>,
+    needs_pictures: bool,
+    around: Mutex<BTreeMap<ViewpointId, Arc<Around>>>,
+    scores: Mutex<BTreeMap<(ViewpointId, Vec<String>), Scores>>,
+}
+
+/// How well phrases fit each of the four views of a node.
+type Scores = Arc<[Vec<f32>; 4]>;
+
+/// What surrounds a node.
+struct Around {
+    views: [View; 4],
+    /// Neighbours in each view, nearest first.
+    onward: [Vec<ViewpointId>; 4],
+}
+
+/// What an agent gets at a node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sight {
+    /// North, east, south, west.
+    pub views: [Seen; 4],
+}
+
+/// One view, as an agent gets it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    /// How well each phrase fits, in the order in which they were given.
+    pub scores: Vec<f32>,
+    /// The neighbours in it, nearest first.
+    pub onward: Vec<ViewpointId>,
+}
+
+impl<'a> AgentView<'a> {
+    /// Looks at a scene. Where the grounder needs no pictures, the platform draws none.
+    ///
+    /// # Errors
+    /// When there is no such scene.
+    pub fn new(
+        platform: &'a dyn Platform,
+        grounder: &'a dyn Grounder,
+        needs_pictures: bool,
+        scene: &SceneId,
+    ) -> Result<Self, WalkError> {
+        Ok(Self {
+            platform,
+            grounder,
+            scene: scene.clone(),
+            graph: platform.graph(scene)?,
+            needs_pictures,
+            around: Mutex::default(),
+            scores: Mutex::default(),
+        })
+    }
+
+    /// What is seen from a node.
+    ///
+    /// # Errors
+    /// When the platform gives no view, or the grounder fails.
+    pub fn look(&self, viewpoint: &ViewpointId, phrases: &[String]) -> Result<Sight, WalkError> {
+        let around = self.around(viewpoint)?;
+        let scores = self.scores(viewpoint, &around, phrases)?;
+        let seen = |view: usize| Seen { scores: scores[view].clone(), onward: around.onward[view].clone() };
+        Ok(Sight { views: std::array::from_fn(seen) })
+    }
+
+    /// The object around a node that a phrase fits best, where the grounder can name one.
+    ///
+    /// # Errors
+    /// When the platform gives no view, or the grounder fails.
+    pub fn point(&self, viewpoint: &ViewpointId, phrase: &str) -> Result<Option<ObjectId>, WalkError> {
+        let around = self.around(viewpoint)?;
+        Ok(self.grounder.point(&around.views.each_ref(), phrase)?)
+    }
+
+    /// The direction from one node to another; none where one stands above the other.
+    pub(crate) fn heading_to(&self, from: &ViewpointId, to: &ViewpointId) -> Option<Heading> {
+        heading_to(&self.graph, from, to)
+    }
+
+    fn around(&self, viewpoint: &ViewpointId) -> Result<Arc<Around>, WalkError> {
+        if let Some(around) = self.around.lock().unwrap_or_else(PoisonError::into_inner).get(viewpoint) {
+            return Ok(Arc::clone(around));
+        }
+        let around = Arc::new(self.look_around(viewpoint)?);
+        let mut all = self.around.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Arc::clone(all.entry(viewpoint.clone()).or_insert(around)))
+    }
+
+    fn look_around(&self, viewpoint: &ViewpointId) -> Result<Around, WalkError> {
+        let frame = frame_at(&self.graph, &self.scene, viewpoint)?;
+        let look = |gaze: Gaze| match self.needs_pictures {
+            true => self.platform.look(&self.scene, &frame, gaze),
+            false => self.platform.look_without_picture(&self.scene, &frame, gaze),
+        };
+        let [north, east, south, west] = Gaze::compass();
+        let views = [look(north)?, look(east)?, look(south)?, look(west)?];
+        Ok(Around { views, onward: Gaze::compass().map(|gaze| onward(&self.graph, viewpoint, gaze)) })
+    }
+
+    fn scores(&self, viewpoint: &ViewpointId, around: &Around, phrases: &[String]) -> Result<Scores, WalkError> {
+        let key = (viewpoint.clone(), phrases.to_vec());
+        if let Some(scores) = self.scores.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Ok(Arc::clone(scores));
+        }
+        let phrases: Vec<&str> = phrases.iter().map(String::as_str).collect();
+        let told = self.grounder.ground(&around.views.each_ref(), &phrases);
+        let told = told.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let whole = told.iter().all(|scores| scores.len() == phrases.len() && scores.iter().all(|one| one.is_finite()));
+        let scores = <[Vec<f32>; 4]>::try_from(told).ok().filter(|_| whole);
+        let scores = Arc::new(scores.ok_or_else(|| WalkError::Unusable { grounder: self.grounder.name().to_owned() })?);
+        self.scores.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Arc::clone(&scores));
+        Ok(scores)
+    }
+}
+
+/// A frame at a node, looking north.
+pub(crate) fn frame_at(graph: &ViewpointGraph, scene: &SceneId, viewpoint: &ViewpointId) -> Result<Frame, WalkError> {
+    let unknown = || WalkError::Unknown { scene: scene.clone(), viewpoint: viewpoint.clone() };
+    let position = graph.position(viewpoint).ok_or_else(unknown)?;
+    let pose = Pose::level(position, Heading::NORTH);
+    Ok(Frame { pose, viewpoint: Some(viewpoint.clone()), level: graph.level(viewpoint) })
+}
+
+/// The direction from one node to another; none where one stands above the other.
+pub(crate) fn heading_to(graph: &ViewpointGraph, from: &ViewpointId, to: &ViewpointId) -> Option<Heading> {
+    Heading::towards(graph.position(from)?, graph.position(to)?)
+}
+
+/// The neighbours that lie in a view, nearest first. One straight above or below counts as north, because it has to be
+/// in one of the views.
+fn onward(graph: &ViewpointGraph, from: &ViewpointId, gaze: Gaze) -> Vec<ViewpointId> {
+    let position = |id: &ViewpointId| graph.position(id).unwrap_or_default();
+    let here = position(from);
+    let lies_in = |to: &&ViewpointId| gaze.holds(heading_to(graph, from, to).unwrap_or(Heading::NORTH));
+    let mut in_view: Vec<&ViewpointId> = graph.neighbours(from).into_iter().filter(lies_in).collect();
+    in_view.sort_by(|a, b| here.distance(position(a)).total_cmp(&here.distance(position(b))));
+    in_view.into_iter().cloned().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Cross, id, scene};
+    use std::sync::atomic::Ordering;
+    use wayword_core::ModelError;
+
+    /// Gives the same scores to every view.
+    struct Says(Vec<f32>);
+
+    impl Grounder for Says {
+        fn name(&self) -> &str {
+            "says"
+        }
+
+        fn ground(&self, views: &[&View], _: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+            views.iter().map(|_| Ok(self.0.clone())).collect()
+        }
+    }
+
+    fn told(grounder: &Says, phrases: usize) -> Result<Sight, WalkError> {
+        let world = Cross::new(&[]);
+        AgentView::new(&world, grounder, false, &scene())?.look(&id("middle"), &vec!["a sink".to_owned(); phrases])
+    }
+
+    #[test]
+    fn each_neighbour_lies_in_the_view_towards_it() {
+        let seen = told(&Says(vec![0.5]), 1).unwrap();
+        let names = seen.views.map(|view| view.onward.iter().map(|to| to.as_str().to_owned()).collect::<Vec<_>>());
+        assert_eq!(names, [["n1"], ["e1"], ["s1"], ["w1"]]);
+    }
+
+    #[test]
+    fn a_node_is_looked_at_and_scored_once() {
+        let (world, grounder) = (Cross::new(&[]), Says(vec![0.5]));
+        let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
+        let phrases = ["a sink".to_owned()];
+        assert_eq!(agent_view.look(&id("n1"), &phrases).unwrap(), agent_view.look(&id("n1"), &phrases).unwrap());
+        assert_eq!(world.looks.load(Ordering::Relaxed), 4);
+    }
+
+    #[test]
+    fn scores_that_cannot_be_compared_are_refused() {
+        for scores in [vec![], vec![f32::NAN, 0.0], vec![0.0; 3]] {
+            let error = told(&Says(scores), 2).unwrap_err();
+            assert!(matches!(error, WalkError::Unusable { .. }) && !error.ends_run(), "{error}");
+        }
+        let world = Cross::new(&[]);
+        let nowhere = AgentView::new(&world, &Says(vec![]), false, &scene()).unwrap().look(&id("attic"), &[]);
+        assert!(matches!(nowhere, Err(WalkError::Unknown { .. })));
+    }
+}

@@ -1,0 +1,169 @@
+//! The limits of a run, and what it has spent.
+
+use crate::LedgerError;
+use std::sync::{Mutex, PoisonError};
+
+/// Limits of a run as a whole: earlier processes of the run count.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Limits {
+    /// Most US dollars.
+    pub max_usd: Option<f64>,
+    /// Most requests that are sent.
+    pub max_calls: Option<u64>,
+}
+
+/// Why a request may not be sent.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum Refused {
+    /// The user has interrupted.
+    #[error("interrupted")]
+    Stopped,
+    /// The request could cost more than is left.
+    #[error(
+        "--max-usd {max_usd} could be exceeded: ${spent_usd:.4} are spent or reserved, and the next request may cost ${next_usd:.4}"
+    )]
+    MaxUsd {
+        /// The limit.
+        max_usd: f64,
+        /// The sum of what is spent, reserved for requests in flight, and reserved for lost requests.
+        spent_usd: f64,
+        /// The request's upper bound.
+        next_usd: f64,
+    },
+    /// The price of the request is not known, and there is a limit on money.
+    #[error("--max-usd cannot be kept: the price of this model is not known")]
+    NoPrice,
+    /// The run has sent as many requests as it may.
+    #[error("--max-calls {max_calls} is reached")]
+    MaxCalls {
+        /// The limit.
+        max_calls: u64,
+    },
+    /// The ledger cannot write the request down.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+}
+
+impl Refused {
+    /// The reason, and what to do.
+    #[must_use]
+    pub fn told(&self) -> (String, String) {
+        let hint = match self {
+            Self::MaxUsd { .. } => "all answers are kept: to continue, run the same command with a larger --max-usd",
+            Self::MaxCalls { .. } => {
+                "all answers are kept: to continue, run the same command with a larger --max-calls"
+            }
+            Self::NoPrice => "add the model's price to a file, and give the file with --prices FILE",
+            Self::Stopped => "all answers are kept: to continue, run the same command",
+            Self::Ledger(_) => "check the ledger's file, then run the same command to continue",
+        };
+        // An error of the ledger has its own hint.
+        let text = self.to_string();
+        let (reason, hint) = text.split_once("\nhint: ").unwrap_or((&text, hint));
+        (reason.to_owned(), hint.to_owned())
+    }
+}
+
+/// A run's limits, and what it has spent against them.
+#[derive(Debug)]
+pub(crate) struct Budget {
+    limits: Limits,
+    spent: Mutex<Spent>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Spent {
+    /// US dollars that were paid, or that lost requests may have cost.
+    pub(crate) usd: f64,
+    /// Upper bounds of the requests in flight, US dollars.
+    pub(crate) reserved_usd: f64,
+    /// Requests that were sent.
+    pub(crate) calls: u64,
+}
+
+/// An amount of money, or `None` if it is negative or not finite, which a broken table of prices can cause.
+pub(crate) fn known(usd: Option<f64>) -> Option<f64> {
+    usd.filter(|usd| usd.is_finite() && *usd >= 0.0)
+}
+
+/// Tolerance, US dollars: rounding in a sum of many small amounts must not refuse the last request that fits.
+const ROUNDING_USD: f64 = 1e-9;
+
+impl Budget {
+    pub(crate) fn new(limits: Limits, spent: Spent) -> Self {
+        Self { limits, spent: Mutex::new(spent) }
+    }
+
+    /// Reserves money for a request.
+    pub(crate) fn reserve(&self, most_usd: Option<f64>) -> Result<(), Refused> {
+        let mut spent = self.spent.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(max_calls) = self.limits.max_calls.filter(|max_calls| spent.calls >= *max_calls) {
+            return Err(Refused::MaxCalls { max_calls });
+        }
+        let next_usd = most_usd.unwrap_or(0.0);
+        if let Some(max_usd) = self.limits.max_usd {
+            if most_usd.is_none() {
+                return Err(Refused::NoPrice);
+            }
+            let spent_usd = spent.usd + spent.reserved_usd;
+            let fits = spent_usd + next_usd <= max_usd + ROUNDING_USD;
+            if !fits {
+                return Err(Refused::MaxUsd { max_usd, spent_usd, next_usd });
+            }
+        }
+        spent.reserved_usd += next_usd;
+        spent.calls += 1;
+        Ok(())
+    }
+
+    /// Replaces a reservation with what the request cost.
+    pub(crate) fn settle(&self, most_usd: Option<f64>, usd: f64) {
+        let mut spent = self.spent.lock().unwrap_or_else(PoisonError::into_inner);
+        spent.reserved_usd -= most_usd.unwrap_or(0.0);
+        spent.usd += usd;
+    }
+
+    /// Takes back the reservation of a request that was not sent.
+    pub(crate) fn cancel(&self, most_usd: Option<f64>) {
+        self.settle(most_usd, 0.0);
+        self.spent.lock().unwrap_or_else(PoisonError::into_inner).calls -= 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The limits are kept at every moment, whatever the requests cost and however they end.
+        #[test]
+        fn the_bounds_hold(
+            max_usd in 0.0..1.0f64,
+            max_calls in 0u64..30,
+            asked in prop::collection::vec((0.0..0.2f64, 0.0..1.0f64, any::<bool>()), 0..60),
+        ) {
+            let limits = Limits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
+            let budget = Budget::new(limits, Spent::default());
+            let mut open = Vec::new();
+            for (most_usd, share, ends) in asked {
+                if budget.reserve(Some(most_usd)).is_ok() {
+                    open.push((most_usd, share));
+                }
+                if let Some((most_usd, share)) = open.pop().filter(|_| ends) {
+                    budget.settle(Some(most_usd), most_usd * share);
+                }
+                let spent = *budget.spent.lock().unwrap();
+                prop_assert!(spent.usd + spent.reserved_usd <= max_usd + 1e-6);
+                prop_assert!(spent.calls <= max_calls);
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_price_money_cannot_be_bounded() {
+        let bounded = Budget::new(Limits { max_usd: Some(1.0), max_calls: None }, Spent::default());
+        assert!(matches!(bounded.reserve(None), Err(Refused::NoPrice)));
+        assert!(Budget::new(Limits::default(), Spent::default()).reserve(None).is_ok());
+    }
+}

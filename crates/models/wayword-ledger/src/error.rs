@@ -1,0 +1,98 @@
+//! Errors of the ledger.
+
+use std::{path::PathBuf, sync::Arc};
+
+/// The ledger, or a recording, cannot be used.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum LedgerError {
+    /// The file is not a ledger. It was left as it is.
+    #[error("{}: this file is not a ledger\nhint: give another file", .0.display())]
+    NoLedger(PathBuf),
+    /// A newer version of the program made the file. It was left as it is.
+    #[error("{}: a newer version of this program made this ledger (format {format})\nhint: use that version, or give another file", path.display())]
+    Newer {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        format: i64,
+    },
+    /// The file is, or would be, on a file system on which the database is not reliable.
+    #[error("{}: a ledger cannot be kept on {kind}, a network file system: locks may fail there, and answers that you paid for could be lost\nhint: give a file on a disk of this machine, as in --ledger /tmp/ledger.db; if you already have a ledger there, copy it while no program uses it", path.display())]
+    Network {
+        /// The file.
+        path: PathBuf,
+        /// What the file system is called.
+        kind: &'static str,
+    },
+    /// An answer is not the one that was written.
+    #[error("{}: the answer of {model} to call {key} was changed after it was written, by a damaged disk or by hand\nhint: `wayword ledger prune --changed --ledger {}` drops all changed answers; then the same command makes those calls again", path.display(), path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// The call.
+        key: String,
+        /// The model that gave the answer.
+        model: String,
+    },
+    /// The database returned an error.
+    #[error("{}: cannot {doing} the ledger: {reason}\nhint: {hint}", path.display())]
+    Store {
+        /// The file.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// The database's message.
+        reason: String,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// A file operation failed.
+    #[error("{}: cannot {doing}: {source}\nhint: check that the file or its folder exists, that you may use it, and that the disk has room", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// The system's error.
+        source: Arc<std::io::Error>,
+    },
+    /// A line of a recording cannot be read.
+    #[error("{}: line {line}: {reason}\nhint: make the recording again with --record", path.display())]
+    Recording {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl LedgerError {
+    pub(crate) fn store(path: &std::path::Path, doing: &'static str) -> impl Fn(rusqlite::Error) -> Self {
+        let path = path.to_owned();
+        move |error| Self::Store { path: path.clone(), doing, reason: error.to_string(), hint: hint(&error) }
+    }
+
+    pub(crate) fn io(path: &std::path::Path, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Io { path: path.clone(), doing, source: Arc::new(source) }
+    }
+}
+
+fn hint(error: &rusqlite::Error) -> &'static str {
+    use rusqlite::ErrorCode;
+    match error.sqlite_error_code() {
+        Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
+            "another program has it locked: wait for that program, or give another --ledger"
+        }
+        Some(ErrorCode::DiskFull) => "the disk is full: make room; all answers so far are kept",
+        Some(ErrorCode::ReadOnly | ErrorCode::PermissionDenied | ErrorCode::CannotOpen) => {
+            "it cannot be written there: check the folder's permissions, or give another --ledger"
+        }
+        Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => {
+            "the file is damaged: move it away, or give another --ledger"
+        }
+        _ => "check the file and its folder, or give another --ledger",
+    }
+}

@@ -1,0 +1,30 @@
+//! The ledger: makes each call of a model once and keeps the answer.
+//!
+//! All runs share one file. A call's key covers everything that could change its answer. The ledger writes a request to
+//! disk before it is sent, and an answer before it is returned. So a run that was killed pays twice at most for the
+//! requests that were in flight, and the ledger knows how much that was. Several programs may use one file at once: one
+//! of them makes a call, and the others wait for its answer.
+//!
+//! Architecture invariant: this crate does not interpret calls, and its interface does not expose the database.
+
+mod budget;
+mod call;
+mod checksum;
+mod claim;
+mod disk;
+mod error;
+mod flight;
+mod ledger;
+mod queries;
+mod run;
+mod stopper;
+mod store;
+
+pub use budget::{Limits, Refused};
+pub use call::{Answer, Call, Key, Row};
+pub use disk::network_at;
+pub use error::LedgerError;
+pub use ledger::Ledger;
+pub use queries::{By, CostLine, Filter};
+pub use run::{Attempts, OnceError, Run, Totals};
+pub use stopper::Stopper;

@@ -1,0 +1,290 @@
+//! A run's use of the ledger: each call is made once.
+
+use crate::{
+    Answer, Call, Key, LedgerError, Limits, Refused, Row, Stopper,
+    budget::{Budget, known},
+    claim::{Claim, PATIENCE, Taken},
+    ledger::{Ledger, now_unix_s},
+    queries::Filter,
+    store::Write,
+};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
+};
+
+/// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones share one run.
+#[derive(Debug, Clone)]
+pub struct Run {
+    ledger: Ledger,
+    state: Arc<RunState>,
+}
+
+#[derive(Debug)]
+struct RunState {
+    id: String,
+    budget: Budget,
+    stopper: Stopper,
+    totals: Mutex<Totals>,
+}
+
+/// What a run did and spent in this process.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Totals {
+    /// Requests that were sent.
+    pub calls: u64,
+    /// Calls that the ledger answered.
+    pub hits: u64,
+    /// Calls that were answered by a request.
+    pub answered: u64,
+    /// Requests that brought no answer.
+    pub failed: u64,
+    /// Failed requests that may have been paid for.
+    pub lost: u64,
+    /// Tokens of the requests that were answered.
+    pub tokens_in: u64,
+    /// Tokens of the answers.
+    pub tokens_out: u64,
+    /// What the answers cost, US dollars, where the price is known.
+    pub usd: f64,
+    /// What the lost requests may have cost at most, US dollars.
+    pub maybe_usd: f64,
+}
+
+/// The requests of one call.
+pub struct Attempts<'a> {
+    run: &'a Run,
+    key: &'a Key,
+    /// The request in flight: its number in the ledger, and its upper bound in US dollars.
+    open: Option<(i64, Option<f64>)>,
+}
+
+/// A call was not answered.
+#[derive(Debug, thiserror::Error)]
+pub enum OnceError<E> {
+    /// The call failed.
+    #[error(transparent)]
+    Call(E),
+    /// The call may not be made.
+    #[error(transparent)]
+    Refused(Refused),
+    /// The call is not in the recording that all answers have to come from.
+    #[error("{}: this recording has no call to {model} with these words: {words:?}\nhint: record the run again with --record, with the same settings", recording.display())]
+    NotRecorded {
+        /// The recording.
+        recording: PathBuf,
+        /// The model of the missing call.
+        model: String,
+        /// The beginning of the call's last message.
+        words: String,
+    },
+    /// The ledger could not be read or written.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+}
+
+impl Ledger {
+    /// A run by its name. What earlier processes spent under that name counts towards the limits.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read.
+    pub fn run(&self, id: &str, limits: Limits) -> Result<Run, LedgerError> {
+        let state = RunState {
+            id: id.to_owned(),
+            budget: Budget::new(limits, self.store().spent(id)?),
+            stopper: Stopper::default(),
+            totals: Mutex::default(),
+        };
+        Ok(Run { ledger: self.clone(), state: Arc::new(state) })
+    }
+}
+
+impl Run {
+    /// The answer of a call. If the ledger has it, returns that. If another thread or program is making the call, waits
+    /// for it. Otherwise `send` makes the call, and its answer is on disk before it is returned. If another program was
+    /// faster after all, returns that program's answer, so that every caller gets the same one.
+    ///
+    /// # Errors
+    /// When `send` fails, a limit would be exceeded, the run is stopped while it waits, the answer was changed after it
+    /// was written, or the ledger cannot be used.
+    pub fn once<E>(
+        &self,
+        call: &Call,
+        send: impl FnOnce(&mut Attempts<'_>) -> Result<Answer, E>,
+    ) -> Result<Answer, OnceError<E>> {
+        let key = call.key();
+        loop {
+            if let Some(answer) = self.stored(&key)? {
+                return Ok(answer);
+            }
+            let Some(_flight) = self.ledger.flights().take_off(&key) else { continue };
+            // Another thread may have finished the call between the first look and taking the flight.
+            if let Some(answer) = self.stored(&key)? {
+                return Ok(answer);
+            }
+            if let Some(recording) = self.ledger.recording() {
+                return Err(not_recorded(recording, call));
+            }
+            let mut claim = match Claim::take(self.ledger.store(), &key, PATIENCE, || self.is_stopped())? {
+                Taken::Ours(claim) => claim,
+                Taken::Answered => continue,
+                Taken::Stopped => return Err(OnceError::Refused(Refused::Stopped)),
+            };
+            let mut attempts = Attempts { run: self, key: &key, open: None };
+            return match send(&mut attempts) {
+                Ok(answer) => {
+                    let stands = attempts.answered(call, answer)?;
+                    claim.fulfilled();
+                    Ok(stands)
+                }
+                Err(error) => {
+                    attempts.failed("given up", true);
+                    Err(OnceError::Call(error))
+                }
+            };
+        }
+    }
+
+    fn stored(&self, key: &Key) -> Result<Option<Answer>, LedgerError> {
+        let store = self.ledger.store();
+        let answer = store.answer(key)?;
+        if answer.is_some() {
+            store.writer.note(Write::Used { run: self.state.id.clone(), key: key.to_string() });
+            self.count(|totals| totals.hits += 1);
+        }
+        Ok(answer)
+    }
+
+    /// Stops the run: it sends no more requests. Requests in flight are finished and kept.
+    pub fn stop(&self) {
+        self.state.stopper.stop();
+    }
+
+    /// Whether [`Run::stop`] was called.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.state.stopper.is_stopped()
+    }
+
+    /// A handle that stops the run and does not keep the ledger open.
+    #[must_use]
+    pub fn stopper(&self) -> Stopper {
+        self.state.stopper.clone()
+    }
+
+    /// What the run did and spent in this process.
+    #[must_use]
+    pub fn totals(&self) -> Totals {
+        *self.state.totals.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes every call that this run has used, in the order of their keys. Returns how many.
+    ///
+    /// # Errors
+    /// When the ledger cannot be read or the file cannot be written.
+    pub fn record(&self, path: &Path) -> Result<usize, LedgerError> {
+        self.ledger.export_to(&Filter { run: Some(self.state.id.clone()), ..Filter::default() }, path)
+    }
+
+    fn count(&self, change: impl FnOnce(&mut Totals)) {
+        change(&mut self.state.totals.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Attempts<'_> {
+    /// Call this before each request, with the most that the request may cost, US dollars. When it returns, the ledger
+    /// has the request on disk.
+    ///
+    /// # Errors
+    /// When the request may not be sent: the run was stopped, a limit would be exceeded, or the ledger cannot be
+    /// written.
+    pub fn begin(&mut self, most_usd: Option<f64>) -> Result<(), Refused> {
+        self.failed("followed by another", true);
+        if self.run.is_stopped() {
+            return Err(Refused::Stopped);
+        }
+        let most_usd = known(most_usd);
+        self.run.state.budget.reserve(most_usd)?;
+        match self.keep_sent(most_usd) {
+            Ok(sent) => {
+                self.open = Some((sent, most_usd));
+                self.run.count(|totals| totals.calls += 1);
+                Ok(())
+            }
+            Err(error) => {
+                self.run.state.budget.cancel(most_usd);
+                Err(error.into())
+            }
+        }
+    }
+
+    fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, LedgerError> {
+        let (store, run) = (self.run.ledger.store(), self.run.state.id.clone());
+        let by = store.name()?.map(str::to_owned);
+        store.writer.keep(Write::Sent { run, key: self.key.to_string(), most_usd, at: now_unix_s(), by })
+    }
+
+    /// The request was not sent after all.
+    pub fn cancelled(&mut self) {
+        let Some((sent, most_usd)) = self.open.take() else { return };
+        self.run.state.budget.cancel(most_usd);
+        self.run.count(|totals| totals.calls -= 1);
+        self.end(sent, "cancelled", "");
+    }
+
+    /// The request brought no answer. If it may have been paid for, its upper bound counts as spent.
+    pub fn failed(&mut self, reason: &str, maybe_paid: bool) {
+        let Some((sent, most_usd)) = self.open.take() else { return };
+        let lost_usd = if maybe_paid { most_usd.unwrap_or(0.0) } else { 0.0 };
+        self.run.state.budget.settle(most_usd, lost_usd);
+        self.run.count(|totals| {
+            totals.failed += 1;
+            totals.lost += u64::from(maybe_paid);
+            totals.maybe_usd += lost_usd;
+        });
+        self.end(sent, if maybe_paid { "lost" } else { "failed" }, reason);
+    }
+
+    fn end(&self, sent: i64, outcome: &'static str, reason: &str) {
+        self.run.ledger.store().writer.note(Write::Ended { sent, outcome, reason: reason.to_owned() });
+    }
+
+    /// Stores an answer. Returns the one that is kept: an answer that another program stored first, or this one.
+    fn answered(&mut self, call: &Call, answer: Answer) -> Result<Answer, LedgerError> {
+        let open = self.open.take();
+        let most_usd = open.and_then(|(_, most_usd)| most_usd);
+        let answer = Answer { usd: known(answer.usd), ..answer };
+        self.run.state.budget.settle(most_usd, answer.usd.or(most_usd).unwrap_or(0.0));
+        let row = Row {
+            key: self.key.clone(),
+            call: call.clone(),
+            answer: answer.clone(),
+            at_unix_s: now_unix_s(),
+            run: self.run.state.id.clone(),
+        };
+        let sent = open.map(|(sent, _)| sent);
+        let store = self.run.ledger.store();
+        let by = store.name()?.map(str::to_owned);
+        let is_first = store.writer.keep(Write::Answered { sent, row: Box::new(row), by })? != 0;
+        self.run.count(|totals| {
+            totals.answered += 1;
+            totals.tokens_in = totals.tokens_in.saturating_add(answer.tokens_in);
+            totals.tokens_out = totals.tokens_out.saturating_add(answer.tokens_out);
+            totals.usd += answer.usd.unwrap_or(0.0);
+        });
+        let stands = if is_first { None } else { store.answer(self.key)? };
+        Ok(stands.unwrap_or(answer))
+    }
+}
+
+/// How many characters of a request an error quotes.
+const QUOTED_CHARS: usize = 200;
+
+fn not_recorded<E>(recording: &Path, call: &Call) -> OnceError<E> {
+    let words = call.request.get("messages").and_then(|messages| messages.as_array()?.last()?.get("text")?.as_str());
+    OnceError::NotRecorded {
+        recording: recording.to_owned(),
+        model: call.model.clone(),
+        words: words.unwrap_or_default().chars().take(QUOTED_CHARS).collect(),
+    }
+}

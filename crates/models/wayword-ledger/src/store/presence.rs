@@ -1,0 +1,137 @@
+//! Finds out whether a program that uses the ledger is still running.
+//!
+//! Each program holds a lock on its own file beside the ledger. The system releases the lock when the program ends,
+//! however it ends. So reused process numbers cause no confusion, and the lock works between containers. Locks work on
+//! one machine: a ledger on a network file system is refused earlier.
+
+use crate::LedgerError;
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+/// The part of the file's name between the ledger's name and the program's.
+const MARK: &str = ".in-use-";
+
+/// A file that this program keeps locked as long as it uses the ledger.
+#[derive(Debug)]
+pub(crate) struct Presence {
+    name: String,
+    path: PathBuf,
+    /// Open as long as the lock is held.
+    _locked: File,
+}
+
+impl Presence {
+    /// Makes and locks this program's file.
+    pub(super) fn new(ledger: &Path) -> Result<Self, LedgerError> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        loop {
+            let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
+            let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+            let name = format!("{:x}-{since:x}-{number:x}", std::process::id());
+            let path = beside(ledger, &name);
+            let failed = LedgerError::io(&path, "say that the ledger is in use");
+            let mut options = OpenOptions::new();
+            options.create_new(true).write(true);
+            #[cfg(unix)]
+            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+            let file = options.open(&path).map_err(&failed)?;
+            file.lock().map_err(&failed)?;
+            // Before the lock, another program may have removed the file, because it seemed left behind.
+            if path.exists() {
+                return Ok(Self { name, path: path.clone(), _locked: file });
+            }
+        }
+    }
+
+    /// The unique name of this program, which is part of its file's name.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Drop for Presence {
+    fn drop(&mut self) {
+        // If this fails, the next program removes the file.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// Whether the program of that name has ended. If this cannot be found out, it counts as running.
+pub(crate) fn is_gone(ledger: &Path, name: &str) -> bool {
+    // A damaged ledger may contain any name.
+    if name.is_empty() || !name.chars().all(|c| c.is_ascii_hexdigit() || c == '-') {
+        return true;
+    }
+    match File::open(beside(ledger, name)) {
+        Ok(file) => file.try_lock_shared().is_ok(),
+        Err(error) => error.kind() == std::io::ErrorKind::NotFound,
+    }
+}
+
+/// Removes the files of programs that have ended, and returns the programs' names.
+pub(super) fn sweep(ledger: &Path) -> Vec<String> {
+    let (Some(folder), Some(file)) = (ledger.parent(), ledger.file_name()) else { return Vec::new() };
+    let prefix = format!("{}{MARK}", file.to_string_lossy());
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| Some(entry.file_name().to_str()?.strip_prefix(&prefix)?.to_owned()));
+    names.filter(|name| is_removed(&beside(ledger, name))).collect()
+}
+
+/// Removes a file that no program has locked.
+fn is_removed(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    match file.try_lock() {
+        Ok(()) => fs::remove_file(path).is_ok(),
+        Err(TryLockError::WouldBlock | TryLockError::Error(_)) => false,
+    }
+}
+
+fn beside(ledger: &Path, name: &str) -> PathBuf {
+    let mut path = ledger.as_os_str().to_owned();
+    path.push(format!("{MARK}{name}"));
+    path.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_is_there_until_it_lets_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let ledger = folder.path().join("l.db");
+        let here = Presence::new(&ledger).unwrap();
+        let name = here.name().to_owned();
+        assert!(!is_gone(&ledger, &name));
+        assert_eq!(sweep(&ledger), Vec::<String>::new());
+        drop(here);
+        assert!(is_gone(&ledger, &name));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn what_a_killed_program_left_behind_is_swept_away() {
+        let folder = tempfile::tempdir().unwrap();
+        let ledger = folder.path().join("l.db");
+        let here = Presence::new(&ledger).unwrap();
+        fs::write(beside(&ledger, "1f-2e-0"), "").unwrap();
+        fs::write(folder.path().join("other.db.in-use-1f-2e-0"), "").unwrap();
+        assert!(is_gone(&ledger, "1f-2e-0"));
+        assert_eq!(sweep(&ledger), ["1f-2e-0"]);
+        assert!(!is_gone(&ledger, here.name()));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_name_that_is_none_is_nobodys() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("x"), "").unwrap();
+        for name in ["", "../x", "a/../../x", "\u{e9}"] {
+            assert!(is_gone(&folder.path().join("l.db"), name), "{name:?}");
+        }
+    }
+}

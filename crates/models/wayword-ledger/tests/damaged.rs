@@ -1,0 +1,110 @@
+//! A ledger that is damaged, or cannot be written for a while, gives an error that says so, and loses nothing.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use proptest::prelude::*;
+use rusqlite::Connection;
+use serde_json::json;
+use std::{fs, path::Path};
+use wayword_ledger::{Answer, By, Call, Filter, Ledger, LedgerError, Limits, OnceError, Refused, Run};
+
+fn ask(run: &Run, number: usize) -> Result<Answer, OnceError<Refused>> {
+    let request = json!({ "text": format!("{number} {}", "word ".repeat(50)) });
+    let call = Call { model: "t/m".into(), base_url: String::new(), request, replicate: 0 };
+    run.once(&call, |attempts| {
+        attempts.begin(None)?;
+        Ok(Answer {
+            text: "yes".into(),
+            finish: "stop".into(),
+            tokens_in: 1,
+            tokens_out: 1,
+            usd: None,
+            latency_ms: 1,
+            attempts: 1,
+        })
+    })
+}
+
+fn ledger_of(path: &Path, calls: usize) {
+    let run = Ledger::open(path).unwrap().run("a", Limits::default()).unwrap();
+    (0..calls).for_each(|number| drop(ask(&run, number).unwrap()));
+}
+
+/// Does everything that a program does with a ledger. It may fail, but must not panic, and must return the right
+/// answers only.
+fn use_all(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let ledger = Ledger::open(path)?;
+    ledger.list(&Filter::default())?;
+    ledger.costs(By::Model)?;
+    ledger.lost()?;
+    let run = ledger.run("a", Limits::default())?;
+    for number in 0..25 {
+        assert_eq!(ask(&run, number)?.text, "yes", "a changed answer is used");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn damage_is_an_error_and_no_panic(
+        holes in prop::collection::vec((0.0..1.0f64, prop::collection::vec(any::<u8>(), 1..200)), 1..6),
+        kept in 0.1..1.2f64,
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("l.db");
+        ledger_of(&path, 20);
+        let mut bytes = fs::read(&path).unwrap();
+        for (at, hole) in holes {
+            let at = (at * bytes.len() as f64) as usize;
+            let end = (at + hole.len()).min(bytes.len());
+            bytes[at..end].copy_from_slice(&hole[..end - at]);
+        }
+        bytes.truncate((kept * bytes.len() as f64) as usize);
+        fs::write(&path, bytes).unwrap();
+        if let Err(error) = use_all(&path) {
+            prop_assert!(error.to_string().contains("hint: "), "{error}");
+        }
+    }
+}
+
+#[test]
+fn a_ledger_that_lost_its_end_says_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("l.db");
+    ledger_of(&path, 100);
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let error = use_all(&path).unwrap_err().to_string();
+    assert!(error.contains("l.db") && error.contains("damaged"), "{error}");
+}
+
+/// No thread waits until the use of an answer is written. If the write fails now, it is done later.
+#[test]
+fn what_could_not_be_written_is_written_later() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("l.db");
+    ledger_of(&path, 3);
+    let other = Connection::open(&path).unwrap();
+    other.execute_batch("CREATE TRIGGER full BEFORE INSERT ON uses BEGIN SELECT RAISE(ABORT, 'full'); END").unwrap();
+    let ledger = Ledger::open(&path).unwrap();
+    let run = ledger.run("b", Limits::default()).unwrap();
+    (0..3).for_each(|number| drop(ask(&run, number).unwrap()));
+    let recording = folder.path().join("recording.jsonl");
+    assert!(matches!(run.record(&recording), Err(LedgerError::Store { .. })));
+    assert!(!recording.exists());
+    other.execute_batch("DROP TRIGGER full").unwrap();
+    assert_eq!(run.record(&recording).unwrap(), 3);
+}
+
+#[test]
+fn odd_names_are_files_like_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    // SQLite gives the first two names a special meaning. No other test here uses a relative path.
+    std::env::set_current_dir(folder.path()).unwrap();
+    for name in [":memory:", "file:l.db?mode=memory", "a b%20c.db"] {
+        ledger_of(Path::new(name), 2);
+        assert_eq!(Ledger::open(Path::new(name)).unwrap().list(&Filter::default()).unwrap().len(), 2);
+        assert!(fs::metadata(folder.path().join(name)).unwrap().len() > 0, "{name}");
+    }
+}

@@ -1,0 +1,141 @@
+//! A run's limit on money is kept at every moment, with any number of threads and any price.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use proptest::prelude::*;
+use serde_json::json;
+use std::{sync::Mutex, thread};
+use wayword_ledger::{Answer, Call, Ledger, Limits, OnceError, Refused, Run};
+
+/// How a request ends.
+#[derive(Debug, Clone, Copy)]
+enum End {
+    Answered(Option<f64>),
+    Failed { maybe_paid: bool },
+}
+
+fn ask(run: &Run, number: usize, most_usd: Option<f64>, end: End) -> Result<Answer, OnceError<Refused>> {
+    ask_watched(run, number, most_usd, end, |_| ())
+}
+
+/// `watch` gets what the request may cost when it is sent, and the difference when it ends.
+fn ask_watched(
+    run: &Run,
+    number: usize,
+    most_usd: Option<f64>,
+    end: End,
+    watch: impl Fn(f64),
+) -> Result<Answer, OnceError<Refused>> {
+    let call = Call { model: "t/m".into(), base_url: String::new(), request: json!({ "text": number }), replicate: 0 };
+    run.once(&call, |attempts| {
+        attempts.begin(most_usd)?;
+        watch(most_usd.unwrap_or(0.0));
+        thread::yield_now();
+        match end {
+            End::Answered(usd) => {
+                watch(usd.unwrap_or(0.0) - most_usd.unwrap_or(0.0));
+                Ok(Answer {
+                    text: "yes".into(),
+                    finish: "stop".into(),
+                    tokens_in: 1,
+                    tokens_out: 1,
+                    usd,
+                    latency_ms: 1,
+                    attempts: 1,
+                })
+            }
+            End::Failed { maybe_paid } => {
+                if !maybe_paid {
+                    watch(-most_usd.unwrap_or(0.0));
+                }
+                attempts.failed("503", maybe_paid);
+                Err(Refused::Stopped)
+            }
+        }
+    })
+}
+
+fn end(most_usd: f64) -> impl Strategy<Value = End> {
+    prop_oneof![
+        (0.0..1.0f64).prop_map(move |share| End::Answered(Some(most_usd * share))),
+        any::<bool>().prop_map(|maybe_paid| End::Failed { maybe_paid }),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// While eight threads ask, the sum of what is paid, maybe paid and in flight stays below the limit. So does the
+    /// number of requests. A later process of the run knows both.
+    #[test]
+    fn nothing_leaves_that_could_break_a_limit(
+        max_usd in 0.0..2.0f64,
+        max_calls in 0u64..60,
+        asked in prop::collection::vec((0.0..0.2f64).prop_flat_map(|most| (Just(most), end(most))), 64),
+    ) {
+        let ledger = Ledger::in_memory().unwrap();
+        let limits = Limits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
+        let run = ledger.run("a", limits).unwrap();
+        let (exposed, most_exposed) = (Mutex::new(0.0), Mutex::new(0.0f64));
+        let watch = |usd: f64| {
+            let mut exposed = exposed.lock().unwrap();
+            *exposed += usd;
+            let mut most = most_exposed.lock().unwrap();
+            *most = most.max(*exposed);
+        };
+        thread::scope(|scope| {
+            for (thread, asked) in asked.chunks(8).enumerate() {
+                let (run, watch) = (&run, &watch);
+                scope.spawn(move || {
+                    for (step, (most_usd, end)) in asked.iter().enumerate() {
+                        drop(ask_watched(run, thread * 8 + step, Some(*most_usd), *end, watch));
+                    }
+                });
+            }
+        });
+        prop_assert!(*most_exposed.lock().unwrap() <= max_usd + 1e-6);
+        let totals = run.totals();
+        prop_assert!(totals.calls <= max_calls);
+        let left = max_usd - totals.usd - totals.maybe_usd;
+        let again = ledger.run("a", limits).unwrap();
+        let too_much = ask(&again, 1000, Some(left + 0.001), End::Answered(Some(0.0)));
+        let refused = matches!(too_much, Err(OnceError::Call(Refused::MaxUsd { .. } | Refused::MaxCalls { .. })));
+        prop_assert!(refused, "{too_much:?}");
+        if totals.calls < max_calls {
+            let fits = ask(&again, 1001, Some((left - 0.001).max(0.0)), End::Answered(Some(0.0)));
+            prop_assert!(fits.is_ok(), "{fits:?}");
+        }
+    }
+}
+
+#[test]
+fn a_price_that_is_no_amount_is_no_price() {
+    let run = Ledger::in_memory().unwrap().run("a", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
+    for most_usd in [f64::NAN, f64::INFINITY, -1.0] {
+        let refused = ask(&run, 0, Some(most_usd), End::Answered(Some(0.0)));
+        assert!(matches!(refused, Err(OnceError::Call(Refused::NoPrice))), "{most_usd}: {refused:?}");
+    }
+    // The same goes for an answer's price: its upper bound counts instead.
+    for (number, usd) in [None, Some(f64::NAN), Some(-5.0)].into_iter().enumerate() {
+        ask(&run, number, Some(0.3), End::Answered(usd)).unwrap();
+    }
+    let refused = ask(&run, 9, Some(0.2), End::Answered(Some(0.0)));
+    assert!(matches!(refused, Err(OnceError::Call(Refused::MaxUsd { .. }))), "{refused:?}");
+    assert!(run.totals().usd.abs() < 1e-9);
+}
+
+#[test]
+fn a_limit_that_is_no_amount_lets_nothing_out() {
+    let run = Ledger::in_memory().unwrap().run("a", Limits { max_usd: Some(f64::NAN), max_calls: None }).unwrap();
+    assert!(matches!(ask(&run, 0, Some(0.1), End::Answered(None)), Err(OnceError::Call(Refused::MaxUsd { .. }))));
+}
+
+#[test]
+fn an_answer_without_a_price_counts_at_its_upper_bound_later_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("l.db");
+    let limits = Limits { max_usd: Some(1.0), max_calls: None };
+    ask(&Ledger::open(&path).unwrap().run("a", limits).unwrap(), 0, Some(0.8), End::Answered(None)).unwrap();
+    let again = Ledger::open(&path).unwrap().run("a", limits).unwrap();
+    assert!(ask(&again, 1, Some(0.3), End::Answered(Some(0.1))).is_err());
+    assert!(ask(&again, 1, Some(0.1), End::Answered(Some(0.1))).is_ok());
+}

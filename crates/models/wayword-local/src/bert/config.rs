@@ -1,0 +1,100 @@
+//! The configuration files of a sentence encoder.
+
+use crate::{LocalError, json, ops::Activation};
+use serde::Deserialize;
+use std::path::Path;
+
+/// `config.json`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Config {
+    pub(super) vocab_size: usize,
+    pub(super) hidden_size: usize,
+    pub(super) num_hidden_layers: usize,
+    pub(super) num_attention_heads: usize,
+    pub(super) intermediate_size: usize,
+    pub(super) hidden_act: Activation,
+    pub(super) max_position_embeddings: usize,
+    #[serde(default = "two")]
+    pub(super) type_vocab_size: usize,
+    #[serde(default = "epsilon")]
+    pub(super) layer_norm_eps: f64,
+    model_type: Option<String>,
+}
+
+/// `1_Pooling/config.json`.
+#[derive(Debug, Deserialize)]
+struct PoolingConfig {
+    #[serde(default)]
+    pooling_mode_cls_token: bool,
+    #[serde(default)]
+    pooling_mode_mean_tokens: bool,
+}
+
+/// `sentence_bert_config.json`.
+#[derive(Debug, Deserialize)]
+struct LengthConfig {
+    max_seq_length: Option<usize>,
+}
+
+/// How a sentence's vector is made from the vectors of its tokens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pooling {
+    /// The mean of all.
+    Mean,
+    /// The first token's.
+    First,
+}
+
+fn two() -> usize {
+    2
+}
+
+fn epsilon() -> f64 {
+    1e-12
+}
+
+impl Config {
+    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
+        let config: Self = json::read(folder, "config.json", "the configuration")?;
+        let wrong = |problem: String| LocalError::File {
+            file: folder.join("config.json"),
+            problem,
+            hint: "choose a sentence encoder with BERT's architecture, such as sentence-transformers/all-MiniLM-L6-v2",
+        };
+        if let Some(kind) = config.model_type.as_deref().filter(|kind| *kind != "bert") {
+            return Err(wrong(format!("model_type: {kind} is not bert")));
+        }
+        let heads = config.num_attention_heads;
+        if heads == 0 || !config.hidden_size.is_multiple_of(heads) {
+            return Err(wrong(format!(
+                "num_attention_heads: {heads} does not divide hidden_size {}",
+                config.hidden_size
+            )));
+        }
+        Ok(config)
+    }
+
+    /// The most tokens of a text.
+    pub(super) fn longest(&self, folder: &Path) -> Result<usize, LocalError> {
+        let own: Option<LengthConfig> = json::read_if_there(folder, "sentence_bert_config.json")?;
+        let own = own.and_then(|own| own.max_seq_length).unwrap_or(usize::MAX);
+        Ok(own.min(self.max_position_embeddings))
+    }
+}
+
+impl Pooling {
+    /// Reads the folder's pooling. Without a configuration it is the mean.
+    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
+        let config: Option<PoolingConfig> = json::read_if_there(folder, "1_Pooling/config.json")?;
+        match config {
+            None => Ok(Self::Mean),
+            Some(PoolingConfig { pooling_mode_mean_tokens: true, .. }) => Ok(Self::Mean),
+            Some(PoolingConfig { pooling_mode_cls_token: true, .. }) => Ok(Self::First),
+            Some(_) => Err(LocalError::File {
+                file: folder.join("1_Pooling/config.json"),
+                problem: "it pools neither the mean nor the first token".to_owned(),
+                hint: "choose another sentence encoder",
+            }),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! BERT's encoder (transformers `BertModel` without its pooler).
+
+use super::config::Config;
+use crate::{
+    LocalError,
+    ops::{Activation, Attention, Embedding, LayerNorm, Linear},
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+
+/// Computes states from tokens.
+pub(super) struct Encoder {
+    words: Embedding,
+    positions: Embedding,
+    /// Added to every token: the first of the token types, because a text is not a pair.
+    kind: Tensor,
+    norm: LayerNorm,
+    layers: Vec<Layer>,
+}
+
+struct Layer {
+    qkv: Linear,
+    mixed: Linear,
+    mixed_norm: LayerNorm,
+    wide: Linear,
+    narrow: Linear,
+    norm: LayerNorm,
+    heads: usize,
+    activation: Activation,
+}
+
+impl Encoder {
+    pub(super) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+        let (size, epsilon) = (config.hidden_size, config.layer_norm_eps);
+        let embeddings = weights.sub("embeddings");
+        let kinds = embeddings.embedding("token_type_embeddings", config.type_vocab_size, size)?;
+        let layers =
+            (0..config.num_hidden_layers).map(|layer| Layer::load(&weights.sub("encoder.layer").sub(layer), config));
+        let kind = kinds.table().get(0).and_then(|kind| kind.to_dtype(candle_core::DType::F32));
+        Ok(Self {
+            words: embeddings.embedding("word_embeddings", config.vocab_size, size)?,
+            positions: embeddings.embedding("position_embeddings", config.max_position_embeddings, size)?,
+            kind: kind.map_err(|error| embeddings.wrong("token_type_embeddings.weight", &error))?,
+            norm: embeddings.layer_norm("LayerNorm", size, epsilon)?,
+            layers: layers.collect::<std::result::Result<_, _>>()?,
+        })
+    }
+
+    /// From ids [batch, length] and a bias [batch, 1, 1, length] that hides padding, states [batch, length, size].
+    pub(super) fn of(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let length = ids.dim(1)? as u32;
+        let positions = self.positions.of(&Tensor::arange(0, length, ids.device())?)?;
+        let x =
+            self.words.of(ids)?.broadcast_add(&positions.broadcast_add(&self.kind.to_dtype(positions.dtype())?)?)?;
+        self.layers.iter().try_fold(self.norm.of(&x)?, |x, layer| layer.of(&x, mask))
+    }
+}
+
+impl Layer {
+    fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+        let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
+        Ok(Self {
+            qkv: weights.sub("attention.self").linears(&["query", "key", "value"], size, size)?,
+            mixed: weights.linear("attention.output.dense", size, size)?,
+            mixed_norm: weights.layer_norm("attention.output.LayerNorm", size, epsilon)?,
+            wide: weights.linear("intermediate.dense", size, inner)?,
+            narrow: weights.linear("output.dense", inner, size)?,
+            norm: weights.layer_norm("output.LayerNorm", size, epsilon)?,
+            heads: config.num_attention_heads,
+            activation: config.hidden_act,
+        })
+    }
+
+    fn of(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let size = x.dim(2)?;
+        let qkv = self.qkv.of(x)?;
+        let part = |at: usize| qkv.narrow(2, at * size, size);
+        let scale = 1.0 / ((size / self.heads) as f32).sqrt();
+        let mixed = Attention { heads: self.heads, scale, bias: mask }.of(&part(0)?, &part(1)?, &part(2)?)?;
+        let x = self.mixed_norm.of(&(self.mixed.of(&mixed)? + x)?)?;
+        let wide = self.wide.of_then(&x, self.activation)?;
+        self.norm.of(&(self.narrow.of(&wide)? + x)?)
+    }
+}

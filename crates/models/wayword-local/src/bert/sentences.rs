@@ -1,0 +1,104 @@
+//! Turns sentences into unit vectors, as sentence-transformers does.
+
+use super::{
+    config::{Config, Pooling},
+    encoder::Encoder,
+};
+use crate::{Device, LocalError, Precision, text::Tokenizer, weights::Weights};
+use candle_core::{DType, Tensor};
+use std::path::Path;
+use wayword_core::{ModelError, TextEncoder};
+
+/// How many texts are encoded at a time.
+const BATCH: usize = 32;
+
+/// A sentence encoder.
+pub struct SentenceEncoder {
+    name: String,
+    tokenizer: Tokenizer,
+    encoder: Encoder,
+    pooling: Pooling,
+    longest: usize,
+    device: Device,
+}
+
+impl SentenceEncoder {
+    /// Reads `config.json`, `tokenizer.json`, `model.safetensors` and, if they exist, `1_Pooling/config.json` and
+    /// `sentence_bert_config.json` of a folder. `name` is the model's name: `hf/ORG/NAME`.
+    ///
+    /// # Errors
+    /// When a file is missing or damaged, or the checkpoint has another architecture.
+    pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+        let config = Config::read(folder)?;
+        let weights = Weights::open(folder, device, precision)?;
+        // A checkpoint of a whole BERT model has the encoder under the name `bert`.
+        let all = weights.scope("");
+        let encoder = if all.has("embeddings.word_embeddings.weight") { all } else { weights.scope("bert") };
+        Ok(Self {
+            name: name.to_owned(),
+            tokenizer: Tokenizer::load(folder)?,
+            encoder: Encoder::load(&encoder, &config)?,
+            pooling: Pooling::read(folder)?,
+            longest: config.longest(folder)?,
+            device: device.clone(),
+        })
+    }
+
+    /// Unit vectors of texts. Texts of similar length are encoded together, so that there is little padding.
+    ///
+    /// # Errors
+    /// When the computation fails.
+    pub fn vectors(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
+        let ids = texts.iter().map(|text| self.tokenizer.ids(text, self.longest));
+        let ids: Vec<Vec<u32>> = ids.collect::<Result<_, _>>()?;
+        let mut order: Vec<usize> = (0..texts.len()).collect();
+        order.sort_by_key(|&at| ids[at].len());
+        let mut vectors = vec![Vec::new(); texts.len()];
+        for batch in order.chunks(BATCH) {
+            let of_batch: Vec<&[u32]> = batch.iter().map(|&at| &ids[at][..]).collect();
+            let found = self.batch(&of_batch);
+            let found =
+                found.map_err(|error| LocalError::Compute { model: self.name.clone(), problem: error.to_string() })?;
+            for (&at, vector) in batch.iter().zip(found) {
+                vectors[at] = vector;
+            }
+        }
+        Ok(vectors)
+    }
+
+    fn batch(&self, texts: &[&[u32]]) -> candle_core::Result<Vec<Vec<f32>>> {
+        let device = &self.device.0;
+        let longest = texts.iter().map(|ids| ids.len()).max().unwrap_or(0).max(1);
+        let padded = |ids: &&[u32]| ids.iter().copied().chain(std::iter::repeat(0)).take(longest).collect::<Vec<_>>();
+        let ids = Tensor::from_vec(texts.iter().flat_map(padded).collect(), (texts.len(), longest), device)?;
+        let is_token = |at: usize| at % longest < texts[at / longest].len();
+        let weights = |of_token: f32, of_padding: f32| {
+            let weights =
+                (0..texts.len() * longest).map(|at| if is_token(at) { of_token } else { of_padding }).collect();
+            Tensor::from_vec(weights, (texts.len(), longest), device)
+        };
+        let is_even = texts.iter().all(|ids| ids.len() == longest);
+        let hides = if is_even { None } else { Some(weights(0.0, f32::NEG_INFINITY)?.unsqueeze(1)?.unsqueeze(1)?) };
+        let states = self.encoder.of(&ids, hides.as_ref())?.to_dtype(DType::F32)?;
+        let pooled = match self.pooling {
+            Pooling::First => states.narrow(1, 0, 1)?.squeeze(1)?,
+            Pooling::Mean if is_even => states.mean(1)?,
+            Pooling::Mean => {
+                let weights = weights(1.0, 0.0)?.unsqueeze(2)?;
+                states.broadcast_mul(&weights)?.sum(1)?.broadcast_div(&weights.sum(1)?)?
+            }
+        };
+        let length = pooled.sqr()?.sum_keepdim(1)?.sqrt()?;
+        pooled.broadcast_div(&length.maximum(1e-12)?)?.to_vec2()
+    }
+}
+
+impl TextEncoder for SentenceEncoder {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+        self.vectors(texts).map_err(|error| ModelError::Failed { model: self.name.clone(), reason: error.to_string() })
+    }
+}

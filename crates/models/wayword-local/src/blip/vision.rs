@@ -1,0 +1,88 @@
+//! BLIP's vision transformer. BLIP-2's has the same architecture.
+
+use super::config::VisionConfig;
+use crate::{
+    LocalError,
+    ops::{Activation, Attention, LayerNorm, Linear, patches},
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+
+/// Computes states from pictures.
+pub(crate) struct Vision {
+    patch: Linear,
+    patch_px: usize,
+    class: Tensor,
+    positions: Tensor,
+    layers: Vec<Layer>,
+    norm: LayerNorm,
+}
+
+struct Layer {
+    norm: LayerNorm,
+    qkv: Linear,
+    mixed: Linear,
+    mixed_norm: LayerNorm,
+    wide: Linear,
+    narrow: Linear,
+    heads: usize,
+    activation: Activation,
+}
+
+impl Vision {
+    pub(crate) fn load(weights: &Scope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
+        let (size, patch_px) = (config.hidden_size, config.patch_size);
+        let embeddings = weights.sub("embeddings");
+        let count = (config.image_size / patch_px).pow(2) + 1;
+        let kernel = embeddings.tensor("patch_embedding.weight", &[size, 3, patch_px, patch_px])?;
+        let bias = embeddings.tensor("patch_embedding.bias", &[size])?;
+        let patch = kernel.flatten_from(1).and_then(|kernel| Linear::new(&kernel, Some(bias)));
+        let layers =
+            (0..config.num_hidden_layers).map(|layer| Layer::load(&weights.sub("encoder.layers").sub(layer), config));
+        Ok(Self {
+            patch: patch.map_err(|error| embeddings.wrong("patch_embedding.weight", &error))?,
+            patch_px,
+            class: embeddings.state("class_embedding", &[1, 1, size])?,
+            positions: embeddings.state("position_embedding", &[1, count, size])?,
+            layers: layers.collect::<std::result::Result<_, _>>()?,
+            norm: weights.layer_norm("post_layernorm", size, config.layer_norm_eps)?,
+        })
+    }
+
+    /// From pictures [batch, 3, height, width], states [batch, patches + 1, size].
+    pub(crate) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
+        let pictures = pictures.to_dtype(self.class.dtype())?;
+        let x = self.patch.of(&patches(&pictures, self.patch_px)?)?;
+        let (batch, _, size) = x.dims3()?;
+        let x = Tensor::cat(&[&self.class.expand((batch, 1, size))?.contiguous()?, &x], 1)?;
+        let x = x.broadcast_add(&self.positions)?;
+        self.norm.of(&self.layers.iter().try_fold(x, |x, layer| layer.of(&x))?)
+    }
+}
+
+impl Layer {
+    fn load(weights: &Scope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
+        let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
+        Ok(Self {
+            norm: weights.layer_norm("layer_norm1", size, epsilon)?,
+            qkv: weights.linear("self_attn.qkv", size, 3 * size)?,
+            mixed: weights.linear("self_attn.projection", size, size)?,
+            mixed_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
+            wide: weights.linear("mlp.fc1", size, inner)?,
+            narrow: weights.linear("mlp.fc2", inner, size)?,
+            heads: config.num_attention_heads,
+            activation: config.hidden_act,
+        })
+    }
+
+    fn of(&self, x: &Tensor) -> Result<Tensor> {
+        let size = x.dim(2)?;
+        let qkv = self.qkv.of(&self.norm.of(x)?)?;
+        let part = |at: usize| qkv.narrow(2, at * size, size);
+        let scale = 1.0 / ((size / self.heads) as f32).sqrt();
+        let mixed = Attention { heads: self.heads, scale, bias: None }.of(&part(0)?, &part(1)?, &part(2)?)?;
+        let x = (self.mixed.of(&mixed)? + x)?;
+        let wide = self.wide.of_then(&self.mixed_norm.of(&x)?, self.activation)?;
+        self.narrow.of(&wide)? + x
+    }
+}

@@ -1,0 +1,94 @@
+//! CLIP as a model that says how well phrases fit views.
+
+use super::Clip;
+use crate::{LocalError, picture::digest};
+use sha2::{Digest, Sha256};
+use std::{collections::BTreeMap, sync::Arc};
+use wayword_core::{Grounder, Image, ModelError, Recent, View};
+
+/// A hash of the picture or the text that a vector is for.
+type Key = [u8; 32];
+
+/// How many vectors of pictures are kept, and as many of texts: at most about 50 MB each.
+const KEPT: usize = 16 << 10;
+
+/// Scores a phrase on a view by the cosine of their vectors, between -1 and 1. CLIP's `logit_scale` is left out,
+/// because it only matters if scores become probabilities. A phrase is used as it is: the caller may add "a photo of
+/// ..". The vectors of pictures and phrases are kept by their content.
+pub struct ClipGrounder {
+    clip: Clip,
+    images: Recent<Key, Vec<f32>>,
+    texts: Recent<Key, Vec<f32>>,
+}
+
+impl ClipGrounder {
+    /// A grounder that asks a CLIP.
+    #[must_use]
+    pub fn new(clip: Clip) -> Self {
+        Self { clip, images: Recent::new(KEPT), texts: Recent::new(KEPT) }
+    }
+
+    fn failed(&self, error: &LocalError) -> ModelError {
+        ModelError::Failed { model: self.clip.name().to_owned(), reason: error.to_string() }
+    }
+
+    /// The picture of a view.
+    fn image<'a>(&self, view: &'a View) -> Result<&'a Image, ModelError> {
+        let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
+        image.ok_or_else(|| ModelError::NothingToSee {
+            name: self.clip.name().to_owned(),
+            needs: "a picture",
+            hint: "use a platform or data folder with pictures",
+        })
+    }
+}
+
+impl Grounder for ClipGrounder {
+    fn name(&self) -> &str {
+        self.clip.name()
+    }
+
+    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        let images: Vec<Result<&Image, ModelError>> = views.iter().map(|view| self.image(view)).collect();
+        let seen: Vec<&Image> = images.iter().filter_map(|image| image.as_ref().ok().copied()).collect();
+        let vectors = vectors(&self.images, &seen, digest, |images| self.clip.image_features(images))
+            .and_then(|seen| {
+                let texts = |texts: &[&str]| self.clip.text_features(texts);
+                Ok((seen, vectors(&self.texts, phrases, |text| Sha256::digest(text).into(), texts)?))
+            })
+            .map_err(|error| self.failed(&error));
+        let mut at = 0;
+        let scores = |image: Result<&Image, ModelError>| {
+            image?;
+            at += 1;
+            let (seen, texts) = vectors.as_ref().map_err(Clone::clone)?;
+            Ok(texts.iter().map(|text| dot(&seen[at - 1], text)).collect())
+        };
+        images.into_iter().map(scores).collect()
+    }
+}
+
+/// The vectors of things, in their order. Known vectors are reused, and the others are computed, each once.
+fn vectors<T: Copy>(
+    recent: &Recent<Key, Vec<f32>>,
+    things: &[T],
+    key: impl Fn(T) -> Key,
+    compute: impl Fn(&[T]) -> Result<Vec<Vec<f32>>, LocalError>,
+) -> Result<Vec<Arc<Vec<f32>>>, LocalError> {
+    let keys: Vec<Key> = things.iter().map(|&thing| key(thing)).collect();
+    let mut known: BTreeMap<Key, Arc<Vec<f32>>> = BTreeMap::new();
+    let mut missing: BTreeMap<Key, T> = BTreeMap::new();
+    for (key, &thing) in keys.iter().zip(things) {
+        match recent.get(key) {
+            Some(vector) => drop(known.insert(*key, vector)),
+            None => drop(missing.insert(*key, thing)),
+        }
+    }
+    let computed = compute(&missing.values().copied().collect::<Vec<T>>())?;
+    known.extend(missing.into_keys().zip(computed).map(|(key, vector)| (key, recent.put(key, vector))));
+    Ok(keys.iter().filter_map(|key| known.get(key).cloned()).collect())
+}
+
+fn dot(a: &[f32], b: &[f32]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

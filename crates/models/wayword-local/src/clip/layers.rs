@@ -1,0 +1,92 @@
+//! The transformer of both towers (transformers' `CLIPEncoder`), with a norm before each sublayer and a residual around
+//! it.
+
+use super::config::LayersConfig;
+use crate::{
+    LocalError,
+    ops::{Activation, Attention, LayerNorm, Linear},
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+
+/// Layers that give one token's state for each text or picture.
+pub(super) struct Layers {
+    before: Vec<Layer>,
+    last: Layer,
+}
+
+struct Layer {
+    mix_norm: LayerNorm,
+    qkv: Linear,
+    mixed: Linear,
+    think_norm: LayerNorm,
+    wide: Linear,
+    narrow: Linear,
+    heads: usize,
+    activation: Activation,
+}
+
+impl Layers {
+    /// The layers 0, 1, .. of a part of a checkpoint.
+    pub(super) fn load(weights: &Scope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
+        let layer = |at: usize| Layer::load(&weights.sub(at), config);
+        let last = config.num_hidden_layers.saturating_sub(1);
+        Ok(Self { before: (0..last).map(layer).collect::<std::result::Result<_, _>>()?, last: layer(last)? })
+    }
+
+    /// From x [batch, length, size] and a mask [length, length], the state of token `at` of each, [batch, 1, size]. The
+    /// last layer computes only this state.
+    pub(super) fn of(&self, x: Tensor, mask: Option<&Tensor>, at: &[u32]) -> Result<Tensor> {
+        let x = self.before.iter().try_fold(x, |x, layer| {
+            let qkv = layer.qkv.of(&layer.mix_norm.of(&x)?)?;
+            layer.of(&x, &qkv, &third(&qkv, 0)?, mask)
+        })?;
+        let (batch, length, size) = x.dims3()?;
+        let place = |(text, at): (usize, &u32)| (text * length) as u32 + at;
+        let rows = Tensor::from_vec(at.iter().enumerate().map(place).collect(), batch, x.device())?;
+        let picked = |x: &Tensor| {
+            let width = x.dim(2)?;
+            x.contiguous()?.reshape((batch * length, width))?.index_select(&rows, 0)?.reshape((batch, 1, width))
+        };
+        let mask = mask.map(|mask| {
+            let at = Tensor::new(at, x.device())?;
+            mask.index_select(&at, 0)?.reshape((batch, 1, 1, length))
+        });
+        let qkv = self.last.qkv.of(&self.last.mix_norm.of(&x)?)?;
+        let q = picked(&qkv)?.narrow(2, 0, size)?;
+        self.last.of(&picked(&x)?, &qkv, &q, mask.transpose()?.as_ref())
+    }
+}
+
+/// The queries (0), keys (1) or values (2), which are side by side in one tensor.
+fn third(qkv: &Tensor, at: usize) -> Result<Tensor> {
+    let size = qkv.dim(2)? / 3;
+    qkv.narrow(2, at * size, size)
+}
+
+impl Layer {
+    fn load(weights: &Scope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
+        let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
+        Ok(Self {
+            mix_norm: weights.layer_norm("layer_norm1", size, epsilon)?,
+            qkv: weights.sub("self_attn").linears(&["q_proj", "k_proj", "v_proj"], size, size)?,
+            mixed: weights.linear("self_attn.out_proj", size, size)?,
+            think_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
+            wide: weights.linear("mlp.fc1", size, inner)?,
+            narrow: weights.linear("mlp.fc2", inner, size)?,
+            heads: config.num_attention_heads,
+            activation: config.hidden_act,
+        })
+    }
+
+    /// The layer's output for x [batch, queries, size]. `q` are the queries of x, and `qkv` has the keys and values of
+    /// all tokens.
+    fn of(&self, x: &Tensor, qkv: &Tensor, q: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let scale = 1.0 / ((x.dim(2)? / self.heads) as f32).sqrt();
+        let attention = Attention { heads: self.heads, scale, bias: mask };
+        let mixed = attention.of(q, &third(qkv, 1)?, &third(qkv, 2)?)?;
+        let x = (self.mixed.of(&mixed)? + x)?;
+        let wide = self.wide.of_then(&self.think_norm.of(&x)?, self.activation)?;
+        self.narrow.of(&wide)? + x
+    }
+}

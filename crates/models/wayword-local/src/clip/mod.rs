@@ -1,0 +1,11 @@
+//! CLIP: turns pictures and texts into vectors that can be compared (ViT-B/32, B/16, L/14 and similar models).
+
+mod config;
+mod grounder;
+mod layers;
+mod model;
+mod text;
+mod vision;
+
+pub use grounder::ClipGrounder;
+pub use model::Clip;

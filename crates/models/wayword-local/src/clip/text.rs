@@ -1,0 +1,55 @@
+//! The text tower (transformers' `CLIPTextModel`).
+
+use super::{config::TextConfig, layers::Layers};
+use crate::{
+    LocalError,
+    ops::{Embedding, LayerNorm, causal},
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+
+/// Old configurations name this wrong token as the end of a text.
+const WRONG_END: u32 = 2;
+
+/// Computes one state for each text.
+pub(super) struct TextTower {
+    words: Embedding,
+    positions: Embedding,
+    layers: Layers,
+    norm: LayerNorm,
+    end: u32,
+}
+
+impl TextTower {
+    pub(super) fn load(weights: &Scope<'_>, config: &TextConfig) -> std::result::Result<Self, LocalError> {
+        let (size, epsilon) = (config.layers.hidden_size, config.layers.layer_norm_eps);
+        let embeddings = weights.sub("embeddings");
+        Ok(Self {
+            words: embeddings.embedding("token_embedding", config.vocab_size, size)?,
+            positions: embeddings.embedding("position_embedding", config.max_position_embeddings, size)?,
+            layers: Layers::load(&weights.sub("encoder.layers"), &config.layers)?,
+            norm: weights.layer_norm("final_layer_norm", size, epsilon)?,
+            end: config.eos_token_id,
+        })
+    }
+
+    /// From the ids of texts, the state of the token that ends each, [batch, 1, size]. Padding comes after the end of a
+    /// text, so the mask hides it.
+    pub(super) fn of(&self, texts: &[&[u32]], device: &candle_core::Device) -> Result<Tensor> {
+        let length = texts.iter().map(|ids| ids.len()).max().unwrap_or(0).max(1);
+        let padded = |ids: &&[u32]| ids.iter().copied().chain(std::iter::repeat(0)).take(length).collect::<Vec<_>>();
+        let ids = Tensor::from_vec(texts.iter().flat_map(padded).collect(), (texts.len(), length), device)?;
+        let positions = self.positions.of(&Tensor::arange(0, length as u32, device)?)?;
+        let x = self.words.of(&ids)?.broadcast_add(&positions)?;
+        let ends: Vec<u32> = texts.iter().map(|ids| self.end_of(ids)).collect();
+        let x = self.layers.of(x, Some(&causal(length, length, device)?), &ends)?;
+        self.norm.of(&x)
+    }
+
+    /// The position at which a text ends: the first end token or, if the configuration names the wrong one, the first
+    /// token with the highest id. 0 if there is none.
+    fn end_of(&self, ids: &[u32]) -> u32 {
+        let end = if self.end == WRONG_END { ids.iter().max().copied() } else { Some(self.end) };
+        ids.iter().position(|&id| Some(id) == end).unwrap_or(0) as u32
+    }
+}

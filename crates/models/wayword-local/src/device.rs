@@ -1,0 +1,56 @@
+//! The device and the precision of a model.
+
+use crate::LocalError;
+use candle_core::DType;
+
+/// The device on which models compute.
+#[derive(Debug, Clone)]
+pub struct Device(pub(crate) candle_core::Device);
+
+/// The precision of a model's weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// 32 bits.
+    #[default]
+    F32,
+    /// 16 bits with the range of 32 bits: half the memory, for models that would not fit otherwise.
+    Bf16,
+    /// 16 bits.
+    F16,
+}
+
+impl Device {
+    /// The CPU.
+    #[must_use]
+    pub fn cpu() -> Self {
+        Self(candle_core::Device::Cpu)
+    }
+
+    /// A device by its name: `cpu`, `cuda`, `cuda:1`, `metal`.
+    ///
+    /// # Errors
+    /// When this build or machine has no device of that name.
+    pub fn named(name: &str) -> Result<Self, LocalError> {
+        let (kind, at) = name.split_once(':').unwrap_or((name, "0"));
+        let no = |problem: String| LocalError::Compute { model: format!("device {name}"), problem };
+        let at: usize =
+            at.parse().map_err(|_| no("its number is not valid; write cpu, cuda, cuda:1 or metal".to_owned()))?;
+        let device = match kind {
+            "cpu" => Ok(candle_core::Device::Cpu),
+            "cuda" => candle_core::Device::new_cuda(at),
+            "metal" => candle_core::Device::new_metal(at),
+            _ => return Err(no("there is no such device; write cpu, cuda, cuda:1 or metal".to_owned())),
+        };
+        device.map(Self).map_err(|error| no(format!("{error}; build with --features {kind} on a machine that has one")))
+    }
+}
+
+impl Precision {
+    pub(crate) fn dtype(self) -> DType {
+        match self {
+            Self::F32 => DType::F32,
+            Self::Bf16 => DType::BF16,
+            Self::F16 => DType::F16,
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Errors of models in process.
+
+use std::{path::PathBuf, sync::Arc};
+
+/// A model cannot be found, fetched, loaded or computed.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum LocalError {
+    /// A name that is not valid.
+    #[error(
+        "{name:?} is not the name of a model in process: {problem}\nhint: names are hf/ORG/NAME, hf/ORG/NAME@REVISION, or hf/PATH of a local folder that begins with / or ."
+    )]
+    Name {
+        /// What was given.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A required file is missing.
+    #[error("{}: {what} is missing\nhint: {hint}", file.display())]
+    Missing {
+        /// Its path.
+        file: PathBuf,
+        /// What it is.
+        what: &'static str,
+        /// How to get it.
+        hint: String,
+    },
+    /// A file operation failed.
+    #[error("{}: cannot {doing}: {source}\nhint: check that the file or its folder exists, that you may use it, and that the disk has room", file.display())]
+    Io {
+        /// The file.
+        file: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// The system's error.
+        source: Arc<std::io::Error>,
+    },
+    /// A file has the wrong content.
+    #[error("{}: {problem}\nhint: {hint}", file.display())]
+    File {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong, with field or place.
+        problem: String,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// A tensor of a checkpoint is missing or wrong.
+    #[error("{}: tensor {tensor}: {problem}\nhint: the checkpoint is cut off or of another architecture; fetch it again, or choose another model", file.display())]
+    Tensor {
+        /// The checkpoint.
+        file: PathBuf,
+        /// The tensor.
+        tensor: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A download failed.
+    #[error("{address}: {problem}\nhint: {hint}")]
+    Download {
+        /// The address of the file, or the setting that is wrong.
+        address: String,
+        /// What happened.
+        problem: String,
+        /// What to do.
+        hint: String,
+    },
+    /// The computation failed.
+    #[error("{model}: {problem}")]
+    Compute {
+        /// The model.
+        model: String,
+        /// What happened.
+        problem: String,
+    },
+}
+
+impl LocalError {
+    pub(crate) fn io(file: impl Into<PathBuf>, doing: &'static str, source: std::io::Error) -> Self {
+        Self::Io { file: file.into(), doing, source: Arc::new(source) }
+    }
+
+    pub(crate) fn download(address: impl Into<String>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self::Download { address: address.into(), problem: problem.into(), hint: hint.into() }
+    }
+
+    pub(crate) fn compute(model: &str, error: &candle_core::Error) -> Self {
+        // candle's errors may contain a backtrace.
+        let problem = error.to_string().lines().next().unwrap_or("the computation failed").to_owned();
+        Self::Compute { model: model.to_owned(), problem }
+    }
+
+    pub(crate) fn tensor(file: impl Into<PathBuf>, tensor: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self::Tensor { file: file.into(), tensor: tensor.into(), problem: problem.into() }
+    }
+}

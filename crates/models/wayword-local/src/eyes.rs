@@ -1,0 +1,91 @@
+//! BLIP and BLIP-2 as models that answer requests with a picture.
+
+use crate::{
+    LocalError,
+    blip::{BlipCaptioner, BlipVqa},
+    blip2::Blip2,
+};
+use wayword_core::{Image, Request};
+
+/// The most tokens of an answer. These models were trained on short answers, and repeat themselves in longer ones.
+const MOST_TOKENS: u32 = 40;
+
+/// The question for a description, to a model that only answers questions.
+const DESCRIBE: &str = "what is in the picture?";
+
+/// A model that answers about a picture.
+pub(crate) trait Eye: Send + Sync {
+    /// The form of request that it takes.
+    fn kind(&self) -> EyeKind;
+
+    /// The reply to a request.
+    fn reply(&self, request: &Request) -> Result<String, LocalError>;
+}
+
+/// The form of request that a model that sees takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EyeKind {
+    /// A picture and a question. With a picture and no words it describes the picture.
+    Questions,
+    /// A picture and a text that the model continues.
+    Texts,
+}
+
+/// BLIP: one checkpoint answers questions, another one describes.
+pub(crate) struct BlipEye {
+    pub(crate) name: String,
+    pub(crate) answers: Option<BlipVqa>,
+    pub(crate) describes: Option<BlipCaptioner>,
+}
+
+impl Eye for BlipEye {
+    fn kind(&self) -> EyeKind {
+        EyeKind::Questions
+    }
+
+    fn reply(&self, request: &Request) -> Result<String, LocalError> {
+        let (picture, words) = shown(&self.name, request)?;
+        let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        match (&self.answers, &self.describes, words.is_empty()) {
+            (_, Some(describes), true) => describes.caption(picture, "", most),
+            (Some(answers), _, false) => answers.answer(picture, words, most),
+            (Some(answers), None, true) => answers.answer(picture, DESCRIBE, most),
+            (None, _, _) => Err(self.cannot_answer()),
+        }
+    }
+}
+
+impl BlipEye {
+    fn cannot_answer(&self) -> LocalError {
+        let problem = "it describes pictures but does not answer questions; use --perception single, or put a model that \
+                       answers before it, as in --see hf/Salesforce/blip-vqa-base+Salesforce/blip-image-captioning-base";
+        LocalError::Compute { model: self.name.clone(), problem: problem.to_owned() }
+    }
+}
+
+/// BLIP-2.
+pub(crate) struct Blip2Eye {
+    pub(crate) name: String,
+    pub(crate) model: Blip2,
+}
+
+impl Eye for Blip2Eye {
+    fn kind(&self) -> EyeKind {
+        EyeKind::Texts
+    }
+
+    fn reply(&self, request: &Request) -> Result<String, LocalError> {
+        let (picture, words) = shown(&self.name, request)?;
+        let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        self.model.answer(picture, words, most)
+    }
+}
+
+/// The picture and the words of the one message that these models take.
+fn shown<'a>(name: &str, request: &'a Request) -> Result<(&'a Image, &'a str), LocalError> {
+    let wrong = |problem: &str| LocalError::Compute { model: name.to_owned(), problem: problem.to_owned() };
+    let [message] = &request.messages[..] else { return Err(wrong("it takes one message, not a conversation")) };
+    let picture = message.image.as_deref();
+    let picture = picture.ok_or_else(|| wrong("it answers about pictures and does not write texts: use it to see (--see of `generate`), and for no other role"))?;
+    Ok((picture, message.text.trim()))
+}

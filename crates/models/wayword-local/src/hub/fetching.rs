@@ -1,0 +1,203 @@
+//! Fetches the files that are not on this machine. A download continues where an earlier one ended.
+
+use super::{
+    cache::{Commit, RepoFolder, beside, make_parent},
+    client::{Answer, Client, Facts},
+    files::Files,
+    name::OnHub,
+    trouble::{Patience, TRY_LATER, Trouble},
+};
+use crate::LocalError;
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{Read, Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+};
+
+/// The most bytes of a file whose size the hub does not give. It gives the size of every large file.
+const MOST_UNANNOUNCED: u64 = 64 << 20;
+
+/// How many bytes have to arrive before earlier failures are forgotten. So the program gives up on a server that sends
+/// only a few bytes each time.
+const A_GOOD_PIECE: u64 = 1 << 20;
+
+/// Receives the progress of downloads.
+pub trait Progress {
+    /// `done` bytes of a file have arrived, of `total` if the hub has given the size.
+    fn bytes(&self, file: &str, done: u64, total: Option<u64>);
+
+    /// Another process fetches this file, and this one waits for it.
+    fn waiting(&self, file: &str) {
+        let _ = file;
+    }
+}
+
+/// Shows no progress.
+impl Progress for () {
+    fn bytes(&self, _: &str, _: u64, _: Option<u64>) {}
+}
+
+/// The files of one commit. If none is known, it is the first that the hub names.
+pub(super) struct Fetching<'a> {
+    pub(super) client: &'a Client,
+    pub(super) model: &'a OnHub,
+    pub(super) repo: RepoFolder,
+    pub(super) commit: Option<Commit>,
+    pub(super) symlinks: bool,
+    pub(super) progress: &'a dyn Progress,
+}
+
+impl Fetching<'_> {
+    /// Returns the commit, and records it as the revision's commit. This happens only when all files are there, so that
+    /// after a fetch that is cut off the older snapshot stays in use.
+    pub(super) fn finish(self) -> Result<String, LocalError> {
+        let Some(commit) = &self.commit else {
+            return Err(LocalError::download(self.address(""), "no file was requested", TRY_LATER));
+        };
+        if Commit::parse(&self.model.revision).is_none() {
+            self.repo.keep_ref(&self.model.revision, commit)?;
+        }
+        Ok(commit.as_str().to_owned())
+    }
+
+    fn revision(&self) -> &str {
+        self.commit.as_ref().map_or(&self.model.revision, Commit::as_str)
+    }
+
+    fn address(&self, file: &str) -> String {
+        self.client.address(self.model, self.revision(), file)
+    }
+
+    /// Checks that all files are of one commit.
+    fn agree(&mut self, file: &str, commit: &Commit) -> Result<(), LocalError> {
+        if *self.commit.get_or_insert_with(|| commit.clone()) == *commit {
+            return Ok(());
+        }
+        let problem = "the hub answers with another commit than requested";
+        Err(LocalError::download(self.address(file), problem, TRY_LATER))
+    }
+
+    /// Puts the blob into the cache, if it is not there.
+    fn fetch(&self, file: &str, facts: &Facts) -> Result<(), LocalError> {
+        let blob = self.repo.blob(&facts.hash);
+        if blob.is_file() {
+            return Ok(());
+        }
+        let _lock = self.repo.lock(&facts.hash, || self.progress.waiting(file))?;
+        if blob.is_file() {
+            return Ok(());
+        }
+        make_parent(&blob)?;
+        let part = beside(&blob, ".incomplete");
+        let mut patience = self.client.patience();
+        let mut resumed = self.whole(file, facts.size, &part, &mut patience)?;
+        // The whole file is read again, because its beginning may come from another process, and the disk may have
+        // failed.
+        while !facts.hash.fits(&part).map_err(|error| LocalError::io(&part, "read", error))? {
+            fs::remove_file(&part).map_err(|error| LocalError::io(&part, "remove", error))?;
+            if !resumed {
+                let problem = format!("the received file does not have the hash {}", facts.hash.as_str());
+                let hint = "try again; if it happens again, something on the network changes the file";
+                return Err(LocalError::download(self.address(file), problem, hint));
+            }
+            // The part from an earlier download was wrong, so the file is fetched once more from the beginning.
+            self.whole(file, facts.size, &part, &mut patience)?;
+            resumed = false;
+        }
+        fs::rename(&part, &blob).map_err(|error| LocalError::io(&blob, "write", error))
+    }
+
+    /// Fetches until all bytes are there. Returns whether some of them were there before.
+    fn whole(&self, file: &str, size: Option<u64>, part: &Path, patience: &mut Patience) -> Result<bool, LocalError> {
+        let io = |error| LocalError::io(part, "write", error);
+        let mut out = OpenOptions::new().create(true).append(true).open(part).map_err(io)?;
+        let length = |out: &File| out.metadata().map(|about| about.len()).map_err(io);
+        if size.is_some_and(|size| length(&out).is_ok_and(|length| length > size)) {
+            out.set_len(0).map_err(io)?;
+        }
+        let resumed = length(&out)? > 0;
+        loop {
+            let before = length(&out)?;
+            if before > 0 && size == Some(before) {
+                break;
+            }
+            let Err(trouble) = self.piece(file, size, &mut out, part) else { break };
+            if length(&out)? >= before.saturating_add(A_GOOD_PIECE) {
+                patience.restored();
+            }
+            patience.again(trouble, &self.address(file))?;
+        }
+        out.sync_all().map_err(io)?;
+        Ok(resumed)
+    }
+
+    /// Fetches the bytes that one connection gives.
+    fn piece(&self, file: &str, size: Option<u64>, out: &mut File, part: &Path) -> Result<(), Trouble> {
+        let io = |error| Trouble::Lasting(LocalError::io(part, "write", error));
+        let (address, there) = (self.address(file), out.seek(SeekFrom::End(0)).map_err(io)?);
+        let (mut done, mut body) = self.client.open(self.model, &address, there)?;
+        out.set_len(done).map_err(io)?;
+        let most = size.unwrap_or(MOST_UNANNOUNCED);
+        let mut buffer = vec![0; 1 << 18];
+        self.progress.bytes(file, done, size);
+        loop {
+            let read =
+                body.read(&mut buffer).map_err(|error| Trouble::passing(format!("the connection broke: {error}")))?;
+            if read == 0 {
+                break;
+            }
+            done += read as u64;
+            if done > most {
+                // None of these bytes can be trusted.
+                out.set_len(0).map_err(io)?;
+                let problem = format!("the server sends more than the expected {most} bytes");
+                return Err(Trouble::Lasting(LocalError::download(address, problem, TRY_LATER)));
+            }
+            out.write_all(&buffer[..read]).map_err(io)?;
+            self.progress.bytes(file, done, size);
+        }
+        if size.is_some_and(|size| done < size) {
+            return Err(Trouble::passing(format!("the connection broke after {done} bytes")));
+        }
+        Ok(())
+    }
+}
+
+impl Files for Fetching<'_> {
+    fn folder(&self) -> PathBuf {
+        self.repo.snapshot(self.revision())
+    }
+
+    fn here(&self, file: &str) -> Option<PathBuf> {
+        let path = self.repo.snapshot(self.commit.as_ref()?.as_str()).join(file);
+        path.is_file().then_some(path)
+    }
+
+    fn get(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError> {
+        if let Some(path) = self.here(file) {
+            return Ok(Some(path));
+        }
+        if self.commit.as_ref().is_some_and(|commit| self.repo.is_absent(commit, file)) {
+            return Ok(None);
+        }
+        match self.client.ask(self.model, self.revision(), file)? {
+            Answer::Absent(None) => Ok(None),
+            Answer::Absent(Some(commit)) => {
+                self.agree(file, &commit)?;
+                self.repo.keep_absent(&commit, file)?;
+                Ok(None)
+            }
+            Answer::There(facts) => {
+                self.agree(file, &facts.commit)?;
+                self.fetch(file, &facts)?;
+                self.repo.link(&facts.hash, &facts.commit, file, self.symlinks).map(Some)
+            }
+        }
+    }
+
+    fn missing(&self, file: &str, what: &'static str) -> LocalError {
+        let problem = format!("the model has no {file}, {what}");
+        let hint = "check the name, and the list of files on the model's page of the hub";
+        LocalError::download(self.address(file), problem, hint)
+    }
+}

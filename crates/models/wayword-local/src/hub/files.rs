@@ -1,0 +1,211 @@
+//! A model's files: which ones are needed, which ones are on this machine, and a hash that identifies them.
+
+use super::ModelName;
+use crate::{LocalError, weights};
+use sha2::{Digest, Sha256};
+use std::{
+    fs::File,
+    io::{self, Read, Seek, SeekFrom},
+    path::{Path, PathBuf},
+};
+
+const WHOLE: &str = "model.safetensors";
+const INDEX: &str = "model.safetensors.index.json";
+const PICKLED: &str = "pytorch_model.bin";
+
+/// Files that a model of this program reads if they exist.
+const READ_WHERE_THERE: [&str; 8] = [
+    "tokenizer.json",
+    "tokenizer_config.json",
+    "preprocessor_config.json",
+    "processor_config.json",
+    "generation_config.json",
+    "sentence_bert_config.json",
+    "1_Pooling/config.json",
+    "modules.json",
+];
+
+/// Files up to this length, bytes, count as a whole for a model's identity.
+const COUNTS_WHOLE: u64 = 1 << 20;
+/// Number of samples of a longer file, from its beginning to its end.
+const SAMPLES: u64 = 256;
+/// Bytes of each sample.
+const SAMPLE: u64 = 4096;
+
+/// Which files of a model are needed. A file that is part of the model's name is always needed.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Needs {
+    weights: bool,
+    required: Vec<&'static str>,
+    optional: Vec<&'static str>,
+}
+
+/// Access to a model's files.
+pub(super) trait Files {
+    /// The folder that the files are in.
+    fn folder(&self) -> PathBuf;
+
+    /// The path of a file, if it is on this machine.
+    fn here(&self, file: &str) -> Option<PathBuf>;
+
+    /// The path of a file, which is fetched if necessary; `None` if the model has no such file.
+    fn get(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError>;
+
+    /// The error for a needed file that does not exist.
+    fn missing(&self, file: &str, what: &'static str) -> LocalError;
+}
+
+/// The files that were found or fetched.
+#[derive(Debug)]
+pub(super) struct Gathered {
+    pub(super) folder: PathBuf,
+    /// Required and optional files, by their names.
+    pub(super) small: Vec<(String, PathBuf)>,
+    /// The files with weights.
+    pub(super) weights: Vec<PathBuf>,
+}
+
+impl Needs {
+    /// Adds the weights: `model.safetensors`, or its parts and their index, or `pytorch_model.bin`. For the name of a
+    /// GGUF file, the weights are in that file.
+    #[must_use]
+    pub fn weights(mut self) -> Self {
+        self.weights = true;
+        self
+    }
+
+    /// Adds these files.
+    #[must_use]
+    pub fn required(mut self, files: &[&'static str]) -> Self {
+        self.required.extend(files);
+        self
+    }
+
+    /// Adds these files, if the model has them.
+    #[must_use]
+    pub fn optional(mut self, files: &[&'static str]) -> Self {
+        self.optional.extend(files);
+        self
+    }
+
+    /// The files that a model of any kind needs.
+    #[must_use]
+    pub fn of_any(name: &ModelName) -> Self {
+        if name.is_gguf() {
+            return Self::default();
+        }
+        Self::default().weights().required(&["config.json"]).optional(&READ_WHERE_THERE)
+    }
+
+    /// Gets all files. Small files come first, so that an error shows before gigabytes are fetched.
+    pub(super) fn gather(&self, files: &mut dyn Files, named: Option<&str>) -> Result<Gathered, LocalError> {
+        let mut small = Vec::new();
+        for file in &self.required {
+            let path = files.get(file)?.ok_or_else(|| files.missing(file, "a file of the model"))?;
+            small.push(((*file).to_owned(), path));
+        }
+        for file in &self.optional {
+            small.extend(files.get(file)?.map(|path| ((*file).to_owned(), path)));
+        }
+        let weights = match named {
+            Some(file) => vec![files.get(file)?.ok_or_else(|| files.missing(file, "the model"))?],
+            None if self.weights => weights_of(files)?,
+            None => Vec::new(),
+        };
+        Ok(Gathered { folder: files.folder(), small, weights })
+    }
+}
+
+fn weights_of(files: &mut dyn Files) -> Result<Vec<PathBuf>, LocalError> {
+    let forms = [WHOLE, INDEX, PICKLED];
+    // If one form of the weights is on this machine, no other form is fetched.
+    let here = forms.into_iter().find(|form| files.here(form).is_some());
+    for form in here.map_or(forms.to_vec(), |form| vec![form]) {
+        if let Some(path) = files.get(form)? {
+            return if form == INDEX { parts(files, &path) } else { Ok(vec![path]) };
+        }
+    }
+    Err(files.missing(WHOLE, "the checkpoint"))
+}
+
+fn parts(files: &mut dyn Files, index: &Path) -> Result<Vec<PathBuf>, LocalError> {
+    let names = weights::part_names(index)?;
+    names.iter().map(|name| files.get(name)?.ok_or_else(|| files.missing(name, "a part of the weights"))).collect()
+}
+
+impl Gathered {
+    /// A hash over the names, lengths and contents of the small files, and over lengths and samples of the weights. The
+    /// samples include the beginning, where safetensors and GGUF files have their header, and the end, where a pickled
+    /// file has its checksums.
+    pub(super) fn identity(&self) -> Result<String, LocalError> {
+        let mut hasher = Sha256::new();
+        let mut add =
+            |name: &str, path: &Path| add(&mut hasher, name, path).map_err(|error| LocalError::io(path, "read", error));
+        for (name, path) in &self.small {
+            add(name, path)?;
+        }
+        for path in &self.weights {
+            add(&path.file_name().unwrap_or_default().to_string_lossy(), path)?;
+        }
+        Ok(format!("sha256:{:x}", hasher.finalize()))
+    }
+}
+
+fn add(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    // Lengths come before contents, so that two different sets of files never give the same bytes.
+    hasher.update((name.len() as u64).to_le_bytes());
+    hasher.update(name);
+    hasher.update(length.to_le_bytes());
+    if length <= COUNTS_WHOLE {
+        return io::copy(&mut file.take(COUNTS_WHOLE), hasher).map(drop);
+    }
+    let last = length - SAMPLE;
+    for sample in 0..SAMPLES {
+        // From 0 for the first sample to `last` for the last one, at equal distances.
+        let at = u128::from(last) * u128::from(sample) / u128::from(SAMPLES - 1);
+        file.seek(SeekFrom::Start(u64::try_from(at).unwrap_or(last)))?;
+        io::copy(&mut file.by_ref().take(SAMPLE), hasher)?;
+    }
+    Ok(())
+}
+
+/// A folder, and the hint for a file that it lacks.
+pub(super) struct OnDisk<'a> {
+    folder: PathBuf,
+    hint: &'a dyn Fn(&str) -> String,
+}
+
+impl<'a> OnDisk<'a> {
+    pub(super) fn new(folder: PathBuf, hint: &'a dyn Fn(&str) -> String) -> Self {
+        Self { folder, hint }
+    }
+}
+
+impl OnDisk<'static> {
+    /// The user's own folder.
+    pub(super) fn local(folder: &Path) -> Self {
+        let hint = &|file: &str| format!("put the model's {file} there, or check the path");
+        Self { folder: folder.to_owned(), hint }
+    }
+}
+
+impl Files for OnDisk<'_> {
+    fn folder(&self) -> PathBuf {
+        self.folder.clone()
+    }
+
+    fn here(&self, file: &str) -> Option<PathBuf> {
+        let path = self.folder.join(file);
+        path.is_file().then_some(path)
+    }
+
+    fn get(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError> {
+        Ok(self.here(file))
+    }
+
+    fn missing(&self, file: &str, what: &'static str) -> LocalError {
+        LocalError::Missing { file: self.folder.join(file), what, hint: (self.hint)(file) }
+    }
+}

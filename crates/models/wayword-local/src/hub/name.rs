@@ -1,0 +1,147 @@
+//! Names of models in process.
+
+use crate::LocalError;
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
+
+/// The beginning of names of models in process.
+const PREFIX: &str = "hf/";
+
+/// The revision if a name has none.
+const MAIN: &str = "main";
+
+const LONGEST_PART: usize = 96;
+const LONGEST_REVISION: usize = 200;
+const LONGEST_FILE: usize = 200;
+const LONGEST_PATH: usize = 4096;
+
+/// A name that says where a model is:
+///
+/// - `hf/ORG/NAME`, `hf/ORG/NAME@REVISION`: on the hub, at a branch, tag or commit (`main` if none is given);
+/// - `hf/ORG/NAME@REVISION:FILE.gguf`: one file of such a repository;
+/// - `hf//abs/folder`, `hf/./folder`, `hf/../folder`: a folder on this machine;
+/// - the same with a path that ends in `.gguf`: a file on this machine.
+///
+/// Organisation, name, revision and file become parts of paths and addresses, so they cannot contain anything that
+/// leads elsewhere.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModelName {
+    text: String,
+    pub(super) source: ModelSource,
+}
+
+/// Where the files of a name are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum ModelSource {
+    Hub(OnHub),
+    Folder(PathBuf),
+    File(PathBuf),
+}
+
+/// A model on the hub.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct OnHub {
+    pub(super) org: String,
+    pub(super) name: String,
+    pub(super) revision: String,
+    /// The file in the name, for GGUF.
+    pub(super) file: Option<String>,
+}
+
+impl ModelName {
+    /// Reads a name.
+    ///
+    /// # Errors
+    /// When the name is not valid.
+    pub fn parse(text: &str) -> Result<Self, LocalError> {
+        let source = source(text).map_err(|problem| LocalError::Name {
+            name: text.chars().take(LONGEST_REVISION).collect(),
+            problem: problem.to_owned(),
+        })?;
+        Ok(Self { text: text.to_owned(), source })
+    }
+
+    /// Whether the name is that of one GGUF file.
+    #[must_use]
+    pub fn is_gguf(&self) -> bool {
+        match &self.source {
+            ModelSource::Hub(model) => model.file.is_some(),
+            ModelSource::Folder(_) => false,
+            ModelSource::File(_) => true,
+        }
+    }
+}
+
+impl fmt::Display for ModelName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+fn source(text: &str) -> Result<ModelSource, &'static str> {
+    let rest = text.strip_prefix(PREFIX).ok_or("it does not begin with hf/")?;
+    if ["/", "./", "../"].iter().any(|begin| rest.starts_with(begin)) {
+        return local(rest);
+    }
+    let (repo, file) = rest.split_once(':').map_or((rest, None), |(repo, file)| (repo, Some(file)));
+    let (repo, revision) = repo.split_once('@').unwrap_or((repo, MAIN));
+    let (org, name) = repo.split_once('/').ok_or("it has no organisation before the model's name")?;
+    if !is_part(org) || !is_part(name) {
+        return Err(
+            "organisation and name may have letters, digits, and single '-', '_' and '.' between them, at most 96 characters",
+        );
+    }
+    if !is_revision(revision) {
+        return Err("its revision is not a branch, tag or commit");
+    }
+    if file.is_some_and(|file| !is_file(file)) {
+        return Err("after the colon there must be a file of the repository that ends in .gguf");
+    }
+    Ok(ModelSource::Hub(OnHub {
+        org: org.to_owned(),
+        name: name.to_owned(),
+        revision: revision.to_owned(),
+        file: file.map(str::to_owned),
+    }))
+}
+
+fn local(path: &str) -> Result<ModelSource, &'static str> {
+    if path.chars().any(char::is_control) || path.len() > LONGEST_PATH {
+        return Err("its path contains control characters or is too long");
+    }
+    let source = if ends_in_gguf(path) { ModelSource::File } else { ModelSource::Folder };
+    Ok(source(PathBuf::from(path)))
+}
+
+/// The hub's rule for the parts of a repository's name. Two dashes would make the cache's folders ambiguous.
+pub(super) fn is_part(part: &str) -> bool {
+    let inner = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let edge = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
+    part.len() <= LONGEST_PART
+        && part.chars().all(inner)
+        && edge(part.chars().next())
+        && edge(part.chars().last())
+        && !part.contains("--")
+        && !part.contains("..")
+}
+
+fn is_revision(revision: &str) -> bool {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | '+');
+    revision.len() <= LONGEST_REVISION && are_segments(revision, allowed)
+}
+
+fn is_file(file: &str) -> bool {
+    let allowed = |c: char| c.is_ascii_graphic() && !r#"\:*?"<>|%#"#.contains(c);
+    file.len() <= LONGEST_FILE && ends_in_gguf(file) && are_segments(file, allowed)
+}
+
+/// Whether a text is names between slashes, none of which is empty, hidden, or `..`.
+fn are_segments(text: &str, allowed: impl Fn(char) -> bool) -> bool {
+    text.split('/').all(|segment| !segment.is_empty() && !segment.starts_with('.') && segment.chars().all(&allowed))
+}
+
+fn ends_in_gguf(path: &str) -> bool {
+    Path::new(path).extension().is_some_and(|end| end.eq_ignore_ascii_case("gguf"))
+}

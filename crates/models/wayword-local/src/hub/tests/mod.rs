@@ -1,0 +1,23 @@
+//! Finding and fetching models, with a fake hub on this machine.
+
+mod cache;
+mod download;
+mod fake;
+mod names;
+mod offline;
+mod refusals;
+mod server;
+
+use super::{Hub, ModelFolder, ModelName, Needs};
+use crate::LocalError;
+
+/// The folder of the whole model, or the error.
+fn folder(hub: &Hub, name: &str) -> Result<ModelFolder, LocalError> {
+    let name = ModelName::parse(name).unwrap();
+    hub.folder(&name, &Needs::of_any(&name), &())
+}
+
+/// The error for a model that cannot be found or fetched.
+fn problem(hub: &Hub, name: &str) -> String {
+    folder(hub, name).expect_err("it cannot be had").to_string()
+}

@@ -1,0 +1,142 @@
+//! Failed requests: the reason, whether another attempt may succeed, and how long to try.
+
+use super::name::OnHub;
+use crate::LocalError;
+use std::{io::ErrorKind, thread, time::Duration};
+use ureq::http::HeaderMap;
+
+/// Failures in a row after which the program gives up on a file.
+const MOST_FAILURES: u32 = 5;
+
+/// Longest wait between two requests.
+const LONGEST_WAIT: Duration = Duration::from_secs(30);
+
+/// What to do if the hub's answer is wrong.
+pub(super) const TRY_LATER: &str = "try again later; if you have set HF_ENDPOINT, check it";
+
+/// What to do if the answer is not that of a hub.
+pub(super) const SEE_WHO_ANSWERS: &str =
+    "if you have set HF_ENDPOINT, check it; check also whether something on the network answers instead of the hub";
+
+/// Why a request failed.
+#[derive(Debug)]
+pub(super) enum Trouble {
+    /// Another attempt may succeed in a moment, or after the wait that the server asks for.
+    Passing { problem: String, wait: Option<Duration> },
+    /// No other attempt will succeed.
+    Lasting(LocalError),
+}
+
+impl Trouble {
+    pub(super) fn passing(problem: String) -> Self {
+        Self::Passing { problem, wait: None }
+    }
+
+    /// The trouble of a request that got no status. The message names `host` instead of the address, which may be
+    /// signed.
+    pub(super) fn unanswered(error: &ureq::Error, address: &str, host: &str) -> Self {
+        let problem = format!("{host}: {error}");
+        let passes = match error {
+            ureq::Error::Timeout(_) | ureq::Error::Protocol(_) => true,
+            ureq::Error::Io(error) => matches!(
+                error.kind(),
+                ErrorKind::ConnectionReset
+                    | ErrorKind::ConnectionAborted
+                    | ErrorKind::BrokenPipe
+                    | ErrorKind::UnexpectedEof
+                    | ErrorKind::TimedOut
+            ),
+            _ => false,
+        };
+        if passes {
+            return Self::passing(problem);
+        }
+        let hint = "check that this machine is online (HTTPS_PROXY, HF_ENDPOINT); with WAYWORD_OFFLINE=1 the program downloads nothing and says where to put the file";
+        Self::Lasting(LocalError::download(address, problem, hint))
+    }
+
+    /// The trouble of a status, with what to do about it.
+    pub(super) fn refused(status: u16, headers: &HeaderMap, address: &str, model: &OnHub, had_token: bool) -> Self {
+        let unexpected = format!("the server answers with status {status}");
+        if matches!(status, 408 | 429 | 500..=599) {
+            let wait = text(headers, "retry-after").and_then(|wait| wait.trim().parse().ok()).map(Duration::from_secs);
+            return Self::Passing { problem: unexpected, wait };
+        }
+        let name = format!("{}/{}", model.org, model.name);
+        let (problem, hint) = match (status, code(headers)) {
+            (401 | 403, "GatedRepo") => (
+                format!("{name} is gated: its authors decide who may download it"),
+                format!("accept its terms on the page of {name}, and put a token that may read it into HF_TOKEN"),
+            ),
+            (404, "RevisionNotFound") => (
+                format!("{name} has no revision {}", model.revision),
+                "check the branches, tags and commits on the model's page of the hub".to_owned(),
+            ),
+            (401 | 403, _) if had_token => (
+                format!("the token in HF_TOKEN gives no access to {name} (status {status})"),
+                "check that the name is right, and that the token is valid and may read the model".to_owned(),
+            ),
+            (401 | 403 | 404, _) => (
+                format!("there is no {name}, or it is private (status {status})"),
+                "check the name; for a private model, put a token into HF_TOKEN, which is sent over https only"
+                    .to_owned(),
+            ),
+            _ => (unexpected, SEE_WHO_ANSWERS.to_owned()),
+        };
+        Self::Lasting(LocalError::download(address, problem, hint))
+    }
+}
+
+/// Whether the model exists and lacks the file, which need not be an error.
+pub(super) fn is_absence(status: u16, headers: &HeaderMap) -> bool {
+    status == 404 && !["RepoNotFound", "RevisionNotFound"].contains(&code(headers))
+}
+
+/// The hub's own error code.
+fn code(headers: &HeaderMap) -> &str {
+    text(headers, "x-error-code").unwrap_or_default()
+}
+
+/// The text of a header.
+pub(super) fn text<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
+    headers.get(name)?.to_str().ok()
+}
+
+/// Decides how long to try again.
+#[derive(Debug)]
+pub(super) struct Patience {
+    failures: u32,
+    first_wait: Duration,
+}
+
+impl Patience {
+    /// The first wait. Each later wait is twice the one before.
+    pub(super) fn new(first_wait: Duration) -> Self {
+        Self { failures: 0, first_wait }
+    }
+
+    /// Forgets earlier failures, because there was progress.
+    pub(super) fn restored(&mut self) {
+        self.failures = 0;
+    }
+
+    /// Waits before another try.
+    ///
+    /// # Errors
+    /// When no other attempt will succeed, or there were too many failures.
+    pub(super) fn again(&mut self, trouble: Trouble, address: &str) -> Result<(), LocalError> {
+        let (problem, wait) = match trouble {
+            Trouble::Passing { problem, wait } => (problem, wait),
+            Trouble::Lasting(error) => return Err(error),
+        };
+        self.failures += 1;
+        if self.failures >= MOST_FAILURES {
+            let problem = format!("{problem} ({MOST_FAILURES} times in a row)");
+            let hint = "try again later; the received part is kept, and the next try continues from there";
+            return Err(LocalError::download(address, problem, hint));
+        }
+        let own = self.first_wait.saturating_mul(1 << (self.failures - 1));
+        thread::sleep(wait.unwrap_or(own).min(LONGEST_WAIT));
+        Ok(())
+    }
+}

@@ -1,0 +1,75 @@
+//! Reads the small JSON files of a model's folder.
+
+use crate::LocalError;
+use serde::de::DeserializeOwned;
+use std::path::Path;
+
+/// Longest file that is read, bytes.
+const LONGEST: u64 = 4 << 20;
+
+/// Reads a required file.
+pub(crate) fn read<T: DeserializeOwned>(folder: &Path, name: &str, what: &'static str) -> Result<T, LocalError> {
+    let file = folder.join(name);
+    read_if_there(folder, name)?.ok_or_else(|| LocalError::Missing {
+        file,
+        what,
+        hint: "fetch the whole model: wayword models fetch NAME".to_owned(),
+    })
+}
+
+/// Reads a file that may be missing.
+pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Option<T>, LocalError> {
+    let file = folder.join(name);
+    let Ok(about) = std::fs::metadata(&file) else { return Ok(None) };
+    let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: "fetch it again" };
+    if about.len() > LONGEST {
+        return Err(wrong(format!("it is too long: {} bytes", about.len())));
+    }
+    let text = std::fs::read_to_string(&file).map_err(|error| LocalError::io(&file, "read", error))?;
+    let mut parser = serde_json::Deserializer::from_str(&text);
+    let read = serde_path_to_error::deserialize(&mut parser).map_err(|error| wrong(error.to_string()))?;
+    parser.end().map_err(|error| wrong(error.to_string()))?;
+    Ok(Some(read))
+}
+
+/// The largest size that is accepted. Larger sizes could overflow computations.
+const LARGEST_SIZE: usize = 1 << 20;
+
+/// What is wrong with a configuration's sizes, if anything is.
+pub(crate) fn size_problem(sizes: &[(&str, usize)]) -> Option<String> {
+    let (name, size) = sizes.iter().find(|(_, size)| !(1..=LARGEST_SIZE).contains(size))?;
+    Some(format!("{name}: {size} is not from 1 to {LARGEST_SIZE}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Debug, Deserialize)]
+    struct Outer {
+        #[allow(dead_code, reason = "only read")]
+        layers: Vec<Inner>,
+    }
+
+    #[derive(Debug, Deserialize)]
+    struct Inner {
+        #[allow(dead_code, reason = "only read")]
+        width: usize,
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_field_and_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |text: &str| {
+            std::fs::write(folder.path().join("config.json"), text).unwrap();
+            read::<Outer>(folder.path(), "config.json", "a model").unwrap_err().to_string()
+        };
+        let wrong = told("{\"layers\": [{\"width\": 1},\n{\"width\": \"two\"}]}");
+        assert!(
+            wrong.contains("config.json") && wrong.contains("layers[1].width") && wrong.contains("line 2"),
+            "{wrong}"
+        );
+        assert!(told("{\"layers\": []} and more").contains("trailing characters"));
+    }
+}

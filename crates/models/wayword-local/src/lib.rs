@@ -1,0 +1,36 @@
+//! Models in process, from the unchanged public checkpoints: MiniLM, CLIP, BLIP and BLIP-2.
+//!
+//! Tensors and devices are candle's. The models and their operators (`ops`) are this crate's own, because candle's
+//! models are several times slower on a CPU, and candle lacks half of them.
+//!
+//! Architecture invariant: a checkpoint is untrusted. It is read tensor by tensor, the shape of each is checked against
+//! the configuration, and nothing in it is executed.
+
+mod bert;
+mod blip;
+mod blip2;
+mod clip;
+mod device;
+mod error;
+mod eyes;
+mod greedy;
+mod hub;
+mod json;
+mod kept;
+mod memory;
+mod models;
+mod ops;
+mod picture;
+mod text;
+mod weights;
+
+pub use bert::SentenceEncoder;
+pub use blip::{BlipCaptioner, BlipVqa};
+pub use blip2::Blip2;
+pub use clip::{Clip, ClipGrounder};
+pub use device::{Device, Precision};
+pub use error::LocalError;
+pub use eyes::EyeKind;
+pub use hub::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs, Progress};
+pub use kept::LocalModel;
+pub use models::{Loading, Models};

@@ -1,0 +1,79 @@
+//! Limits the memory of models.
+
+use crate::{Device, LocalError, Precision, weights::Weights};
+use std::path::Path;
+
+/// The memory that a model needs in addition to its weights: a share of their size (3/10), and a fixed number of bytes.
+const BESIDE: (u64, u64) = (3, 10);
+const BASE: u64 = 300 << 20;
+
+/// Memory that models may still take.
+#[derive(Debug, Default)]
+pub(crate) struct Budget {
+    /// The user's limit, bytes.
+    most: Option<u64>,
+    taken: u64,
+}
+
+impl Budget {
+    /// A budget of `most` bytes. Without a number, the limit is the free memory of the machine when a model is loaded.
+    pub(crate) fn new(most: Option<u64>) -> Self {
+        Self { most, taken: 0 }
+    }
+
+    /// Reserves the memory for a checkpoint.
+    pub(crate) fn take(&mut self, name: &str, weights: u64) -> Result<(), LocalError> {
+        let needs = weights.saturating_add(weights / BESIDE.1 * BESIDE.0).saturating_add(BASE);
+        let left = match self.most {
+            Some(most) => most.saturating_sub(self.taken),
+            // This does not count the memory of earlier models, so nothing is subtracted.
+            None => free().unwrap_or(u64::MAX),
+        };
+        if needs > left {
+            let problem = format!(
+                "it needs about {} of memory and {} are left; use 16 bits (--precision bf16), a smaller model, or fewer models at once",
+                gibibytes(needs),
+                gibibytes(left)
+            );
+            return Err(LocalError::Compute { model: name.to_owned(), problem });
+        }
+        self.taken = self.taken.saturating_add(needs);
+        Ok(())
+    }
+}
+
+/// The size of a checkpoint's weights at a precision, bytes.
+pub(crate) fn of_checkpoint(folder: &Path, precision: Precision) -> Result<u64, LocalError> {
+    Ok(Weights::open(folder, &Device::cpu(), precision)?.bytes())
+}
+
+fn gibibytes(bytes: u64) -> String {
+    format!("{:.1} GiB", bytes as f64 / (1_u64 << 30) as f64)
+}
+
+/// The free memory of the machine, bytes, if the system gives it (Linux).
+fn free() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_beside_the_others_is_refused() {
+        let mut budget = Budget::new(Some(4 << 30));
+        budget.take("hf/a/b", 1 << 30).unwrap();
+        let error = budget.take("hf/c/d", 2 << 30).unwrap_err().to_string();
+        assert!(error.contains("hf/c/d") && error.contains("2.9 GiB") && error.contains("bf16"), "{error}");
+        budget.take("hf/e/f", 1 << 30).unwrap();
+    }
+
+    #[test]
+    fn a_size_that_is_a_lie_is_refused() {
+        assert!(Budget::new(Some(1 << 40)).take("hf/a/b", u64::MAX).is_err());
+    }
+}

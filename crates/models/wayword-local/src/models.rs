@@ -1,0 +1,193 @@
+//! Finds models in process by their names, and loads each once.
+
+use crate::{
+    Device, LocalError, Precision,
+    blip::{BlipCaptioner, BlipVqa},
+    blip2::Blip2,
+    eyes::{Blip2Eye, BlipEye, Eye},
+    hub::{Hub, ModelFolder, ModelName, Needs, Progress},
+    json,
+    kept::LocalModel,
+    memory::{self, Budget},
+};
+use serde::Deserialize;
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_ledger::Run;
+
+/// Gives access to models in process.
+pub struct Models {
+    hub: Hub,
+    device: Device,
+    precision: Option<Precision>,
+    progress: Box<dyn Progress + Send + Sync>,
+    run: Run,
+    loaded: Mutex<Loaded>,
+}
+
+/// The loaded models and their memory.
+#[derive(Default)]
+struct Loaded {
+    models: BTreeMap<String, Arc<LocalModel>>,
+    budget: Budget,
+}
+
+/// How models are loaded.
+#[derive(Debug, Clone)]
+pub struct Loading {
+    /// The device on which they compute.
+    pub device: Device,
+    /// The precision of their weights. The default is 32 bits, and 16 bits for BLIP-2.
+    pub precision: Option<Precision>,
+    /// The most memory for all models together, bytes. The default is the free memory of the machine.
+    pub memory_bytes: Option<u64>,
+}
+
+/// The kind of a checkpoint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Architecture {
+    BlipAnswers,
+    BlipDescribes,
+    Blip2,
+}
+
+/// The part of `config.json` that gives the kind.
+#[derive(Deserialize)]
+struct Config {
+    model_type: Option<String>,
+    architectures: Option<Vec<String>>,
+}
+
+impl Models {
+    /// Models from a hub. Their calls are made once and kept by the run.
+    #[must_use]
+    pub fn new(hub: Hub, loading: Loading, progress: Box<dyn Progress + Send + Sync>, run: Run) -> Self {
+        let Loading { device, precision, memory_bytes } = loading;
+        let loaded = Loaded { models: BTreeMap::new(), budget: Budget::new(memory_bytes) };
+        Self { hub, device, precision, progress, run, loaded: Mutex::new(loaded) }
+    }
+
+    /// Checks whether a name could be that of a model that sees in process.
+    ///
+    /// # Errors
+    /// When it could not.
+    pub fn check_name(name: &str) -> Result<(), LocalError> {
+        parts(name).map(drop)
+    }
+
+    /// Checks that a model's files are on this machine and of the right kind, and fetches missing ones. Loads nothing.
+    ///
+    /// # Errors
+    /// When the files cannot be fetched, or the model does not see.
+    pub fn at_hand(&self, name: &str) -> Result<(), LocalError> {
+        for part in &parts(name)? {
+            let folder = self.hub.folder(part, &Needs::of_any(part), &*self.progress)?;
+            Architecture::read(&folder.path)?;
+        }
+        Ok(())
+    }
+
+    /// A model by its name: `hf/ORG/NAME`, or two BLIP models as `hf/ORG/ANSWERS+ORG/DESCRIBES`. The first call fetches
+    /// it, if it is not on this machine, and loads it.
+    ///
+    /// # Errors
+    /// When the model cannot be fetched, is damaged, or does not see.
+    pub fn model(&self, name: &str) -> Result<Arc<LocalModel>, LocalError> {
+        let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(model) = loaded.models.get(name) {
+            return Ok(Arc::clone(model));
+        }
+        let (eye, origin) = self.load(name, &mut loaded.budget)?;
+        let model = Arc::new(LocalModel::new(name, origin, eye, self.run.clone()));
+        loaded.models.insert(name.to_owned(), Arc::clone(&model));
+        Ok(model)
+    }
+
+    fn load(&self, name: &str, budget: &mut Budget) -> Result<(Arc<dyn Eye>, String), LocalError> {
+        let parts = parts(name)?;
+        let get = |part| self.hub.folder(part, &Needs::of_any(part), &*self.progress);
+        let folders: Vec<ModelFolder> = parts.iter().map(get).collect::<Result<_, _>>()?;
+        let roles = folders.iter().map(|folder| Architecture::read(&folder.path));
+        let roles: Vec<Architecture> = roles.collect::<Result<_, _>>()?;
+        let usual = if roles.contains(&Architecture::Blip2) { Precision::Bf16 } else { Precision::F32 };
+        let precision = self.precision.unwrap_or(usual);
+        for folder in &folders {
+            budget.take(name, memory::of_checkpoint(&folder.path, precision)?)?;
+        }
+        let paths: Vec<&Path> = folders.iter().map(|folder| folder.path.as_path()).collect();
+        Ok((self.eye(name, &paths, &roles, precision)?, origin(&folders, precision)))
+    }
+
+    fn eye(
+        &self,
+        name: &str,
+        paths: &[&Path],
+        roles: &[Architecture],
+        precision: Precision,
+    ) -> Result<Arc<dyn Eye>, LocalError> {
+        use Architecture::{Blip2 as Both, BlipAnswers as Answers, BlipDescribes as Describes};
+        let answers = |path: &Path| BlipVqa::load(name, path, &self.device, precision).map(Some);
+        let describes = |path: &Path| BlipCaptioner::load(name, path, &self.device, precision).map(Some);
+        let (answers, describes) = match (roles, paths) {
+            ([Both], [path]) => {
+                let model = Blip2::load(name, path, &self.device, precision)?;
+                return Ok(Arc::new(Blip2Eye { name: name.to_owned(), model }));
+            }
+            ([Answers], [path]) => (answers(path)?, None),
+            ([Describes], [path]) => (None, describes(path)?),
+            ([Answers, Describes], [first, second]) => (answers(first)?, describes(second)?),
+            ([Describes, Answers], [first, second]) => (answers(second)?, describes(first)?),
+            _ => return Err(no_name(name, "a name of two parts needs one BLIP that answers and one that describes")),
+        };
+        Ok(Arc::new(BlipEye { name: name.to_owned(), answers, describes }))
+    }
+}
+
+impl Architecture {
+    fn read(folder: &Path) -> Result<Self, LocalError> {
+        let config: Config = json::read(folder, "config.json", "the configuration")?;
+        let architectures = config.architectures.unwrap_or_default();
+        let has = |name: &str| architectures.iter().any(|architecture| architecture == name);
+        match config.model_type.as_deref() {
+            Some("blip") if has("BlipForQuestionAnswering") => Ok(Self::BlipAnswers),
+            Some("blip") if has("BlipForConditionalGeneration") => Ok(Self::BlipDescribes),
+            Some("blip-2") => Ok(Self::Blip2),
+            other => Err(LocalError::File {
+                file: folder.join("config.json"),
+                problem: format!(
+                    "model_type {}, architectures {:?}: such a model can neither see nor write texts in process",
+                    other.unwrap_or("(none)"),
+                    architectures
+                ),
+                hint: "choose BLIP or BLIP-2 to see, and a model of a server for the text roles, such as ollama/qwen3",
+            }),
+        }
+    }
+}
+
+/// The models of a name.
+fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
+    let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
+    let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));
+    let parts: Vec<ModelName> = parts.collect::<Result<_, _>>()?;
+    if parts.iter().any(ModelName::is_gguf) {
+        return Err(no_name(name, "a GGUF file cannot be used in process"));
+    }
+    if parts.len() > 2 {
+        return Err(no_name(name, "a name has at most two parts: one BLIP that answers and one that describes"));
+    }
+    Ok(parts)
+}
+
+fn no_name(name: &str, problem: &str) -> LocalError {
+    LocalError::Name { name: name.to_owned(), problem: problem.to_owned() }
+}
+
+/// What could change a model's answers: its weights and their precision.
+fn origin(folders: &[ModelFolder], precision: Precision) -> String {
+    let identities: Vec<&str> = folders.iter().map(|folder| folder.identity.as_str()).collect();
+    format!("in process: {} ({})", identities.join("+"), format!("{precision:?}").to_lowercase())
+}

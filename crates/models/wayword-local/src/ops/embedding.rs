@@ -1,0 +1,40 @@
+//! The inputs of a model: rows of a table by ids, and patches of a picture.
+
+use candle_core::{DType, Result, Tensor};
+
+/// A table [count, size].
+pub(crate) struct Embedding {
+    table: Tensor,
+}
+
+impl Embedding {
+    pub(crate) fn new(table: Tensor) -> Self {
+        Self { table }
+    }
+
+    /// From ids [..], rows [.., size]. On the CPU they have 32 bits, whatever the table has.
+    pub(crate) fn of(&self, ids: &Tensor) -> Result<Tensor> {
+        let mut shape = ids.dims().to_vec();
+        shape.push(self.table.dim(1)?);
+        let rows = self.table.index_select(&ids.flatten_all()?, 0)?.reshape(shape)?;
+        if rows.device().is_cpu() { rows.to_dtype(DType::F32) } else { Ok(rows) }
+    }
+
+    /// The whole table, for a layer that shares it.
+    pub(crate) fn table(&self) -> &Tensor {
+        &self.table
+    }
+}
+
+/// Cuts pictures [batch, 3, height, width] into squares of `size` pixels, [batch, patches, 3 * size * size], rows from
+/// the top. A convolution whose stride is its size equals a product with a matrix: a kernel [outputs, 3, size, size]
+/// becomes a layer with the weight [outputs, 3 * size * size].
+pub(crate) fn patches(pictures: &Tensor, size: usize) -> Result<Tensor> {
+    let (batch, channels, height, width) = pictures.dims4()?;
+    let (down, across) = (height / size, width / size);
+    pictures.reshape((batch, channels, down, size, across, size))?.permute((0, 2, 4, 1, 3, 5))?.reshape((
+        batch,
+        down * across,
+        channels * size * size,
+    ))
+}

@@ -1,0 +1,59 @@
+//! The CPU kernels for products, and candle's tensors as slices of numbers for them.
+
+use candle_core::{CpuStorage, Layout, Result, Tensor, WithDType, bail};
+use rten_gemm::{GemmExecutor, GemmInputA, GemmInputB, GemmOptions, PackedBMatrix};
+use rten_tensor::NdTensorView;
+
+thread_local! {
+    /// The kernels for this CPU. They cannot be shared between threads, and cost nothing to make.
+    static KERNELS: GemmExecutor = GemmExecutor::default();
+}
+
+/// Options of a product.
+pub(super) type Options<'a> = GemmOptions<'a, f32, f32, f32>;
+
+/// Writes a times b into y, on all threads.
+pub(super) fn product(
+    y: &mut [f32],
+    a: GemmInputA<'_, f32>,
+    b: GemmInputB<'_, f32>,
+    options: Options<'_>,
+) -> Result<()> {
+    KERNELS.with(|kernels| kernels.gemm(y, a, b, options)).map_err(candle_core::Error::wrap)
+}
+
+/// A weight [outputs, inputs], packed as the right factor of products.
+pub(super) fn packed(weight: &[f32], outputs: usize, inputs: usize) -> PackedBMatrix<f32> {
+    let weight = NdTensorView::from_data([outputs, inputs], weight).transposed();
+    KERNELS.with(|kernels| kernels.prepack_b(weight))
+}
+
+/// Smallest piece of work for a thread, numbers. For less, another thread costs more time than it saves.
+pub(super) const PIECE: usize = 16 << 10;
+
+/// The numbers of a contiguous tensor.
+pub(super) fn slice<'a, T: WithDType>(storage: &'a CpuStorage, layout: &Layout) -> Result<&'a [T]> {
+    let Some((from, to)) = layout.contiguous_offsets() else { bail!("a tensor is not contiguous") };
+    let all = storage.as_slice::<T>()?;
+    match all.get(from..to) {
+        Some(slice) => Ok(slice),
+        None => bail!("a tensor has fewer numbers than its shape"),
+    }
+}
+
+/// How many rows a tensor has, and the length of its last axis.
+pub(super) fn rows(layout: &Layout) -> Result<(usize, usize)> {
+    let dims = layout.shape().dims();
+    let Some((&last, others)) = dims.split_last() else { bail!("a single number has no rows") };
+    Ok((others.iter().product(), last))
+}
+
+/// Whether this crate's own operators compute with a tensor.
+pub(super) fn is_ours(tensor: &Tensor) -> bool {
+    tensor.device().is_cpu() && tensor.dtype() == candle_core::DType::F32
+}
+
+/// How many rows of this length make a piece of work.
+pub(super) fn rows_per_piece(row: usize) -> usize {
+    (PIECE / row.max(1)).max(1)
+}

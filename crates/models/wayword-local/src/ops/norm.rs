@@ -1,0 +1,122 @@
+//! Norms over the last axis.
+
+use super::kernels::{is_ours, rows, rows_per_piece, slice};
+use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
+use rayon::prelude::*;
+use rten_simd::SimdOp;
+use rten_vecmath::{Normalize, NormalizeOptions, Sum, SumSquare, SumSquareSub};
+
+/// Scales to mean 0 and variance 1, then applies a weight and a bias.
+pub(crate) struct LayerNorm {
+    weight: Tensor,
+    bias: Tensor,
+    epsilon: f64,
+}
+
+/// Scales to root mean square 1, then applies a weight.
+pub(crate) struct RmsNorm {
+    weight: Tensor,
+    epsilon: f64,
+}
+
+impl LayerNorm {
+    pub(crate) fn new(weight: Tensor, bias: Tensor, epsilon: f64) -> Self {
+        Self { weight: wide(weight), bias: wide(bias), epsilon }
+    }
+
+    /// Of x [.., size].
+    pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
+        if is_ours(x) {
+            return x.contiguous()?.apply_op3_no_bwd(&self.weight, &self.bias, &Standard(self.epsilon));
+        }
+        candle_nn::ops::layer_norm(&x.contiguous()?, &self.weight, &self.bias, self.epsilon as f32)
+    }
+}
+
+impl RmsNorm {
+    pub(crate) fn new(weight: Tensor, epsilon: f64) -> Self {
+        Self { weight: wide(weight), epsilon }
+    }
+
+    /// Of x [.., size].
+    pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
+        if is_ours(x) {
+            return x.contiguous()?.apply_op2_no_bwd(&self.weight, &RootMeanSquare(self.epsilon));
+        }
+        candle_nn::ops::rms_norm(&x.contiguous()?, &self.weight, self.epsilon as f32)
+    }
+}
+
+/// On the CPU the states between layers have 32 bits, whatever the precision of the weights.
+fn wide(weight: Tensor) -> Tensor {
+    if weight.device().is_cpu() { weight.to_dtype(candle_core::DType::F32).unwrap_or(weight) } else { weight }
+}
+
+struct Standard(f64);
+
+impl CustomOp3 for Standard {
+    fn name(&self) -> &'static str {
+        "layer-norm"
+    }
+
+    fn cpu_fwd(
+        &self,
+        x: &CpuStorage,
+        x_layout: &Layout,
+        weight: &CpuStorage,
+        weight_layout: &Layout,
+        bias: &CpuStorage,
+        bias_layout: &Layout,
+    ) -> Result<(CpuStorage, Shape)> {
+        let (_, size) = rows(x_layout)?;
+        let (weight, bias) = (slice::<f32>(weight, weight_layout)?, slice::<f32>(bias, bias_layout)?);
+        let row = |row: &mut [f32]| {
+            let mean = Sum::new(row).dispatch() / size as f32;
+            let variance = SumSquareSub::new(row, mean).dispatch() / size as f32;
+            let options = NormalizeOptions {
+                pre_scale_bias: mean,
+                scale: 1.0 / (variance + self.0 as f32).sqrt(),
+                element_scale: Some(weight),
+                element_bias: Some(bias),
+                ..NormalizeOptions::default()
+            };
+            Normalize::new_mut(row, options).dispatch();
+        };
+        Ok((each_row(x, x_layout, row)?, x_layout.shape().clone()))
+    }
+}
+
+struct RootMeanSquare(f64);
+
+impl CustomOp2 for RootMeanSquare {
+    fn name(&self) -> &'static str {
+        "rms-norm"
+    }
+
+    fn cpu_fwd(
+        &self,
+        x: &CpuStorage,
+        x_layout: &Layout,
+        weight: &CpuStorage,
+        weight_layout: &Layout,
+    ) -> Result<(CpuStorage, Shape)> {
+        let (_, size) = rows(x_layout)?;
+        let weight = slice::<f32>(weight, weight_layout)?;
+        let row = |row: &mut [f32]| {
+            let mean_square = SumSquare::new(row).dispatch() / size as f32;
+            let scale = 1.0 / (mean_square + self.0 as f32).sqrt();
+            let options = NormalizeOptions { scale, element_scale: Some(weight), ..NormalizeOptions::default() };
+            Normalize::new_mut(row, options).dispatch();
+        };
+        Ok((each_row(x, x_layout, row)?, x_layout.shape().clone()))
+    }
+}
+
+/// Applies a function to each row of a copy, on all threads.
+fn each_row(x: &CpuStorage, layout: &Layout, row: impl Fn(&mut [f32]) + Sync) -> Result<CpuStorage> {
+    let mut y = slice::<f32>(x, layout)?.to_vec();
+    let size = rows(layout)?.1.max(1);
+    let piece = |piece: &mut [f32]| piece.chunks_mut(size).for_each(&row);
+    y.par_chunks_mut(size * rows_per_piece(size)).for_each(piece);
+    Ok(CpuStorage::F32(y))
+}

@@ -1,0 +1,96 @@
+//! Compares each operator with candle's own, in 64 bits.
+
+use super::*;
+use candle_core::{DType, Device, Tensor};
+
+fn random(shape: &[usize], seed: u64) -> Tensor {
+    let count = shape.iter().product::<usize>() as u64;
+    let draw = |at: u64| (wayword_core::seed::derive(seed + at, &["ops"]) >> 40) as f32 / (1 << 23) as f32 - 1.0;
+    Tensor::from_vec((0..count).map(draw).collect(), shape, &Device::Cpu).unwrap()
+}
+
+fn wide(x: &Tensor) -> Tensor {
+    x.to_dtype(DType::F64).unwrap()
+}
+
+#[track_caller]
+fn agree(ours: &Tensor, theirs: &Tensor, tolerance: f64) {
+    assert_eq!(ours.dims(), theirs.dims());
+    let off = (wide(ours) - wide(theirs)).unwrap().abs().unwrap().max_all().unwrap().to_scalar::<f64>().unwrap();
+    assert!(off < tolerance, "{off}");
+}
+
+#[test]
+fn a_layer_agrees_for_every_number_of_rows() {
+    for (count, inputs, outputs) in [(1, 7, 5), (3, 64, 200), (50, 33, 129), (300, 96, 64)] {
+        let (weight, bias) = (random(&[outputs, inputs], 1), random(&[outputs], 2));
+        let x = random(&[2, count, inputs], 3);
+        let ours = Linear::new(&weight, Some(bias.clone())).unwrap().of(&x).unwrap();
+        let theirs = wide(&x).broadcast_matmul(&wide(&weight).t().unwrap()).unwrap();
+        agree(&ours, &theirs.broadcast_add(&wide(&bias)).unwrap(), 1e-5);
+    }
+}
+
+#[test]
+fn a_layer_in_16_bits_computes_in_32() {
+    for dtype in [DType::BF16, DType::F16] {
+        let weight = random(&[300, 40], 1).to_dtype(dtype).unwrap();
+        let x = random(&[5, 40], 3);
+        let ours = Linear::new(&weight, None).unwrap().of(&x).unwrap();
+        agree(&ours, &wide(&x).matmul(&wide(&weight).t().unwrap()).unwrap(), 1e-5);
+    }
+}
+
+#[test]
+fn activations_agree() {
+    let x = (random(&[40_000], 5) * 8.0).unwrap();
+    let cases = [Activation::Gelu, Activation::GeluTanh, Activation::QuickGelu, Activation::Relu, Activation::Silu];
+    for activation in cases {
+        agree(&activation.of(&x).unwrap(), &activation.of(&wide(&x)).unwrap(), 2e-6);
+    }
+}
+
+#[test]
+fn norms_agree() {
+    let (x, weight, bias) = (random(&[3, 700, 48], 1), random(&[48], 2), random(&[48], 3));
+    let epsilon = 1e-6;
+    let wide_x = wide(&x);
+    let mean = wide_x.mean_keepdim(2).unwrap();
+    let off = wide_x.broadcast_sub(&mean).unwrap();
+    let scaled = |off: &Tensor| {
+        let variance = (off.sqr().unwrap().mean_keepdim(2).unwrap() + epsilon).unwrap();
+        off.broadcast_div(&variance.sqrt().unwrap()).unwrap().broadcast_mul(&wide(&weight)).unwrap()
+    };
+    let ours = LayerNorm::new(weight.clone(), bias.clone(), epsilon).of(&x).unwrap();
+    agree(&ours, &scaled(&off).broadcast_add(&wide(&bias)).unwrap(), 1e-5);
+    agree(&RmsNorm::new(weight.clone(), epsilon).of(&x).unwrap(), &scaled(&wide_x), 1e-5);
+}
+
+#[test]
+fn attention_agrees_with_masks_and_parts_of_a_wider_tensor() {
+    let all = random(&[2, 9, 3 * 12], 1);
+    let part = |at: usize| all.narrow(2, at * 12, 12).unwrap();
+    let mask = causal(9, 9, &Device::Cpu).unwrap();
+    for bias in [None, Some(&mask)] {
+        let attention = Attention { heads: 3, scale: 0.5, bias };
+        let ours = attention.of(&part(0), &part(1), &part(2)).unwrap();
+        let wide_bias = bias.map(wide);
+        let in_64 = Attention { heads: 3, scale: 0.5, bias: wide_bias.as_ref() };
+        agree(&ours, &in_64.of(&wide(&part(0)), &wide(&part(1)), &wide(&part(2))).unwrap(), 1e-6);
+    }
+}
+
+#[test]
+fn a_query_sees_itself_and_what_was_before() {
+    let mask = causal(2, 3, &Device::Cpu).unwrap().to_vec2::<f32>().unwrap();
+    assert_eq!(mask, [[0.0, 0.0, f32::NEG_INFINITY], [0.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn patches_and_a_layer_are_a_convolution() {
+    let (pictures, kernel) = (random(&[2, 3, 8, 12], 1), random(&[5, 3, 4, 4], 2));
+    let layer = Linear::new(&kernel.reshape((5, 48)).unwrap(), None).unwrap();
+    let ours = layer.of(&patches(&pictures, 4).unwrap()).unwrap();
+    let theirs = wide(&pictures).conv2d(&wide(&kernel), 0, 4, 1, 1).unwrap();
+    agree(&ours, &theirs.flatten_from(2).unwrap().transpose(1, 2).unwrap(), 1e-5);
+}

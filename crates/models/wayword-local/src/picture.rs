@@ -1,0 +1,106 @@
+//! Turns pictures into tensors, as a checkpoint's `preprocessor_config.json` says.
+//!
+//! Gives the same numbers as transformers' processors of CLIP, BLIP and BLIP-2 with Pillow.
+
+mod config;
+mod resample;
+
+use crate::{Device, LocalError};
+use candle_core::Tensor;
+use config::Config;
+use rayon::prelude::*;
+use resample::{Axis, Filter, resample};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+use wayword_core::Image;
+
+/// Prepares pictures for a model.
+pub(crate) struct Processor {
+    size: Size,
+    height_px: usize,
+    width_px: usize,
+    filter: Filter,
+    /// The model's number for each value of a byte, for each colour.
+    numbers: [[f32; 256]; 3],
+}
+
+/// How a picture is resized, pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Size {
+    /// The whole picture to the output size, whatever its proportions.
+    Whole,
+    /// The shorter edge to this length, with the same proportions. Then the middle is cut out.
+    ShortestEdge(usize),
+    /// The whole picture to this height and width. Then the middle is cut out.
+    Cropped(usize, usize),
+}
+
+impl Processor {
+    /// Reads `preprocessor_config.json` of a model's folder.
+    ///
+    /// # Errors
+    /// When it is missing, damaged, or for a processor that is not supported.
+    pub(crate) fn load(folder: &Path) -> Result<Self, LocalError> {
+        Config::read(folder)?.processor(folder)
+    }
+
+    /// Height and width of the output, pixels.
+    pub(crate) fn size_px(&self) -> (usize, usize) {
+        (self.height_px, self.width_px)
+    }
+
+    /// Pictures as a tensor [pictures, 3, height, width] in 32 bits.
+    ///
+    /// # Errors
+    /// When a picture has no pixels, or the device has no memory left.
+    pub(crate) fn tensor(&self, images: &[&Image], device: &Device) -> Result<Tensor, LocalError> {
+        let wrong = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
+        if let Some(empty) = images.iter().find(|image| image.width_px() == 0 || image.height_px() == 0) {
+            return Err(wrong(format!("{empty:?} has no pixels")));
+        }
+        let mut numbers = vec![0.0; images.len() * 3 * self.height_px * self.width_px];
+        let each = numbers.par_chunks_mut(3 * self.height_px * self.width_px);
+        each.zip(images).for_each(|(numbers, image)| self.one(image, numbers));
+        let shape = (images.len(), 3, self.height_px, self.width_px);
+        Tensor::from_vec(numbers, shape, &device.0).map_err(|error| wrong(error.to_string()))
+    }
+
+    fn one(&self, image: &Image, numbers: &mut [f32]) {
+        let (height, width) = (image.height_px() as usize, image.width_px() as usize);
+        let (to_height, to_width) = match self.size {
+            Size::Whole => (self.height_px, self.width_px),
+            Size::Cropped(height, width) => (height, width),
+            Size::ShortestEdge(edge) => match width <= height {
+                true => (longer(edge, height, width), edge),
+                false => (edge, longer(edge, width, height)),
+            },
+        };
+        let down = Axis::middle(self.filter, height, to_height, self.height_px);
+        let across = Axis::middle(self.filter, width, to_width, self.width_px);
+        let rgb = resample(image.rgb(), &down, &across);
+        for (numbers, (at, table)) in
+            numbers.chunks_mut(self.height_px * self.width_px).zip(self.numbers.iter().enumerate())
+        {
+            for (number, pixel) in numbers.iter_mut().zip(rgb.chunks_exact(3)) {
+                *number = table[usize::from(pixel[at])];
+            }
+        }
+    }
+}
+
+/// The longer edge when the shorter one becomes `edge`, in Python's arithmetic.
+fn longer(edge: usize, long: usize, short: usize) -> usize {
+    ((edge * long) as f64 / short as f64) as usize
+}
+
+/// A hash of a picture's size and pixels.
+pub(crate) fn digest(picture: &Image) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    hash.update(picture.width_px().to_le_bytes());
+    hash.update(picture.height_px().to_le_bytes());
+    hash.update(picture.rgb());
+    hash.finalize().into()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! The configuration of a model's pictures.
+
+use super::{Processor, Size, resample::Filter};
+use crate::{LocalError, json};
+use serde::Deserialize;
+use std::path::Path;
+
+const FILE: &str = "preprocessor_config.json";
+
+/// Longest edge of a picture for a model, pixels.
+const LONGEST_EDGE: usize = 2048;
+
+/// OpenAI's means and standard deviations of red, green and blue, which CLIP and BLIP share.
+const MEAN: [f64; 3] = [0.48145466, 0.4578275, 0.40821073];
+const DEVIATION: [f64; 3] = [0.26862954, 0.26130258, 0.27577711];
+
+/// `preprocessor_config.json` in its old and new forms.
+#[derive(Debug, Deserialize)]
+pub(super) struct Config {
+    #[serde(alias = "feature_extractor_type")]
+    image_processor_type: Option<String>,
+    size: Option<Edges>,
+    crop_size: Option<Edges>,
+    do_resize: Option<bool>,
+    do_center_crop: Option<bool>,
+    do_rescale: Option<bool>,
+    do_normalize: Option<bool>,
+    resample: Option<u32>,
+    rescale_factor: Option<f64>,
+    image_mean: Option<[f64; 3]>,
+    image_std: Option<[f64; 3]>,
+}
+
+/// A size, in all forms that files use.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum Edges {
+    Both { height: usize, width: usize },
+    Shortest { shortest_edge: usize },
+    One(usize),
+}
+
+/// The family of the processor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Maker {
+    Clip,
+    Blip,
+}
+
+impl Config {
+    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
+        json::read(folder, FILE, "the configuration of the pictures")
+    }
+
+    pub(super) fn processor(&self, folder: &Path) -> Result<Processor, LocalError> {
+        let built = self.build();
+        built.map_err(|problem| LocalError::File {
+            file: folder.join(FILE),
+            problem,
+            hint: "choose a CLIP, BLIP or BLIP-2 model, or fetch it again",
+        })
+    }
+
+    fn build(&self) -> Result<Processor, String> {
+        let maker = self.maker()?;
+        if self.do_resize == Some(false) {
+            return Err("do_resize: pictures that are not resized are not supported".to_owned());
+        }
+        let (size, (height_px, width_px)) = self.sizes(maker)?;
+        let filter = match self.resample.unwrap_or(3) {
+            2 => Filter::Bilinear,
+            3 => Filter::Bicubic,
+            other => return Err(format!("resample: {other} is neither 2 (bilinear) nor 3 (bicubic)")),
+        };
+        Ok(Processor { size, height_px, width_px, filter, numbers: self.numbers()? })
+    }
+
+    /// The family. It is CLIP if the file does not say, as the oldest files do not.
+    fn maker(&self) -> Result<Maker, String> {
+        match self.image_processor_type.as_deref() {
+            None => Ok(Maker::Clip),
+            Some(name) if name.starts_with("CLIP") => Ok(Maker::Clip),
+            Some(name) if name.starts_with("Blip") => Ok(Maker::Blip),
+            Some(name) => Err(format!("image_processor_type: {name} is neither CLIP's nor BLIP's")),
+        }
+    }
+
+    /// How to resize, and the height and width of the output.
+    fn sizes(&self, maker: Maker) -> Result<(Size, (usize, usize)), String> {
+        let size = self.size.unwrap_or(match maker {
+            Maker::Clip => Edges::Shortest { shortest_edge: 224 },
+            Maker::Blip => Edges::Both { height: 384, width: 384 },
+        });
+        let size = match (size, maker) {
+            (Edges::One(edge), Maker::Clip) => Edges::Shortest { shortest_edge: edge },
+            (Edges::One(edge), Maker::Blip) => Edges::Both { height: edge, width: edge },
+            (size, _) => size,
+        };
+        let crops = self.do_center_crop.unwrap_or(maker == Maker::Clip);
+        let crop = match self.crop_size.unwrap_or(Edges::One(224)) {
+            _ if !crops => None,
+            Edges::One(edge) | Edges::Shortest { shortest_edge: edge } => Some((edge, edge)),
+            Edges::Both { height, width } => Some((height, width)),
+        };
+        let (size, out) = match (size, crop) {
+            (Edges::Both { height, width }, None) => (Size::Whole, (bounded(height)?, bounded(width)?)),
+            (Edges::Both { height, width }, Some(crop)) => (Size::Cropped(bounded(height)?, bounded(width)?), crop),
+            (Edges::Shortest { shortest_edge: edge } | Edges::One(edge), Some(crop)) => {
+                (Size::ShortestEdge(bounded(edge)?), crop)
+            }
+            _ => return Err("size: with only a shortest edge, pictures must be cropped".to_owned()),
+        };
+        Ok((size, (bounded(out.0)?, bounded(out.1)?)))
+    }
+
+    /// The model's number for each value of a byte, for each colour.
+    fn numbers(&self) -> Result<[[f32; 256]; 3], String> {
+        let factor = if self.do_rescale == Some(false) { 1.0 } else { self.rescale_factor.unwrap_or(1.0 / 255.0) };
+        let (mean, deviation) = match self.do_normalize {
+            Some(false) => ([0.0; 3], [1.0; 3]),
+            _ => (self.image_mean.unwrap_or(MEAN), self.image_std.unwrap_or(DEVIATION)),
+        };
+        if deviation.contains(&0.0) || !deviation.iter().chain(&mean).chain([&factor]).all(|number| number.is_finite())
+        {
+            return Err("image_mean, image_std and rescale_factor must be finite, and image_std not 0".to_owned());
+        }
+        Ok(std::array::from_fn(|colour| {
+            std::array::from_fn(|byte| ((byte as f64 * factor) as f32 - mean[colour] as f32) / deviation[colour] as f32)
+        }))
+    }
+}
+
+fn bounded(edge: usize) -> Result<usize, String> {
+    match edge {
+        1..=LONGEST_EDGE => Ok(edge),
+        _ => Err(format!("size: an edge of {edge} pixels is not between 1 and {LONGEST_EDGE}")),
+    }
+}

@@ -1,0 +1,66 @@
+//! Turns words into ids and back, with a checkpoint's `tokenizer.json`.
+
+use crate::LocalError;
+use std::path::{Path, PathBuf};
+
+/// Longest file of a tokenizer, bytes.
+const LONGEST: u64 = 64 << 20;
+
+/// A checkpoint's tokenizer.
+pub(crate) struct Tokenizer {
+    file: PathBuf,
+    inner: tokenizers::Tokenizer,
+}
+
+impl Tokenizer {
+    /// Reads `tokenizer.json` of a model's folder. Padding and truncation are turned off.
+    ///
+    /// # Errors
+    /// When it is missing or damaged.
+    pub(crate) fn load(folder: &Path) -> Result<Self, LocalError> {
+        let file = folder.join("tokenizer.json");
+        let length = std::fs::metadata(&file).map_err(|_| LocalError::Missing {
+            file: file.clone(),
+            what: "the tokenizer",
+            hint: "fetch the whole model: wayword models fetch NAME".to_owned(),
+        })?;
+        let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: "fetch it again" };
+        if length.len() > LONGEST {
+            return Err(wrong(format!("it is too long for a tokenizer: {} bytes", length.len())));
+        }
+        let mut inner = tokenizers::Tokenizer::from_file(&file).map_err(|error| wrong(error.to_string()))?;
+        inner.with_padding(None);
+        inner.with_truncation(None).map_err(|error| wrong(error.to_string()))?;
+        Ok(Self { file, inner })
+    }
+
+    /// The ids of a text, with the special ids that the tokenizer puts around it. If there are more than `most`, the
+    /// text is cut, and the last id is still the one that ends a text.
+    pub(crate) fn ids(&self, text: &str, most: usize) -> Result<Vec<u32>, LocalError> {
+        let encoding = self.inner.encode(text, true).map_err(|error| self.wrong(&error.to_string()))?;
+        let mut ids = encoding.get_ids().to_vec();
+        if let Some(&end) = ids.get(most.max(1)..).and_then(<[u32]>::last) {
+            ids.truncate(most);
+            if let Some(last) = ids.last_mut() {
+                *last = end;
+            }
+        }
+        Ok(ids)
+    }
+
+    /// The ids of a part of a text, without special ids.
+    pub(crate) fn inner_ids(&self, text: &str) -> Result<Vec<u32>, LocalError> {
+        let encoding = self.inner.encode(text, false).map_err(|error| self.wrong(&error.to_string()))?;
+        Ok(encoding.get_ids().to_vec())
+    }
+
+    /// The text of ids, without the special ones.
+    pub(crate) fn text(&self, ids: &[u32]) -> Result<String, LocalError> {
+        let text = self.inner.decode(ids, true).map_err(|error| self.wrong(&error.to_string()))?;
+        Ok(text.trim().to_owned())
+    }
+
+    fn wrong(&self, problem: &str) -> LocalError {
+        LocalError::File { file: self.file.clone(), problem: problem.to_owned(), hint: "fetch it again" }
+    }
+}

@@ -1,0 +1,164 @@
+//! Reads the weights of a checkpoint, tensor by tensor.
+//!
+//! A file is never mapped into memory. Each tensor is converted for the computation as soon as it is read, so that only
+//! one tensor is in memory twice.
+
+mod pickled;
+mod safetensor;
+mod scope;
+
+pub(crate) use scope::Scope;
+
+use crate::{Device, LocalError, Precision};
+use candle_core::{DType, Tensor};
+use pickled::Pickled;
+use safetensor::SafeFile;
+use serde::Deserialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+
+/// Longest index of a checkpoint in several files, bytes.
+const LONGEST_INDEX: u64 = 64 << 20;
+
+/// A checkpoint's tensors by their names.
+pub(crate) struct Weights {
+    /// The file that an error names if a tensor is missing.
+    path: PathBuf,
+    files: Vec<WeightFile>,
+    /// The file of each tensor, as an index into `files`.
+    at: BTreeMap<String, usize>,
+    device: candle_core::Device,
+    dtype: DType,
+}
+
+/// A file of tensors.
+enum WeightFile {
+    Safe(SafeFile),
+    Pickled(Pickled),
+}
+
+#[derive(Deserialize)]
+struct Index {
+    weight_map: BTreeMap<String, String>,
+}
+
+impl Weights {
+    /// Opens a model's folder: `model.safetensors`, or its parts by `model.safetensors.index.json`, or
+    /// `pytorch_model.bin`.
+    ///
+    /// # Errors
+    /// When there is none of these, or one is damaged.
+    pub(crate) fn open(folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+        let whole = folder.join("model.safetensors");
+        let index = folder.join("model.safetensors.index.json");
+        let pickled = folder.join("pytorch_model.bin");
+        let (path, files) = if whole.exists() {
+            let file = WeightFile::Safe(SafeFile::open(&whole)?);
+            (whole, vec![file])
+        } else if index.exists() {
+            let files = parts(folder, &index)?;
+            (index, files)
+        } else if pickled.exists() {
+            let file = WeightFile::Pickled(Pickled::open(&pickled)?);
+            (pickled, vec![file])
+        } else {
+            let hint =
+                "put the checkpoint's model.safetensors there, or fetch it: wayword models fetch NAME".to_owned();
+            return Err(LocalError::Missing { file: whole, what: "the checkpoint", hint });
+        };
+        let mut at = BTreeMap::new();
+        for (number, file) in files.iter().enumerate() {
+            at.extend(file.names().map(|name| (name, number)));
+        }
+        Ok(Self { path, files, at, device: device.0.clone(), dtype: precision.dtype() })
+    }
+
+    /// The tensors whose names begin with `prefix`; "" for all.
+    pub(crate) fn scope(&self, prefix: &str) -> Scope<'_> {
+        Scope::new(self, prefix)
+    }
+
+    /// The size of all tensors at the weights' precision, bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let elements = |name: &String| {
+            let shape = self.shape(name).unwrap_or_default();
+            shape.iter().fold(1_u64, |product, &length| product.saturating_mul(length as u64))
+        };
+        let all = self.at.keys().fold(0_u64, |sum, name| sum.saturating_add(elements(name)));
+        all.saturating_mul(self.dtype.size_in_bytes() as u64)
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.at.contains_key(name)
+    }
+
+    /// A tensor, whose shape is checked, at the weights' precision and on their device.
+    fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let lacks = || LocalError::tensor(&self.path, name, "it is missing");
+        let file = self.at.get(name).and_then(|&at| self.files.get(at)).ok_or_else(lacks)?;
+        let tensor = match file {
+            WeightFile::Safe(file) => file.read(name, shape)?,
+            WeightFile::Pickled(file) => file.read(name, shape)?,
+        };
+        let wrong = |error: candle_core::Error| LocalError::tensor(file.path(), name, error.to_string());
+        tensor.to_dtype(self.dtype).and_then(|tensor| tensor.to_device(&self.device)).map_err(wrong)
+    }
+
+    /// The shape of a tensor, if it exists.
+    fn shape(&self, name: &str) -> Option<Vec<usize>> {
+        match self.files.get(*self.at.get(name)?)? {
+            WeightFile::Safe(file) => file.shape(name),
+            WeightFile::Pickled(file) => file.shape(name),
+        }
+    }
+}
+
+impl WeightFile {
+    fn path(&self) -> &Path {
+        match self {
+            Self::Safe(file) => file.path(),
+            Self::Pickled(file) => file.path(),
+        }
+    }
+
+    fn names(&self) -> Box<dyn Iterator<Item = String> + '_> {
+        match self {
+            Self::Safe(file) => Box::new(file.names()),
+            Self::Pickled(file) => Box::new(file.names()),
+        }
+    }
+}
+
+/// The files that an index names, each opened once.
+fn parts(folder: &Path, index: &Path) -> Result<Vec<WeightFile>, LocalError> {
+    let open = |name: &String| SafeFile::open(&folder.join(name)).map(WeightFile::Safe);
+    part_names(index)?.iter().map(open).collect()
+}
+
+/// The names of the files that an index names, each once.
+///
+/// # Errors
+/// When the index is damaged, or names something that is not a file in the same folder.
+pub(crate) fn part_names(index: &Path) -> Result<BTreeSet<String>, LocalError> {
+    let damaged = |problem: String| LocalError::File { file: index.to_owned(), problem, hint: "fetch it again" };
+    let length = std::fs::metadata(index).map_err(|error| LocalError::io(index, "read", error))?.len();
+    if length > LONGEST_INDEX {
+        return Err(damaged(format!("it is too long for an index: {length} bytes")));
+    }
+    let text = std::fs::read_to_string(index).map_err(|error| LocalError::io(index, "read", error))?;
+    let parsed: Index = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
+    let names: BTreeSet<String> = parsed.weight_map.into_values().collect();
+    // The names are untrusted, and must not lead out of the folder.
+    let is_file = |name: &str| {
+        Path::new(name).file_name().is_some_and(|file| file == name) && !name.chars().any(char::is_control)
+    };
+    match names.iter().find(|name| !is_file(name)) {
+        Some(name) => Err(damaged(format!("{name:?} is not the name of a file"))),
+        None => Ok(names),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,91 @@
+//! A part of a checkpoint: the tensors whose names begin with a prefix.
+
+use super::Weights;
+use crate::{
+    LocalError,
+    ops::{Embedding, LayerNorm, Linear, RmsNorm},
+};
+use candle_core::{DType, Tensor};
+
+/// The tensors whose names begin with a prefix.
+#[derive(Clone)]
+pub(crate) struct Scope<'a> {
+    weights: &'a Weights,
+    prefix: String,
+}
+
+impl<'a> Scope<'a> {
+    pub(super) fn new(weights: &'a Weights, prefix: &str) -> Self {
+        Self { weights, prefix: prefix.to_owned() }
+    }
+
+    /// The part with this name within this part, or with a layer's number.
+    pub(crate) fn sub(&self, name: impl std::fmt::Display) -> Self {
+        Self { weights: self.weights, prefix: self.name(&name.to_string()) }
+    }
+
+    fn name(&self, name: &str) -> String {
+        if self.prefix.is_empty() { name.to_owned() } else { format!("{}.{name}", self.prefix) }
+    }
+
+    /// Whether there is a tensor of this name.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.weights.has(&self.name(name))
+    }
+
+    /// A tensor, whose shape is checked.
+    pub(crate) fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        self.weights.tensor(&self.name(name), shape)
+    }
+
+    /// A tensor that is added to the model's states, which have 32 bits on the CPU, whatever the precision of the
+    /// weights. Its shape is checked.
+    pub(crate) fn state(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let tensor = self.tensor(name, shape)?;
+        if !tensor.device().is_cpu() {
+            return Ok(tensor);
+        }
+        tensor.to_dtype(DType::F32).map_err(|error| self.wrong(name, &error))
+    }
+
+    /// `weight` [outputs, inputs] and, if there is one, `bias` [outputs] of a layer.
+    pub(crate) fn linear(&self, layer: &str, inputs: usize, outputs: usize) -> Result<Linear, LocalError> {
+        let layer = self.sub(layer);
+        let weight = layer.tensor("weight", &[outputs, inputs])?;
+        let bias = if layer.has("bias") { Some(layer.tensor("bias", &[outputs])?) } else { None };
+        Linear::new(&weight, bias).map_err(|error| layer.wrong("weight", &error))
+    }
+
+    /// Several layers with the same input as one layer, with their outputs side by side.
+    pub(crate) fn linears(&self, layers: &[&str], inputs: usize, outputs: usize) -> Result<Linear, LocalError> {
+        let read = |name: &str, shape: &[usize]| -> Result<Vec<Tensor>, LocalError> {
+            layers.iter().map(|layer| self.sub(layer).tensor(name, shape)).collect()
+        };
+        let wrong = |error: candle_core::Error| self.wrong(layers.first().unwrap_or(&""), &error);
+        let weight = Tensor::cat(&read("weight", &[outputs, inputs])?, 0).map_err(wrong)?;
+        let has_bias = layers.iter().any(|layer| self.sub(layer).has("bias"));
+        let bias = if has_bias { Some(Tensor::cat(&read("bias", &[outputs])?, 0).map_err(wrong)?) } else { None };
+        Linear::new(&weight, bias).map_err(wrong)
+    }
+
+    /// `weight` and `bias` [size] of a layer norm.
+    pub(crate) fn layer_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<LayerNorm, LocalError> {
+        let layer = self.sub(layer);
+        Ok(LayerNorm::new(layer.tensor("weight", &[size])?, layer.tensor("bias", &[size])?, epsilon))
+    }
+
+    /// `weight` [size] of a root-mean-square norm.
+    pub(crate) fn rms_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<RmsNorm, LocalError> {
+        Ok(RmsNorm::new(self.sub(layer).tensor("weight", &[size])?, epsilon))
+    }
+
+    /// `weight` [count, size] of a table that is looked up by ids.
+    pub(crate) fn embedding(&self, layer: &str, count: usize, size: usize) -> Result<Embedding, LocalError> {
+        Ok(Embedding::new(self.sub(layer).tensor("weight", &[count, size])?))
+    }
+
+    /// The error of a failed computation with a tensor.
+    pub(crate) fn wrong(&self, name: &str, error: &candle_core::Error) -> LocalError {
+        LocalError::tensor(&self.weights.path, self.name(name), error.to_string())
+    }
+}

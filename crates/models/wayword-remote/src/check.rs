@@ -1,0 +1,239 @@
+//! Checks whether a model can be used, and says in plain words what to do if it cannot.
+
+use crate::{
+    Dialect, RemoteModel, Services,
+    endpoint::Endpoint,
+    faults::{self, Who},
+};
+use std::{
+    sync::Arc,
+    time::{SystemTime, UNIX_EPOCH},
+};
+use wayword_core::{Image, LanguageModel, Message, Request, Role, Sampling};
+
+/// Side of the test picture, pixels: large enough for every service.
+const SQUARE_PX: u32 = 64;
+
+/// Tokens that a model may use for a one-word answer. Some models think first.
+const MAX_TOKENS: u32 = 256;
+
+/// How good or bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// As it should be.
+    Ok,
+    /// The model can be used, but something is not as it should be.
+    Warning,
+    /// The model cannot be used.
+    Problem,
+}
+
+/// The result of one check.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// How good or bad it is.
+    pub level: Level,
+    /// What was found.
+    pub what: String,
+    /// What to do about it.
+    pub to_do: Option<String>,
+}
+
+impl Finding {
+    /// A finding that all is as it should be.
+    pub fn ok(what: impl Into<String>) -> Self {
+        Self { level: Level::Ok, what: what.into(), to_do: None }
+    }
+
+    fn warning(what: impl Into<String>, to_do: impl Into<String>) -> Self {
+        Self { level: Level::Warning, what: what.into(), to_do: Some(to_do.into()) }
+    }
+
+    fn problem(what: impl Into<String>, to_do: impl Into<String>) -> Self {
+        Self { level: Level::Problem, what: what.into(), to_do: Some(to_do.into()) }
+    }
+
+    /// A problem, from the text of an error that ends in a hint.
+    #[must_use]
+    pub fn error(text: &str) -> Self {
+        let (what, to_do) = text.split_once("\nhint: ").unwrap_or((text, "see above"));
+        Self::problem(what, to_do)
+    }
+}
+
+impl Services {
+    /// Checks everything that a model needs: its key, its service and its price. Then asks it for a word and, if it is
+    /// to see, for the colour of a red square. Both calls count and are limited like any other, but the ledger's
+    /// answers are not used.
+    #[must_use]
+    pub fn check(&self, name: &str, is_to_see: bool) -> Vec<Finding> {
+        let model = match self.model(name) {
+            Ok(model) => model,
+            Err(error) => return vec![Finding::error(&error.to_string())],
+        };
+        let mut findings = Vec::new();
+        if !key(&model.endpoint, &mut findings) || !reachable(&model, &mut findings) {
+            return findings;
+        }
+        price(&model, &mut findings);
+        let spoke = Finding::of_speaking(model.as_ref());
+        let speaks = spoke.level == Level::Ok;
+        findings.push(spoke);
+        if speaks && is_to_see {
+            findings.extend(Finding::of_seeing(model.as_ref()));
+        }
+        findings
+    }
+}
+
+/// Whether there is a key, if the provider needs one.
+fn key(endpoint: &Endpoint, findings: &mut Vec<Finding>) -> bool {
+    let provider = &endpoint.provider;
+    match (endpoint.secret(), &provider.key_env) {
+        (Err(closed), _) => {
+            findings.push(Finding::problem(closed.reason, closed.hint));
+            return false;
+        }
+        (Ok(Some(_)), Some(variable)) => findings.push(Finding::ok(format!("{variable} contains a key"))),
+        _ => findings.push(Finding::ok(format!("{} needs no key", provider.name))),
+    }
+    if provider.base_url.plain && !provider.base_url.loopback {
+        let what =
+            format!("{} uses plain http: others on the network can read what is sent", provider.base_url.as_str());
+        let secret = if provider.key_env.is_some() { ", including the key" } else { "" };
+        findings.push(Finding::warning(what + secret, "use https, unless the network is your own"));
+    }
+    true
+}
+
+/// Whether the service answers. Also finds out whether it has the model.
+fn reachable(model: &RemoteModel, findings: &mut Vec<Finding>) -> bool {
+    let endpoint = &model.endpoint;
+    let provider = &endpoint.provider;
+    let url = provider.base_url.as_str();
+    let received = match endpoint.models() {
+        Ok(received) => received,
+        Err(error) => {
+            let fault = faults::of_transport(&error, None, url, endpoint.who());
+            let to_do = if provider.local {
+                format!("start {} or give --base-url", provider.name)
+            } else {
+                "check the network and the base URL".to_owned()
+            };
+            findings.push(Finding::problem(fault.reason(), to_do));
+            return false;
+        }
+    };
+    let body = received.body.unwrap_or_default();
+    if !(200..300).contains(&received.status) {
+        let fault = faults::of_response(received.status, &received.headers, &body, SystemTime::now(), endpoint.who());
+        return match fault {
+            faults::Fault::Stop { reason, hint } => {
+                findings.push(Finding::problem(reason, hint));
+                false
+            }
+            // Not every server can list its models.
+            fault => {
+                let to_do = "check that the base URL ends in the version, like /v1";
+                findings.push(Finding::warning(format!("{url} lists no models: {}", fault.reason()), to_do));
+                true
+            }
+        };
+    }
+    findings.push(Finding::ok(format!("{url} answers")));
+    let listed = serde_json::from_slice(&body).unwrap_or_default();
+    match provider.dialect.models(&listed) {
+        Some(models) if models.iter().any(|known| is_same(known, model.model())) => {
+            findings.push(Finding::ok(format!("{} has {}", provider.name, model.model())));
+        }
+        Some(models) => {
+            let to_do = match provider.dialect {
+                Dialect::Ollama => format!("ollama pull {}", model.model()),
+                _ => format!("choose one of {}", some(&models, endpoint.who())),
+            };
+            findings.push(Finding::warning(format!("{} does not list {}", provider.name, model.model()), to_do));
+        }
+        None => {
+            findings.push(Finding::warning(format!("{url} lists no models"), "check that this is the right server"));
+        }
+    }
+    true
+}
+
+/// Whether a listed model is the named one. Ollama's `:latest` may be left out.
+fn is_same(listed: &str, named: &str) -> bool {
+    listed == named.trim_start_matches("models/") || listed.strip_suffix(":latest") == Some(named)
+}
+
+/// The first names of a list, each shortened, because the list comes from the server.
+fn some(models: &[&str], who: Who<'_>) -> String {
+    let names: Vec<String> = models.iter().take(12).map(|name| who.told(name).chars().take(80).collect()).collect();
+    if models.len() > names.len() {
+        format!("{}, ... ({} in all)", names.join(", "), models.len())
+    } else {
+        names.join(", ")
+    }
+}
+
+fn price(model: &RemoteModel, findings: &mut Vec<Finding>) {
+    findings.push(match model.price() {
+        Some(price) if price.as_of.is_empty() => Finding::ok(format!("{} costs nothing", model.name())),
+        Some(price) => Finding::ok(format!(
+            "{} costs ${} per million tokens in and ${} out (as of {})",
+            model.name(),
+            price.usd_per_million_in,
+            price.usd_per_million_out,
+            price.as_of
+        )),
+        None => Finding::warning(
+            format!("the price of {} is not known, so --max-usd cannot be used with it", model.name()),
+            "add the model's price to a file, and give the file with --prices FILE",
+        ),
+    });
+}
+
+fn ask(model: &dyn LanguageModel, message: Message) -> Result<String, String> {
+    let sampling = Sampling { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
+    let request = Request { messages: vec![message], sampling, replicate: by_the_clock() };
+    let mut replies = model.complete(&[request]);
+    replies
+        .pop()
+        .map_or_else(|| Err(String::new()), |reply| reply.map(|reply| reply.text).map_err(|error| error.to_string()))
+}
+
+/// A number that differs between checks, so that no check is answered from the ledger: an old answer does not show that
+/// the service works now.
+fn by_the_clock() -> u32 {
+    let ms = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
+    u32::try_from(ms & u128::from(u32::MAX)).unwrap_or_default()
+}
+
+impl Finding {
+    /// Asks any model for a word, wherever it runs.
+    #[must_use]
+    pub fn of_speaking(model: &dyn LanguageModel) -> Self {
+        match ask(model, Message::user("Answer with the one word: ready")) {
+            Ok(_) => Self::ok(format!("{} answers", model.name())),
+            Err(error) => {
+                let (what, to_do) = error.split_once("\nhint: ").unwrap_or((&error, "read the service's message"));
+                Self::problem(format!("a question failed: {what}"), to_do)
+            }
+        }
+    }
+
+    /// Asks any model for the colour of a red square, wherever it runs.
+    pub fn of_seeing(model: &dyn LanguageModel) -> Option<Self> {
+        let pixels = [220, 20, 20].repeat((SQUARE_PX * SQUARE_PX) as usize);
+        let square = Image::new(SQUARE_PX, SQUARE_PX, pixels).ok()?;
+        let text = "Which colour is this picture? Answer with one word.".to_owned();
+        let to_do = "choose another model for --see";
+        Some(match ask(model, Message { role: Role::User, text, image: Some(Arc::new(square)) }) {
+            Ok(colour) if colour.to_lowercase().contains("red") => Self::ok(format!("{} sees", model.name())),
+            Ok(said) => {
+                let what = format!("{} was shown a red square and said: {}", model.name(), faults::short(&said));
+                Self::warning(what, to_do)
+            }
+            Err(error) => Self::warning(format!("{} was shown a picture and failed: {error}", model.name()), to_do),
+        })
+    }
+}

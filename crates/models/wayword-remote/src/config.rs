@@ -1,0 +1,150 @@
+//! The user's settings for services.
+
+use crate::{Dialect, Prices};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// How services are used.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// Providers by name. Their fields override those of the built-in table, and new names add to it.
+    pub providers: BTreeMap<String, ProviderConfig>,
+    /// Base URL of the one provider in use.
+    pub base_url: Option<String>,
+    /// Name of the environment variable with the key of the one provider in use.
+    pub key_env: Option<String>,
+    /// The longer side that pictures are scaled down to, pixels.
+    pub picture_px: u32,
+    /// Most time for one attempt, from looking up the host to the last byte, seconds.
+    pub timeout_s: f64,
+    /// Most requests in flight at once, per provider.
+    pub concurrency: Concurrency,
+    /// Most requests for one call: the first one, and repeats after faults.
+    pub attempts: u32,
+    /// Most requests per minute, for providers without a limit of their own.
+    pub requests_per_minute: Option<f64>,
+    /// Most tokens per minute, in and out, for providers without a limit of their own.
+    pub tokens_per_minute: Option<f64>,
+    /// What models cost.
+    #[serde(skip)]
+    pub prices: Prices,
+    /// Refuse models without a price, because there is a limit on money.
+    #[serde(skip)]
+    pub needs_prices: bool,
+}
+
+/// How many requests are in flight at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(untagged)]
+pub enum Concurrency {
+    /// Always up to this many.
+    Fixed(usize),
+    /// As many as the service can take: starts at 8.
+    Adaptive {
+        /// The most.
+        most: usize,
+    },
+}
+
+/// A provider's settings. An absent field has the value of the built-in table.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ProviderConfig {
+    /// Its API.
+    pub dialect: Option<Dialect>,
+    /// Its address, up to the version (`https://api.openai.com/v1`).
+    pub base_url: Option<String>,
+    /// Name of the environment variable with its key.
+    pub key_env: Option<String>,
+    /// Whether it runs on this machine and costs nothing.
+    pub local: Option<bool>,
+    /// Its field for the most tokens of a reply (OpenAI's dialects only).
+    pub max_tokens_field: Option<String>,
+    /// Its field for the seed (OpenAI's dialects only).
+    pub seed_field: Option<String>,
+    /// Fields that are merged into every request's body (`reasoning_effort`, `think`, ...).
+    pub extra: Option<serde_json::Map<String, serde_json::Value>>,
+    /// Those of `temperature`, `seed` and `max_tokens` that are not sent.
+    pub omit: Option<Vec<String>>,
+    /// Most requests per minute.
+    pub requests_per_minute: Option<f64>,
+    /// Most tokens per minute, in and out.
+    pub tokens_per_minute: Option<f64>,
+    /// Whether its `x-ratelimit` headers give the number of requests per day, and not per minute.
+    pub advertises_requests_per_day: Option<bool>,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            providers: BTreeMap::new(),
+            base_url: None,
+            key_env: None,
+            picture_px: 512,
+            timeout_s: 120.0,
+            concurrency: Concurrency::Adaptive { most: 64 },
+            attempts: 6,
+            requests_per_minute: None,
+            tokens_per_minute: None,
+            prices: Prices::default(),
+            needs_prices: false,
+        }
+    }
+}
+
+impl Concurrency {
+    /// Most requests in flight at once.
+    #[must_use]
+    pub fn most(self) -> usize {
+        match self {
+            Self::Fixed(most) | Self::Adaptive { most } => most.max(1),
+        }
+    }
+
+    /// How many threads keep that many requests in flight, while some threads wait for the ledger or for their next
+    /// attempt.
+    #[must_use]
+    pub fn threads(self) -> usize {
+        self.most() + self.most() / 2 + 1
+    }
+}
+
+impl ProviderConfig {
+    /// These settings, with the fields that `other` has in their place.
+    pub(crate) fn overridden_by(mut self, other: &Self) -> Self {
+        macro_rules! take {
+            ($($field:ident),*) => { $(if other.$field.is_some() { self.$field.clone_from(&other.$field); })* };
+        }
+        take!(dialect, base_url, key_env, local, max_tokens_field, seed_field, extra, omit);
+        take!(requests_per_minute, tokens_per_minute, advertises_requests_per_day);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_user_writes_toml() {
+        let config: Config = toml::from_str(
+            r#"
+            concurrency = { most = 16 }
+            timeout_s = 30
+            [providers.openai]
+            omit = ["temperature"]
+            extra = { reasoning_effort = "minimal" }
+            [providers.mine]
+            dialect = "openai"
+            base_url = "http://10.0.0.2:8000/v1"
+            "#,
+        )
+        .unwrap();
+        assert_eq!(config.concurrency, Concurrency::Adaptive { most: 16 });
+        assert_eq!(config.attempts, 6);
+        assert_eq!(config.providers["mine"].dialect, Some(Dialect::OpenAi));
+        assert!(toml::from_str::<Config>("concurrency = 32").unwrap().concurrency == Concurrency::Fixed(32));
+        assert!(toml::from_str::<Config>("cocurrency = 32").is_err());
+    }
+}

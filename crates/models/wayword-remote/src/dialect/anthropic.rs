@@ -1,0 +1,55 @@
+//! Anthropic's messages (<https://docs.anthropic.com/en/api/messages>).
+
+use super::{Asked, End, Heard, Line, Missing, Wire, content};
+use serde_json::{Map, Value, json};
+use wayword_core::Role;
+
+/// The version of the API that this file implements.
+pub(super) const VERSION: &str = "2023-06-01";
+
+/// Turns a request into a body for this API.
+pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+    let system: Vec<&str> =
+        asked.lines.iter().filter(|line| line.role == Role::System).map(|line| line.text.as_str()).collect();
+    let mut body = Map::new();
+    body.insert("model".to_owned(), asked.model.into());
+    // `omit` does not apply: the service refuses a request without this field.
+    body.insert("max_tokens".to_owned(), asked.sampling.max_tokens.into());
+    if !system.is_empty() {
+        body.insert("system".to_owned(), system.join("\n\n").into());
+    }
+    let spoken = asked.lines.iter().filter(|line| line.role != Role::System);
+    body.insert("messages".to_owned(), spoken.map(message).collect());
+    if asked.provider.sends("temperature") {
+        body.insert("temperature".to_owned(), asked.sampling.temperature.clamp(0.0, 1.0).into());
+    }
+    Wire { path: "/messages".to_owned(), body: body.into() }
+}
+
+fn message(line: &Line) -> Value {
+    let role = if line.role == Role::Assistant { "assistant" } else { "user" };
+    match &line.picture {
+        None => json!({ "role": role, "content": line.text }),
+        Some(picture) => {
+            let source = json!({ "type": "base64", "media_type": "image/jpeg", "data": picture.base64 });
+            let mut parts = vec![json!({ "type": "image", "source": source })];
+            // The service refuses an empty text block.
+            if !line.text.is_empty() {
+                parts.push(json!({ "type": "text", "text": line.text }));
+            }
+            json!({ "role": role, "content": parts })
+        }
+    }
+}
+
+/// Reads a reply's body.
+pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
+    let text = content(body.get("content").filter(|parts| parts.is_array()).ok_or(Missing("content"))?);
+    let end = match body.get("stop_reason").and_then(Value::as_str) {
+        Some("max_tokens" | "model_context_window_exceeded") => End::Length,
+        Some("refusal") => End::Refused("refusal".to_owned()),
+        _ => End::Stop,
+    };
+    let tokens = |field: &str| body.get("usage")?.get(field)?.as_u64();
+    Ok(Heard { text, end, tokens_in: tokens("input_tokens"), tokens_out: tokens("output_tokens") })
+}

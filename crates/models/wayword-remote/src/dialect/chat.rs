@@ -1,0 +1,78 @@
+//! OpenAI's chat completions (<https://platform.openai.com/docs/api-reference/chat>).
+
+use super::{Asked, End, Heard, Line, Missing, Wire, content, seed};
+use serde_json::{Map, Value, json};
+use wayword_core::Role;
+
+/// Turns a request into a body for this API.
+pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+    let mut body = Map::new();
+    body.insert("model".to_owned(), asked.model.into());
+    body.insert("messages".to_owned(), asked.lines.iter().map(message).collect());
+    sampling(asked, &mut body);
+    Wire { path: "/chat/completions".to_owned(), body: body.into() }
+}
+
+/// The sampling fields that this dialect and the completions share.
+pub(super) fn sampling(asked: Asked<'_>, body: &mut Map<String, Value>) {
+    let (provider, sampling) = (asked.provider, asked.sampling);
+    if provider.sends("temperature") {
+        body.insert("temperature".to_owned(), sampling.temperature.into());
+    }
+    if provider.sends("max_tokens") {
+        body.insert(provider.max_tokens_field.clone(), sampling.max_tokens.into());
+    }
+    if provider.sends("seed") {
+        body.insert(provider.seed_field.clone(), seed(sampling).into());
+    }
+}
+
+fn message(line: &Line) -> Value {
+    let role = match line.role {
+        Role::System => "system",
+        Role::User => "user",
+        Role::Assistant => "assistant",
+    };
+    match &line.picture {
+        None => json!({ "role": role, "content": line.text }),
+        Some(picture) => {
+            let url = format!("data:image/jpeg;base64,{}", picture.base64);
+            let parts =
+                json!([{ "type": "text", "text": line.text }, { "type": "image_url", "image_url": { "url": url } }]);
+            json!({ "role": role, "content": parts })
+        }
+    }
+}
+
+/// Reads a reply's body.
+pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
+    let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(Missing("choices"))?;
+    let message = choice.get("message").ok_or(Missing("message"))?;
+    let refusal = message.get("refusal").and_then(Value::as_str).filter(|why| !why.is_empty());
+    let end = refusal.map_or_else(|| end(choice), |why| Ok(End::Refused(why.to_owned())))?;
+    let text = message.get("content").map(content).unwrap_or_default();
+    Ok(with_usage(body, text, end))
+}
+
+/// Why a choice ended. If an error ended it, which OpenRouter reports here, it has no end: the text until then is not
+/// an answer.
+pub(super) fn end(choice: &Value) -> Result<End, Missing> {
+    if choice.get("error").is_some_and(|error| !error.is_null()) {
+        return Err(Missing("end"));
+    }
+    match choice.get("finish_reason").and_then(Value::as_str) {
+        Some("error") => Err(Missing("end")),
+        Some("length") => Ok(End::Length),
+        Some("content_filter") => Ok(End::Filtered("content_filter".to_owned())),
+        _ => Ok(End::Stop),
+    }
+}
+
+/// A reply with its token counts. Thinking is paid for too. Most services count it in the tokens of the completion, but
+/// xAI counts it in the total alone.
+pub(super) fn with_usage(body: &Value, text: String, end: End) -> Heard {
+    let tokens = |field: &str| body.get("usage")?.get(field)?.as_u64();
+    let tokens_in = tokens("prompt_tokens");
+    let beside_the_prompt = tokens("total_tokens").zip(tokens_in).map(|(total, prompt)| total.saturating_sub(prompt));
+    Heard { text, end, tokens_in, tokens_out: tokens("completion_tokens").max(beside_the_prompt) }
+}

@@ -1,0 +1,70 @@
+//! Gemini's `generateContent` (<https://ai.google.dev/api/generate-content>).
+
+use super::{Asked, End, Heard, Line, Missing, Wire, seed};
+use serde_json::{Map, Value, json};
+use wayword_core::Role;
+
+/// Turns a request into a body for this API.
+pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+    let (provider, sampling) = (asked.provider, asked.sampling);
+    let mut body = Map::new();
+    let system: Vec<Value> =
+        asked.lines.iter().filter(|line| line.role == Role::System).map(|line| json!({ "text": line.text })).collect();
+    if !system.is_empty() {
+        body.insert("systemInstruction".to_owned(), json!({ "parts": system }));
+    }
+    let spoken = asked.lines.iter().filter(|line| line.role != Role::System);
+    body.insert("contents".to_owned(), spoken.map(message).collect());
+    let mut generation = Map::new();
+    if provider.sends("temperature") {
+        generation.insert("temperature".to_owned(), sampling.temperature.into());
+    }
+    if provider.sends("max_tokens") {
+        generation.insert("maxOutputTokens".to_owned(), sampling.max_tokens.into());
+    }
+    if provider.sends("seed") {
+        generation.insert("seed".to_owned(), seed(sampling).into());
+    }
+    body.insert("generationConfig".to_owned(), generation.into());
+    Wire { path: format!("/models/{}:generateContent", in_path(asked.model)), body: body.into() }
+}
+
+fn message(line: &Line) -> Value {
+    let role = if line.role == Role::Assistant { "model" } else { "user" };
+    let mut parts = vec![json!({ "text": line.text })];
+    if let Some(picture) = &line.picture {
+        parts.push(json!({ "inlineData": { "mimeType": "image/jpeg", "data": picture.base64 } }));
+    }
+    json!({ "role": role, "parts": parts })
+}
+
+/// A model's name, encoded as a part of an address.
+fn in_path(model: &str) -> String {
+    let keep = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
+    let model = model.strip_prefix("models/").unwrap_or(model);
+    model.bytes().map(|byte| if keep(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
+}
+
+/// Reads a reply's body.
+pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
+    let tokens = |field: &str| body.get("usageMetadata")?.get(field)?.as_u64();
+    let spoken = tokens("candidatesTokenCount");
+    let thought = tokens("thoughtsTokenCount");
+    let tokens_out = spoken.or(thought).map(|_| spoken.unwrap_or(0).saturating_add(thought.unwrap_or(0)));
+    let heard = |text, end| Heard { text, end, tokens_in: tokens("promptTokenCount"), tokens_out };
+    if let Some(why) = body.get("promptFeedback").and_then(|feedback| feedback.get("blockReason")?.as_str()) {
+        return Ok(heard(String::new(), End::Filtered(why.to_owned())));
+    }
+    let candidate = body.get("candidates").and_then(|all| all.get(0)).ok_or(Missing("candidates"))?;
+    let parts = candidate.get("content").and_then(|content| content.get("parts")?.as_array());
+    let said = |part: &&Value| part.get("thought").and_then(Value::as_bool) != Some(true);
+    let text = parts.into_iter().flatten().filter(said).filter_map(|part| part.get("text")?.as_str()).collect();
+    let end = match candidate.get("finishReason").and_then(Value::as_str) {
+        Some("MAX_TOKENS") => End::Length,
+        Some(
+            why @ ("SAFETY" | "RECITATION" | "BLOCKLIST" | "PROHIBITED_CONTENT" | "SPII" | "LANGUAGE" | "IMAGE_SAFETY"),
+        ) => End::Filtered(why.to_owned()),
+        _ => End::Stop,
+    };
+    Ok(heard(text, end))
+}

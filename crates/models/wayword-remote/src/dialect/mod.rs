@@ -1,0 +1,239 @@
+//! The APIs of services. Each dialect is one file with two pure functions: one makes a request's body, one reads a
+//! reply's body.
+
+mod anthropic;
+mod chat;
+mod completions;
+mod gemini;
+mod ollama;
+
+use crate::{picture::Picture, provider::Provider};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::sync::Arc;
+use wayword_core::{Role, Sampling};
+
+/// A service's API.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dialect {
+    /// OpenAI's chat completions, which most other servers offer too.
+    #[serde(rename = "openai")]
+    OpenAi,
+    /// OpenAI's legacy completions: one prompt, no pictures.
+    Completions,
+    /// Anthropic's messages.
+    Anthropic,
+    /// Gemini's `generateContent`.
+    Gemini,
+    /// Ollama's own `/api/chat`.
+    Ollama,
+}
+
+/// A message that is ready to be sent.
+#[derive(Debug, Clone)]
+pub(crate) struct Line {
+    pub(crate) role: Role,
+    pub(crate) text: String,
+    pub(crate) picture: Option<Arc<Picture>>,
+}
+
+/// A request to a model.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asked<'a> {
+    pub(crate) provider: &'a Provider,
+    pub(crate) model: &'a str,
+    pub(crate) lines: &'a [Line],
+    pub(crate) sampling: &'a Sampling,
+}
+
+/// A request as it is sent, without the key.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Wire {
+    /// The path after the base URL.
+    pub(crate) path: String,
+    pub(crate) body: Value,
+}
+
+/// A model's reply.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Heard {
+    /// The text, without the model's thinking.
+    pub(crate) text: String,
+    pub(crate) end: End,
+    pub(crate) tokens_in: Option<u64>,
+    pub(crate) tokens_out: Option<u64>,
+}
+
+/// Why a reply ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum End {
+    Stop,
+    Length,
+    /// The service's filter cut it off or blocked it, with the reason.
+    Filtered(String),
+    /// The model refused, with its words.
+    Refused(String),
+}
+
+/// The name of a field that every reply must have and this one lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Missing(pub(crate) &'static str);
+
+impl Dialect {
+    /// The path that is added to a base URL without one.
+    pub(crate) fn version(self) -> &'static str {
+        match self {
+            Self::Anthropic => "/v1",
+            Self::Gemini => "/v1beta",
+            Self::OpenAi | Self::Completions | Self::Ollama => "",
+        }
+    }
+
+    /// The name of the header with the key, and the text before the key in it.
+    pub(crate) fn key_header(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Anthropic => ("x-api-key", ""),
+            Self::Gemini => ("x-goog-api-key", ""),
+            Self::OpenAi | Self::Completions | Self::Ollama => ("authorization", "Bearer "),
+        }
+    }
+
+    /// Headers of every request, in addition to the key's.
+    pub(crate) fn headers(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Anthropic => &[("anthropic-version", anthropic::VERSION)],
+            _ => &[],
+        }
+    }
+
+    /// Its name in settings, errors and the ledger.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::OpenAi => "openai",
+            Self::Completions => "completions",
+            Self::Anthropic => "anthropic",
+            Self::Gemini => "gemini",
+            Self::Ollama => "ollama",
+        }
+    }
+
+    /// A request in this dialect.
+    ///
+    /// # Errors
+    /// When the dialect cannot express it: completions take no pictures.
+    pub(crate) fn to_wire(self, asked: Asked<'_>) -> Result<Wire, &'static str> {
+        let mut wire = match self {
+            Self::OpenAi => chat::to_wire(asked),
+            Self::Completions => completions::to_wire(asked)?,
+            Self::Anthropic => anthropic::to_wire(asked),
+            Self::Gemini => gemini::to_wire(asked),
+            Self::Ollama => ollama::to_wire(asked),
+        };
+        merge(&mut wire.body, &asked.provider.extra);
+        Ok(wire)
+    }
+
+    /// Reads a reply, without the model's thinking.
+    ///
+    /// # Errors
+    /// When it has no answer.
+    pub(crate) fn heard(self, body: &Value) -> Result<Heard, Missing> {
+        let mut heard = match self {
+            Self::OpenAi => chat::from_wire(body),
+            Self::Completions => completions::from_wire(body),
+            Self::Anthropic => anthropic::from_wire(body),
+            Self::Gemini => gemini::from_wire(body),
+            Self::Ollama => ollama::from_wire(body),
+        }?;
+        heard.text = after_thinking(&heard.text).trim().to_owned();
+        Ok(heard)
+    }
+
+    /// The path of the service's list of models.
+    pub(crate) fn models_path(self) -> &'static str {
+        match self {
+            Self::OpenAi | Self::Completions => "/models",
+            Self::Anthropic => "/models?limit=1000",
+            Self::Gemini => "/models?pageSize=1000",
+            Self::Ollama => "/api/tags",
+        }
+    }
+
+    /// The models in the service's list.
+    pub(crate) fn models(self, body: &Value) -> Option<Vec<&str>> {
+        let (list, name) = match self {
+            Self::OpenAi | Self::Completions | Self::Anthropic => ("data", "id"),
+            Self::Gemini | Self::Ollama => ("models", "name"),
+        };
+        let list = body.get(list)?.as_array()?;
+        Some(
+            list.iter()
+                .filter_map(|model| model.get(name)?.as_str())
+                .map(|name| name.trim_start_matches("models/"))
+                .collect(),
+        )
+    }
+
+    /// The setting that keeps a model from spending its tokens on thinking.
+    pub(crate) fn without_thinking(self) -> &'static str {
+        match self {
+            Self::OpenAi | Self::Completions => {
+                "extra = { reasoning_effort = \"minimal\" } (\"none\" or \"low\" for some models)"
+            }
+            Self::Anthropic => "extra = { thinking = { type = \"disabled\" } }",
+            Self::Gemini => "extra = { generationConfig = { thinkingConfig = { thinkingBudget = 0 } } }",
+            Self::Ollama => "extra = { think = false } (or \"low\" for models that always think)",
+        }
+    }
+}
+
+/// A text without the thinking at its beginning.
+///
+/// Some servers put the opening tag into their prompt template, so that the text has only the closing tag.
+fn after_thinking(text: &str) -> &str {
+    const OPEN: &str = "<think>";
+    const CLOSE: &str = "</think>";
+    let text = text.trim_start();
+    match (text.strip_prefix(OPEN), text.find(CLOSE)) {
+        (Some(_), Some(at)) => &text[at + CLOSE.len()..],
+        // The model was still thinking when it was cut off.
+        (Some(_), None) => "",
+        (None, Some(at)) if !text[..at].contains(OPEN) => &text[at + CLOSE.len()..],
+        _ => text,
+    }
+}
+
+/// A seed of 31 bits, which every service takes.
+fn seed(sampling: &Sampling) -> u64 {
+    sampling.seed & 0x7fff_ffff
+}
+
+/// Puts a user's fields into a body. Tables are merged, all other values are replaced.
+fn merge(body: &mut Value, extra: &Map<String, Value>) {
+    let Value::Object(body) = body else { return };
+    for (field, value) in extra {
+        match (body.get_mut(field), value) {
+            (Some(inner @ Value::Object(_)), Value::Object(extra)) => merge(inner, extra),
+            _ => {
+                body.insert(field.clone(), value.clone());
+            }
+        }
+    }
+}
+
+/// The text of a message's content: a string, or the parts of type `text`.
+fn content(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Array(parts) => parts
+            .iter()
+            .filter(|part| part.get("type").and_then(Value::as_str) == Some("text"))
+            .filter_map(|part| part.get("text")?.as_str())
+            .collect(),
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

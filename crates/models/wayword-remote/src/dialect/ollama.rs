@@ -1,0 +1,44 @@
+//! Ollama's own chat endpoint (<https://github.com/ollama/ollama/blob/main/docs/api.md>).
+
+use super::{Asked, End, Heard, Line, Missing, Wire, seed};
+use serde_json::{Map, Value, json};
+use wayword_core::Role;
+
+/// Turns a request into a body for this API.
+pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+    let (provider, sampling) = (asked.provider, asked.sampling);
+    let mut options = Map::new();
+    if provider.sends("temperature") {
+        options.insert("temperature".to_owned(), sampling.temperature.into());
+    }
+    if provider.sends("max_tokens") {
+        options.insert("num_predict".to_owned(), sampling.max_tokens.into());
+    }
+    if provider.sends("seed") {
+        options.insert("seed".to_owned(), seed(sampling).into());
+    }
+    let messages: Vec<Value> = asked.lines.iter().map(message).collect();
+    let body = json!({ "model": asked.model, "messages": messages, "stream": false, "options": options });
+    Wire { path: "/api/chat".to_owned(), body }
+}
+
+fn message(line: &Line) -> Value {
+    let role = match line.role {
+        Role::System => "system",
+        Role::User => "user",
+        Role::Assistant => "assistant",
+    };
+    let mut message = json!({ "role": role, "content": line.text });
+    if let (Some(picture), Value::Object(message)) = (&line.picture, &mut message) {
+        message.insert("images".to_owned(), json!([picture.base64]));
+    }
+    message
+}
+
+/// Reads a reply's body.
+pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
+    let text = body.get("message").and_then(|message| message.get("content")?.as_str()).ok_or(Missing("message"))?;
+    let end = if body.get("done_reason").and_then(Value::as_str) == Some("length") { End::Length } else { End::Stop };
+    let tokens = |field: &str| body.get(field)?.as_u64();
+    Ok(Heard { text: text.to_owned(), end, tokens_in: tokens("prompt_eval_count"), tokens_out: tokens("eval_count") })
+}

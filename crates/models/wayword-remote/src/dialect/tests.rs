@@ -1,0 +1,279 @@
+use super::*;
+use crate::{Config, provider::Table};
+use serde_json::json;
+
+fn provider(name: &str, own: &str) -> Provider {
+    let mut config: Config = toml::from_str(own).unwrap();
+    if ["server", "completions"].contains(&name) {
+        config.base_url = Some("http://127.0.0.1:1/v1".to_owned());
+    }
+    Table::new(&config.providers).resolve(name, &config).unwrap()
+}
+
+fn line(role: Role, text: &str) -> Line {
+    Line { role, text: text.to_owned(), picture: None }
+}
+
+fn seen(text: &str) -> Line {
+    let picture = Picture { base64: "QUJD".to_owned(), sha256: "00".to_owned() };
+    Line { picture: Some(Arc::new(picture)), ..line(Role::User, text) }
+}
+
+fn conversation() -> Vec<Line> {
+    vec![line(Role::System, "Be brief."), line(Role::User, "Hi."), line(Role::Assistant, "Yes?"), seen("What is this?")]
+}
+
+fn wire(provider: &Provider, lines: &[Line]) -> Result<Wire, &'static str> {
+    let sampling = Sampling { temperature: 0.5, max_tokens: 30, seed: u64::MAX };
+    provider.dialect.to_wire(Asked { provider, model: "m/1", lines, sampling: &sampling })
+}
+
+#[test]
+fn openai_takes_pictures_as_data_urls() {
+    let wire = wire(&provider("server", ""), &conversation()).unwrap();
+    assert_eq!(wire.path, "/chat/completions");
+    let expected = json!({
+        "model": "m/1",
+        "messages": [
+            { "role": "system", "content": "Be brief." },
+            { "role": "user", "content": "Hi." },
+            { "role": "assistant", "content": "Yes?" },
+            { "role": "user", "content": [
+                { "type": "text", "text": "What is this?" },
+                { "type": "image_url", "image_url": { "url": "data:image/jpeg;base64,QUJD" } },
+            ] },
+        ],
+        "temperature": 0.5,
+        "max_tokens": 30,
+        "seed": 0x7fff_ffff,
+    });
+    assert_eq!(wire.body, expected);
+}
+
+#[test]
+fn fields_are_named_left_out_and_added_as_a_provider_wants() {
+    let own = "[providers.openai]\nomit = [\"temperature\"]\nextra = { reasoning_effort = \"low\" }";
+    let body = wire(&provider("openai", own), &[line(Role::User, "Hi.")]).unwrap().body;
+    assert_eq!(body["max_completion_tokens"], 30);
+    assert_eq!(body["reasoning_effort"], "low");
+    assert!(body.get("max_tokens").is_none() && body.get("temperature").is_none());
+    let body = wire(&provider("mistral", ""), &[line(Role::User, "Hi.")]).unwrap().body;
+    assert_eq!(body["random_seed"], 0x7fff_ffff);
+    assert!(body.get("seed").is_none());
+}
+
+#[test]
+fn anthropic_takes_the_system_apart_and_pictures_first() {
+    let wire = wire(&provider("anthropic", ""), &conversation()).unwrap();
+    assert_eq!(wire.path, "/messages");
+    let expected = json!({
+        "model": "m/1",
+        "max_tokens": 30,
+        "system": "Be brief.",
+        "messages": [
+            { "role": "user", "content": "Hi." },
+            { "role": "assistant", "content": "Yes?" },
+            { "role": "user", "content": [
+                { "type": "image", "source": { "type": "base64", "media_type": "image/jpeg", "data": "QUJD" } },
+                { "type": "text", "text": "What is this?" },
+            ] },
+        ],
+        "temperature": 0.5,
+    });
+    assert_eq!(wire.body, expected);
+}
+
+#[test]
+fn gemini_names_the_model_in_its_path_and_nothing_else() {
+    let wire = wire(&provider("gemini", ""), &conversation()).unwrap();
+    assert_eq!(wire.path, "/models/m%2F1:generateContent");
+    let expected = json!({
+        "systemInstruction": { "parts": [{ "text": "Be brief." }] },
+        "contents": [
+            { "role": "user", "parts": [{ "text": "Hi." }] },
+            { "role": "model", "parts": [{ "text": "Yes?" }] },
+            { "role": "user", "parts": [
+                { "text": "What is this?" },
+                { "inlineData": { "mimeType": "image/jpeg", "data": "QUJD" } },
+            ] },
+        ],
+        "generationConfig": { "temperature": 0.5, "maxOutputTokens": 30, "seed": 0x7fff_ffff },
+    });
+    assert_eq!(wire.body, expected);
+}
+
+#[test]
+fn gemini_keeps_a_users_tables_beside_its_own() {
+    let own = "[providers.gemini]\nextra = { generationConfig = { thinkingConfig = { thinkingBudget = 0 } } }";
+    let body = wire(&provider("gemini", own), &[line(Role::User, "Hi.")]).unwrap().body;
+    assert_eq!(body["generationConfig"]["thinkingConfig"]["thinkingBudget"], 0);
+    assert_eq!(body["generationConfig"]["maxOutputTokens"], 30);
+}
+
+#[test]
+fn ollama_does_not_think_unless_told_to() {
+    let wire_of = |own: &str| wire(&provider("ollama", own), &conversation()).unwrap();
+    let wire = wire_of("");
+    assert_eq!(wire.path, "/api/chat");
+    let expected = json!({
+        "model": "m/1",
+        "messages": [
+            { "role": "system", "content": "Be brief." },
+            { "role": "user", "content": "Hi." },
+            { "role": "assistant", "content": "Yes?" },
+            { "role": "user", "content": "What is this?", "images": ["QUJD"] },
+        ],
+        "stream": false,
+        "options": { "temperature": 0.5, "num_predict": 30, "seed": 0x7fff_ffff },
+        "think": false,
+    });
+    assert_eq!(wire.body, expected);
+    let own = "[providers.ollama]\nextra = { think = true, options = { num_ctx = 8192 } }";
+    let body = wire_of(own).body;
+    assert_eq!(body["think"], true);
+    assert_eq!(body["options"]["num_ctx"], 8192);
+    assert_eq!(body["options"]["num_predict"], 30);
+}
+
+#[test]
+fn completions_get_one_prompt() {
+    let completions = provider("completions", "");
+    let lone = wire(&completions, &[line(Role::User, "Write a haiku.")]).unwrap();
+    assert_eq!(lone.path, "/completions");
+    assert_eq!(lone.body["prompt"], "Write a haiku.");
+    let lines = &conversation()[..3];
+    let talk = wire(&completions, lines).unwrap().body;
+    assert_eq!(talk["prompt"], "Be brief.\n\nUser: Hi.\nAssistant: Yes?\nAssistant:");
+    assert_eq!(talk["stop"], json!(["\nUser:"]));
+    assert!(wire(&completions, &conversation()).unwrap_err().contains("no pictures"));
+}
+
+fn heard(dialect: Dialect, body: &Value) -> Heard {
+    dialect.heard(body).unwrap()
+}
+
+#[test]
+fn every_dialects_reply_is_understood() {
+    let replies = [
+        (
+            Dialect::OpenAi,
+            json!({ "choices": [{ "message": { "role": "assistant", "content": "<think>sofa?</think>\nA sofa.",
+                "reasoning_content": "hm" }, "finish_reason": "stop" }],
+                "usage": { "prompt_tokens": 7, "completion_tokens": 3 } }),
+        ),
+        (
+            Dialect::OpenAi,
+            json!({ "choices": [{ "message": { "content": [{ "type": "thinking", "thinking": [] },
+                { "type": "text", "text": "A sofa." }] }, "finish_reason": "stop" }],
+                "usage": { "prompt_tokens": 7, "completion_tokens": 3 } }),
+        ),
+        (
+            Dialect::Completions,
+            json!({ "choices": [{ "text": " A sofa.\n", "finish_reason": "stop" }],
+                "usage": { "prompt_tokens": 7, "completion_tokens": 3 } }),
+        ),
+        (
+            Dialect::Anthropic,
+            json!({ "content": [{ "type": "thinking", "thinking": "hm" }, { "type": "text", "text": "A sofa." }],
+                "stop_reason": "end_turn", "usage": { "input_tokens": 7, "output_tokens": 3 } }),
+        ),
+        (
+            Dialect::Gemini,
+            json!({ "candidates": [{ "content": { "parts": [{ "text": "hm", "thought": true }, { "text": "A sofa." }] },
+                "finishReason": "STOP" }],
+                "usageMetadata": { "promptTokenCount": 7, "candidatesTokenCount": 2, "thoughtsTokenCount": 1 } }),
+        ),
+        (
+            Dialect::Ollama,
+            json!({ "message": { "role": "assistant", "content": "A sofa.", "thinking": "hm" }, "done_reason": "stop",
+                "prompt_eval_count": 7, "eval_count": 3 }),
+        ),
+    ];
+    let expected = Heard { text: "A sofa.".to_owned(), end: End::Stop, tokens_in: Some(7), tokens_out: Some(3) };
+    for (dialect, body) in replies {
+        assert_eq!(heard(dialect, &body), expected, "{dialect:?}");
+    }
+}
+
+#[test]
+fn every_way_to_end_is_understood() {
+    let chat = |message: Value, reason: &str| json!({ "choices": [{ "message": message, "finish_reason": reason }] });
+    let said = json!({ "content": "A" });
+    assert_eq!(heard(Dialect::OpenAi, &chat(said.clone(), "length")).end, End::Length);
+    assert!(matches!(heard(Dialect::OpenAi, &chat(said, "content_filter")).end, End::Filtered(_)));
+    let refusal = json!({ "content": null, "refusal": "I won't." });
+    assert_eq!(heard(Dialect::OpenAi, &chat(refusal, "stop")).end, End::Refused("I won't.".to_owned()));
+    let message = |reason: &str| json!({ "content": [], "stop_reason": reason });
+    assert_eq!(heard(Dialect::Anthropic, &message("max_tokens")).end, End::Length);
+    assert!(matches!(heard(Dialect::Anthropic, &message("refusal")).end, End::Refused(_)));
+    let candidate = |reason: &str| json!({ "candidates": [{ "finishReason": reason }] });
+    assert_eq!(heard(Dialect::Gemini, &candidate("MAX_TOKENS")).end, End::Length);
+    assert_eq!(heard(Dialect::Gemini, &candidate("SAFETY")).end, End::Filtered("SAFETY".to_owned()));
+    let blocked = json!({ "promptFeedback": { "blockReason": "OTHER" } });
+    assert!(matches!(heard(Dialect::Gemini, &blocked).end, End::Filtered(_)));
+    let done = json!({ "message": { "content": "A" }, "done_reason": "length" });
+    assert_eq!(heard(Dialect::Ollama, &done).end, End::Length);
+}
+
+#[test]
+fn a_reply_without_an_answer_says_what_it_lacks() {
+    for dialect in [Dialect::OpenAi, Dialect::Completions, Dialect::Anthropic, Dialect::Gemini, Dialect::Ollama] {
+        for body in [
+            json!({}),
+            json!([]),
+            json!("x"),
+            json!({ "choices": [], "candidates": [], "content": 3, "message": null }),
+        ] {
+            assert!(dialect.heard(&body).is_err(), "{dialect:?} {body}");
+        }
+    }
+}
+
+#[test]
+fn models_are_listed() {
+    let openai = json!({ "data": [{ "id": "a" }, { "x": 1 }, { "id": "b" }] });
+    assert_eq!(Dialect::OpenAi.models(&openai), Some(vec!["a", "b"]));
+    let gemini = json!({ "models": [{ "name": "models/gemini-2.5-flash" }] });
+    assert_eq!(Dialect::Gemini.models(&gemini), Some(vec!["gemini-2.5-flash"]));
+    assert_eq!(Dialect::Ollama.models(&json!({})), None);
+}
+
+/// If its provider fails, OpenRouter sends the text until then, with the error in the choice.
+#[test]
+fn a_choice_that_broke_is_no_answer() {
+    let said = json!({ "content": "A so" });
+    let choices = [
+        (Dialect::OpenAi, json!({ "message": said, "finish_reason": "error", "error": { "code": 502 } })),
+        (Dialect::OpenAi, json!({ "message": said, "error": { "message": "died" } })),
+        (Dialect::OpenAi, json!({ "message": said, "finish_reason": "error" })),
+        (Dialect::Completions, json!({ "text": "A so", "finish_reason": "error" })),
+    ];
+    for (dialect, choice) in choices {
+        assert!(dialect.heard(&json!({ "choices": [choice] })).is_err(), "{choice}");
+    }
+    let whole = json!({ "message": said, "finish_reason": "stop", "error": null });
+    assert_eq!(heard(Dialect::OpenAi, &json!({ "choices": [whole] })).text, "A so");
+}
+
+/// xAI counts thinking in the total alone.
+#[test]
+fn thinking_that_only_the_total_counts_is_counted() {
+    let tokens_out = |usage: Value| {
+        let body = json!({ "choices": [{ "message": { "content": "A" } }], "usage": usage });
+        heard(Dialect::OpenAi, &body).tokens_out
+    };
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 1, "total_tokens": 399 })), Some(387));
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 3, "total_tokens": 15 })), Some(3));
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 3 })), Some(3));
+    assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "total_tokens": 1 })), Some(0));
+    assert_eq!(tokens_out(json!({ "total_tokens": 9 })), None);
+}
+
+#[test]
+fn thinking_is_removed_where_it_comes_first() {
+    assert_eq!(after_thinking("\n<think>a sofa?</think>\n\nA sofa."), "\n\nA sofa.");
+    assert_eq!(after_thinking("a sofa?\n</think>A sofa."), "A sofa.");
+    assert_eq!(after_thinking("<think>is it a"), "");
+    assert_eq!(after_thinking("A sign says <think>hard</think>."), "A sign says <think>hard</think>.");
+    assert_eq!(after_thinking("A sofa."), "A sofa.");
+}

@@ -1,0 +1,108 @@
+//! One provider in use: its connections, its limits, its key, and whether it refuses all further requests.
+
+use crate::{
+    Config, Secret,
+    dialect::Wire,
+    faults::Who,
+    limiter::{Limiter, Rules},
+    provider::Provider,
+    transport::{Received, Transport},
+};
+use std::{sync::OnceLock, time::Duration};
+
+/// Why no more requests are sent.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Closed {
+    pub(crate) reason: String,
+    pub(crate) hint: String,
+}
+
+/// One provider in use. All its models share it.
+pub(crate) struct Endpoint {
+    pub(crate) provider: Provider,
+    pub(crate) limiter: Limiter,
+    transport: Transport,
+    /// Read when the provider is first used, because a run that is answered from the ledger needs no key.
+    secret: OnceLock<Result<Option<Secret>, String>>,
+    /// Set when the key is refused or the quota is used up, so that the other threads send nothing more.
+    closed: OnceLock<Closed>,
+}
+
+impl Endpoint {
+    pub(crate) fn new(provider: Provider, config: &Config) -> Self {
+        let rules = Rules {
+            concurrency: config.concurrency,
+            requests_per_minute: provider.requests_per_minute,
+            tokens_per_minute: provider.tokens_per_minute,
+        };
+        let timeout = Duration::from_secs_f64(config.timeout_s);
+        Self {
+            transport: Transport::new(&provider.base_url, config.concurrency.most(), timeout),
+            limiter: Limiter::new(rules),
+            secret: OnceLock::new(),
+            closed: OnceLock::new(),
+            provider,
+        }
+    }
+
+    /// The key, if the provider has one.
+    ///
+    /// # Errors
+    /// When its variable is not set or contains no key.
+    pub(crate) fn secret(&self) -> Result<Option<&Secret>, Closed> {
+        let read = || self.provider.key_env.as_deref().map(Secret::from_env).transpose();
+        match self.secret.get_or_init(read) {
+            Ok(secret) => Ok(secret.as_ref()),
+            Err(problem) => Err(Closed {
+                reason: format!("{} needs a key, and {problem}", self.provider.name),
+                hint: format!("export {}=...", self.provider.key_env.as_deref().unwrap_or_default()),
+            }),
+        }
+    }
+
+    /// What messages about this provider's faults need.
+    pub(crate) fn who(&self) -> Who<'_> {
+        Who {
+            provider: &self.provider.name,
+            key_env: self.provider.key_env.as_deref(),
+            secret: self.secret().ok().flatten(),
+        }
+    }
+
+    /// Stops all further requests.
+    pub(crate) fn close(&self, closed: Closed) {
+        // The first reason is kept, because later ones follow from it.
+        let _ = self.closed.set(closed);
+    }
+
+    /// Why no more requests are sent, if that is so.
+    pub(crate) fn closed(&self) -> Option<&Closed> {
+        self.closed.get()
+    }
+
+    /// Sends a request.
+    ///
+    /// # Errors
+    /// When no status came back.
+    pub(crate) fn post(&self, wire: &Wire, body: &[u8]) -> Result<Received, ureq::Error> {
+        self.transport.post(&self.provider.base_url.join(&wire.path), &self.headers(), body)
+    }
+
+    /// Asks for the service's list of models.
+    ///
+    /// # Errors
+    /// When no status came back.
+    pub(crate) fn models(&self) -> Result<Received, ureq::Error> {
+        self.transport.get(&self.provider.base_url.join(self.provider.dialect.models_path()), &self.headers())
+    }
+
+    fn headers(&self) -> Vec<(&'static str, String)> {
+        let dialect = self.provider.dialect;
+        let mut headers: Vec<_> = dialect.headers().iter().map(|(name, value)| (*name, (*value).to_owned())).collect();
+        if let Ok(Some(secret)) = self.secret() {
+            let (name, prefix) = dialect.key_header();
+            headers.push((name, secret.header(prefix)));
+        }
+        headers
+    }
+}

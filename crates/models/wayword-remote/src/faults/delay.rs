@@ -1,0 +1,114 @@
+//! How long a service asks the program to wait, in all the forms that services use.
+
+use super::{said::Said, times};
+use std::time::{Duration, SystemTime};
+use ureq::http::HeaderMap;
+
+/// Headers that say how much of a limit is left, and when the limit is reset.
+const LIMITS: [(&str, &str); 8] = [
+    ("x-ratelimit-remaining-requests", "x-ratelimit-reset-requests"),
+    ("x-ratelimit-remaining-tokens", "x-ratelimit-reset-tokens"),
+    ("anthropic-ratelimit-requests-remaining", "anthropic-ratelimit-requests-reset"),
+    ("anthropic-ratelimit-tokens-remaining", "anthropic-ratelimit-tokens-reset"),
+    ("anthropic-ratelimit-input-tokens-remaining", "anthropic-ratelimit-input-tokens-reset"),
+    ("anthropic-ratelimit-output-tokens-remaining", "anthropic-ratelimit-output-tokens-reset"),
+    ("x-ratelimit-remaining", "x-ratelimit-reset"),
+    ("ratelimit-remaining", "ratelimit-reset"),
+];
+
+/// The wait that a response asks for: `retry-after-ms`, then `retry-after`, then the body's own, then the reset of a
+/// limit.
+pub(super) fn asked(headers: &HeaderMap, said: &Said, now: SystemTime) -> Option<Duration> {
+    let header = |name: &str| headers.get(name).and_then(|value| value.to_str().ok());
+    let ms = || header("retry-after-ms").and_then(times::bare_seconds).map(|ms| ms / 1000);
+    let plain = || header("retry-after").and_then(|text| retry_after(text, now));
+    ms().or_else(plain).or(said.retry_delay).or_else(|| resets(header, now))
+}
+
+fn retry_after(text: &str, now: SystemTime) -> Option<Duration> {
+    times::until_unix(text, now)
+        .or_else(|| times::bare_seconds(text))
+        .or_else(|| times::duration(text))
+        .or_else(|| times::until_http_date(text, now))
+        .or_else(|| times::until_rfc_3339(text, now))
+}
+
+/// The latest reset of the limits that are used up. If none is, the request was too large for the rest of a limit, so
+/// the earliest reset counts.
+fn resets<'a>(header: impl Fn(&str) -> Option<&'a str>, now: SystemTime) -> Option<Duration> {
+    let resets = LIMITS.iter().filter_map(|(remaining, reset)| {
+        let left = header(remaining).and_then(|text| text.trim().parse::<f64>().ok());
+        Some((left, retry_after(header(reset)?, now)?))
+    });
+    let resets: Vec<(Option<f64>, Duration)> = resets.collect();
+    let used_up = resets.iter().filter(|(left, _)| left.is_none_or(|left| left < 1.0)).map(|(_, reset)| *reset).max();
+    used_up.or_else(|| resets.iter().map(|(_, reset)| *reset).min())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use ureq::http::{HeaderName, HeaderValue};
+
+    /// 2026-01-02T03:04:05Z
+    fn now() -> SystemTime {
+        SystemTime::UNIX_EPOCH + Duration::from_secs(1_767_323_045)
+    }
+
+    fn wait_s(pairs: &[(&'static str, &str)], body: &str) -> Option<f64> {
+        let headers =
+            pairs.iter().map(|(name, value)| (HeaderName::from_static(name), HeaderValue::from_str(value).unwrap()));
+        asked(&headers.collect(), &Said::read(body.as_bytes()), now()).map(|wait| wait.as_secs_f64())
+    }
+
+    #[test]
+    fn every_form_is_understood() {
+        for (name, value, expected) in [
+            ("retry-after", "7", 7.0),
+            ("retry-after", "0.5", 0.5),
+            ("retry-after", "Fri, 02 Jan 2026 03:04:25 GMT", 20.0),
+            ("retry-after", "1767323055", 10.0),
+            ("retry-after-ms", "1500", 1.5),
+            ("x-ratelimit-reset-requests", "1s", 1.0),
+            ("x-ratelimit-reset-tokens", "6m0s", 360.0),
+            ("x-ratelimit-reset-requests", "20ms", 0.02),
+            ("x-ratelimit-reset-tokens", "1767323060", 15.0),
+            ("x-ratelimit-reset", "1767323060000", 15.0),
+            ("anthropic-ratelimit-requests-reset", "2026-01-02T03:05:05Z", 60.0),
+            ("anthropic-ratelimit-output-tokens-reset", "2026-01-02T03:04:06+00:00", 1.0),
+        ] {
+            assert_eq!(wait_s(&[(name, value)], "{}"), Some(expected), "{name}: {value}");
+        }
+        let info = r#"{"error":{"details":[{"@type":"type.googleapis.com/google.rpc.RetryInfo","retryDelay":"34s"}]}}"#;
+        assert_eq!(wait_s(&[], info), Some(34.0));
+        assert_eq!(wait_s(&[("retry-after", "soon")], ""), None);
+    }
+
+    #[test]
+    fn the_limit_that_is_used_up_counts() {
+        let headers = [
+            ("x-ratelimit-remaining-requests", "0"),
+            ("x-ratelimit-reset-requests", "2s"),
+            ("x-ratelimit-remaining-tokens", "900"),
+            ("x-ratelimit-reset-tokens", "50s"),
+        ];
+        assert_eq!(wait_s(&headers, ""), Some(2.0));
+        let [_, rest @ ..] = headers;
+        assert_eq!(wait_s(&[("x-ratelimit-remaining-requests", "5"), rest[0], rest[1], rest[2]], ""), Some(2.0));
+    }
+
+    #[test]
+    fn the_plainest_form_comes_first() {
+        assert_eq!(wait_s(&[("retry-after", "9"), ("retry-after-ms", "8500")], ""), Some(8.5));
+        assert_eq!(wait_s(&[("retry-after", "9"), ("x-ratelimit-reset-requests", "1m")], ""), Some(9.0));
+    }
+
+    proptest! {
+        #[test]
+        fn no_header_is_too_odd(value in "[ -~]{0,70}", which in 0_usize..8) {
+            let (remaining, reset) = LIMITS[which];
+            let _ = wait_s(&[("retry-after", &value), ("retry-after-ms", &value), (remaining, &value), (reset, &value)], &value);
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Decides what a fault means: try again, give up this call, or stop the run.
+
+mod delay;
+mod said;
+mod times;
+
+use crate::{secret::Secret, transport::LARGEST_BODY};
+use said::Said;
+pub(crate) use said::short;
+use std::{
+    io::ErrorKind,
+    time::{Duration, SystemTime},
+};
+use ureq::{Timeout, http::HeaderMap};
+
+/// Longest wait. If a service asks for a longer one, the run stops.
+const LONGEST_WAIT: Duration = Duration::from_secs(600);
+
+/// What to do about a request that brought no answer.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Fault {
+    /// Another attempt makes sense.
+    Retry(Retry),
+    /// This call fails. Other calls may succeed.
+    Final {
+        /// What happened.
+        reason: String,
+        /// Whether the request may cost money nevertheless.
+        maybe_paid: bool,
+    },
+    /// Every further call would fail.
+    Stop {
+        /// What happened.
+        reason: String,
+        /// What to do.
+        hint: String,
+    },
+}
+
+/// An attempt that may be repeated.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Retry {
+    /// What happened.
+    pub(crate) reason: String,
+    /// How long the service asks the program to wait.
+    pub(crate) after: Option<Duration>,
+    /// What the fault says about the service's load.
+    pub(crate) load: Load,
+    /// Whether the request may cost money nevertheless.
+    pub(crate) maybe_paid: bool,
+}
+
+/// What a fault says about the service's load.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Load {
+    /// Nothing: the fault happens at any load.
+    Unknown,
+    /// The service did not answer in time.
+    Slow,
+    /// The service said that there are too many requests or tokens.
+    Over,
+}
+
+/// The provider, as reasons and hints need it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Who<'a> {
+    pub(crate) provider: &'a str,
+    pub(crate) key_env: Option<&'a str>,
+    pub(crate) secret: Option<&'a Secret>,
+}
+
+impl Fault {
+    /// A fault after which another attempt may succeed.
+    pub(crate) fn again(reason: impl Into<String>, maybe_paid: bool) -> Self {
+        Self::Retry(Retry { reason: reason.into(), after: None, load: Load::Unknown, maybe_paid })
+    }
+
+    /// What happened.
+    pub(crate) fn reason(&self) -> &str {
+        match self {
+            Self::Retry(Retry { reason, .. }) | Self::Final { reason, .. } | Self::Stop { reason, .. } => reason,
+        }
+    }
+}
+
+/// Whether a JSON body that is not an answer reports an error.
+pub(crate) fn error_inside(body: &serde_json::Value) -> bool {
+    Said::of_json(body).is_error()
+}
+
+/// The fault of a response whose status or body is not that of an answer. Dates in headers are compared with `now`.
+pub(crate) fn of_response(status: u16, headers: &HeaderMap, body: &[u8], now: SystemTime, who: Who<'_>) -> Fault {
+    let said = Said::read(body);
+    // Some services send an error with status 200, and the real status in the body.
+    let status = if (200..300).contains(&status) { said.status.unwrap_or(status) } else { status };
+    let message = who.told(&said.message);
+    let reason = match message.as_str() {
+        "" => format!("status {status}"),
+        message => format!("status {status}: {message}"),
+    };
+    if let Some(hint) = stops(status, &said, who) {
+        return Fault::Stop { reason: format!("{} says {reason}", who.provider), hint };
+    }
+    match status {
+        429 | 529 => overloaded(reason, delay::asked(headers, &said, now), who),
+        503 => match delay::asked(headers, &said, now) {
+            Some(after) => overloaded(reason, Some(after), who),
+            None => Fault::again(reason, false),
+        },
+        408 | 409 | 425 | 500..=599 => Fault::again(reason, false),
+        // An error with a success status, and no status in the body: the service may have worked on the request.
+        200..=299 if said.overloaded() => overloaded(reason, None, who),
+        200..=299 => Fault::again(reason, true),
+        400 | 422 => Fault::Final { reason: reason + unsupported(&message), maybe_paid: false },
+        _ => Fault::Final { reason, maybe_paid: false },
+    }
+}
+
+fn overloaded(reason: String, after: Option<Duration>, who: Who<'_>) -> Fault {
+    match after {
+        Some(after) if after > LONGEST_WAIT => Fault::Stop {
+            reason: format!("{} asks to wait {} minutes: {reason}", who.provider, after.as_secs() / 60),
+            hint: "all answers are kept: to continue, run the same command later".to_owned(),
+        },
+        after => Fault::Retry(Retry { reason, after, load: Load::Over, maybe_paid: false }),
+    }
+}
+
+/// Whether no more requests can be answered; if so, what to do.
+fn stops(status: u16, said: &Said, who: Who<'_>) -> Option<String> {
+    if said.out_of_money() || status == 402 {
+        return Some(format!(
+            "pay for more at {}, or wait until its quota is renewed; then run the same command to continue",
+            who.provider
+        ));
+    }
+    if said.day_is_over() {
+        return Some(
+            "today's quota is used up: run the same command tomorrow to continue, or choose another model".to_owned(),
+        );
+    }
+    match status {
+        // The moderation of one request has the same status as a key without permission.
+        403 if said.moderated() => None,
+        401 | 403 => Some(who.key_hint()),
+        400 if said.bad_key() => Some(who.key_hint()),
+        300..=399 => Some(format!(
+            "redirects are not followed, because the key would be sent along: set base_url under [providers.{}] to the address that the redirect leads to",
+            who.provider
+        )),
+        _ => None,
+    }
+}
+
+/// What to do if a service does not know a field that is usually sent.
+fn unsupported(message: &str) -> &'static str {
+    let message = message.to_ascii_lowercase();
+    if !["unsupported", "not support", "unrecognized", "unknown", "extra inputs"]
+        .iter()
+        .any(|word| message.contains(word))
+    {
+        ""
+    } else if message.contains("max_completion_tokens") || message.contains("max_tokens") {
+        " (set max_tokens_field under the provider's settings)"
+    } else if message.contains("temperature") {
+        " (set omit = [\"temperature\"] under the provider's settings)"
+    } else if message.contains("seed") {
+        " (set omit = [\"seed\"] under the provider's settings)"
+    } else {
+        ""
+    }
+}
+
+/// The fault of a request without a complete response. `answered` is the status, if one came.
+pub(crate) fn of_transport(error: &ureq::Error, answered: Option<u16>, url: &str, who: Who<'_>) -> Fault {
+    use ureq::Error as E;
+    let refused = |error: &std::io::Error| error.kind() == ErrorKind::ConnectionRefused;
+    let retry = |reason: String, load, maybe_paid| Fault::Retry(Retry { reason, after: None, load, maybe_paid });
+    match error {
+        E::Io(error) if refused(error) => retry(format!("nothing answers at {url}"), Load::Unknown, false),
+        E::HostNotFound => retry(format!("the host of {url} is not found"), Load::Unknown, false),
+        E::Timeout(Timeout::Connect | Timeout::Resolve) => {
+            retry(format!("no connection to {url} within 10 seconds"), Load::Slow, false)
+        }
+        E::Timeout(_) => retry("no complete answer in time".to_owned(), Load::Slow, true),
+        E::BodyExceedsLimit(_) => {
+            Fault::Final { reason: format!("the answer is longer than {} MiB", LARGEST_BODY >> 20), maybe_paid: true }
+        }
+        E::Io(_) | E::Protocol(_) | E::ConnectionFailed | E::BodyStalled => {
+            let where_ = if answered.is_some() { "in mid-answer" } else { "before an answer" };
+            retry(format!("the connection broke {where_}: {}", who.told(&error.to_string())), Load::Unknown, true)
+        }
+        E::LargeResponseHeader(..) => retry("the answer's headers are too large".to_owned(), Load::Unknown, true),
+        E::Rustls(_) | E::Tls(_) | E::Pem(_) | E::TlsRequired | E::ConnectProxyFailed(_) | E::InvalidProxyUrl => {
+            retry(format!("no secure connection to {url}: {}", who.told(&error.to_string())), Load::Unknown, false)
+        }
+        // All other errors: the request could not be made. The error's text is left out, because it could contain the
+        // request.
+        _ => Fault::Final { reason: "the request could not be made".to_owned(), maybe_paid: false },
+    }
+}
+
+impl Who<'_> {
+    /// A service's words, short and without the key. The key is removed first, because cutting the text could leave a
+    /// part of it.
+    pub(crate) fn told(&self, words: &str) -> String {
+        match self.secret {
+            Some(secret) => short(&secret.scrub(words.to_owned())),
+            None => short(words),
+        }
+    }
+
+    fn key_hint(&self) -> String {
+        match self.key_env {
+            Some(variable) => {
+                format!("check the key in {variable} and its permissions, then run the same command to continue")
+            }
+            None => {
+                format!("it needs a key: give --key-env VARIABLE, or set key_env under [providers.{}]", self.provider)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,160 @@
+//! A service's own words about its error, in all known forms.
+
+use serde_json::Value;
+use std::time::Duration;
+
+/// Most characters of a service's words that a message repeats.
+const LONGEST_MESSAGE: usize = 300;
+
+/// What an error's body says.
+#[derive(Debug, Default)]
+pub(super) struct Said {
+    /// As the service wrote it: of any length, and it may contain the key.
+    pub(super) message: String,
+    /// Every code, type, status and quota name in it, in lower case.
+    marks: Vec<String>,
+    /// A status inside the body.
+    pub(super) status: Option<u16>,
+    /// Gemini's `RetryInfo`.
+    pub(super) retry_delay: Option<Duration>,
+}
+
+impl Said {
+    /// Reads an error's body.
+    pub(super) fn read(body: &[u8]) -> Self {
+        match serde_json::from_slice::<Value>(body) {
+            Ok(value) => Self::of_json(&value),
+            Err(_) => Self { message: String::from_utf8_lossy(body).into_owned(), ..Self::default() },
+        }
+    }
+
+    /// Reads an error's body that is JSON.
+    pub(super) fn of_json(value: &Value) -> Self {
+        // Some of Gemini's endpoints put the error into a list.
+        let value = value.get(0).unwrap_or(value);
+        // If its own provider fails, OpenRouter puts the error into the choice.
+        let choice = value.get("choices").and_then(|choices| choices.get(0)?.get("error"));
+        let error = value.get("error").filter(|error| !error.is_null()).or(choice).unwrap_or(value);
+        let text = |value: &Value, field: &str| value.get(field).and_then(Value::as_str).map(str::to_owned);
+        let message = error.as_str().map(str::to_owned).or_else(|| text(error, "message"));
+        let message = message.or_else(|| text(value, "message")).or_else(|| value.get("detail").map(plain));
+        let mut said = Self { message: message.unwrap_or_default(), ..Self::default() };
+        for field in ["code", "type", "status"] {
+            said.marks.extend(text(error, field).map(|mark| mark.to_ascii_lowercase()));
+        }
+        let code = error.get("code").and_then(|code| code.as_u64().or_else(|| code.as_str()?.parse().ok()));
+        said.status = code.and_then(|code| u16::try_from(code).ok()).filter(|code| (300..600).contains(code));
+        let details = error.get("details").and_then(Value::as_array);
+        details.into_iter().flatten().take(16).for_each(|detail| said.detail(detail));
+        said
+    }
+
+    fn detail(&mut self, detail: &Value) {
+        self.marks.extend(detail.get("reason").and_then(Value::as_str).map(str::to_ascii_lowercase));
+        let delay = detail.get("retryDelay").and_then(Value::as_str);
+        self.retry_delay = self.retry_delay.or_else(|| super::times::duration(delay?));
+        let violations = detail.get("violations").and_then(Value::as_array);
+        let quotas =
+            violations.into_iter().flatten().take(16).filter_map(|violation| violation.get("quotaId")?.as_str());
+        self.marks.extend(quotas.map(str::to_ascii_lowercase));
+    }
+
+    /// Whether the body reports an error.
+    pub(super) fn is_error(&self) -> bool {
+        !self.message.is_empty() || self.status.is_some()
+    }
+
+    /// Whether the account is empty or its limit is reached, so that waiting does not help.
+    pub(super) fn out_of_money(&self) -> bool {
+        self.marked(&["insufficient_quota", "billing_hard_limit_reached", "billing_not_active", "billing_error"])
+            || self.mentions(&["credit balance is too low", "insufficient balance", "insufficient credits"])
+            || self.mentions(&["used all available credits", "billing hard limit"])
+    }
+
+    /// Whether a quota per day is used up.
+    pub(super) fn day_is_over(&self) -> bool {
+        self.marks.iter().any(|mark| mark.contains("perday")) || self.mentions(&["free-models-per-day"])
+    }
+
+    /// Whether the key is not valid, although the status says something else.
+    pub(super) fn bad_key(&self) -> bool {
+        self.marked(&["api_key_invalid", "invalid_api_key"]) || self.mentions(&["api key not valid", "api key expired"])
+    }
+
+    /// Whether moderation refused this one request.
+    pub(super) fn moderated(&self) -> bool {
+        self.mentions(&["moderation", "flagged"])
+    }
+
+    /// Whether the service is overloaded.
+    pub(super) fn overloaded(&self) -> bool {
+        self.marked(&[
+            "overloaded_error",
+            "rate_limit_error",
+            "rate_limit_exceeded",
+            "resource_exhausted",
+            "unavailable",
+        ])
+    }
+
+    fn marked(&self, marks: &[&str]) -> bool {
+        self.marks.iter().any(|mark| marks.contains(&mark.as_str()))
+    }
+
+    fn mentions(&self, phrases: &[&str]) -> bool {
+        let message = self.message.to_ascii_lowercase();
+        phrases.iter().any(|phrase| message.contains(phrase))
+    }
+}
+
+fn plain(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+/// A text on one line, without control characters, and cut if it is long. A page of HTML is left out.
+pub(crate) fn short(text: &str) -> String {
+    let text = text.trim_start();
+    if text.starts_with('<') {
+        return "(a page of HTML)".to_owned();
+    }
+    let clean = text.chars().map(|c| if c.is_whitespace() || c.is_control() { ' ' } else { c });
+    let words: String = clean.take(4 * LONGEST_MESSAGE).collect();
+    let line = words.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(LONGEST_MESSAGE) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn words_are_found_in_every_form() {
+        let forms = [
+            r#"{"error":{"message":"too bad","type":"x","code":null}}"#,
+            r#"{"type":"error","error":{"type":"overloaded_error","message":"too bad"}}"#,
+            r#"[{"error":{"code":400,"message":"too bad","status":"INVALID_ARGUMENT"}}]"#,
+            r#"{"error":"too bad"}"#,
+            r#"{"object":"error","message":"too bad","code":40001}"#,
+            r#"{"detail":"too bad"}"#,
+            r#"{"choices":[{"error":{"code":502,"message":"too bad"}}]}"#,
+            "too\n\tbad\u{0}",
+        ];
+        for form in forms {
+            assert_eq!(short(&Said::read(form.as_bytes()).message), "too bad", "{form}");
+        }
+        assert_eq!(short("<html><body>502"), "(a page of HTML)");
+    }
+
+    proptest! {
+        #[test]
+        fn words_stay_short(text in ".{0,3000}", bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            prop_assert!(short(&text).chars().count() <= LONGEST_MESSAGE + 1);
+            prop_assert!(!short(&text).chars().any(char::is_control));
+            Said::read(&bytes);
+        }
+    }
+}

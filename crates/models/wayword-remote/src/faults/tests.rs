@@ -1,0 +1,134 @@
+use super::*;
+use ureq::http::HeaderValue;
+
+fn who(secret: Option<&Secret>) -> Who<'_> {
+    Who { provider: "openai", key_env: Some("OPENAI_API_KEY"), secret }
+}
+
+fn fault(status: u16, body: &str) -> Fault {
+    of_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(None))
+}
+
+/// A fault's kind in the table below: again, load (over), paid, final or stop.
+fn kind(fault: &Fault) -> &'static str {
+    match fault {
+        Fault::Retry(Retry { load: Load::Over, .. }) => "load",
+        Fault::Retry(Retry { maybe_paid: true, .. }) => "paid",
+        Fault::Retry(_) => "again",
+        Fault::Final { .. } => "final",
+        Fault::Stop { .. } => "stop",
+    }
+}
+
+#[test]
+fn every_status_and_body_has_its_meaning() {
+    let table = [
+        (400, r#"{"error":{"message":"context too long","code":"context_length_exceeded"}}"#, "final"),
+        (
+            400,
+            r#"{"error":{"code":400,"message":"API key not valid.","details":[{"reason":"API_KEY_INVALID"}]}}"#,
+            "stop",
+        ),
+        (
+            400,
+            r#"{"type":"error","error":{"type":"invalid_request_error","message":"Your credit balance is too low"}}"#,
+            "stop",
+        ),
+        (401, "", "stop"),
+        (402, r#"{"error":{"message":"Insufficient Balance"}}"#, "stop"),
+        (403, "", "stop"),
+        (403, r#"{"error":{"message":"Your input was flagged","code":403}}"#, "final"),
+        (404, r#"{"error":"model 'x' not found"}"#, "final"),
+        (408, "", "again"),
+        (409, "", "again"),
+        (413, "", "final"),
+        (422, r#"{"detail":[{"msg":"field required"}]}"#, "final"),
+        (429, "", "load"),
+        (429, r#"{"error":{"message":"Rate limit reached","type":"requests","code":"rate_limit_exceeded"}}"#, "load"),
+        (429, r#"{"error":{"message":"You exceeded your current quota","code":"insufficient_quota"}}"#, "stop"),
+        (
+            429,
+            r#"{"error":{"code":429,"status":"RESOURCE_EXHAUSTED","message":"You exceeded your current quota","details":[
+                {"violations":[{"quotaId":"GenerateRequestsPerMinutePerProjectPerModel-FreeTier"}]},{"retryDelay":"34s"}]}}"#,
+            "load",
+        ),
+        (
+            429,
+            r#"{"error":{"code":429,"status":"RESOURCE_EXHAUSTED","details":[
+                {"violations":[{"quotaId":"GenerateRequestsPerDayPerProjectPerModel-FreeTier"}]},{"retryDelay":"34s"}]}}"#,
+            "stop",
+        ),
+        (500, "oops", "again"),
+        (502, "<html>", "again"),
+        (503, "", "again"),
+        (529, r#"{"type":"error","error":{"type":"overloaded_error","message":"Overloaded"}}"#, "load"),
+        (200, r#"{"error":{"message":"upstream failed","code":502}}"#, "again"),
+        (200, r#"{"error":{"message":"slow down","code":429}}"#, "load"),
+        (200, r#"{"type":"error","error":{"type":"overloaded_error","message":"Overloaded"}}"#, "load"),
+        (200, r#"{"error":"something"}"#, "paid"),
+        (200, r#"{"choices":[{"error":{"code":401,"message":"No auth"}}]}"#, "stop"),
+        (307, "", "stop"),
+    ];
+    for (status, body, expected) in table {
+        assert_eq!(kind(&fault(status, body)), expected, "{status} {body}");
+    }
+}
+
+#[test]
+fn a_long_wait_stops_and_a_short_one_is_kept() {
+    let with = |status, wait: &'static str| {
+        let headers = HeaderMap::from_iter([(ureq::http::header::RETRY_AFTER, HeaderValue::from_static(wait))]);
+        of_response(status, &headers, b"", SystemTime::UNIX_EPOCH, who(None))
+    };
+    assert!(matches!(with(429, "86400"), Fault::Stop { reason, .. } if reason.contains("1440 minutes")));
+    assert!(matches!(with(429, "30"), Fault::Retry(Retry { after: Some(wait), .. }) if wait.as_secs() == 30));
+    assert_eq!(kind(&with(503, "30")), "load");
+}
+
+#[test]
+fn reasons_are_short_and_hold_no_key() {
+    let secret = Secret::new("sk-0123456789abcdef").unwrap();
+    let body = format!(r#"{{"error":{{"message":"Incorrect API key sk-0123456789abcdef {}"}}}}"#, "x".repeat(5000));
+    for status in [200, 400, 401, 429, 500] {
+        let fault = of_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(Some(&secret)));
+        let text = format!("{fault:?}");
+        assert!(text.contains("***") && !text.contains("0123456789"), "{text}");
+        assert!(fault.reason().chars().count() < 400);
+    }
+}
+
+#[test]
+fn a_field_that_is_not_known_comes_with_the_way_out() {
+    let body = r#"{"error":{"message":"Unsupported value: 'temperature' does not support 0.6 with this model."}}"#;
+    assert!(fault(400, body).reason().contains("omit = [\"temperature\"]"));
+    let body = r#"{"error":{"message":"Unsupported parameter: use 'max_completion_tokens' instead."}}"#;
+    assert!(fault(400, body).reason().contains("max_tokens_field"));
+}
+
+#[test]
+fn what_broke_before_or_after_sending_is_told_apart() {
+    let io = |kind| ureq::Error::Io(std::io::Error::new(kind, "x"));
+    let of = |error: ureq::Error| of_transport(&error, None, "http://h", who(None));
+    assert_eq!(kind(&of(io(ErrorKind::ConnectionRefused))), "again");
+    assert_eq!(kind(&of(io(ErrorKind::ConnectionReset))), "paid");
+    assert_eq!(kind(&of(ureq::Error::HostNotFound)), "again");
+    assert_eq!(kind(&of(ureq::Error::Timeout(Timeout::Connect))), "again");
+    let slow = of(ureq::Error::Timeout(Timeout::Global));
+    assert!(matches!(slow, Fault::Retry(Retry { load: Load::Slow, maybe_paid: true, .. })));
+    assert_eq!(kind(&of(ureq::Error::BodyExceedsLimit(9))), "final");
+}
+
+/// A long reason is cut. The cut must not go through the key, because a part of the key would stay.
+#[test]
+fn no_part_of_a_key_stays_where_a_reason_is_cut() {
+    let secret = Secret::new("sk-0123456789abcdef").unwrap();
+    for before in 280..300 {
+        let long = format!("{} sk-0123456789abcdef", "x".repeat(before));
+        let far = format!("{}sk-0123456789abcdef", " ".repeat(3700 + before));
+        for body in [format!(r#"{{"error":{{"message":"{long}"}}}}"#), long, far] {
+            let who = who(Some(&secret));
+            let fault = of_response(500, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who);
+            assert!(!fault.reason().contains("0123"), "{}", fault.reason());
+        }
+    }
+}

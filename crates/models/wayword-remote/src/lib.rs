@@ -1,0 +1,41 @@
+//! Models behind HTTP, as [`wayword_core::LanguageModel`]: OpenAI, Anthropic, Gemini, Ollama, and every service with
+//! one of their APIs.
+//!
+//! Each dialect (API) is one file with two pure functions: one makes a request's body, one reads a reply's body. Around
+//! them there are one transport, one module that decides what a fault means, one limiter per endpoint, and the ledger,
+//! which makes each call once.
+//!
+//! The crate `genai` does the same job. It is not used, because it reads a response's body without a limit, puts the
+//! whole request with its pictures and the whole body into its errors, refuses JSON with another content type, has no
+//! completions endpoint, and hides the headers of successful responses, so that advertised rate limits cannot be kept.
+//!
+//! Architecture invariant: a key is only in [`Secret`]'s module and in the header that carries it. It is removed from
+//! every text of a server before anything else uses the text.
+
+mod backoff;
+mod base_url;
+mod call;
+mod check;
+mod config;
+mod dialect;
+mod endpoint;
+mod error;
+mod faults;
+mod limiter;
+mod model;
+mod picture;
+mod prices;
+mod provider;
+mod ready;
+mod secret;
+mod services;
+mod transport;
+
+pub use check::{Finding, Level};
+pub use config::{Concurrency, Config, ProviderConfig};
+pub use dialect::Dialect;
+pub use error::{ConfigError, PricesError};
+pub use model::RemoteModel;
+pub use prices::{Price, Prices};
+pub use secret::Secret;
+pub use services::Services;

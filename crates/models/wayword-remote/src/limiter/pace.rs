@@ -1,0 +1,171 @@
+//! Learns the rate of a service that refuses requests when there are too many, and never says how many it allows.
+
+use std::{
+    collections::VecDeque,
+    time::{Duration, Instant},
+};
+
+/// The rate of accepted requests is measured over this time, seconds.
+const LOOK_BACK_S: f64 = 3.0;
+
+/// Fewest accepted requests from which a rate is measured.
+const FEWEST: usize = 16;
+
+/// Most accepted requests that are remembered.
+const REMEMBERED: usize = 4096;
+
+/// Shortest time over which a rate is measured, seconds. A shorter time may show only a burst that the service accepts.
+const LONG_ENOUGH_S: f64 = 0.8;
+
+/// After a refusal, the pace is this share of the accepted rate.
+const CAUTION: f64 = 0.98;
+
+/// If a refusal follows another one within this time, the pace is still far too high, seconds.
+const SOON_S: f64 = 3.0;
+
+/// A pace that was refused only once grows by this share of itself per second, and by as much more with each second
+/// since, until it is refused at about the same rate again.
+const SEARCH_PER_S: f64 = 0.03;
+
+/// After that, the pace quickly approaches this share of the refused pace.
+const NEAR: f64 = 0.98;
+
+/// Above that, it grows by this share per second at first, and twice as fast after each [`CALM_S`] without a refusal,
+/// so that it notices when the service allows more again.
+const PROBE_PER_S: f64 = 0.001;
+
+/// See [`PROBE_PER_S`], seconds.
+const CALM_S: f64 = 10.0;
+
+/// A pace above this many times the accepted rate did not limit the requests.
+const TRIED: f64 = 2.0;
+
+/// The highest pace, requests per second.
+const FASTEST_PER_S: f64 = 1e5;
+
+/// A learned pace.
+#[derive(Debug)]
+pub(super) struct Pace {
+    /// When the accepted requests were sent, by a clock that stops in pauses, seconds.
+    let_in: VecDeque<f64>,
+    active_s: f64,
+    seen_at: Instant,
+    learned: Option<Learned>,
+    /// When the next request may be sent, if they are spaced out.
+    next: Option<Instant>,
+}
+
+#[derive(Debug)]
+struct Learned {
+    per_s: f64,
+    /// The pace that was refused.
+    refused_per_s: f64,
+    /// When that was, by the clock that stops in pauses, seconds.
+    refused_s: f64,
+    /// Whether it was refused at about the same rate before.
+    confirmed: bool,
+}
+
+impl Pace {
+    pub(super) fn new(now: Instant) -> Self {
+        Self { let_in: VecDeque::new(), active_s: 0.0, seen_at: now, learned: None, next: None }
+    }
+
+    /// Advances the clock that stops in pauses, and lets the pace grow.
+    pub(super) fn advance(&mut self, now: Instant, paused: bool) {
+        let passed_s = now.saturating_duration_since(self.seen_at).as_secs_f64();
+        self.seen_at = self.seen_at.max(now);
+        if paused {
+            return;
+        }
+        // A gap without requests says nothing about the service.
+        let passed_s = passed_s.min(1.0);
+        self.active_s += passed_s;
+        if let Some(learned) = &mut self.learned {
+            learned.grow(passed_s, self.active_s);
+            learned.per_s = learned.per_s.min(FASTEST_PER_S);
+        }
+    }
+
+    /// How long until the next request may be sent.
+    pub(super) fn wait(&self, now: Instant) -> Duration {
+        self.next.map_or(Duration::ZERO, |next| next.saturating_duration_since(now))
+    }
+
+    /// Notes that a request is sent. If no pace is learned, the next one is `spacing` later. Returns the time by the
+    /// clock that stops in pauses, seconds.
+    pub(super) fn leave(&mut self, now: Instant, spacing: Option<Duration>) -> f64 {
+        let learned = self.learned.as_ref().map(|learned| Duration::from_secs_f64(1.0 / learned.per_s));
+        self.next = learned.or(spacing).map(|interval| {
+            // If a thread wakes up a little late, the pace does not drop.
+            let slack = interval / 4 + Duration::from_millis(1);
+            let earliest = now.checked_sub(slack).unwrap_or(now);
+            self.next.map_or(earliest, |next| next.max(earliest)) + interval
+        });
+        self.active_s
+    }
+
+    /// Notes that the service accepted a request that was sent at `left_s`, whatever its result.
+    pub(super) fn let_in(&mut self, left_s: f64) {
+        if self.let_in.len() >= REMEMBERED {
+            self.let_in.pop_front();
+        }
+        self.let_in.push_back(left_s);
+    }
+
+    /// Notes that a request was refused as too much. `first` is false if another request in flight at the same time was
+    /// refused before.
+    pub(super) fn refused(&mut self, first: bool) {
+        let let_in_per_s = if first { self.let_in_per_s() } else { None };
+        let Some(let_in_per_s) = let_in_per_s else { return };
+        let careful = let_in_per_s * CAUTION;
+        // A pace far above the rate of requests was never tried, so it says nothing.
+        let old = self.learned.as_ref().filter(|old| old.per_s < let_in_per_s * TRIED);
+        let (per_s, refused_per_s, confirmed) = match old {
+            None => (careful, let_in_per_s, false),
+            Some(old) => {
+                let soon = self.active_s - old.refused_s < SOON_S;
+                let close = (0.87..1.15).contains(&(old.per_s / old.refused_per_s));
+                // A single refusal among many accepted requests is not a new limit, so the step down is bounded.
+                let least = old.per_s * if soon || !old.confirmed { 0.6 } else { 0.8 };
+                // The limit lies between the accepted and the refused rate. Right after a refusal, the accepted rate is
+                // lower than it could be.
+                let refused_per_s =
+                    if close && !soon { let_in_per_s.clamp(old.per_s * 0.85, old.per_s) } else { old.per_s };
+                (careful.clamp(least, old.per_s * 0.98), refused_per_s, close)
+            }
+        };
+        let refused_s = self.active_s;
+        self.learned = Some(Learned { per_s: per_s.clamp(0.05, FASTEST_PER_S), refused_per_s, refused_s, confirmed });
+    }
+
+    /// The rate of the requests that were accepted lately, if there were enough.
+    fn let_in_per_s(&self) -> Option<f64> {
+        let mut left: Vec<f64> = self.let_in.iter().copied().collect();
+        left.sort_by(f64::total_cmp);
+        let newest = *left.last()?;
+        let recent = left.iter().rev().take_while(|&&at| at >= newest - LOOK_BACK_S).count();
+        // For a slow service, a longer time is used, so that there are enough requests.
+        let count = recent.max(left.len().min(FEWEST));
+        let span_s = newest - left[left.len() - count];
+        (count >= FEWEST && span_s >= LONG_ENOUGH_S).then(|| (count - 1) as f64 / span_s)
+    }
+}
+
+impl Learned {
+    fn grow(&mut self, passed_s: f64, active_s: f64) {
+        if !self.confirmed {
+            let since_s = active_s - self.refused_s;
+            self.per_s *= 1.0 + SEARCH_PER_S * (1.0 + since_s) * passed_s;
+            return;
+        }
+        let near = self.refused_per_s * NEAR;
+        if self.per_s < near {
+            self.per_s += (near - self.per_s) * (passed_s * 0.5).min(1.0);
+        }
+        if self.per_s >= near * 0.99 {
+            let calm = ((active_s - self.refused_s) / CALM_S).clamp(0.0, 6.0);
+            self.per_s *= 1.0 + PROBE_PER_S * calm.floor().exp2() * passed_s;
+        }
+    }
+}

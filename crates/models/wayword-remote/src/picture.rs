@@ -1,0 +1,149 @@
+//! Pictures as they are sent: scaled down and encoded as JPEG, once for all questions about a frame.
+
+use base64::{Engine, engine::general_purpose::STANDARD};
+use image::{ImageBuffer, Rgb, codecs::jpeg::JpegEncoder, imageops};
+use sha2::{Digest, Sha256};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+use wayword_core::Image;
+
+/// JPEG quality: high enough that a model sees no block edges as texture.
+const QUALITY: u8 = 90;
+
+/// How many frames are remembered: as many as are in use at the same time, and a few more.
+const REMEMBERED: usize = 128;
+
+/// An encoded picture.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Picture {
+    /// JPEG, in base64.
+    pub(crate) base64: String,
+    /// SHA-256 of the JPEG, hex.
+    pub(crate) sha256: String,
+}
+
+type Slot = Arc<OnceLock<Result<Arc<Picture>, String>>>;
+
+/// Encodes pictures, and remembers the pictures of frames that are still in use.
+pub(crate) struct Pictures {
+    longer_px: u32,
+    known: Mutex<Vec<(Weak<Image>, Slot)>>,
+}
+
+impl Pictures {
+    /// An encoder for pictures whose longer side is at most `longer_px` pixels.
+    pub(crate) fn new(longer_px: u32) -> Self {
+        Self { longer_px, known: Mutex::default() }
+    }
+
+    /// The longer side that pictures are scaled down to, pixels.
+    pub(crate) fn longer_px(&self) -> u32 {
+        self.longer_px
+    }
+
+    /// The picture of a frame.
+    ///
+    /// # Errors
+    /// When the image has no pixels.
+    pub(crate) fn encode(&self, image: &Arc<Image>) -> Result<Arc<Picture>, String> {
+        // Other threads that need the same frame wait for this one instead of encoding it too.
+        self.slot(image).get_or_init(|| encode(image, self.longer_px).map(Arc::new)).clone()
+    }
+
+    fn slot(&self, image: &Arc<Image>) -> Slot {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        // A weak pointer keeps the address from being used for another image, so that equal addresses mean the same
+        // frame.
+        if let Some((_, slot)) = known.iter().find(|(weak, _)| std::ptr::eq(weak.as_ptr(), Arc::as_ptr(image))) {
+            return Arc::clone(slot);
+        }
+        known.retain(|(weak, _)| weak.strong_count() > 0);
+        if known.len() >= REMEMBERED {
+            known.remove(0);
+        }
+        let slot = Slot::default();
+        known.push((Arc::downgrade(image), Arc::clone(&slot)));
+        slot
+    }
+}
+
+/// Scales down, never up, and encodes.
+fn encode(image: &Image, longer_px: u32) -> Result<Picture, String> {
+    let (width, height) = (image.width_px(), image.height_px());
+    if width == 0 || height == 0 {
+        return Err(format!("a picture of {width} x {height} pixels is empty"));
+    }
+    let pixels =
+        ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, image.rgb()).ok_or("a picture has too few pixels")?;
+    let mut jpeg = Vec::new();
+    let mut encoder = JpegEncoder::new_with_quality(&mut jpeg, QUALITY);
+    let encoded = match scaled_down(width, height, longer_px) {
+        Some((width, height)) => {
+            // Averages whole pixels: as good as a filter for shrinking, and several times as fast.
+            encoder.encode_image(&imageops::thumbnail(&pixels, width, height))
+        }
+        None => encoder.encode(image.rgb(), width, height, image::ExtendedColorType::Rgb8),
+    };
+    encoded.map_err(|error| format!("a picture cannot be encoded: {error}"))?;
+    Ok(Picture { sha256: hex(&Sha256::digest(&jpeg)), base64: STANDARD.encode(&jpeg) })
+}
+
+/// The smaller size, if the picture has to shrink.
+fn scaled_down(width: u32, height: u32, longer_px: u32) -> Option<(u32, u32)> {
+    let longer = width.max(height);
+    let scale = |side: u32| {
+        let exact = (u64::from(side) * u64::from(longer_px) + u64::from(longer) / 2) / u64::from(longer);
+        u32::try_from(exact).unwrap_or(longer_px).max(1)
+    };
+    (longer > longer_px).then(|| (scale(width), scale(height)))
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plain(width: u32, height: u32) -> Arc<Image> {
+        Arc::new(Image::new(width, height, vec![90; (width * height * 3) as usize]).unwrap())
+    }
+
+    fn size(picture: &Picture) -> (u32, u32) {
+        let jpeg = STANDARD.decode(&picture.base64).unwrap();
+        let image = image::load_from_memory_with_format(&jpeg, image::ImageFormat::Jpeg).unwrap();
+        (image.width(), image.height())
+    }
+
+    #[test]
+    fn pictures_shrink_and_never_grow() {
+        let pictures = Pictures::new(64);
+        assert_eq!(size(&pictures.encode(&plain(128, 96)).unwrap()), (64, 48));
+        assert_eq!(size(&pictures.encode(&plain(96, 1000)).unwrap()), (6, 64));
+        assert_eq!(size(&pictures.encode(&plain(64, 1)).unwrap()), (64, 1));
+        assert_eq!(size(&pictures.encode(&plain(3000, 1)).unwrap()), (64, 1));
+        assert!(pictures.encode(&plain(0, 4)).is_err());
+    }
+
+    #[test]
+    fn a_frame_is_encoded_once() {
+        let pictures = Pictures::new(64);
+        let frame = plain(80, 80);
+        assert!(Arc::ptr_eq(&pictures.encode(&frame).unwrap(), &pictures.encode(&frame).unwrap()));
+        let equal = plain(80, 80);
+        let other = pictures.encode(&equal).unwrap();
+        assert!(!Arc::ptr_eq(&pictures.encode(&frame).unwrap(), &other));
+        assert_eq!(pictures.encode(&frame).unwrap().sha256, other.sha256);
+    }
+
+    #[test]
+    fn frames_that_are_gone_are_forgotten() {
+        let pictures = Pictures::new(8);
+        for _ in 0..1000 {
+            pictures.encode(&plain(4, 4)).unwrap();
+        }
+        let held: Vec<_> = (0..2 * REMEMBERED).map(|_| plain(4, 4)).collect();
+        held.iter().for_each(|frame| drop(pictures.encode(frame).unwrap()));
+        assert_eq!(pictures.known.lock().unwrap().len(), REMEMBERED);
+    }
+}

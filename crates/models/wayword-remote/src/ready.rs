@@ -1,0 +1,127 @@
+//! Finds out why a model cannot be used, without asking it.
+
+use crate::{ConfigError, Services, base_url::BaseUrl, endpoint::Endpoint};
+use std::{
+    io,
+    net::{SocketAddr, TcpStream, ToSocketAddrs},
+    time::Duration,
+};
+use ureq::{Proxy, http::Uri};
+
+/// Longest wait for a connection. A service that takes longer is not refused.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+impl Services {
+    /// Refuses a model if its key is missing, nothing listens at its service's address, or the host is not found.
+    /// Connects only to services on this machine, and to addresses that the user gave.
+    ///
+    /// # Errors
+    /// When the model cannot be used, or there is no such provider.
+    pub fn ready(&self, name: &str) -> Result<(), ConfigError> {
+        let model = self.model(name)?;
+        let endpoint = &model.endpoint;
+        if let Err(closed) = endpoint.secret() {
+            return Err(ConfigError::NotReady { problem: closed.reason, hint: closed.hint });
+        }
+        if self.is_reached_directly(endpoint) { lets_in(endpoint) } else { Ok(()) }
+    }
+
+    /// The base URL of a model's service.
+    ///
+    /// # Errors
+    /// When there is no such provider.
+    pub fn base_url(&self, name: &str) -> Result<String, ConfigError> {
+        Ok(self.model(name)?.endpoint.provider.base_url.as_str().to_owned())
+    }
+
+    /// Whether a test connection says something: not through a proxy, and not for remote services.
+    fn is_reached_directly(&self, endpoint: &Endpoint) -> bool {
+        let provider = &endpoint.provider;
+        let is_near = provider.local || self.has_own_address(&provider.name);
+        provider.base_url.loopback || (is_near && Proxy::try_from_env().is_none())
+    }
+}
+
+fn lets_in(endpoint: &Endpoint) -> Result<(), ConfigError> {
+    let provider = &endpoint.provider;
+    let (name, url) = (&provider.name, provider.base_url.as_str());
+    let not_ready = |problem: String, hint: String| Err(ConfigError::NotReady { problem, hint });
+    match connect(&provider.base_url) {
+        Err(Closed::Port) => not_ready(
+            format!("nothing listens at {url}, so {name} cannot be used"),
+            format!("start {name}, or give its address: --base-url URL, or base_url under [providers.{name}]"),
+        ),
+        Err(Closed::Host(host)) => not_ready(
+            format!("the host {host} is not found, so {name} cannot be used at {url}"),
+            format!("check the name and the network, or give --base-url URL, or base_url under [providers.{name}]"),
+        ),
+        Ok(()) => Ok(()),
+    }
+}
+
+/// Why no connection is possible.
+enum Closed {
+    Port,
+    Host(String),
+}
+
+/// Checks whether a server accepts a connection, or may accept one later.
+fn connect(url: &BaseUrl) -> Result<(), Closed> {
+    let Some((host, port)) = place(url) else { return Ok(()) };
+    let addresses: Vec<SocketAddr> =
+        (host.as_str(), port).to_socket_addrs().map_err(|_| Closed::Host(host.clone()))?.collect();
+    let is_refused = |address: &SocketAddr| {
+        TcpStream::connect_timeout(address, PATIENCE)
+            .is_err_and(|error| error.kind() == io::ErrorKind::ConnectionRefused)
+    };
+    if !addresses.is_empty() && addresses.iter().all(is_refused) { Err(Closed::Port) } else { Ok(()) }
+}
+
+fn place(url: &BaseUrl) -> Option<(String, u16)> {
+    let uri: Uri = url.as_str().parse().ok()?;
+    let host = uri.host()?.trim_start_matches('[').trim_end_matches(']').to_owned();
+    Some((host, uri.port_u16().unwrap_or(if url.plain { 80 } else { 443 })))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Config;
+    use std::net::TcpListener;
+    use wayword_ledger::{Ledger, Limits};
+
+    /// Why a model cannot be used at an address.
+    fn told(base_url: &str, key_env: Option<&str>) -> Option<String> {
+        let config =
+            Config { base_url: Some(base_url.to_owned()), key_env: key_env.map(str::to_owned), ..Config::default() };
+        let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();
+        Services::new(config, run).unwrap().ready("server/words").err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_port_that_nobody_listens_at_is_told() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let url = format!("http://{}/v1", listener.local_addr().unwrap());
+        assert_eq!(told(&url, None), None);
+        drop(listener);
+        let problem = told(&url, None).unwrap();
+        assert!(
+            problem.contains(&url) && problem.contains("start server") && problem.contains("--base-url"),
+            "{problem}"
+        );
+    }
+
+    #[test]
+    fn a_key_that_is_missing_is_told() {
+        let problem = told("http://127.0.0.1:9/v1", Some("WAYWORD_NO_SUCH_KEY")).unwrap();
+        assert!(problem.contains("WAYWORD_NO_SUCH_KEY") && problem.contains("export"), "{problem}");
+    }
+
+    #[test]
+    fn an_address_has_a_host_and_a_port() {
+        let place = |url| place(&BaseUrl::new(url, "/v1").unwrap()).unwrap();
+        assert_eq!(place("http://[::1]:8000"), ("::1".to_owned(), 8000));
+        assert_eq!(place("https://models.example.com/v1"), ("models.example.com".to_owned(), 443));
+        assert_eq!(place("http://lab"), ("lab".to_owned(), 80));
+    }
+}

@@ -1,0 +1,91 @@
+//! Keys, which are never shown.
+
+use std::fmt;
+
+/// The text that replaces a key.
+const MASK: &str = "***";
+
+/// Shorter keys are placeholders of local servers ("none", "EMPTY"). Removing them from every text would damage the
+/// text.
+const SHORTEST_SCRUBBED: usize = 8;
+
+/// A key. Neither `Debug` nor `Display` shows it.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Secret(String);
+
+impl Secret {
+    /// A key, without white space around it, which copying may add.
+    ///
+    /// # Errors
+    /// When it is empty, or contains characters that an HTTP header cannot have.
+    pub(crate) fn new(key: &str) -> Result<Self, &'static str> {
+        let key = key.trim();
+        if key.is_empty() {
+            Err("is empty")
+        } else if key.bytes().all(|byte| (0x21..0x7f).contains(&byte)) {
+            Ok(Self(key.to_owned()))
+        } else {
+            Err("contains spaces or characters that no key has")
+        }
+    }
+
+    /// The key from an environment variable.
+    ///
+    /// # Errors
+    /// When the variable is not set or contains no key. The message names the variable, and never its value.
+    pub(crate) fn from_env(variable: &str) -> Result<Self, String> {
+        match std::env::var(variable) {
+            Ok(key) => Self::new(&key).map_err(|problem| format!("the variable {variable} {problem}")),
+            Err(std::env::VarError::NotPresent) => Err(format!("the variable {variable} is not set")),
+            Err(std::env::VarError::NotUnicode(_)) => Err(format!("the variable {variable} is not valid text")),
+        }
+    }
+
+    /// The value of the header that carries the key.
+    pub(crate) fn header(&self, prefix: &str) -> String {
+        format!("{prefix}{}", self.0)
+    }
+
+    /// A text with the key removed.
+    pub(crate) fn scrub(&self, text: String) -> String {
+        if self.0.len() >= SHORTEST_SCRUBBED && text.contains(&self.0) { text.replace(&self.0, MASK) } else { text }
+    }
+}
+
+impl fmt::Debug for Secret {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(MASK)
+    }
+}
+
+impl fmt::Display for Secret {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(MASK)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_sees_a_key() {
+        let secret = Secret::new(" sk-0123456789\n").unwrap();
+        assert_eq!(format!("{secret:?} {secret}"), "*** ***");
+        assert_eq!(secret.scrub("bad key sk-0123456789!".to_owned()), "bad key ***!");
+        assert_eq!(secret.header("Bearer "), "Bearer sk-0123456789");
+        assert!(Secret::new("two words").is_err());
+        assert!(Secret::new("line\nbreak").is_err());
+    }
+
+    #[test]
+    fn a_placeholder_is_left_in_texts() {
+        assert_eq!(Secret::new("EMPTY").unwrap().scrub("EMPTY room".to_owned()), "EMPTY room");
+    }
+
+    #[test]
+    fn a_variable_that_is_not_set_is_named() {
+        let problem = Secret::from_env("WAYWORD_NO_SUCH_KEY").unwrap_err();
+        assert_eq!(problem, "the variable WAYWORD_NO_SUCH_KEY is not set");
+    }
+}

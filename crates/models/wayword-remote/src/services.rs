@@ -1,0 +1,187 @@
+//! The services of a run: each provider in use, once.
+
+use crate::{
+    Concurrency, Config, ConfigError, Price, RemoteModel,
+    endpoint::Endpoint,
+    picture::Pictures,
+    provider::{self, Provider, Table},
+};
+use std::{
+    collections::BTreeMap,
+    fmt,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_ledger::Run;
+
+/// Longest timeout of an attempt, seconds.
+const LONGEST_TIMEOUT_S: f64 = 3600.0;
+
+/// Highest setting for requests at once.
+const MOST_CONCURRENCY: usize = 4096;
+
+/// Highest setting for the longer side of a picture, pixels.
+const LARGEST_PICTURE_PX: u32 = 8192;
+
+/// Finds models by their names. Models of one provider share its connections and limits.
+pub struct Services {
+    config: Config,
+    table: Table,
+    run: Run,
+    pictures: Arc<Pictures>,
+    endpoints: Mutex<BTreeMap<String, Arc<Endpoint>>>,
+}
+
+impl Services {
+    /// Services for one run of the ledger. Makes no connection, and reads no key.
+    ///
+    /// # Errors
+    /// When a setting makes no sense.
+    pub fn new(config: Config, run: Run) -> Result<Self, ConfigError> {
+        let wrong = |setting: &str, problem| Err(ConfigError::Setting { setting: setting.to_owned(), problem });
+        let most = match config.concurrency {
+            Concurrency::Fixed(most) | Concurrency::Adaptive { most } => most,
+        };
+        if !(1..=MOST_CONCURRENCY).contains(&most) {
+            return wrong("concurrency", "must be from 1 to 4096");
+        }
+        if !(1..=LARGEST_PICTURE_PX).contains(&config.picture_px) {
+            return wrong("picture_px", "must be from 1 to 8192");
+        }
+        // NaN is not above 0 either.
+        if !(config.timeout_s > 0.0 && config.timeout_s <= LONGEST_TIMEOUT_S) {
+            return wrong("timeout_s", "must be above 0 and at most 3600");
+        }
+        if config.attempts == 0 {
+            return wrong("attempts", "must be at least 1");
+        }
+        let table = Table::new(&config.providers);
+        let pictures = Arc::new(Pictures::new(config.picture_px));
+        Ok(Self { config, table, run, pictures, endpoints: Mutex::default() })
+    }
+
+    /// A model by its name, `provider/model`.
+    ///
+    /// # Errors
+    /// When there is no such provider, its description is wrong, or a price is needed and not known.
+    pub fn model(&self, name: &str) -> Result<Arc<RemoteModel>, ConfigError> {
+        let (provider, _) = provider::split(name)?;
+        let endpoint = self.endpoint(provider)?;
+        let price = self.price(name, &endpoint.provider);
+        if self.config.needs_prices {
+            if price.is_none() {
+                return Err(ConfigError::NoPrice(name.to_owned()));
+            }
+            if changes_the_limit(&endpoint.provider) {
+                return Err(ConfigError::Setting {
+                    setting: format!("omit or extra of [providers.{provider}]"),
+                    problem: "must not change the token limit if there is a limit on money, because that one depends on it",
+                });
+            }
+        }
+        Ok(Arc::new(RemoteModel {
+            name: name.to_owned(),
+            endpoint,
+            run: self.run.clone(),
+            pictures: Arc::clone(&self.pictures),
+            price,
+            attempts: self.config.attempts,
+            threads: self.config.concurrency.threads(),
+        }))
+    }
+
+    /// What a model costs. A local provider costs nothing on this machine. At another address it costs nothing only if
+    /// there is no limit on money.
+    fn price(&self, name: &str, provider: &Provider) -> Option<Price> {
+        let at_home = provider.local && (provider.base_url.loopback || !self.config.needs_prices);
+        self.config.prices.of(name).or_else(|| at_home.then(Price::nothing))
+    }
+
+    /// The names of all providers.
+    #[must_use]
+    pub fn names(&self) -> Vec<&str> {
+        self.table.names()
+    }
+
+    /// Whether the user has given a provider's address.
+    pub(crate) fn has_own_address(&self, provider: &str) -> bool {
+        let own = self.config.providers.get(provider).and_then(|own| own.base_url.as_ref());
+        self.config.base_url.is_some() || own.is_some()
+    }
+
+    fn endpoint(&self, provider: &str) -> Result<Arc<Endpoint>, ConfigError> {
+        let mut endpoints = self.endpoints.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(endpoint) = endpoints.get(provider) {
+            return Ok(Arc::clone(endpoint));
+        }
+        let resolved = self.table.resolve(provider, &self.config)?;
+        let for_one = self.config.base_url.is_some() || self.config.key_env.is_some();
+        if let (true, Some(first)) = (for_one, endpoints.keys().next()) {
+            return Err(ConfigError::Several { first: first.clone(), second: provider.to_owned() });
+        }
+        let endpoint = Arc::new(Endpoint::new(resolved, &self.config));
+        endpoints.insert(provider.to_owned(), Arc::clone(&endpoint));
+        Ok(endpoint)
+    }
+}
+
+impl fmt::Debug for Services {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Leaves out the settings, because a user may have typed a key in the wrong place.
+        f.debug_struct("Services").field("providers", &self.names()).finish_non_exhaustive()
+    }
+}
+
+/// Whether settings remove the token limit from a request, replace it, or ask for several answers at once.
+fn changes_the_limit(provider: &Provider) -> bool {
+    const IN_BODY: [&str; 8] = [
+        "max_tokens",
+        "max_completion_tokens",
+        "max_output_tokens",
+        "n",
+        "best_of",
+        "num_predict",
+        "options",
+        "generationConfig",
+    ];
+    let omits = provider.omit.iter().any(|field| field == "max_tokens");
+    omits || IN_BODY.iter().any(|field| provider.extra.contains_key(*field))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ProviderConfig;
+    use wayword_ledger::{Ledger, Limits};
+
+    /// Why a model is refused if there is a limit on money.
+    fn refused(base_url: Option<&str>, provider: &str, config: ProviderConfig) -> Option<String> {
+        let config = Config {
+            providers: [(provider.to_owned(), config)].into(),
+            base_url: base_url.map(str::to_owned),
+            needs_prices: true,
+            ..Config::default()
+        };
+        let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();
+        let services = Services::new(config, run).unwrap();
+        services.model(&format!("{provider}/gpt-4.1-mini")).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_runs_at_home_is_free_and_the_same_software_elsewhere_is_not() {
+        assert_eq!(refused(None, "vllm", ProviderConfig::default()), None);
+        let told = refused(Some("https://models.example.com/v1"), "vllm", ProviderConfig::default()).unwrap();
+        assert!(told.contains("price"), "{told}");
+    }
+
+    #[test]
+    fn money_is_not_bounded_where_the_limit_of_tokens_is_not() {
+        assert_eq!(refused(None, "openai", ProviderConfig::default()), None);
+        let omits = ProviderConfig { omit: Some(vec!["max_tokens".to_owned()]), ..ProviderConfig::default() };
+        let extra = [("n".to_owned(), 3.into())].into_iter().collect();
+        let several = ProviderConfig { extra: Some(extra), ..ProviderConfig::default() };
+        for config in [omits, several] {
+            let told = refused(None, "openai", config).unwrap();
+            assert!(told.contains("[providers.openai]"), "{told}");
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Faults of every kind.
+
+use crate::{
+    asked, model, run,
+    server::{Server, answer, ended, reply},
+};
+use std::{
+    io::Write,
+    net::TcpStream,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+use wayword_core::ModelError;
+
+/// Does something odd to the first request, and answers all later ones.
+fn at_first(odd: impl Fn(&mut TcpStream) -> bool + Send + Sync + 'static) -> Server {
+    Server::start(
+        move |count, _, stream| if count == 0 { odd(stream) } else { reply(stream, 200, "", &answer("fine")) },
+    )
+}
+
+/// Checks that another attempt follows a fault, and is answered.
+fn is_asked_again(server: &Server) {
+    let reply = asked(&model(server, "", &run()), "Well?").unwrap();
+    assert_eq!(reply.text, "fine");
+    assert_eq!(server.requests().len(), 2);
+}
+
+#[test]
+fn a_reset_in_mid_body_is_asked_again() {
+    is_asked_again(&at_first(|stream| {
+        stream.write_all(b"HTTP/1.1 200 OK\r\ncontent-length: 1000\r\n\r\n{\"choices\":").unwrap();
+        false
+    }));
+}
+
+#[test]
+fn a_connection_that_is_cut_before_an_answer_is_asked_again() {
+    is_asked_again(&at_first(|_| false));
+}
+
+#[test]
+fn json_that_is_cut_is_asked_again() {
+    is_asked_again(&at_first(|stream| reply(stream, 200, "", &answer("a sofa")[..40])));
+}
+
+#[test]
+fn no_http_at_all_is_asked_again() {
+    is_asked_again(&at_first(|stream| {
+        stream.write_all(b"220 smtp ready\r\n\r\n").unwrap();
+        false
+    }));
+}
+
+#[test]
+fn errors_under_a_status_of_success_are_asked_again() {
+    is_asked_again(&at_first(|stream| reply(stream, 200, "", r#"{"error":{"message":"upstream died"}}"#)));
+    is_asked_again(&at_first(|stream| reply(stream, 200, "", r#"{"choices":[]}"#)));
+    is_asked_again(&at_first(|stream| reply(stream, 200, "", "null")));
+    let half =
+        r#"{"choices":[{"message":{"content":"A so"},"finish_reason":"error","error":{"code":502,"message":"died"}}]}"#;
+    is_asked_again(&at_first(move |stream| reply(stream, 200, "", half)));
+}
+
+#[test]
+fn an_overloaded_service_is_given_the_time_it_asks_for() {
+    for headers in ["retry-after: 1\r\n", "retry-after-ms: 1000\r\n", "x-ratelimit-reset-requests: 1s\r\n"] {
+        let start = Instant::now();
+        is_asked_again(&at_first(move |stream| reply(stream, 429, headers, "{}")));
+        assert!(start.elapsed() >= Duration::from_secs(1), "{headers}");
+    }
+}
+
+#[test]
+fn a_wait_of_a_day_stops_the_run() {
+    let server = at_first(|stream| reply(stream, 429, "retry-after: 86400\r\n", "{}"));
+    let error = asked(&model(&server, "", &run()), "Well?").unwrap_err();
+    assert!(matches!(&error, ModelError::Stopped { hint, .. } if hint.contains("later")), "{error}");
+}
+
+#[test]
+fn a_trickle_ends_in_time() {
+    let server = Server::start(|_, _, stream| {
+        let mut open = stream.write_all(b"HTTP/1.1 200 OK\r\ncontent-length: 100000\r\n\r\n").is_ok();
+        while open {
+            open = stream.write_all(b" ").is_ok();
+            thread::sleep(Duration::from_millis(20));
+        }
+        false
+    });
+    let start = Instant::now();
+    let error = asked(&model(&server, "timeout_s = 0.5\nattempts = 1", &run()), "Well?").unwrap_err().to_string();
+    assert_eq!(error, "server/m: no complete answer in time (1 attempt)");
+    assert!(start.elapsed() < Duration::from_secs(10));
+}
+
+#[test]
+fn a_body_without_end_is_cut_off() {
+    let written = Arc::new(AtomicUsize::new(0));
+    let count = Arc::clone(&written);
+    let server = Server::start(move |_, _, stream| {
+        let mut open = stream.write_all(b"HTTP/1.1 200 OK\r\n\r\n").is_ok();
+        while open && count.load(Ordering::SeqCst) < 200 << 20 {
+            open = stream.write_all(&[b' '; 1 << 16]).is_ok();
+            count.fetch_add(1 << 16, Ordering::SeqCst);
+        }
+        false
+    });
+    let error = asked(&model(&server, "", &run()), "Well?").unwrap_err().to_string();
+    assert_eq!(error, "server/m: the answer is longer than 8 MiB");
+    assert_eq!(server.requests().len(), 1);
+    // The rest of what it wrote stayed in the sockets' buffers.
+    assert!(written.load(Ordering::SeqCst) < 100 << 20);
+}
+
+#[test]
+fn a_redirect_is_not_followed() {
+    let elsewhere = Server::start(|_, _, stream| reply(stream, 200, "", &answer("fine")));
+    let to = format!("location: {}/chat/completions\r\n", elsewhere.base_url());
+    for status in [301, 302, 307, 308] {
+        let to = to.clone();
+        let server = at_first(move |stream| reply(stream, status, &to, ""));
+        let error = asked(&model(&server, "", &run()), "Well?").unwrap_err();
+        assert!(matches!(&error, ModelError::Stopped { hint, .. } if hint.contains("redirects")), "{status} {error}");
+    }
+    assert!(elsewhere.requests().is_empty());
+}
+
+#[test]
+fn attempts_are_counted_and_then_given_up() {
+    let server = Server::start(|_, _, stream| reply(stream, 500, "", r#"{"error":"boom"}"#));
+    let error = asked(&model(&server, "attempts = 3", &run()), "Well?").unwrap_err().to_string();
+    assert_eq!(error, "server/m: status 500: boom (3 attempts)");
+    assert_eq!(server.requests().len(), 3);
+}
+
+#[test]
+fn a_request_that_is_wrong_is_not_repeated() {
+    let server = Server::start(|_, _, stream| reply(stream, 400, "", r#"{"error":{"message":"too long"}}"#));
+    let error = asked(&model(&server, "", &run()), "Well?").unwrap_err().to_string();
+    assert_eq!(error, "server/m: status 400: too long");
+    assert_eq!(server.requests().len(), 1);
+}
+
+#[test]
+fn silence_is_asked_again_once() {
+    let server = Server::start(|_, _, stream| reply(stream, 200, "", &answer(" \n")));
+    let error = asked(&model(&server, "", &run()), "Well?").unwrap_err().to_string();
+    assert_eq!(error, "server/m: empty answer (2 attempts)");
+}
+
+#[test]
+fn thinking_that_used_up_the_tokens_is_told() {
+    let server = Server::start(|_, _, stream| reply(stream, 200, "", &ended("<think>a sofa, or is it", "length")));
+    let error = asked(&model(&server, "", &run()), "Well?").unwrap_err().to_string();
+    assert!(error.contains("spent all its tokens on thinking") && error.contains("reasoning_effort"), "{error}");
+    assert_eq!(server.requests().len(), 1);
+}
+
+#[test]
+fn a_refused_key_ends_everything_at_once() {
+    let server = Server::start(|_, _, stream| reply(stream, 401, "", r#"{"error":{"message":"bad key"}}"#));
+    let model = model(&server, "concurrency = 1", &run());
+    for text in ["One?", "Two?", "Three?"] {
+        let error = asked(&model, text).unwrap_err();
+        assert!(error.ends_run(), "{error}");
+        assert!(error.to_string().contains("bad key"), "{error}");
+    }
+    assert_eq!(server.requests().len(), 1);
+}
+
+#[test]
+fn a_stopped_run_waits_for_nothing() {
+    let server = Server::start(|_, _, stream| reply(stream, 429, "retry-after: 300\r\n", "{}"));
+    let run = run();
+    let model = model(&server, "", &run);
+    let start = Instant::now();
+    thread::scope(|scope| {
+        let waiting: Vec<_> = ["One?", "Two?"].map(|text| scope.spawn(|| asked(&model, text))).into();
+        while server.requests().is_empty() {
+            thread::sleep(Duration::from_millis(5));
+        }
+        run.stop();
+        for thread in waiting {
+            assert!(thread.join().unwrap().unwrap_err().ends_run());
+        }
+    });
+    assert!(start.elapsed() < Duration::from_secs(30));
+}
+
+#[test]
+fn nobody_there_is_told() {
+    let server = Server::start(|_, _, _| false);
+    let settings = "attempts = 1\n[providers.mine]\ndialect = \"openai\"\nbase_url = \"http://127.0.0.1:1/v1\"";
+    let config = toml::from_str(settings).unwrap();
+    let services = wayword_remote::Services::new(config, run()).unwrap();
+    let error = asked(&services.model("mine/m").unwrap(), "Well?").unwrap_err().to_string();
+    assert_eq!(error, "mine/m: nothing answers at http://127.0.0.1:1/v1 (1 attempt)");
+    assert!(server.requests().is_empty());
+}

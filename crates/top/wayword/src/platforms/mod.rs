@@ -1,0 +1,189 @@
+//! Opens platforms by their names.
+
+#[cfg(feature = "live")]
+mod live;
+mod remembering;
+
+use crate::{error::Error, output, settings::Settings, similar::did_you_mean};
+use std::{path::Path, sync::Arc};
+use wayword_core::Platform;
+#[cfg(feature = "habitat")]
+use wayword_habitat::{HabitatOptions, HabitatPlatform};
+use wayword_house::HousePlatform;
+use wayword_platforms::{matterport::Matterport, process};
+use wayword_recording::RecordingPlatform;
+
+pub use remembering::Remembering;
+
+/// A platform, as `wayword platforms` lists it.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Listed {
+    /// Its name, as `--platform` takes it.
+    pub name: &'static str,
+    /// What it is.
+    pub what: &'static str,
+    /// What it needs.
+    pub needs: &'static str,
+    /// What it offers.
+    pub offers: &'static str,
+    /// Whether this build has it.
+    pub is_here: bool,
+}
+
+/// All platforms, in this build or not.
+pub const PLATFORMS: [Listed; 7] = [
+    Listed {
+        name: "house",
+        what: "generated homes, built in",
+        needs: "nothing",
+        offers: "pictures, labels, rooms, storeys",
+        is_here: true,
+    },
+    Listed {
+        name: "matterport",
+        what: "Matterport3D's buildings, from files",
+        needs: "--data DIR with connectivity/ (docs/DATA.md lists what else is used)",
+        offers: "rooms, storeys; labels with REVERIE's boxes or .house files; pictures with photographs",
+        is_here: true,
+    },
+    Listed {
+        name: "process",
+        what: "any simulator in any language, as a child process (docs/PROCESS.md)",
+        needs: "--data FILE: a world file, or the program itself",
+        offers: "what that program says it offers",
+        is_here: true,
+    },
+    Listed {
+        name: "habitat",
+        what: "AI Habitat's scenes, without Habitat",
+        needs: "--data FILE or DIR: .glb, .gltf or .stage_config.json, with the .navmesh beside it or baked",
+        offers: "pictures, geodesic paths; labels with semantic files",
+        is_here: cfg!(feature = "habitat"),
+    },
+    Listed {
+        name: "tdw",
+        what: "ThreeDWorld: waits for a build to connect",
+        needs: "a TDW build started with -port 1071, or another as in --at 127.0.0.1:1072; --data PACKAGE for furnished floor plans",
+        offers: "pictures; labels of furniture, only in furnished plans (floorplan_1a_0)",
+        is_here: cfg!(feature = "live"),
+    },
+    Listed {
+        name: "virtualhome",
+        what: "VirtualHome's executable, while it runs",
+        needs: "its HTTP address, as in --at http://127.0.0.1:8080 (the default)",
+        offers: "pictures, labels, rooms",
+        is_here: cfg!(feature = "live"),
+    },
+    Listed {
+        name: "recording",
+        what: "recordings of robots: folders of pictures, MP4, MCAP, LeRobot datasets",
+        needs: match (cfg!(feature = "mcap"), cfg!(all(feature = "lerobot", feature = "video"))) {
+            (true, true) => {
+                "--data FILE or DIR, with poses in it or beside it for turns and distances (docs/RECORDINGS.md)"
+            }
+            (true, false) => {
+                "--data DIR of pictures or MCAP, with poses in it or beside it for turns and distances (docs/RECORDINGS.md); MP4 and LeRobot may need the feature full"
+            }
+            _ => {
+                "--data DIR of pictures, with poses beside them for turns and distances (docs/RECORDINGS.md); other recordings may need the feature full"
+            }
+        },
+        offers: "pictures along the recorded path and no labels, so --see has to name a model",
+        is_here: true,
+    },
+];
+
+/// The names of all platforms, as `--platform` takes them.
+pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
+    PLATFORMS.map(|platform| platform.name)
+}
+
+/// Opens the platform that the settings name, and says what its data lacks.
+///
+/// # Errors
+/// When there is none of that name, or its data cannot be opened.
+pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
+    open_and_warn(&settings.platform, settings.data.as_deref(), settings.at.as_deref(), settings.island)
+}
+
+/// As [`open_named`], and warns if the data lacks what says which objects there are.
+///
+/// # Errors
+/// As [`open_named`].
+pub(crate) fn open_and_warn(
+    name: &str,
+    data: Option<&Path>,
+    at: Option<&str>,
+    island: Option<usize>,
+) -> Result<Box<dyn Platform>, Error> {
+    let platform = open_named(name, data, at, island)?;
+    if name == "matterport"
+        && let Some(lack) = data.and_then(Matterport::lack_of_objects)
+    {
+        output::pass_on(&lack);
+    }
+    Ok(platform)
+}
+
+/// Opens a platform by its name, with the folder or file of its data, or the address of a running one, and the island
+/// of its navmesh on which paths are drawn.
+///
+/// # Errors
+/// When there is none of that name in this build, or its data cannot be opened.
+pub fn open_named(
+    name: &str,
+    data: Option<&Path>,
+    at: Option<&str>,
+    island: Option<usize>,
+) -> Result<Box<dyn Platform>, Error> {
+    if let Some(flag) = unused(name, data, at, island) {
+        let problem = format!("platform {name} takes no {flag}");
+        return Err(Error::usage(problem, "name the platform that it is for, as in --platform recording"));
+    }
+    let data = || data.ok_or_else(|| no_data(name));
+    match name {
+        "house" => Ok(Box::new(HousePlatform::default())),
+        "matterport" => Ok(Box::new(Matterport::open(data()?)?)),
+        "process" => child(data()?),
+        #[cfg(feature = "habitat")]
+        "habitat" => {
+            let options = HabitatOptions { island, ..HabitatOptions::default() };
+            Ok(Box::new(HabitatPlatform::open(data()?, options, Arc::new(output::pass_on))?))
+        }
+        #[cfg(feature = "live")]
+        "tdw" => live::tdw(data().ok(), at),
+        #[cfg(feature = "live")]
+        "virtualhome" => live::virtualhome(at),
+        "recording" => Ok(Box::new(RecordingPlatform::open(data()?, Arc::new(output::pass_on))?)),
+        absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
+            Err(Error::not_built(format!("this build has no platform {absent}")))
+        }
+        other => Err(Error::usage(
+            format!("there is no platform {other:?}{}", did_you_mean(other, names())),
+            format!("name one of: {}", names().join(", ")),
+        )),
+    }
+}
+
+/// A platform that is another program. If this program is killed, a second copy of it ends that one.
+fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
+    let options = process::ProcessOptions { guard: process::this_program(), ..process::ProcessOptions::read(file)? };
+    Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?))
+}
+
+/// The flag that a platform does not use. Otherwise `--data` without `--platform` would silently give a generated
+/// house.
+fn unused(name: &str, data: Option<&Path>, at: Option<&str>, island: Option<usize>) -> Option<&'static str> {
+    let runs = matches!(name, "tdw" | "virtualhome");
+    match (data, at) {
+        (Some(_), _) if matches!(name, "house" | "virtualhome") => Some("--data"),
+        (_, Some(_)) if !runs => Some("--at"),
+        _ if island.is_some() && name != "habitat" => Some("--island"),
+        _ => None,
+    }
+}
+
+fn no_data(name: &str) -> Error {
+    let needs = PLATFORMS.into_iter().find(|platform| platform.name == name).map_or("", |platform| platform.needs);
+    Error::usage(format!("platform {name} needs --data"), format!("it needs {needs}"))
+}

@@ -1,0 +1,103 @@
+//! A platform that remembers its views, so that each is made once per path.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View,
+    ViewpointGraph, ViewpointId, Way,
+};
+
+/// A platform that remembers the views it has given: perception, evidence and report look at the same ones.
+pub struct Remembering<'a> {
+    platform: &'a dyn Platform,
+    views: Mutex<BTreeMap<Key, View>>,
+}
+
+/// Place, heading and width, as bits: equal looks give equal views.
+type Key = (([u64; 3], Option<ViewpointId>), u64, u64);
+
+impl<'a> Remembering<'a> {
+    /// Nothing remembered yet.
+    #[must_use]
+    pub fn new(platform: &'a dyn Platform) -> Self {
+        Self { platform, views: Mutex::default() }
+    }
+}
+
+fn key(from: &Frame, gaze: Gaze) -> Key {
+    // Headings that differ only by rounding look at the same thing.
+    let micro_rad = |rad: f64| (rad * 1e6).round() as u64;
+    (from.place(), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
+}
+
+impl Platform for Remembering<'_> {
+    fn name(&self) -> &'static str {
+        self.platform.name()
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.scenes()
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.platform.graph(scene)
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        self.platform.sample_path(scene, request, seed)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let key = key(from, gaze);
+        if let Some(view) = self.views.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Ok(view.clone());
+        }
+        let view = self.platform.look(scene, from, gaze)?;
+        self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+        Ok(view)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let key = key(from, gaze);
+        if let Some(view) = self.views.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Ok(view.clone());
+        }
+        let view = self.platform.look_without_picture(scene, from, gaze)?;
+        // A view with its picture is complete.
+        if view.image.is_some() {
+            self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+        }
+        Ok(view)
+    }
+
+    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        self.platform.look_down(scene, level)
+    }
+
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        self.platform.object_name(scene, near, object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        self.platform.visible_from(scene, object)
+    }
+
+    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+        self.platform.way(scene, from, to)
+    }
+
+    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+        self.platform.islands(scene)
+    }
+
+    fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+        self.platform.scene_file(scene)
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.platform.files(scene)
+    }
+}

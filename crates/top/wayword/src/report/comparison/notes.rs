@@ -1,0 +1,200 @@
+//! The notes beside the figures, the same for every format. The text is not escaped yet.
+
+use super::figures::{DEAF, Figure, deaf, name, other_path};
+use crate::count::count;
+use wayword_metrics::{Metric, Rule};
+use wayword_navigation::comparison::{About, AgentKind, Comparison, FEWEST_PATHS, Listening, Set, Swapped};
+
+/// What was compared, and on how many items.
+pub(super) fn subject(about: &About) -> String {
+    format!(
+        "{}, {}: {} on {}",
+        name(&about.platform),
+        name(&about.episodes),
+        count(about.items, "item"),
+        count(about.paths, "path")
+    )
+}
+
+/// What counts as success.
+pub(super) fn success(rule: Rule) -> String {
+    let rule = match rule {
+        Rule::Distance => "the agent stops less than 3 m from the goal (R2R's rule; REVERIE's own is stricter)",
+        Rule::Visible => "the target is visible where the agent stops (REVERIE's rule)",
+    };
+    format!("Success: {rule}.")
+}
+
+/// A set, its source and its size.
+pub(super) fn set(set: &Set) -> String {
+    let from = if set.source.is_empty() || set.source == set.name {
+        String::new()
+    } else {
+        format!(" ({})", name(&set.source))
+    };
+    let left_out = match set.left_out {
+        0 => String::new(),
+        left_out => format!("; {} left out, because another set lacks them", count(left_out, "item")),
+    };
+    format!("{}{from}: {} of {:.1} words{left_out}", name(&set.name), count(set.texts, "text"), set.words)
+}
+
+/// Warnings, shown before anything else: the agents whose rows say nothing about the instructions, and why.
+pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
+    let lost = |swapped: &Swapped| {
+        let lost = swapped.lost.figures.get(&Metric::SuccessRate);
+        lost.map_or_else(String::new, |lost| {
+            let paths = count(lost.clusters, "path");
+            format!(" (it costs {} points of SR on {paths})", Figure::of(Metric::SuccessRate, lost))
+        })
+    };
+    let note = |swapped: &Swapped| {
+        format!(
+            "{DEAF} {} is not shown to do worse with another path's instruction{}, so its rows say nothing about the instructions.",
+            name(&swapped.agent),
+            lost(swapped)
+        )
+    };
+    let mut warnings: Vec<String> = deaf(comparison).map(note).collect();
+    let is_tested = |agent: &str| {
+        other_path(comparison).any(|swapped| swapped.agent == agent && swapped.listening != Listening::TooFew)
+    };
+    let mut untested: Vec<String> = Vec::new();
+    for row in comparison.rows.iter().filter(|row| row.kind == AgentKind::Agent && !is_tested(&row.agent)) {
+        let agent = name(&row.agent);
+        if !untested.contains(&agent) {
+            untested.push(agent);
+        }
+    }
+    if !untested.is_empty() {
+        let agents = untested.join(", ");
+        warnings.push(format!(
+            "{agents}: the swap test with another path's instruction covers fewer than {FEWEST_PATHS} paths, so it is not known whether the rows say anything about the instructions."
+        ));
+    }
+    warnings
+}
+
+/// The agents that are shown to follow their instructions, and by how much.
+pub(super) fn listeners(comparison: &Comparison) -> Vec<String> {
+    let note = |swapped: &Swapped| {
+        let lost = swapped.lost.figures.get(&Metric::SuccessRate).filter(|_| swapped.listening == Listening::Shown)?;
+        let lost = Figure::of(Metric::SuccessRate, lost);
+        let paths = count(swapped.lost.figures.get(&Metric::SuccessRate)?.clusters, "path");
+        let agent = name(&swapped.agent);
+        Some(format!(
+            "{agent} follows its instructions: another path's instruction costs it {lost} points of SR on {paths}."
+        ))
+    };
+    other_path(comparison).filter_map(note).collect()
+}
+
+/// How all figures were made, and how to read them.
+pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
+    let mut notes = of_table(comparison);
+    notes.extend(of_differences(comparison));
+    notes.push(made_by(&comparison.about));
+    notes
+}
+
+/// The same for a table that stands alone.
+pub(super) fn notes_of_table(comparison: &Comparison) -> Vec<String> {
+    let mut notes = of_table(comparison);
+    notes.push(made_by(&comparison.about));
+    notes
+}
+
+fn made_by(about: &About) -> String {
+    format!("Made by Wayword {}.", name(&about.wayword))
+}
+
+fn of_table(comparison: &Comparison) -> Vec<String> {
+    let about = &comparison.about;
+    let mut notes = vec![
+        format!(
+            "The figure of an item is the mean over its texts, that of a row the mean over the {}. Rates and shares are in per cent.",
+            count(about.items, "item")
+        ),
+        format!(
+            "Intervals [low, high] cover {}: percentile bootstrap, {} resamples, seed {}, clustered by path ({} on {}), because items on one path are not independent.",
+            level(about.level),
+            about.resamples,
+            about.seed,
+            count(about.items, "item"),
+            count(about.paths, "path")
+        ),
+    ];
+    notes.extend(grounding(comparison));
+    notes.push(format!("Instructions are split into phrases by {}.", name(&about.splitter)));
+    if comparison.rows.iter().any(|row| row.kind != AgentKind::Agent) {
+        notes.push(
+            "A lower bound reads no instruction. An agent that knows the map also knows the label of every room, and reads which room is meant. The upper bound knows the goal."
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// How to read differences and swaps, if there are any.
+fn of_differences(comparison: &Comparison) -> Vec<String> {
+    let mut notes = Vec::new();
+    if comparison.rows.iter().any(|row| row.against_first.is_some()) || !comparison.swaps.is_empty() {
+        notes.push(
+            "McNemar's p (on the first text of each item) is descriptive, because it treats items as independent and they are not. \"Only this\" and \"only first\" count the items on which only one of the two succeeds."
+                .to_owned(),
+        );
+    }
+    if !comparison.swaps.is_empty() {
+        notes.push(
+            "Swaps: the loss is the figure with the original texts minus the figure with the swapped ones, over the texts that the swap changes. An agent follows what was swapped if the whole interval of the lost SR is above 0."
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// What scored the views. Ground-truth labels are named as such, so that nobody takes them for perception.
+fn grounding(comparison: &Comparison) -> Vec<String> {
+    let about = &comparison.about;
+    let nature =
+        |grounder: &str| if grounder.starts_with("labels") { ": ground-truth labels, not perception" } else { "" };
+    let detects = |agent: &str| agent.starts_with("glip");
+    let encoder =
+        about.encoder.as_deref().map_or_else(String::new, |encoder| format!(", encoded by {}", name(encoder)));
+    let mut notes = vec![format!("Views are scored by {}{encoder}{}.", name(&about.grounder), nature(&about.grounder))];
+    if about.grounder.starts_with("labels") && about.rule == Rule::Visible {
+        notes.push(
+            "The same labels score the views and decide whether the target is visible, so an agent recognises success more easily than one that has to see."
+                .to_owned(),
+        );
+    }
+    notes.push(match about.swept {
+        true => "The thresholds of the agents were chosen on REVERIE's train split.".to_owned(),
+        false => "The thresholds of the agents were not chosen for this grounder: read its rows with care.".to_owned(),
+    });
+    if about.failed > 0 {
+        notes.push(format!(
+            "{} could not be walked, because a model failed on one of their texts.",
+            count(about.failed, "item")
+        ));
+    }
+    if comparison.rows.iter().any(|row| detects(&row.agent)) {
+        notes.push(format!(
+            "GLIP-Nav uses a label detector ({}{}), because the GLIP network is not in this program.",
+            name(&about.detector),
+            nature(&about.detector)
+        ));
+    }
+    if about.grounder.starts_with("labels") && comparison.sets.len() > 1 {
+        notes.push(
+            "Instructions that were written from the same labels share the grounder's words. If such a set does better than people's here, that does not mean that it would with an agent that has to see."
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// As 95 %.
+fn level(level: f64) -> String {
+    format!("{} %", (1000.0 * level).round() / 10.0)
+}

@@ -1,0 +1,220 @@
+//! Answers from ground truth. It is called `labels` wherever it takes part, because it perceives nothing.
+
+use crate::dialogue::{Asked, Wanted, asked};
+use wayword_core::{Answer, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
+use wayword_language::lexicon::{agree, counted, normal, plural, same_room, with_article};
+
+/// The answerer that reads a view's labels.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Labels;
+
+/// Most kinds of objects that a description names, the nearest first.
+const MOST_NAMED: usize = 12;
+
+impl Answerer for Labels {
+    fn name(&self) -> &str {
+        "labels"
+    }
+
+    fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
+        asks.iter().map(|ask| answer(ask.view, ask.question)).collect()
+    }
+}
+
+fn answer(view: &View, question: &str) -> Result<Answer, ModelError> {
+    let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
+        name: "labels".into(),
+        needs: "labels",
+        hint: "name a model that sees pictures, as in --see ollama/llava (docs/MODELS.md), or use a platform with labels",
+    })?;
+    Ok(match asked(question) {
+        Asked::Room => truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room))),
+        Asked::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
+        Asked::Presence { wanted, or } => presence(view, truth, &wanted, or),
+        Asked::Colour { name, .. } => colour(truth, &name),
+        Asked::Number(wanted) => number(truth, &wanted),
+        Asked::Place(wanted) => presence(view, truth, &[wanted], false),
+        Asked::Other(Some(side)) => describe(view, truth, Some(side)),
+        Asked::Other(None) if wants_all(question) => describe(view, truth, None),
+        Asked::Other(None) => not_sure(),
+    })
+}
+
+/// Whether a question asks for everything in the view.
+fn wants_all(question: &str) -> bool {
+    let asked = question.to_lowercase();
+    ["describe", "objects", "what do you see", "what can you see", "what is there"]
+        .iter()
+        .any(|all| asked.contains(all))
+}
+
+fn not_sure() -> Answer {
+    "I am not sure.".to_owned()
+}
+
+fn third(view: &View, label: &Label) -> Where {
+    Where::at(view.pose.heading.turn_to(label.heading), view.horizontal_fov_rad)
+}
+
+fn phrase(third: Where) -> &'static str {
+    match third {
+        Where::Left => "on the left",
+        Where::Middle => "in the middle",
+        Where::Right => "on the right",
+    }
+}
+
+/// "There is a bed in the middle, two lamps on the left and a chair on the right."
+fn describe(view: &View, truth: &GroundTruth, only: Option<Where>) -> Answer {
+    let mut groups: Vec<(&str, Where, f64, usize)> = Vec::new();
+    for label in &truth.labels {
+        let (third, distance_m) = (third(view, label), label.distance_m.unwrap_or(f64::INFINITY));
+        if only.is_some_and(|only| only != third) {
+            continue;
+        }
+        match groups.iter_mut().find(|(name, at, ..)| *name == label.name && *at == third) {
+            Some(group) => (group.2, group.3) = (group.2.min(distance_m), group.3 + 1),
+            None => groups.push((&label.name, third, distance_m, 1)),
+        }
+    }
+    groups.sort_by(|a, b| a.2.total_cmp(&b.2));
+    let items: Vec<String> = groups
+        .iter()
+        .take(MOST_NAMED)
+        .map(|(name, third, _, count)| format!("{} {}", counted(*count, name), phrase(*third)))
+        .collect();
+    let verb = if groups.first().is_some_and(|group| group.3 > 1) { "are" } else { "is" };
+    match items.as_slice() {
+        [] => "I see nothing of note.".to_owned(),
+        [only] => format!("There {verb} {only}."),
+        [before @ .., last] => format!("There {verb} {} and {last}.", before.join(", ")),
+    }
+}
+
+/// "Yes, on the left.", "No, there is no lamp."; of several that are asked for, which are there.
+fn presence(view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> Answer {
+    let found: Vec<(&Wanted, Option<&Label>)> =
+        wanted.iter().map(|wanted| (wanted, find(view, truth, wanted))).collect();
+    if let [(wanted, label)] = found.as_slice() {
+        return match label {
+            Some(label) => format!("Yes, {}.", phrase(third(view, label))),
+            None => no(&wanted.said, wanted.several),
+        };
+    }
+    let there: Vec<String> = found
+        .iter()
+        .filter_map(|(wanted, label)| {
+            Some(format!("{} {}", with_article(&wanted.name), phrase(third(view, (*label)?))))
+        })
+        .collect();
+    let missing: Vec<&str> =
+        found.iter().filter(|(_, label)| label.is_none()).map(|(wanted, _)| wanted.said.as_str()).collect();
+    match (there.as_slice(), missing.as_slice()) {
+        ([], missing) => no(&missing.join(" or "), false),
+        (there, []) => format!("Yes, there is {}.", there.join(" and ")),
+        (there, missing) => {
+            let begin = if or { "Yes" } else { "No" };
+            format!("{begin}, there is {}. There is no {}.", there.join(" and "), missing.join(" or "))
+        }
+    }
+}
+
+fn no(said: &str, several: bool) -> Answer {
+    format!("No, there {} no {said}.", if several { "are" } else { "is" })
+}
+
+/// The label that a question asks for, of the colour and in the part of the view that it names.
+fn find<'a>(view: &View, truth: &'a GroundTruth, wanted: &Wanted) -> Option<&'a Label> {
+    let has_colour = |label: &Label| wanted.colour.is_none() || label.colour == wanted.colour;
+    let is_there = |label: &Label| wanted.place.is_none_or(|place| place == third(view, label));
+    truth.labels.iter().find(|label| agree(&label.name, &wanted.name) && has_colour(label) && is_there(label))
+}
+
+fn number(truth: &GroundTruth, wanted: &Wanted) -> Answer {
+    match truth.labels.iter().filter(|label| agree(&label.name, &wanted.name)).count() {
+        0 => format!("There are no {}.", plural(&wanted.name)),
+        count => format!("There {} {}.", if count > 1 { "are" } else { "is" }, counted(count, &wanted.name)),
+    }
+}
+
+fn is_room(room: &str, name: &str) -> Answer {
+    if same_room(room, name) { "Yes.".to_owned() } else { format!("No, it is {}.", with_article(room)) }
+}
+
+fn colour(truth: &GroundTruth, name: &str) -> Answer {
+    let label = truth.labels.iter().find(|label| normal(&label.name) == normal(name));
+    label.and_then(|label| label.colour.as_ref()).map_or_else(not_sure, |colour| format!("The {name} is {colour}."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::{DVec3, Heading, ObjectId, Pose};
+
+    fn view() -> View {
+        let label = |id: &str, name: &str, deg: f64, colour: Option<&str>| Label {
+            object: ObjectId::new(id).unwrap(),
+            name: name.into(),
+            heading: Heading::new(deg.to_radians()).unwrap(),
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: Some(deg.abs()),
+            position: None,
+            colour: colour.map(str::to_owned),
+        };
+        let labels = vec![
+            label("1", "sofa", 0.0, Some("green")),
+            label("2", "lamp", -30.0, None),
+            label("3", "lamp", -35.0, None),
+            label("4", "oven", 35.0, None),
+        ];
+        let truth = GroundTruth { labels, lists_objects: true, room: Some("office".into()) };
+        View::new(Pose::level(DVec3::ZERO, Heading::NORTH), std::f64::consts::FRAC_PI_2, None, Some(truth))
+    }
+
+    fn ask(question: &str) -> String {
+        let view = view();
+        Labels.answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap()
+    }
+
+    #[test]
+    fn it_tells_what_is_there_and_what_is_not() {
+        assert_eq!(
+            ask(crate::dialogue::OPENING),
+            "There is a sofa in the middle, two lamps on the left and an oven on the right."
+        );
+        assert_eq!(ask("Which room is this?"), "It is an office.");
+        assert_eq!(ask("Is there a couch?"), "Yes, in the middle.");
+        assert_eq!(ask("Is there a mirror?"), "No, there is no mirror.");
+        assert_eq!(ask("What colour is the sofa?"), "The sofa is green.");
+        assert_eq!(ask("What colour is the oven?"), "I am not sure.");
+    }
+
+    #[test]
+    fn free_questions_are_answered_too() {
+        for (question, answer) in [
+            ("Do you see a lamp?", "Yes, on the left."),
+            ("Are there any chairs in the room?", "No, there are no chairs."),
+            ("Is there really an oven?", "Yes, on the right."),
+            ("Is there a red sofa?", "No, there is no red sofa."),
+            ("Is there a lamp on the right?", "No, there is no lamp."),
+            ("Is there a lamp or a mirror?", "Yes, there is a lamp on the left. There is no mirror."),
+            ("Do you see a mirror or a bed?", "No, there is no mirror or bed."),
+            ("What kind of room is this?", "It is an office."),
+            ("Is this a kitchen?", "No, it is an office."),
+            ("How many lamps are there?", "There are two lamps."),
+            ("Where is the oven?", "Yes, on the right."),
+            ("What is on the left side of the room?", "There are two lamps on the left."),
+            ("Is there a door leading to the living room?", "No, there is no door."),
+            ("What is the weather like?", "I am not sure."),
+        ] {
+            assert_eq!(ask(question), answer, "{question}");
+        }
+    }
+
+    #[test]
+    fn without_labels_it_says_so() {
+        let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
+        assert!(Labels.answer(&[Ask { view: &blind, question: "Which room is this?", history: &[] }])[0].is_err());
+    }
+}

@@ -1,0 +1,7 @@
+//! What needs no model: answers from ground-truth labels, and rules for how a target differs from others of its name.
+
+mod distinguish;
+mod labels;
+
+pub use distinguish::distinguish;
+pub use labels::Labels;
