@@ -118,7 +118,7 @@ impl Home {
         if let Some(seen_from) = self.seen_from.get() {
             return Ok(seen_from);
         }
-        let seen = seen_from(&self.graph, |eye| self.labels_around(Pose::level(eye, Heading::NORTH)))?;
+        let seen = seen_from(&self.graph, |eye, heading| self.labels_around(Pose::level(eye, heading)))?;
         Ok(self.seen_from.get_or_init(|| seen))
     }
 

@@ -12,7 +12,7 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
 };
 use wayword_core::{
-    DVec3, Failure, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
+    DVec3, Failure, Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
     SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
@@ -321,7 +321,7 @@ impl<S: Simulator> Platform for Live<S> {
         }
         if known.seen_from.get().is_none() {
             let mut walker = Walker(self, scene);
-            let seen = seen_from(&known.graph, |eye| walker.labels_around(Pose::level(eye, Heading::NORTH)))?;
+            let seen = seen_from(&known.graph, |eye, heading| walker.labels_around(Pose::level(eye, heading)))?;
             // Another thread may have been faster: it found the same.
             let _ = known.seen_from.set(seen);
         }

@@ -1,21 +1,55 @@
 //! Which viewpoints each object is seen from.
 
-use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DVec3, Label, ObjectId, PlatformError, ViewpointGraph, ViewpointId};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    f64::consts::FRAC_PI_4,
+};
+use wayword_core::{DVec3, Heading, Label, ObjectId, PlatformError, ViewpointGraph, ViewpointId};
 
-/// The viewpoints from which each object is seen. `labels_around` gives what is visible around an eye.
+/// The viewpoints from which each object is seen. `labels_around` gives what four views show around an eye, the first of them along
+/// a heading. It is called for two headings, half a view apart, because two views can share an object so that neither shows enough of
+/// it.
 ///
 /// # Errors
 /// When `labels_around` fails.
 pub fn seen_from(
     graph: &ViewpointGraph,
-    mut labels_around: impl FnMut(DVec3) -> Result<Vec<Label>, PlatformError>,
+    mut labels_around: impl FnMut(DVec3, Heading) -> Result<Vec<Label>, PlatformError>,
 ) -> Result<BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
     let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
     for viewpoint in graph.viewpoints() {
-        for label in labels_around(graph.position(viewpoint).unwrap_or_default())? {
-            seen_from.entry(label.object).or_default().insert(viewpoint.clone());
+        let eye = graph.position(viewpoint).unwrap_or_default();
+        for heading in [Heading::NORTH, Heading::NORTH.turned(FRAC_PI_4)] {
+            for label in labels_around(eye, heading)? {
+                seen_from.entry(label.object).or_default().insert(viewpoint.clone());
+            }
         }
     }
     Ok(seen_from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two of the first four views share an object, and neither shows enough of it for a label.
+    #[test]
+    fn an_object_on_the_border_of_two_views_is_seen() {
+        let viewpoint = ViewpointId::new("hall").unwrap();
+        let mut graph = ViewpointGraph::default();
+        graph.add(viewpoint.clone(), DVec3::ZERO, None).unwrap();
+        let sofa = ObjectId::new("1").unwrap();
+        let label = Label {
+            object: sofa.clone(),
+            name: "sofa".to_owned(),
+            heading: Heading::NORTH,
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: Some(2.0),
+            position: None,
+            colour: None,
+        };
+        let whole = |_, heading: Heading| Ok(if heading == Heading::NORTH { Vec::new() } else { vec![label.clone()] });
+        assert_eq!(seen_from(&graph, whole).unwrap()[&sofa], BTreeSet::from([viewpoint]));
+    }
 }

@@ -122,9 +122,9 @@ impl Home {
     }
 
     /// All objects that are visible around a place, found in small pictures.
-    pub(super) fn labels_around(&self, eye: DVec3) -> Result<Vec<Label>, PlatformError> {
+    pub(super) fn labels_around(&self, eye: DVec3, heading: Heading) -> Result<Vec<Label>, PlatformError> {
         let Some(semantics) = &self.semantics else { return Ok(Vec::new()) };
-        let quarters = Gaze::around(Heading::NORTH).into_iter();
+        let quarters = Gaze::around(heading).into_iter();
         let labels = quarters.map(|gaze| semantics.labels(&camera(eye, gaze, [320, 240]), gaze));
         let labels: Result<Vec<Vec<Label>>, RenderError> = labels.collect();
         Ok(labels.map_err(|error| self.refused(&error))?.into_iter().flatten().collect())
@@ -135,7 +135,7 @@ impl Home {
         if let Some(seen_from) = self.seen_from.get() {
             return Ok(seen_from);
         }
-        let seen = seen_from(&self.graph, |eye| self.labels_around(eye))?;
+        let seen = seen_from(&self.graph, |eye, heading| self.labels_around(eye, heading))?;
         Ok(self.seen_from.get_or_init(|| seen))
     }
 

@@ -3,7 +3,7 @@
 use super::home::Home;
 use crate::{axes::EYE_M, ground::stops_along};
 use rand::Rng;
-use wayword_core::{DVec3, Frame, Path, PathRequest, PlatformError, Target, path::Stop, rng};
+use wayword_core::{DVec3, Frame, Heading, Path, PathRequest, PlatformError, Target, path::Stop, rng};
 use wayword_world::{
     graph_walk::target,
     wander::{Wander, wander},
@@ -39,7 +39,7 @@ impl<R: Rng> Wander for Walker<'_, R> {
     }
 
     fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError> {
-        Ok(target(&self.home.labels_around(last.pose.position)?, &mut self.dice))
+        Ok(target(&self.home.labels_around(last.pose.position, Heading::NORTH)?, &mut self.dice))
     }
 
     fn knows_objects(&self) -> bool {
