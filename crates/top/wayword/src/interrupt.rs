@@ -4,6 +4,11 @@
 //! every file whole.
 
 use crate::{calls::Calls, error::Error, output::Output};
+#[cfg(unix)]
+use signal_hook::{
+    consts::{SIGINT, SIGTERM},
+    iterator::Signals,
+};
 use std::{
     path::{Path, PathBuf},
     sync::{
@@ -74,16 +79,22 @@ pub fn check() -> Result<(), Error> {
     if is_asked() { Err(Error::Interrupted) } else { Ok(()) }
 }
 
-/// Listens for SIGINT and SIGTERM until the process ends. SIGHUP is left alone, because `nohup` has to work.
+/// Interrupts that nobody has handled yet.
+pub struct Pending(#[cfg(unix)] Option<Signals>);
+
+/// Catches SIGINT and SIGTERM from now on. SIGHUP is left alone, because `nohup` has to work.
 #[cfg(unix)]
-pub fn listen(output: &Output) {
-    use signal_hook::{
-        consts::{SIGINT, SIGTERM},
-        iterator::Signals,
-    };
-    let output = *output;
+#[must_use]
+pub fn catch() -> Pending {
     // Without a handler the signals end the process, as usual.
-    let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
+    Pending(Signals::new([SIGINT, SIGTERM]).ok())
+}
+
+/// Handles interrupts until the process ends, those since [`catch`] among them.
+#[cfg(unix)]
+pub fn listen(pending: Pending, output: &Output) {
+    let output = *output;
+    let Some(mut signals) = pending.0 else { return };
     thread::spawn(move || {
         for _ in signals.forever() {
             let again = ASKED.swap(true, Ordering::Relaxed);
@@ -112,9 +123,16 @@ fn finish(ending: &Ending, output: Output) {
     });
 }
 
-/// See above.
+/// Catches nothing: the system ends the process.
 #[cfg(not(unix))]
-pub fn listen(_: &Output) {}
+#[must_use]
+pub fn catch() -> Pending {
+    Pending()
+}
+
+/// Handles nothing.
+#[cfg(not(unix))]
+pub fn listen(_: Pending, _: &Output) {}
 
 #[cfg(unix)]
 fn end_at_once(output: &Output) {

@@ -6,6 +6,7 @@ use wayword::{cli::Cli, commands, error::Exit, interrupt, output::Output};
 
 fn main() -> ExitCode {
     wayword_platforms::process::stand_guard_if_asked();
+    let pending = interrupt::catch();
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         // If a decoder panics on a file, the error about that file reports it.
@@ -15,7 +16,7 @@ fn main() -> ExitCode {
     }));
     let cli = Cli::parse();
     let output = Output::new(cli.json, cli.quiet);
-    interrupt::listen(&output);
+    interrupt::listen(pending, &output);
     match commands::run(cli.command, &output) {
         Ok(code) => code.into(),
         Err(error) => {
