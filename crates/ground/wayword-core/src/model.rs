@@ -83,9 +83,9 @@ pub trait LanguageModel: Send + Sync {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModelError {
     /// The view lacks what this role looks at.
-    #[error("{name} needs {needs}, and this view has none: {hint}")]
+    #[error("{name} needs {needs}, but this platform has none for this view: {hint}")]
     NothingToSee {
-        /// Who: `labels`, or the model's name.
+        /// Who: the model's name, or the flag with what it names, as in `--see labels`.
         name: String,
         /// Labels, or an image.
         needs: &'static str,
@@ -116,6 +116,8 @@ pub enum ModelError {
         reason: String,
         /// How to go on.
         hint: String,
+        /// Whether the reason is a disk that is full or gone, so that answers cannot be kept.
+        is_lost: bool,
     },
 }
 

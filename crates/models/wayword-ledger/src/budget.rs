@@ -31,7 +31,7 @@ pub enum Refused {
         next_usd: f64,
     },
     /// The price of the request is not known, and there is a limit on money.
-    #[error("--max-usd cannot be kept: the price of this model is not known")]
+    #[error("--max-usd cannot be enforced: the price of this model is not known")]
     NoPrice,
     /// The run has sent as many requests as it may.
     #[error("--max-calls {max_calls} is reached")]
@@ -45,6 +45,12 @@ pub enum Refused {
 }
 
 impl Refused {
+    /// Whether the ledger's disk is full or gone.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Ledger(error) if error.is_lost())
+    }
+
     /// The reason, and what to do.
     #[must_use]
     pub fn told(&self) -> (String, String) {

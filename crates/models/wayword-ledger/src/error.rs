@@ -1,15 +1,16 @@
 //! Errors of the ledger.
 
-use std::{path::PathBuf, sync::Arc};
+use rusqlite::ErrorCode;
+use std::{io::ErrorKind, path::PathBuf, sync::Arc};
 
 /// The ledger, or a recording, cannot be used.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum LedgerError {
     /// The file is not a ledger. It was left as it is.
-    #[error("{}: this file is not a ledger\nhint: give another file", .0.display())]
+    #[error("{}: this file is not a ledger\nhint: give a ledger with --ledger FILE, or leave the flag out for the default", .0.display())]
     NoLedger(PathBuf),
     /// A newer version of the program made the file. It was left as it is.
-    #[error("{}: a newer version of this program made this ledger (format {format})\nhint: use that version, or give another file", path.display())]
+    #[error("{}: a newer version of this program made this ledger (format {format})\nhint: use that version, or give another ledger with --ledger FILE", path.display())]
     Newer {
         /// The file.
         path: PathBuf,
@@ -45,6 +46,8 @@ pub enum LedgerError {
         reason: String,
         /// What to do.
         hint: &'static str,
+        /// Whether the disk is full, or fails.
+        is_lost: bool,
     },
     /// A file operation failed.
     #[error("{}: cannot {doing}: {source}\nhint: check that the file or its folder exists, that you may use it, and that the disk has room", path.display())]
@@ -57,7 +60,7 @@ pub enum LedgerError {
         source: Arc<std::io::Error>,
     },
     /// A line of a recording cannot be read.
-    #[error("{}: line {line}: {reason}\nhint: make the recording again with --record", path.display())]
+    #[error("{}: line {line}: {reason}\nhint: record the calls again with --record", path.display())]
     Recording {
         /// The file.
         path: PathBuf,
@@ -71,7 +74,23 @@ pub enum LedgerError {
 impl LedgerError {
     pub(crate) fn store(path: &std::path::Path, doing: &'static str) -> impl Fn(rusqlite::Error) -> Self {
         let path = path.to_owned();
-        move |error| Self::Store { path: path.clone(), doing, reason: error.to_string(), hint: hint(&error) }
+        move |error| Self::Store {
+            path: path.clone(),
+            doing,
+            reason: error.to_string(),
+            hint: hint(&error),
+            is_lost: matches!(error.sqlite_error_code(), Some(ErrorCode::DiskFull | ErrorCode::SystemIoFailure)),
+        }
+    }
+
+    /// Whether the disk is full or gone: the ledger is as good as before once there is room.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        match self {
+            Self::Store { is_lost, .. } => *is_lost,
+            Self::Io { source, .. } => matches!(source.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded),
+            _ => false,
+        }
     }
 
     pub(crate) fn io(path: &std::path::Path, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
@@ -81,7 +100,6 @@ impl LedgerError {
 }
 
 fn hint(error: &rusqlite::Error) -> &'static str {
-    use rusqlite::ErrorCode;
     match error.sqlite_error_code() {
         Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
             "another program has it locked: wait for that program, or give another --ledger"
@@ -94,5 +112,20 @@ fn hint(error: &rusqlite::Error) -> &'static str {
             "the file is damaged: move it away, or give another --ledger"
         }
         _ => "check the file and its folder, or give another --ledger",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rusqlite::ffi;
+    use std::path::Path;
+
+    #[test]
+    fn a_full_disk_is_a_loss_and_a_locked_database_is_not() {
+        let error = |code| rusqlite::Error::SqliteFailure(ffi::Error::new(code), None);
+        let store = |code| LedgerError::store(Path::new("ledger.db"), "write")(error(code));
+        assert!(store(ffi::SQLITE_FULL).is_lost() && store(ffi::SQLITE_IOERR_WRITE).is_lost());
+        assert!(!store(ffi::SQLITE_BUSY).is_lost());
     }
 }

@@ -69,7 +69,7 @@ pub enum OnceError<E> {
     #[error(transparent)]
     Refused(Refused),
     /// The call is not in the recording that all answers have to come from.
-    #[error("{}: this recording has no call to {model} with these words: {words:?}\nhint: record the run again with --record, with the same settings", recording.display())]
+    #[error("{}: this file of recorded calls has no call to {model} with these words: {words:?}\nhint: record the calls again with --record, with the same settings", recording.display())]
     NotRecorded {
         /// The recording.
         recording: PathBuf,

@@ -2,6 +2,9 @@
 
 use std::{path::PathBuf, sync::Arc};
 
+/// What to do about a damaged file. A fetch alone keeps the files that are in the cache.
+pub(crate) const FETCH_AGAIN: &str = "fetch it again: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`; if the folder is your own, copy the file into it again";
+
 /// A model cannot be found, fetched, loaded or computed.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum LocalError {
@@ -46,7 +49,7 @@ pub enum LocalError {
         hint: &'static str,
     },
     /// A tensor of a checkpoint is missing or wrong.
-    #[error("{}: tensor {tensor}: {problem}\nhint: the checkpoint is cut off or of another architecture; fetch it again, or choose another model", file.display())]
+    #[error("{}: tensor {tensor}: {problem}\nhint: the checkpoint is cut off or of another architecture; choose another model, or {FETCH_AGAIN}", file.display())]
     Tensor {
         /// The checkpoint.
         file: PathBuf,

@@ -1,6 +1,6 @@
 //! Reads the small JSON files of a model's folder.
 
-use crate::LocalError;
+use crate::{LocalError, error::FETCH_AGAIN};
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
@@ -21,7 +21,7 @@ pub(crate) fn read<T: DeserializeOwned>(folder: &Path, name: &str, what: &'stati
 pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Option<T>, LocalError> {
     let file = folder.join(name);
     let Ok(about) = std::fs::metadata(&file) else { return Ok(None) };
-    let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: "fetch it again" };
+    let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: FETCH_AGAIN };
     if about.len() > LONGEST {
         return Err(wrong(format!("it is too long: {} bytes", about.len())));
     }

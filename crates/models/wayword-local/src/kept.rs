@@ -91,8 +91,9 @@ impl LocalModel {
                 return failed(missing.to_string().lines().next().unwrap_or("not recorded").to_owned());
             }
         };
+        let is_lost = refused.is_lost();
         let (reason, hint) = refused.told();
-        ModelError::Stopped { reason, hint }
+        ModelError::Stopped { reason, hint, is_lost }
     }
 }
 

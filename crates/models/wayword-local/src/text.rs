@@ -1,6 +1,6 @@
 //! Turns words into ids and back, with a checkpoint's `tokenizer.json`.
 
-use crate::LocalError;
+use crate::{LocalError, error::FETCH_AGAIN};
 use std::path::{Path, PathBuf};
 
 /// Longest file of a tokenizer, bytes.
@@ -24,7 +24,7 @@ impl Tokenizer {
             what: "the tokenizer",
             hint: "fetch the whole model: wayword models fetch NAME".to_owned(),
         })?;
-        let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: "fetch it again" };
+        let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: FETCH_AGAIN };
         if length.len() > LONGEST {
             return Err(wrong(format!("it is too long for a tokenizer: {} bytes", length.len())));
         }
@@ -61,6 +61,6 @@ impl Tokenizer {
     }
 
     fn wrong(&self, problem: &str) -> LocalError {
-        LocalError::File { file: self.file.clone(), problem: problem.to_owned(), hint: "fetch it again" }
+        LocalError::File { file: self.file.clone(), problem: problem.to_owned(), hint: FETCH_AGAIN }
     }
 }

@@ -56,7 +56,7 @@ impl Finding {
     /// A problem, from the text of an error that ends in a hint.
     #[must_use]
     pub fn error(text: &str) -> Self {
-        let (what, to_do) = text.split_once("\nhint: ").unwrap_or((text, "see above"));
+        let (what, to_do) = text.split_once("\nhint: ").unwrap_or((text, "see docs/MODELS.md"));
         Self::problem(what, to_do)
     }
 }

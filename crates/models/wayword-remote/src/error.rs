@@ -36,7 +36,7 @@ pub enum ConfigError {
     },
     /// One base URL or key for several providers.
     #[error(
-        "one base URL or key variable cannot be used for both {first} and {second}\nhint: set base_url and key_env under [providers.{first}] and [providers.{second}]"
+        "--base-url and --key-env apply to one provider, but the roles use {first} and {second}\nhint: set base_url and key_env under [providers.{first}] and [providers.{second}]"
     )]
     Several {
         /// The provider that was named first.
@@ -54,7 +54,7 @@ pub enum ConfigError {
     },
     /// There is a limit on money, and a model without a price.
     #[error(
-        "the price of {0} is not known, so a limit on money cannot be kept\nhint: add its price to a file, and give the file with --prices FILE; if it runs on this machine, set local = true under its [providers.NAME]"
+        "the price of {0} is not known, so --max-usd cannot be enforced\nhint: give it with --prices FILE, where FILE has a row like \"{0}\" = {{ usd_per_million_in = 0.4, usd_per_million_out = 1.6, as_of = \"2026-11-01\" }}; if the model runs on this machine, set local = true under its [providers.NAME] instead"
     )]
     NoPrice(String),
     /// A number or a name that makes no sense.

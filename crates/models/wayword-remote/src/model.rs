@@ -122,7 +122,9 @@ impl RemoteModel {
         match error {
             OnceError::Call(Unanswered::Failed(reason)) => self.failed(reason),
             OnceError::Call(Unanswered::Lost(reason)) => ModelError::Lost { model: self.name.clone(), reason },
-            OnceError::Call(Unanswered::Closed(Closed { reason, hint })) => ModelError::Stopped { reason, hint },
+            OnceError::Call(Unanswered::Closed(Closed { reason, hint })) => {
+                ModelError::Stopped { reason, hint, is_lost: false }
+            }
             OnceError::Call(Unanswered::Refused(refused)) | OnceError::Refused(refused) => stopped(&refused),
             OnceError::Ledger(error) => stopped(&Refused::Ledger(error)),
             // The item also failed when the recording was made.
@@ -136,7 +138,7 @@ impl RemoteModel {
 /// The error after which the ledger allows no more requests.
 fn stopped(refused: &Refused) -> ModelError {
     let (reason, hint) = refused.told();
-    ModelError::Stopped { reason, hint }
+    ModelError::Stopped { reason, hint, is_lost: refused.is_lost() }
 }
 
 fn size(request: &Request) -> Size {

@@ -13,7 +13,7 @@ use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::Styl
 /// How the program ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
-    /// Everything was done, and every check passed.
+    /// Everything was done, and no check failed.
     Done = 0,
     /// The input is wrong: a flag, a file, a folder. Nothing was written.
     BadInput = 1,
@@ -45,7 +45,7 @@ fn advice(error: &io::Error) -> &'static str {
         }
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "\nhint: free some space, and give the same command again",
         ErrorKind::IsADirectory => "\nhint: give a file; this is a folder",
-        _ => "",
+        _ => "\nhint: check the file and its disk, and give the same command again",
     }
 }
 
@@ -122,7 +122,7 @@ pub enum Error {
     #[error("{}: another wayword process is writing to this run folder\nhint: wait for it, or give another --out", .0.display())]
     Busy(PathBuf),
     /// A process on another machine has the run folder, or had it when it was killed.
-    #[error("{}: {by} is writing to this run folder, or was killed while it did; on a network file system ({kind}) a lock does not show which\nhint: wait for it, or give another --out; if that process is gone, remove {} and give the same command again", folder.display(), mark.display())]
+    #[error("{}: {by} may still be writing to this run folder, or was killed while writing; on a network file system ({kind}) a lock cannot show which\nhint: wait for it, or give another --out; if that process is gone, remove {} and give the same command again", folder.display(), mark.display())]
     BusyElsewhere {
         /// The run folder.
         folder: PathBuf,
@@ -165,7 +165,11 @@ impl Error {
     /// Whether the disk is full or gone.
     fn is_of_the_disk(&self) -> bool {
         let is_full = |error: &io::Error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);
-        matches!(self, Self::Io { source, .. } if is_full(source) || is_lost_disk(source))
+        match self {
+            Self::Io { source, .. } => is_full(source) || is_lost_disk(source),
+            Self::Ledger(error) => error.is_lost(),
+            error => matches!(error.of_model(), Some(ModelError::Stopped { is_lost: true, .. })),
+        }
     }
 
     /// A failed file operation.
@@ -176,11 +180,16 @@ impl Error {
 
     /// Whether the provider of a model accepts no more requests.
     pub(crate) fn ends_sending(&self) -> bool {
+        self.of_model().is_some_and(ModelError::ends_run)
+    }
+
+    /// The error of a model, if it is one.
+    fn of_model(&self) -> Option<&ModelError> {
         match self {
             Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
-                error.ends_run()
+                Some(error)
             }
-            _ => false,
+            _ => None,
         }
     }
 
@@ -210,5 +219,9 @@ mod tests {
         let error = |kind| Error::io("walks.jsonl", "write")(IoError::from(kind)).exit_code();
         assert_eq!(error(ErrorKind::StorageFull), Exit::Lost);
         assert_eq!(error(ErrorKind::PermissionDenied), Exit::BadInput);
+        let stopped = |is_lost| {
+            Error::from(ModelError::Stopped { reason: "no more".into(), hint: "wait".into(), is_lost }).exit_code()
+        };
+        assert_eq!([stopped(true), stopped(false)], [Exit::Lost, Exit::Stopped]);
     }
 }

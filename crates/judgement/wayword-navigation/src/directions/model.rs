@@ -126,7 +126,7 @@ mod tests {
             self.heard.lock().unwrap().extend_from_slice(requests);
             let mut replies = self.replies.lock().unwrap();
             let reply = |text: &str| match text {
-                "budget" => Err(ModelError::Stopped { reason: "spent".into(), hint: "wait".into() }),
+                "budget" => Err(ModelError::Stopped { reason: "spent".into(), hint: "wait".into(), is_lost: false }),
                 text => Ok(Reply { text: text.to_owned(), finish: Finish::Stop }),
             };
             requests.iter().map_while(|_| replies.pop()).map(reply).collect()

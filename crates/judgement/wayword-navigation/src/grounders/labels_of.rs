@@ -2,12 +2,12 @@
 
 use wayword_core::{Label, ModelError, View};
 
-/// The labels of a view and its room.
+/// The labels of a view and its room, for the grounder named `by`.
 pub(super) fn labels_of<'a>(view: &'a View, by: &str) -> Result<(&'a [Label], Option<&'a str>), ModelError> {
     let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
-        name: by.to_owned(),
+        name: format!("--grounder {by}"),
         needs: "labels",
-        hint: "name a grounder that sees pictures, as --grounder hf/openai/clip-vit-base-patch32, or use a platform with labels",
+        hint: "name a grounder that sees pictures, as in --grounder hf/openai/clip-vit-base-patch32, or use a platform with labels",
     })?;
     Ok((&truth.labels, truth.room.as_deref()))
 }

@@ -123,6 +123,7 @@ impl Writer {
             doing: "write",
             reason: "the thread that writes it has ended".to_owned(),
             hint: "run the same command again",
+            is_lost: false,
         }
     }
 }

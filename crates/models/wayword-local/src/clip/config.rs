@@ -64,7 +64,7 @@ impl Config {
         written.complete().map_err(|problem| LocalError::File {
             file: folder.join("config.json"),
             problem,
-            hint: "choose a CLIP model, such as openai/clip-vit-base-patch32, or fetch it again",
+            hint: "choose a CLIP model, such as hf/openai/clip-vit-base-patch32; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
         })
     }
 }

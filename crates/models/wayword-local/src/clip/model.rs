@@ -1,7 +1,10 @@
 //! Both towers of CLIP, and the projections into their common space.
 
 use super::{config::Config, text::TextTower, vision::VisionTower};
-use crate::{Device, LocalError, Precision, ops::Linear, picture::Processor, text::Tokenizer, weights::Weights};
+use crate::{
+    Device, LocalError, Precision, error::FETCH_AGAIN, ops::Linear, picture::Processor, text::Tokenizer,
+    weights::Weights,
+};
 use candle_core::{DType, Result as Computed, Tensor};
 use std::path::Path;
 use wayword_core::Image;
@@ -37,8 +40,10 @@ impl Clip {
             let (height, width) = processor.size_px();
             return Err(LocalError::File {
                 file: folder.join("preprocessor_config.json"),
-                problem: format!("it makes pictures of {width} x {height} pixels, but the model sees {edge} x {edge}"),
-                hint: "the file belongs to another checkpoint; fetch it again",
+                problem: format!(
+                    "it belongs to another checkpoint: it makes pictures of {width} x {height} pixels, but the model sees {edge} x {edge}"
+                ),
+                hint: FETCH_AGAIN,
             });
         }
         let tokenizer = Tokenizer::load(folder)?;

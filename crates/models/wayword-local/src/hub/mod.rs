@@ -116,11 +116,11 @@ impl Hub {
         let repo = RepoFolder::new(&self.config.cache, model);
         let known = repo.commit_of(&model.revision);
         if self.config.offline {
-            return self.cached(model, &repo, known.as_ref(), needs);
+            return self.cached(name, model, &repo, known.as_ref(), needs);
         }
         if known.is_none() && !anew && repo.snapshot(&model.revision).is_dir() {
             // The user put files there. If they are not enough, the hub is asked.
-            if let Ok(found) = self.cached(model, &repo, None, needs) {
+            if let Ok(found) = self.cached(name, model, &repo, None, needs) {
                 return Ok(found);
             }
         }
@@ -134,6 +134,7 @@ impl Hub {
     /// Finds a model without the network. If no commit is known, uses a snapshot with the revision's name.
     fn cached(
         &self,
+        name: &ModelName,
         model: &OnHub,
         repo: &RepoFolder,
         known: Option<&Commit>,
@@ -143,7 +144,7 @@ impl Hub {
         let folder = repo.snapshot(known.map_or(model.revision.as_str(), Commit::as_str));
         let hint = |file: &str| {
             format!(
-                "download {} and put it there, or run `wayword models fetch NAME` with a network, and without WAYWORD_OFFLINE and HF_HUB_OFFLINE",
+                "download {} and put it there; or, with a network and with WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE unset, run `wayword models fetch {name}`",
                 self.client.address(model, &model.revision, file)
             )
         };

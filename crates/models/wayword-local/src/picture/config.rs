@@ -57,7 +57,7 @@ impl Config {
         built.map_err(|problem| LocalError::File {
             file: folder.join(FILE),
             problem,
-            hint: "choose a CLIP, BLIP or BLIP-2 model, or fetch it again",
+            hint: "choose a CLIP, BLIP or BLIP-2 model; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
         })
     }
 

@@ -9,7 +9,7 @@ mod scope;
 
 pub(crate) use scope::Scope;
 
-use crate::{Device, LocalError, Precision};
+use crate::{Device, LocalError, Precision, error::FETCH_AGAIN};
 use candle_core::{DType, Tensor};
 use pickled::Pickled;
 use safetensor::SafeFile;
@@ -142,7 +142,7 @@ fn parts(folder: &Path, index: &Path) -> Result<Vec<WeightFile>, LocalError> {
 /// # Errors
 /// When the index is damaged, or names something that is not a file in the same folder.
 pub(crate) fn part_names(index: &Path) -> Result<BTreeSet<String>, LocalError> {
-    let damaged = |problem: String| LocalError::File { file: index.to_owned(), problem, hint: "fetch it again" };
+    let damaged = |problem: String| LocalError::File { file: index.to_owned(), problem, hint: FETCH_AGAIN };
     let length = std::fs::metadata(index).map_err(|error| LocalError::io(index, "read", error))?.len();
     if length > LONGEST_INDEX {
         return Err(damaged(format!("it is too long for an index: {length} bytes")));

@@ -2,7 +2,7 @@
 //!
 //! candle reads the pickle as data; nothing in it is executed.
 
-use crate::LocalError;
+use crate::{LocalError, error::FETCH_AGAIN};
 use candle_core::{Tensor, pickle::PthTensors};
 use std::path::{Path, PathBuf};
 
@@ -18,8 +18,8 @@ impl Pickled {
         let length = std::fs::metadata(path).map_err(|error| LocalError::io(path, "read", error))?.len();
         let tensors = PthTensors::new(path, None).map_err(|error| LocalError::File {
             file: path.to_owned(),
-            problem: first_line(&error),
-            hint: "it is cut off or not a PyTorch checkpoint; fetch it again",
+            problem: format!("it is cut off or not a PyTorch checkpoint: {}", first_line(&error)),
+            hint: FETCH_AGAIN,
         })?;
         Ok(Self { path: path.to_owned(), tensors, length })
     }

@@ -1,6 +1,6 @@
 //! One safetensors file.
 
-use crate::LocalError;
+use crate::{LocalError, error::FETCH_AGAIN};
 use candle_core::{DType, Device, Tensor};
 use safetensors::{
     Dtype,
@@ -31,8 +31,8 @@ impl SafeFile {
         let io = |error| LocalError::io(path, "read", error);
         let damaged = |problem: String| LocalError::File {
             file: path.to_owned(),
-            problem,
-            hint: "it is cut off or not a safetensors file; fetch it again",
+            problem: format!("it is cut off or not a safetensors file: {problem}"),
+            hint: FETCH_AGAIN,
         };
         let mut file = File::open(path).map_err(io)?;
         let length = file.metadata().map_err(io)?.len();

@@ -182,7 +182,9 @@ pub(crate) fn of_transport(error: &ureq::Error, answered: Option<u16>, url: &str
         E::Timeout(Timeout::Connect | Timeout::Resolve) => {
             retry(format!("no connection to {url} within 10 seconds"), Load::Slow, false)
         }
-        E::Timeout(_) => retry("no complete answer in time".to_owned(), Load::Slow, true),
+        E::Timeout(_) => {
+            retry("no complete answer in time; give it more time with --timeout-s".to_owned(), Load::Slow, true)
+        }
         E::BodyExceedsLimit(_) => {
             Fault::Final { reason: format!("the answer is longer than {} MiB", LARGEST_BODY >> 20), maybe_paid: true }
         }

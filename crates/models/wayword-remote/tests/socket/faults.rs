@@ -94,7 +94,7 @@ fn a_trickle_ends_in_time() {
     });
     let start = Instant::now();
     let error = asked(&model(&server, "timeout_s = 0.5\nattempts = 1", &run()), "Well?").unwrap_err().to_string();
-    assert_eq!(error, "server/m: no complete answer in time (1 attempt)");
+    assert_eq!(error, "server/m: no complete answer in time; give it more time with --timeout-s (1 attempt)");
     assert!(start.elapsed() < Duration::from_secs(10));
 }
 

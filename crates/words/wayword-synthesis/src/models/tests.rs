@@ -139,7 +139,8 @@ fn a_summary_of_two_megabytes_is_left_to_rules() {
 
 #[test]
 fn what_a_model_does_not_do_is_told() {
-    let stop = ModelError::Stopped { reason: "the budget is spent".into(), hint: "raise --max-usd".into() };
+    let stop =
+        ModelError::Stopped { reason: "the budget is spent".into(), hint: "raise --max-usd".into(), is_lost: false };
     let model = Scripted::with(vec![Err(stop.clone())]);
     assert_eq!(ModelAsker::new(model, prompts()).next_question(&[]), Err(stop));
 }

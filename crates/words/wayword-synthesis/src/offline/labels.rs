@@ -23,7 +23,7 @@ impl Answerer for Labels {
 
 fn answer(view: &View, question: &str) -> Result<Answer, ModelError> {
     let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
-        name: "labels".into(),
+        name: "--see labels".into(),
         needs: "labels",
         hint: "name a model that sees pictures, as in --see ollama/llava (docs/MODELS.md), or use a platform with labels",
     })?;
@@ -215,6 +215,10 @@ mod tests {
     #[test]
     fn without_labels_it_says_so() {
         let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
-        assert!(Labels.answer(&[Ask { view: &blind, question: "Which room is this?", history: &[] }])[0].is_err());
+        let error = Labels.answer(&[Ask { view: &blind, question: "Which room is this?", history: &[] }]).remove(0);
+        let message = error.unwrap_err().to_string();
+        assert!(
+            message.starts_with("--see labels needs labels, but this platform has none for this view: name a model")
+        );
     }
 }

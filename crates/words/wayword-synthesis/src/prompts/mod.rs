@@ -53,7 +53,7 @@ pub enum PromptError {
         name: String,
     },
     /// It is no valid template, or asks for a variable that it does not get.
-    #[error("prompt {name}: {source}")]
+    #[error("prompt {name}.j2: {source}")]
     Template {
         /// Which prompt.
         name: String,
@@ -61,7 +61,7 @@ pub enum PromptError {
         source: minijinja::Error,
     },
     /// It uses something that takes memory or time without bound.
-    #[error("prompt {name}, line {line}: {what}")]
+    #[error("prompt {name}.j2, line {line}: {what}")]
     Refused {
         /// Which prompt.
         name: String,
@@ -71,7 +71,7 @@ pub enum PromptError {
         what: String,
     },
     /// It writes or does more than any prompt needs.
-    #[error("prompt {name}: {what}; write a shorter one")]
+    #[error("prompt {name}.j2: {what}; write a shorter one")]
     TooMuch {
         /// Which prompt.
         name: String,
@@ -84,7 +84,7 @@ impl From<PromptError> for ModelError {
     /// A prompt that cannot be filled would fail for every frame.
     fn from(error: PromptError) -> Self {
         let hint = "correct the template in the folder of --prompts".to_owned();
-        Self::Stopped { reason: error.to_string(), hint }
+        Self::Stopped { reason: error.to_string(), hint, is_lost: false }
     }
 }
 

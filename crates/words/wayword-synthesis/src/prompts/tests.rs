@@ -136,7 +136,7 @@ fn a_prompt_that_writes_without_bound_is_refused_with_the_bound() {
         "{{ [range(1000) | join('0123456789')] | map('replace', '', range(1000) | join('-')) | join }}",
     ] {
         let why = refused(source);
-        assert!(why.contains("prompt answer") && why.contains("8388608 bytes"), "{source}: {why}");
+        assert!(why.contains("prompt answer.j2: ") && why.contains("8388608 bytes"), "{source}: {why}");
     }
     let endless = "{% for a in range(1000) %}{% for b in range(1000) %}{% if a %}{% endif %}{% endfor %}{% endfor %}";
     assert!(refused(endless).contains("200000 steps"), "{}", refused(endless));

@@ -35,7 +35,9 @@ pub enum StyleError {
     #[error("style {0} has no reference texts: give at least one in `references`")]
     NoReferences(String),
     /// It has too many or too long reference texts.
-    #[error("style {0} has too many or too long reference texts: at most 1000 of 4000 bytes each")]
+    #[error(
+        "style {0} has more than {MOST_REFERENCES} reference texts, or one of more than {MOST_BYTES} bytes: give fewer or shorter ones"
+    )]
     TooLarge(String),
 }
 
@@ -64,6 +66,8 @@ pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
     let style: Style = toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().replace('\n', " ")))?;
     validated(style).map_err(|error| match error {
         StyleError::Unnamed => unreadable("its `name` is empty: give it one".into()),
+        StyleError::NoReferences(_) => StyleError::NoReferences(name.to_owned()),
+        StyleError::TooLarge(_) => StyleError::TooLarge(name.to_owned()),
         other => other,
     })
 }
@@ -138,6 +142,10 @@ mod tests {
         assert!(unnamed.contains("x.toml") && unnamed.contains("`name` is empty"), "{unnamed}");
         let unnamed = Style { name: String::new(), ..built_in("r2r").unwrap() };
         assert_eq!(validated(unnamed), Err(StyleError::Unnamed));
-        assert_eq!(parse("x", "name = \"x\"\nreferences = [\" \"]"), Err(StyleError::NoReferences("x".into())));
+        let empty = parse("x.toml", "name = \"x\"\nreferences = [\" \"]");
+        assert_eq!(empty, Err(StyleError::NoReferences("x.toml".into())));
+        let long = format!("name = \"x\"\nreferences = [\"{}\"]", "a".repeat(4001));
+        let long = parse("x.toml", &long).unwrap_err().to_string();
+        assert!(long.starts_with("style x.toml has more than 1000 reference texts, or one of more than 4000 bytes: "));
     }
 }

@@ -51,7 +51,9 @@ pub struct Complaint {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WriteError {
     /// The style ends in a task, and no object is known at the end.
-    #[error("the style ends in a task, but no object for one was seen from the last frame")]
+    #[error(
+        "this style needs a task, but no object for a task is known at the last frame: use a platform or data folder with objects, or another --style"
+    )]
     NoObject,
     /// The text is unusable; another attempt may be better.
     #[error("the text cannot be used: {reason}")]

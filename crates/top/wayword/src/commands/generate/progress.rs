@@ -56,7 +56,8 @@ impl<'a> Progress<'a> {
         let failed = match fate {
             Fate::Stopped(error) => {
                 // A call that an interrupt cut off looks like one that the ledger refused to send.
-                self.stop = interrupted().or_else(|| Some(Stop { reason: error.to_string(), exit: Exit::Stopped }));
+                let exit = error.exit_code();
+                self.stop = interrupted().or_else(|| Some(Stop { reason: error.to_string(), exit }));
                 return Ok(false);
             }
             Fate::Failed(failure, reason) => Some((failure, reason)),
