@@ -212,6 +212,14 @@ pub enum PlatformError {
         /// What to do.
         hint: String,
     },
+    /// A scene that cannot be drawn.
+    #[error("scene {scene} cannot be drawn: {reason}")]
+    NotDrawn {
+        /// The scene.
+        scene: SceneId,
+        /// Why.
+        reason: String,
+    },
     /// A viewpoint that the scene does not have.
     #[error("scene {scene} has no viewpoint {viewpoint}")]
     UnknownViewpoint {
@@ -221,7 +229,9 @@ pub enum PlatformError {
         viewpoint: ViewpointId,
     },
     /// A frame that names no viewpoint, on a platform that offers views from viewpoints only.
-    #[error("scene {scene} can only be seen from viewpoints of its graph, and this frame names none")]
+    #[error(
+        "scene {scene} can only be seen from the viewpoints of its viewpoint graph, but this frame names no viewpoint: use paths that name viewpoints"
+    )]
     NotAViewpoint {
         /// The scene.
         scene: SceneId,
@@ -235,12 +245,14 @@ pub enum PlatformError {
         source: GraphError,
     },
     /// No path of the kind that was asked for.
-    #[error("scene {scene} holds no path with {request}: widen --hops or --metres")]
+    #[error("scene {scene} has no path with {request}: widen {widen}")]
     NoSuchPath {
         /// The scene.
         scene: SceneId,
         /// What was asked for, in words.
         request: String,
+        /// The flags that can be widened.
+        widen: &'static str,
     },
     /// A file that cannot be read or used.
     #[error("{}: {reason}; {hint}", file.display())]
@@ -282,7 +294,7 @@ impl PlatformError {
             | Self::NotAViewpoint { .. }
             | Self::NoSuchPath { .. }
             | Self::NoFile { .. } => Failure::Missing,
-            Self::Graph { .. } | Self::File { .. } => Failure::Broken,
+            Self::NotDrawn { .. } | Self::Graph { .. } | Self::File { .. } => Failure::Broken,
             Self::Lost { .. } => Failure::Lost,
         }
     }

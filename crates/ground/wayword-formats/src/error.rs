@@ -9,7 +9,7 @@ use std::{
 #[derive(Debug, thiserror::Error)]
 pub enum FormatError {
     /// The operating system could not open, read or write the file.
-    #[error("{}: cannot {doing} it: {source}", file.display())]
+    #[error("{}: cannot {doing} it: {source}{}", file.display(), advice(source))]
     Io {
         /// Which file.
         file: PathBuf,
@@ -67,6 +67,11 @@ impl fmt::Display for ItemPlace {
             Self::Line(number) => write!(f, "line {number}"),
         }
     }
+}
+
+/// What to do about an error of the system, after a semicolon; empty where its message is enough.
+fn advice(error: &std::io::Error) -> &'static str {
+    if error.kind() == std::io::ErrorKind::NotFound { "; check the spelling of the path" } else { "" }
 }
 
 struct Named<'a>(Option<&'a str>);

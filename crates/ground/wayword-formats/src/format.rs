@@ -94,7 +94,15 @@ pub fn detect(file: &Path) -> Result<Format, FormatError> {
     let read = (&mut parser).deserialize_any(Beginning(&told));
     let format = told.take();
     format.ok_or_else(|| {
-        let why = read.err().map_or_else(|| "it is empty".to_owned(), |error| error.to_string());
+        let why = match read {
+            Ok(()) => "it is neither a list of objects nor an object with a field of a known format".to_owned(),
+            Err(error) if error.is_eof() && (error.line(), error.column()) == (1, 0) => "it is empty".to_owned(),
+            Err(error) if error.is_eof() => {
+                let problem = format!("the file is cut off at line {}, column {}", error.line(), error.column());
+                return FormatError::document(file, problem, "fetch it again");
+            }
+            Err(error) => error.to_string(),
+        };
         let problem = format!("its beginning does not fit any known format: {why}");
         FormatError::document(file, problem, "give a file in one of the formats r2r, reverie, rxr, vlnce, wayword")
     })

@@ -13,7 +13,8 @@ use std::{
 };
 
 const TOO_LARGE: &str = "it is larger than 1 GiB";
-const NOT_JSON: &str = "fetch the file again, or correct it there";
+const NOT_JSON: &str = "fetch the file again, or correct it at that place";
+const SPLIT: &str = "split it into parts";
 
 /// Most bytes of a file that are read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -32,7 +33,7 @@ pub(crate) fn open(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     }
     let opened = File::open(file).map_err(failed)?;
     if meta.len() > limits::FILE_BYTES {
-        return Err(FormatError::document(file, TOO_LARGE, "split it into parts"));
+        return Err(FormatError::document(file, TOO_LARGE, SPLIT));
     }
     let mut plain = BufReader::with_capacity(BUFFER_BYTES, opened);
     let is_gzip = plain.fill_buf().map_err(|source| FormatError::io(file, "read", source))?.starts_with(&[0x1f, 0x8b]);
@@ -125,10 +126,13 @@ pub(crate) fn each_line(
         if read.map_err(|source| FormatError::io(file, "read", source))? == 0 {
             break;
         }
-        if line.len() > limits::LINE_BYTES || number > limits::ITEMS {
-            let problem =
-                format!("line {number}: the line is longer than 16 MiB, or there are more than 1,000,000 lines");
-            return Err(FormatError::document(file, problem, "write one JSON object per line; split huge files"));
+        if number > limits::ITEMS {
+            let problem = format!("it has more than {} lines", limits::grouped(limits::ITEMS));
+            return Err(FormatError::document(file, problem, SPLIT));
+        }
+        if line.len() > limits::LINE_BYTES {
+            let problem = format!("line {number} is longer than {} MiB", limits::LINE_BYTES >> 20);
+            return Err(FormatError::document(file, problem, "write one JSON object per line"));
         }
         if !line.trim_ascii().is_empty() {
             take(line_item(file, number, &line)?)?;
@@ -203,7 +207,8 @@ impl<'a> Items<'a> {
     fn hand_on(&self, value: Value) -> Result<(), FormatError> {
         let progress = &mut *self.progress.borrow_mut();
         if progress.index >= limits::ITEMS {
-            return Err(FormatError::document(self.file, "it has more than 1,000,000 items", "split it into parts"));
+            let problem = format!("it has more than {} items", limits::grouped(limits::ITEMS));
+            return Err(FormatError::document(self.file, problem, SPLIT));
         }
         (progress.take)(ItemPlace::Item(progress.index), value)?;
         progress.index += 1;

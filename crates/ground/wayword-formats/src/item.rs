@@ -126,7 +126,7 @@ impl<'a> Item<'a> {
         let list = value.as_array().ok_or_else(|| self.expected(field, "a list", value, "put it in brackets"))?;
         if list.len() > most {
             let problem = format!("it has {} entries, more than {most}", list.len());
-            return Err(self.wrong(field, problem, "split it: no dataset of the field has that many"));
+            return Err(self.wrong(field, problem, "split it: no known dataset has that many"));
         }
         Ok(list)
     }
@@ -135,7 +135,7 @@ impl<'a> Item<'a> {
     pub(crate) fn viewpoints(&self, field: &str, value: &Value) -> Result<Vec<ViewpointId>, FormatError> {
         let list = self.list(field, value, limits::PATH_NODES)?;
         if list.is_empty() {
-            return Err(self.wrong(field, "it is empty", "a path has at least one viewpoint"));
+            return Err(self.wrong(field, "it is empty", "add at least one viewpoint"));
         }
         let viewpoint = |(index, value)| {
             let field = format!("{field}[{index}]");
@@ -149,7 +149,7 @@ impl<'a> Item<'a> {
         let text = self.text(field, value)?;
         if text.len() > limits::INSTRUCTION_BYTES {
             let problem = format!("it has {} bytes, more than {}", text.len(), limits::INSTRUCTION_BYTES);
-            return Err(self.wrong(field, problem, "an instruction is a few sentences"));
+            return Err(self.wrong(field, problem, "shorten it: an instruction is a few sentences"));
         }
         Ok(text.to_owned())
     }

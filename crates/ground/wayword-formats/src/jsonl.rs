@@ -158,7 +158,7 @@ fn take_path(item: &mut Item<'_>) -> Result<Path, FormatError> {
     item.call(&id);
     let frames = item.list("path.frames", path.get("frames").unwrap_or(&Value::Null), limits::PATH_NODES)?;
     if frames.is_empty() {
-        return Err(item.wrong("path.frames", "it is empty", "a path has at least one frame"));
+        return Err(item.wrong("path.frames", "it is empty", "add at least one frame"));
     }
     // One by one, so that an error can name the frame.
     for (index, frame) in frames.iter().enumerate() {
@@ -183,11 +183,12 @@ fn take_instruction(item: &mut Item<'_>, frames: usize) -> Result<Instruction, F
     let (mentions, findings) = (&instruction.mentions, &instruction.findings);
     if let Some(index) = mentions.iter().position(|mention| !fits(mention.span) || mention.frame >= frames) {
         let field = format!("mentions[{index}]");
-        return Err(item.wrong(&field, "it points outside the text or the path", "spans are byte ranges of the text"));
+        let hint = "give a byte range within the text, and the number of a frame of the path";
+        return Err(item.wrong(&field, "it points outside the text or the path", hint));
     }
     if let Some(index) = findings.iter().position(|finding| finding.span.is_some_and(|span| !fits(span))) {
         let field = format!("findings[{index}].span");
-        return Err(item.wrong(&field, "it points outside the text", "spans are byte ranges of the text"));
+        return Err(item.wrong(&field, "it points outside the text", "give a byte range within the text"));
     }
     Ok(instruction)
 }

@@ -26,3 +26,10 @@ pub(crate) const TRAJECTORY_POSES: usize = 10_000;
 pub(crate) const POSES_KEPT: usize = 4_000_000;
 /// Most problems of a submission that are listed one by one.
 pub(crate) const PROBLEMS: usize = 1_000;
+
+/// A limit as errors write it, with commas between groups of three digits.
+pub(crate) fn grouped(limit: usize) -> String {
+    let digits = limit.to_string();
+    let groups: Vec<_> = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy).collect();
+    groups.join(",")
+}

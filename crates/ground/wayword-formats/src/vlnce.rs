@@ -72,7 +72,7 @@ fn word_list(file: &Path, vocabulary: Option<Value>) -> Result<Vec<String>, Form
     let words = words.and_then(|words| serde_json::from_value::<Vec<String>>(words).ok());
     words.ok_or_else(|| {
         let problem = "field \"instruction_vocab.word_list\": expected a list of words";
-        FormatError::document(file, problem, "R2R's VLN-CE files have it; RxR's are another format")
+        FormatError::document(file, problem, "give a VLN-CE file of R2R; VLN-CE files of RxR cannot be read")
     })
 }
 
@@ -99,7 +99,7 @@ fn take_episode(item: &mut Item<'_>, tokens: &mut BTreeMap<String, Vec<u64>>) ->
 
 /// The scene of a mesh file: the file's name without its ending.
 fn scene_of(item: &Item<'_>, value: &Value) -> Result<SceneId, FormatError> {
-    const HINT: &str = "VLN-CE writes mp3d/SCAN/SCAN.glb";
+    const HINT: &str = "write it as mp3d/SCAN/SCAN.glb";
     let text = item.text("scene_id", value)?;
     let outside = text.starts_with('/') || text.split('/').any(|part| part == "..");
     if outside || text.contains('\\') {
@@ -143,7 +143,7 @@ fn take_positions(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), Form
 fn positions(item: &Item<'_>, field: &str, value: &Value) -> Result<Vec<DVec3>, FormatError> {
     let list = item.list(field, value, limits::PATH_NODES)?;
     if list.is_empty() {
-        return Err(item.wrong(field, "it is empty", "a path has at least one position"));
+        return Err(item.wrong(field, "it is empty", "add at least one position"));
     }
     list.iter().enumerate().map(|(index, value)| item.position(&format!("{field}[{index}]"), value)).collect()
 }

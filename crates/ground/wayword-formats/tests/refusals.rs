@@ -57,7 +57,7 @@ fn json_that_is_none_is_refused_where_it_breaks() {
         refusal(Format::R2r, "data.json", &text.as_bytes()[..at]),
         format!(
             "data.json: item 2: field \"heading\": EOF while parsing a value (line 1, column {at}); fetch the file again, \
-             or correct it there"
+             or correct it at that place"
         )
     );
     let twice = text.replacen("\"scan\":", "\"scan\":\"x\",\"scan\":", 1);
@@ -142,7 +142,9 @@ fn limits_on_texts_and_lists_hold() {
     let parts = refusal_of(Format::R2r, "/distance", json!(vec![0; 200_001]));
     assert!(parts.contains("it has more than 200,000 values"), "{parts}");
     let line = refusal(Format::Rxr, "data.jsonl", &vec![b' '; (16 << 20) + 2]);
-    assert!(line.contains("line 1"), "{line}");
+    assert_eq!(line, "data.jsonl: line 1 is longer than 16 MiB; write one JSON object per line");
+    let lines = refusal(Format::Rxr, "data.jsonl", &vec![b'\n'; 1_000_001]);
+    assert_eq!(lines, "data.jsonl: it has more than 1,000,000 lines; split it into parts");
 }
 
 #[test]
@@ -169,11 +171,19 @@ fn a_file_of_more_than_a_gibibyte_is_not_even_read() {
 fn what_is_no_dataset_is_told_so() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("notes.txt");
-    for text in ["", "hello", "[]", "[1]", "{\"a\": 1}", "{\"a\": 1"] {
+    for text in ["", "hello", "[]", "[1]", "{\"a\": 1}"] {
         std::fs::write(&file, text).unwrap();
         let error = detect(&file).unwrap_err().to_string();
         assert!(error.contains("notes.txt: its beginning does not fit any known format"), "{text:?}: {error}");
     }
+    std::fs::write(&file, "").unwrap();
+    assert!(detect(&file).unwrap_err().to_string().contains("known format: it is empty"));
+    for (text, place) in [("{\"a\": 1", "line 1, column 7"), ("[\n{\"scan\": ", "line 2, column 9")] {
+        std::fs::write(&file, text).unwrap();
+        let error = detect(&file).unwrap_err().to_string();
+        assert!(error.ends_with(&format!("notes.txt: the file is cut off at {place}; fetch it again")), "{error}");
+    }
     assert!(detect(folder.path()).unwrap_err().to_string().contains("is not a file but a folder"));
-    assert!(detect(&folder.path().join("none")).unwrap_err().to_string().contains("cannot open it"));
+    let none = detect(&folder.path().join("none")).unwrap_err().to_string();
+    assert!(none.contains("cannot open it") && none.ends_with("; check the spelling of the path"), "{none}");
 }

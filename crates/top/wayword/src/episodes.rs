@@ -28,7 +28,7 @@ pub fn read(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode>, Error>
     };
     match episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         Some(blind) => Err(Error::usage(
-            format!("{}: episode {} names no viewpoints, which agents need", file.display(), blind.id),
+            format!("{}: episode {} names no viewpoints, but agents need them", file.display(), blind.id),
             "give an R2R, REVERIE, RxR or Wayword file",
         )),
         None => Ok(episodes),

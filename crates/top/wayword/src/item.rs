@@ -1,7 +1,7 @@
 //! The items of a run: paths of a dataset, or random ones.
 
 use crate::{error::Error, settings::Settings};
-use std::{collections::BTreeSet, sync::Arc};
+use std::{collections::BTreeSet, path::Path as FilePath, sync::Arc};
 use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, seed};
 use wayword_formats::Episode;
 use wayword_world::path_of;
@@ -30,7 +30,7 @@ pub enum Item {
 /// When the episodes or their scenes cannot be read, or no item is left.
 pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
     let mut items = match &settings.episodes {
-        Some(file) => episodes(wayword_formats::read(file)?, settings)?,
+        Some(file) => episodes(file, settings)?,
         None => random(settings, platform)?,
     };
     items.truncate(settings.limit.unwrap_or(usize::MAX));
@@ -44,9 +44,10 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
     Ok(items)
 }
 
-fn episodes(episodes: Vec<Episode>, settings: &Settings) -> Result<Vec<Item>, Error> {
+fn episodes(file: &FilePath, settings: &Settings) -> Result<Vec<Item>, Error> {
+    let episodes = wayword_formats::read(file)?;
     if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
-        let problem = format!("episode {} names no viewpoints, which a path needs", blind.id);
+        let problem = format!("{}: episode {} names no viewpoints, but paths need them", file.display(), blind.id);
         return Err(Error::usage(problem, "give an R2R, REVERIE, RxR or Wayword file"));
     }
     let wanted =

@@ -111,7 +111,7 @@ pub fn prompts(settings: &Settings) -> Result<Prompts, Error> {
 fn own_prompts(folder: &Path) -> Result<Vec<(String, String)>, Error> {
     let mut own = Vec::new();
     let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    for entry in entries.map_err(Error::io(folder, "list the prompts in"))? {
+    for entry in entries.map_err(Error::io(folder, "list the prompts of"))? {
         let file = entry.path();
         if let (Some(name), Some("j2")) = (file.file_stem(), file.extension().and_then(|end| end.to_str())) {
             own.push((name.to_string_lossy().into_owned(), text_file::read(&file, "read the prompt")?));

@@ -96,7 +96,7 @@ fn a_comparison_that_was_stopped_goes_on_and_ends_the_same() {
     }
     let other = compare(&building, R2R, &["--seed", "7"]);
     assert_eq!(other.code, Some(1));
-    assert!(other.err.contains("other settings (seed)"), "{other:?}");
+    assert!(other.err.contains("other settings: seed"), "{other:?}");
 }
 
 #[test]

@@ -246,11 +246,11 @@ fn every_problem_is_told_and_nothing_is_scored() {
         assert!(told.len() == 1 && told[0].contains(part), "{name}: {part:?} is not what is told: {told:?}");
     };
     one("999_0", "no such instruction");
-    one(&names[0], "missing");
+    one(&names[0], "has no trajectory");
     one(&names[2], "starts at");
     one(&names[4], "no edge");
     one(&names[6], "nowhere");
-    one(&names[names.len() - 1], "missing");
+    one(&names[names.len() - 1], "has no trajectory");
     let several = of(&names[8]).join("; ");
     for part in ["starts at", "nowhere", "elsewhere"] {
         assert!(several.contains(part), "{several}");
@@ -270,7 +270,7 @@ fn a_malformed_file_is_told_item_by_item() {
     let found = problems(&evaluate(&building, &submitted, R2R, &["--json"]));
     let told: Vec<&str> = found.iter().map(|(_, problem)| problem.as_str()).collect();
     assert_eq!(told.len(), 4, "{told:#?}");
-    let is_missing = |(id, problem): &(String, String)| *id == second && problem.contains("is missing");
+    let is_missing = |(id, problem): &(String, String)| *id == second && problem.contains("has no trajectory");
     assert!(is_missing(&found[3]), "{found:#?}");
     for (told, parts) in told.iter().zip([["item 1", "earlier item"], ["item 5", "empty"], ["item 7", "missing"]]) {
         assert!(parts.iter().all(|part| told.contains(part)) && told.contains("submission.json"), "{told}");
@@ -327,8 +327,8 @@ fn what_is_wrong_with_form_and_way_is_told_together() {
         ("998_0", "no such instruction"),
         (names[2].as_str(), "starts at"),
         (&names[4], "no edge"),
-        (&names[6], "missing"),
-        (&names[8], "missing"),
+        (&names[6], "has no trajectory"),
+        (&names[8], "has no trajectory"),
     ];
     assert_eq!(found.len(), expected.len(), "{found:#?}");
     for ((id, problem), (expected_id, part)) in found.iter().zip(expected) {
@@ -339,7 +339,7 @@ fn what_is_wrong_with_form_and_way_is_told_together() {
     let found = problems(&evaluate_file(&building, "cut.json", R2R, &["--json"]));
     assert!(found.iter().any(|(_, problem)| problem.contains("EOF")), "{found:#?}");
     assert!(found.iter().any(|(id, problem)| *id == names[2] && problem.contains("starts at")), "{found:#?}");
-    assert!(!found.iter().any(|(_, problem)| problem.contains("missing")), "{found:#?}");
+    assert!(!found.iter().any(|(_, problem)| problem.contains("has no trajectory")), "{found:#?}");
 }
 
 #[test]

@@ -190,7 +190,7 @@ fn bad_combinations_are_refused_with_what_to_do() {
     building.run_over_episodes("run");
     let before = files(&building.path("."));
     let cases: [(&[&str], &str, &str); 7] = [
-        (&["--run", "run", "--format", "reverie"], "does not say which style", "--style"),
+        (&["--run", "run", "--format", "reverie"], "texts of one style only", "--style"),
         (
             &["--run", "run", "--run", "run", "--style", "r2r", "--format", "r2r"],
             "already has the same instruction",
@@ -199,7 +199,7 @@ fn bad_combinations_are_refused_with_what_to_do() {
         (&["--run", "run", "--style", "r2r", "--format", "r2r", "--val-share", "0.1"], "no splits", "--format wayword"),
         (&["--run", "run", "--format", "wayword", "--val-share", "1.5"], "is not a share", "from 0 to 1"),
         (&["--run", "run", "--format", "wayword", "--val-share", "nan"], "is not a share", "from 0 to 1"),
-        (&["--run", "run", "--style", "poem", "--format", "r2r"], "no instruction to export", "r2r, reverie"),
+        (&["--run", "run", "--style", "poem", "--format", "r2r"], "no instruction of style poem", "r2r, reverie"),
         (&["--run", "nowhere", "--style", "r2r", "--format", "r2r"], "nowhere", "instructions.jsonl"),
     ];
     for (arguments, problem, hint) in cases {

@@ -114,7 +114,7 @@ fn a_folder_with_a_run_of_other_settings_is_refused_and_left_alone() {
         &["--episodes", EPISODES, "--style", "reverie", "--style", "r2r", "--seed", "5", "--repairs", "2"],
     );
     let error = ran.refused();
-    assert!(error.contains("(repairs, seed)") && error.contains("--out"), "{error}");
+    assert!(error.contains("other settings: repairs, seed\nhint") && error.contains("--out"), "{error}");
     assert!(files(&building.path("run")) == before);
 }
 
@@ -163,13 +163,24 @@ fn random_paths_keep_to_hops_metres_and_scene() {
 }
 
 #[test]
-fn a_random_path_that_cannot_be_is_a_failed_item_with_its_reason() {
+fn random_paths_that_no_scene_has_are_refused_before_a_folder_is_made() {
     let building = Building::new();
     let ran = building.generate("run", &["--paths", "2", "--hops", "40..50"]);
-    assert_eq!(ran.code, Some(3), "{ran:?}");
-    let errors = building.lines("run/errors.jsonl");
-    assert_eq!((errors.len(), building.lines("run/rejected.jsonl").len()), (2, 0));
-    assert!(errors[0]["reason"].as_str().unwrap().contains("40 to 50 hops"), "{}", errors[0]);
+    assert!(ran.refused().contains("40 to 50 hops") && ran.err.contains("widen --hops or --metres"), "{ran:?}");
+    assert!(!building.path("run").exists());
+    let house = ["generate", "--paths", "9", "--metres", "500..600", "--out", "run"];
+    let ran = building.wayword(&house);
+    assert!(ran.refused().contains("none of the 20 scenes has such a path"), "{ran:?}");
+    assert!(ran.err.contains("500 to 600 metres: widen --metres"), "{ran:?}");
+}
+
+#[test]
+fn flags_without_effect_are_named() {
+    let building = Building::new();
+    let args = ["generate", "--paths", "1", "--hops", "1..2", "--max-usd", "2", "--style", "r2r", "--out", "run"];
+    let ran = building.wayword(&args);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(ran.err.contains("--hops has no effect") && ran.err.contains("have no effect: --max-usd"), "{ran:?}");
 }
 
 #[test]

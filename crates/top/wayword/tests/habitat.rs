@@ -123,7 +123,7 @@ fn islands_are_listed_and_one_can_be_named() {
     let ran = run(&building, stage, "run", &["--island", "99"]);
     assert!(ran.refused().contains("has no island 99: island 0: ") && ran.err.contains("--island"), "{ran:?}");
     let ran = building.wayword(&["generate", "--paths", "1", "--island", "0", "--out", "run"]);
-    assert!(ran.refused().contains("platform house takes no --island"), "{ran:?}");
+    assert!(ran.refused().contains("platform house, the default, takes no --island"), "{ran:?}");
 }
 
 #[test]

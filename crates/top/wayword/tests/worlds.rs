@@ -39,7 +39,7 @@ fn what_is_missing_is_told() {
     let building = Building::new();
     for (args, told) in [
         (&["--platform", "habitat"][..], "needs --data"),
-        (&["--platform", "process"], "needs --data"),
+        (&["--platform", "process"], "needs --data\nhint: give --data FILE"),
         (&["--platform", "process", "--data", "nothing.json"], "nothing.json"),
         (&["--platform", "habitat", "--data", "nowhere"], "nowhere"),
         (&["--platform", "recording"], "needs --data"),
@@ -47,8 +47,10 @@ fn what_is_missing_is_told() {
         (&["--platform", "tdw", "--at", "here"], "--at here"),
         (&["--platform", "virtualhome", "--at", "here"], "--at here"),
         (&["--platform", "virtualhome", "--at", "http://127.0.0.1:9"], "nothing listens at http://127.0.0.1:9"),
-        (&["--data", "data"], "takes no --data"),
-        (&["--at", "127.0.0.1:1071"], "takes no --at"),
+        (&["--platform", "virtualhome", "--at", "http://127.0.0.1:9"], "-http-port=9, or give its address"),
+        (&["--data", "data"], "platform house, the default, takes no --data"),
+        (&["--platform", "virtualhome", "--data", "data"], "platform virtualhome takes no --data"),
+        (&["--at", "127.0.0.1:1071"], "as in --platform tdw"),
     ] {
         let ran = building.wayword(&[&["generate", "--paths", "1", "--out", "run"], args].concat());
         assert!(ran.refused().contains(told), "{args:?}: {ran:?}");

@@ -41,7 +41,7 @@ pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> 
         Err(at) => {
             let reason = match places {
                 Verdict::Fail => "it comes too late in the text: the path passed it before",
-                _ => "the path passed it before, and the program cannot check whether it does again",
+                _ => "the path passed it earlier, and the program cannot check whether the path passes it again here",
             };
             (vec![finding(Check::Order, places, reason, span(at)), turns_alone(reading, evidence)], None)
         }

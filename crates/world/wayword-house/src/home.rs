@@ -50,11 +50,8 @@ impl Home {
         let ground = Ground::of(&house);
         let graph =
             viewpoint_graph(&house, &ground).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
-        let scene_of = |error: wayword_render::SceneError| PlatformError::UnknownScene {
-            scene: scene.to_string(),
-            hint: error.to_string(),
-        };
-        let drawn = HouseScene::new(house).map_err(scene_of)?;
+        let drawn = HouseScene::new(house)
+            .map_err(|error| PlatformError::NotDrawn { scene: scene.clone(), reason: error.to_string() })?;
         Ok(Self { id: scene.clone(), scene: drawn, ground, graph: Arc::new(graph), seen_from: OnceLock::new() })
     }
 
@@ -82,7 +79,7 @@ impl Home {
 
     /// The error that something in this house cannot be drawn.
     pub(super) fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
-        PlatformError::UnknownScene { scene: self.id.to_string(), hint: error.to_string() }
+        PlatformError::NotDrawn { scene: self.id.clone(), reason: error.to_string() }
     }
 
     fn room_name(&self, eye: DVec3) -> Option<String> {
@@ -148,7 +145,7 @@ fn seed_of(scene: &SceneId) -> Option<u64> {
 pub(super) fn unknown(scene: &str) -> PlatformError {
     PlatformError::UnknownScene {
         scene: scene.to_owned(),
-        hint: "houses are named by their seed, as in house-7; a scene of another platform needs its --platform"
+        hint: "the scenes of platform house are named by their seed, as in house-7; for a scene of another platform, give --platform, as in --platform matterport"
             .to_owned(),
     }
 }

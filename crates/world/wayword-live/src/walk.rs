@@ -98,7 +98,7 @@ fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
 /// Refuses a frame whose position is not finite or too far out.
 pub(crate) fn check(scene: &SceneId, frame: &Frame) -> Result<(), PlatformError> {
     let usable = frame.pose.position.is_finite() && frame.pose.position.abs().max_element() < 1e5;
-    if usable { Ok(()) } else { Err(PlatformError::NotAViewpoint { scene: scene.clone() }) }
+    if usable { Ok(()) } else { Err(PlatformError::nowhere(scene, frame)) }
 }
 
 #[cfg(test)]

@@ -156,6 +156,13 @@ fn a_scene_that_nobody_knows_is_refused_without_a_build() {
     assert!(platform.scenes().unwrap().contains(&scene()));
 }
 
+#[test]
+fn a_furnished_plan_without_the_package_says_what_to_give() {
+    let (platform, _build) = start(StandInOptions::default());
+    let error = platform.graph(&SceneId::new("floorplan_1a_0").unwrap()).unwrap_err().to_string();
+    assert!(error.contains(": the furniture of floorplan_1a_0 is not available; give --data the folder of"), "{error}");
+}
+
 /// The part of the Python package `tdw` that a floor plan with one sofa needs.
 fn package(folder: &Path) {
     let write = |name: &str, text: String| {

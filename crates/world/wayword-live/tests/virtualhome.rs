@@ -119,7 +119,10 @@ fn scenes_are_homes_and_a_simulator_that_is_not_there_is_named() {
     assert!(unknown.contains("home_0 to home_49"), "{unknown}");
     drop(simulator);
     let gone = platform.graph(&scene()).unwrap_err().to_string();
-    assert!(gone.contains("http://127.0.0.1") && gone.contains("-http-port"), "{gone}");
+    assert!(
+        gone.contains("http://127.0.0.1") && gone.contains("-http-port=PORT, where PORT is the port in --at"),
+        "{gone}"
+    );
 }
 
 /// The stand-in fails to clear where no home is loaded, as the genuine executable may. The genuine client goes on then.
@@ -161,8 +164,8 @@ fn answered(status: &'static str, announced: usize, content: &'static str) -> St
 #[test]
 fn what_cannot_be_read_says_where_and_what_was_expected() {
     let cases = [
-        ("200 OK", "{]", "expected an answer with `success`"),
-        ("200 OK", r#"{"success":true,"message":"nodes?"}"#, "expected a graph of nodes with boxes"),
+        ("200 OK", "{]", "the answer is not JSON with `success`: "),
+        ("200 OK", r#"{"success":true,"message":"nodes?"}"#, "the answer is not a graph of nodes with boxes: "),
         ("200 OK", r#"{"success":true,"message":"{\"nodes\":[{\"id\":true}]}"}"#, "line 1 column 20"),
         ("200 OK", r#"{"success":false,"message":"no home"}"#, "says that it failed: no home"),
         ("500 Oh", "sad", "status 500: sad"),

@@ -153,7 +153,7 @@ fn of_text(head: &[u8]) -> Option<Kind> {
     let text = text(head)?;
     let start = text.trim_start().to_ascii_lowercase();
     if start.starts_with("<!doctype html") || start.starts_with("<html") {
-        return Some(Kind::other("a web page", "a server sent it for the file; fetch the file again"));
+        return Some(Kind::other("a web page", "a server sent this page instead of the file; fetch the file again"));
     }
     Some(Kind::other("text", AGAIN))
 }

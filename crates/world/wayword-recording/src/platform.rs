@@ -245,12 +245,19 @@ impl Platform for RecordingPlatform {
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
         let opened = self.opened(scene)?;
         let mut dice = rng(seed, &["stretch", scene.as_str()]);
-        let (first, last) = opened.stretch(request, &mut dice).ok_or_else(|| PlatformError::NoSuchPath {
-            scene: scene.clone(),
-            request: match opened.motion() {
-                Motion::Known => format!("{} to {} metres", request.length_m.start(), request.length_m.end()),
-                Motion::Unknown => format!("{} to {} hops", request.hops.start(), request.hops.end()),
-            },
+        let (first, last) = opened.stretch(request, &mut dice).ok_or_else(|| {
+            let (hops, length_m) = (&request.hops, &request.length_m);
+            let (request, widen) = match opened.motion() {
+                Motion::Known => (
+                    format!("{} to {} metres", length_m.start(), length_m.end()),
+                    "--metres, or keep more frames with interval_m in recording.toml (docs/RECORDINGS.md)",
+                ),
+                Motion::Unknown => (
+                    format!("{} to {} hops", hops.start(), hops.end()),
+                    "--hops, or keep more frames with interval_s in recording.toml (docs/RECORDINGS.md)",
+                ),
+            };
+            PlatformError::NoSuchPath { scene: scene.clone(), request, widen }
         })?;
         let frames = opened.frames(first, last);
         Ok(Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None, motion: opened.motion() })
@@ -330,7 +337,7 @@ fn told(scene: &SceneId, recording: &Recording, choice: &Choice) -> String {
     let count = |count: usize, what: &str| if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") };
     let left_out = |places: usize, why: &str| match places {
         0 => String::new(),
-        places => format!("; {} left out because {why}", count(places, "place")),
+        places => format!("; {} left out because {why}", count(places, "possible frame")),
     };
     let poses = if recording.track.is_some() { "" } else { "; no poses, so no turns and distances" };
     let without_pose = match choice.without_pose {

@@ -51,7 +51,11 @@ pub fn path(
     }
     match bare {
         Some(route) => walked(scene, graph, &route, heading, seed, None),
-        None => Err(PlatformError::NoSuchPath { scene: scene.clone(), request: in_words(request) }),
+        None => Err(PlatformError::NoSuchPath {
+            scene: scene.clone(),
+            request: in_words(request),
+            widen: "--hops or --metres",
+        }),
     }
 }
 

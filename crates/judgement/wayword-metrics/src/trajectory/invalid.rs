@@ -18,7 +18,9 @@ pub enum Invalid {
         expected: ViewpointId,
     },
     /// A viewpoint that the scene does not have.
-    #[error("viewpoint {viewpoint} (step {step} of the trajectory) is not in the scene's graph: check the scene")]
+    #[error(
+        "viewpoint {viewpoint} (step {step} of the trajectory) is not in the scene's viewpoint graph: check that the trajectory, the episodes and the viewpoint graph are of the same release"
+    )]
     Unknown {
         /// Its step.
         step: usize,
@@ -41,7 +43,9 @@ pub enum Invalid {
     #[error("the episode has no annotated path to compare the trajectory with")]
     NoReference,
     /// A viewpoint of the episode's path that the scene does not have.
-    #[error("viewpoint {viewpoint} (step {step} of the episode's path) is not in the scene's graph: check the scene")]
+    #[error(
+        "viewpoint {viewpoint} (step {step} of the episode's path) is not in the scene's viewpoint graph: check that the episodes and the viewpoint graph are of the same release"
+    )]
     UnknownInReference {
         /// Its step.
         step: usize,

@@ -63,7 +63,10 @@ pub(super) fn concurrency(service: &Service) -> Concurrency {
 fn prices(service: &Service) -> Result<Prices, Error> {
     match &service.prices {
         None => Ok(Prices::built_in()),
-        Some(file) => Prices::read(&text_file::read(file, "read the prices")?)
-            .map_err(|error| Error::usage(format!("{}: {error}", file.display()), "see docs/MODELS.md")),
+        Some(file) => Prices::read(&text_file::read(file, "read the prices")?).map_err(|error| {
+            let error = error.to_string();
+            let (problem, hint) = error.split_once("\nhint: ").unwrap_or((&error, "the format is in docs/MODELS.md"));
+            Error::usage(format!("{}: {}", file.display(), problem.trim_end()), hint)
+        }),
     }
 }

@@ -20,7 +20,10 @@ pub(super) fn refused(name: &str) -> Option<Error> {
         None => on_disk(rest),
     };
     let problem = format!("{name:?} is a GGUF file, and this program runs no GGUF files in process");
-    Some(Error::usage(problem, format!("start it with a server, and name it by that server:{servers}")))
+    Some(Error::usage(
+        problem,
+        format!("run it with one of these servers, and give the name shown behind it:{servers}"),
+    ))
 }
 
 /// A file of a repository: both servers fetch it themselves.

@@ -73,8 +73,8 @@ impl Calls {
         let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
         if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {
             return Err(Error::usage(
-                format!("{}: there is no such folder for --record", missing.display()),
-                "make it, or name another file",
+                format!("--record: the folder {} does not exist", missing.display()),
+                "make it, or give another file",
             ));
         }
         Ok(prices)

@@ -21,6 +21,14 @@ impl Calls {
         Self::rehearse(job)?;
         prompts(&job.settings)?;
         let models = job.settings.roles.models();
+        // A ledger is often given for all runs, and it cannot surprise by not being used.
+        let unused: Vec<String> = job.service.given().into_iter().filter(|flag| flag != "--ledger").collect();
+        if models.is_empty() && !unused.is_empty() {
+            output.say(format_args!(
+                "warning: no model is named, so these have no effect: {} (name models with --llm and --see)",
+                unused.join(", ")
+            ));
+        }
         let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
         let (local, remote): (Vec<&str>, Vec<&str>) = models.into_iter().partition(|name| is_in_process(name));
         if job.service.replay.is_none() && !remote.is_empty() {

@@ -84,16 +84,16 @@ impl fmt::Display for Shown {
 fn motion(step: &Move) -> String {
     let turn = match step.turn() {
         Turn::Straight => None,
-        Turn::SlightLeft => Some("slightly left"),
-        Turn::SlightRight => Some("slightly right"),
-        Turn::Left => Some("left"),
-        Turn::Right => Some("right"),
-        Turn::Around => Some("around"),
+        Turn::SlightLeft => Some("turn slightly left"),
+        Turn::SlightRight => Some("turn slightly right"),
+        Turn::Left => Some("turn left"),
+        Turn::Right => Some("turn right"),
+        Turn::Around => Some("turn around"),
     };
     let climb = match step.climb() {
         Climb::Level => None,
-        Climb::Up => Some("up"),
-        Climb::Down => Some("down"),
+        Climb::Up => Some("go up"),
+        Climb::Down => Some("go down"),
     };
     let words: Vec<&str> = turn.into_iter().chain(climb).collect();
     if words.is_empty() { String::new() } else { format!("  [{}]", words.join(", ")) }

@@ -21,7 +21,7 @@ const PORT_WAIT: Duration = Duration::from_secs(2);
 pub(super) fn tdw(package: Option<&Path>, at: Option<&str>) -> Result<Box<dyn Platform>, Error> {
     let mut controller = ControllerOptions::default();
     if let Some(at) = at {
-        let hint = "write it as in --at 127.0.0.1:1071; 0.0.0.0:1071 lets builds on other machines in";
+        let hint = "write it as in --at 127.0.0.1:1071; use 0.0.0.0:1071 to accept builds on other machines";
         controller.address = at.parse().map_err(|_| Error::usage(format!("--at {at} is not an address"), hint))?;
     }
     let options = TdwOptions { controller, package: package.map(Path::to_owned), ..TdwOptions::default() };
@@ -53,9 +53,10 @@ fn refuse_closed_port(url: &str) -> Result<(), Error> {
         TcpStream::connect_timeout(&address, PORT_WAIT).is_err_and(|error| error.kind() == ErrorKind::ConnectionRefused)
     };
     if addresses.all(refuses) {
+        let port = host.rsplit(':').next().unwrap_or_default();
         return Err(Error::usage(
             format!("nothing listens at {url}, so VirtualHome cannot be asked"),
-            "start it with -batchmode -http-port=8080, or say where it is: --at URL",
+            format!("start VirtualHome with -batchmode -http-port={port}, or give its address: --at URL"),
         ));
     }
     Ok(())

@@ -98,6 +98,12 @@ pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
     PLATFORMS.map(|platform| platform.name)
 }
 
+/// Whether random paths of a platform run over a viewpoint graph, hop by hop. Elsewhere they run over open ground, and
+/// `--hops` has no effect.
+pub(crate) fn has_hops(name: &str) -> bool {
+    matches!(name, "matterport" | "process" | "recording")
+}
+
 /// Opens the platform that the settings name, and says what its data lacks.
 ///
 /// # Errors
@@ -136,9 +142,12 @@ pub fn open_named(
     at: Option<&str>,
     island: Option<usize>,
 ) -> Result<Box<dyn Platform>, Error> {
-    if let Some(flag) = unused(name, data, at, island) {
-        let problem = format!("platform {name} takes no {flag}");
-        return Err(Error::usage(problem, "name the platform that it is for, as in --platform recording"));
+    if let Some((flag, example)) = unused(name, data, at, island) {
+        let default = if name == "house" { ", the default," } else { "" };
+        return Err(Error::usage(
+            format!("platform {name}{default} takes no {flag}"),
+            format!("give the platform of this {flag} with --platform, as in --platform {example}"),
+        ));
     }
     let data = || data.ok_or_else(|| no_data(name));
     match name {
@@ -171,19 +180,24 @@ fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
     Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?))
 }
 
-/// The flag that a platform does not use. Otherwise `--data` without `--platform` would silently give a generated
-/// house.
-fn unused(name: &str, data: Option<&Path>, at: Option<&str>, island: Option<usize>) -> Option<&'static str> {
+/// The flag that a platform does not use, and one of the platforms that use it. Otherwise `--data` without `--platform`
+/// would silently give a generated house.
+fn unused(
+    name: &str,
+    data: Option<&Path>,
+    at: Option<&str>,
+    island: Option<usize>,
+) -> Option<(&'static str, &'static str)> {
     let runs = matches!(name, "tdw" | "virtualhome");
     match (data, at) {
-        (Some(_), _) if matches!(name, "house" | "virtualhome") => Some("--data"),
-        (_, Some(_)) if !runs => Some("--at"),
-        _ if island.is_some() && name != "habitat" => Some("--island"),
+        (Some(_), _) if matches!(name, "house" | "virtualhome") => Some(("--data", "matterport")),
+        (_, Some(_)) if !runs => Some(("--at", "tdw")),
+        _ if island.is_some() && name != "habitat" => Some(("--island", "habitat")),
         _ => None,
     }
 }
 
 fn no_data(name: &str) -> Error {
     let needs = PLATFORMS.into_iter().find(|platform| platform.name == name).map_or("", |platform| platform.needs);
-    Error::usage(format!("platform {name} needs --data"), format!("it needs {needs}"))
+    Error::usage(format!("platform {name} needs --data"), format!("give {needs}"))
 }

@@ -29,7 +29,7 @@ impl Journal {
     pub fn open(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, Error> {
         let file = appending(path)?;
         let whole = whole_bytes(path).map_err(Error::io(path, "read"))?;
-        file.set_len(whole).map_err(Error::io(path, "cut off an incomplete line of"))?;
+        file.set_len(whole).map_err(Error::io(path, "cut off the incomplete last line of"))?;
         let mut keys = IndexSet::new();
         lines::each(path, |line| {
             let key = key_of(&line.parse()?).ok_or_else(|| line.broken("it lacks the fields that identify it"))?;

@@ -57,13 +57,17 @@ impl Line<'_> {
     /// # Errors
     /// When the value is not of that kind.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, Error> {
-        serde_json::from_slice(self.bytes).map_err(|error| self.broken(error))
+        serde_json::from_slice(self.bytes).map_err(|error| {
+            let told = error.to_string();
+            let problem = told.rsplit_once(" at line ").map_or(told.as_str(), |(problem, _)| problem);
+            self.broken(format_args!("column {}: {problem}", error.column()))
+        })
     }
 
     /// The error for a line that is not what it should be.
     pub(crate) fn broken(&self, problem: impl Display) -> Error {
         let problem = format!("{}: line {}: {problem}", self.path.display(), self.number);
-        Error::usage(problem, "the file was changed by hand or by another program: make the run again")
+        Error::usage(problem, "the file was changed by hand or by another program: give another --out for a new run")
     }
 }
 

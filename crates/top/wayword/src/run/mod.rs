@@ -251,8 +251,16 @@ fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Erro
     let differs = differing_keys(before, settings);
     let differs: Vec<&str> = differs.iter().map(String::as_str).filter(|key| *key != "raised_from").collect();
     let differs = differs.join(", ");
-    let problem = format!("{} holds a run with other settings ({differs})", folder.display());
-    Error::usage(problem, "give the same command to continue it, or another --out for a new run")
+    let differs = differs.replace("inputs", "contents of its input files");
+    let problem = format!("{} holds a run with other settings: {differs}", folder.display());
+    let config = folder.join(file::CONFIG);
+    Error::usage(
+        problem,
+        format!(
+            "give the old settings again to continue it ({} has them), or another --out for a new run",
+            config.display()
+        ),
+    )
 }
 
 /// As [`keep_config`] for a run, which may be asked for more than before.
@@ -282,12 +290,18 @@ fn write_config<S: Serialize>(path: &Path, settings: &S) -> Result<(), Error> {
     write_whole(path, &text)
 }
 
+/// Whether a folder holds a run, finished or not.
+#[must_use]
+pub fn is_begun(folder: &Path) -> bool {
+    folder.join(file::CONFIG).exists()
+}
+
 /// The settings with which a folder's run goes on: more paths and items may be asked for than before.
 ///
 /// # Errors
 /// When the folder's settings cannot be read.
 pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> {
-    if !folder.join(file::CONFIG).exists() {
+    if !is_begun(folder) {
         return Ok(settings.clone());
     }
     let raised_from = config_of::<Settings>(folder)?.raised_to(settings).raised_from;

@@ -49,7 +49,7 @@ impl WorldData {
         let kept = if path.exists() {
             let text = text_file::read(&path, "read the hashes of the scenes")?;
             serde_json::from_str(&text).map_err(|error| {
-                let hint = "the file was changed by hand or by another program: make the run again";
+                let hint = "the file was changed by hand or by another program: give another --out for a new run";
                 Error::usage(format!("{}: {error}", path.display()), hint)
             })?
         } else {

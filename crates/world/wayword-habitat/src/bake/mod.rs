@@ -26,9 +26,7 @@ pub enum BakeError {
     #[error("the scene has no triangles: there is nothing to walk on")]
     Empty,
     /// The scene would need too many voxels.
-    #[error(
-        "the scene is {width_m:.0} x {depth_m:.0} m wide and {height_m:.0} m high: too large to bake; give it a .navmesh"
-    )]
+    #[error("the scene is {width_m:.0} x {depth_m:.0} m wide and {height_m:.0} m high: too large to bake")]
     TooLarge {
         /// Along Habitat's x.
         width_m: f32,
@@ -48,11 +46,23 @@ pub enum BakeError {
         wanted: &'static str,
     },
     /// Recast failed.
-    #[error("the navmesh cannot be baked: {reason}; give the scene a .navmesh")]
+    #[error("the navmesh cannot be baked: {reason}")]
     Recast {
         /// Its error message.
         reason: String,
     },
+}
+
+impl BakeError {
+    /// What to do about it.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::Empty => "choose another scene",
+            Self::TooLarge { .. } | Self::Recast { .. } => "give the scene a .navmesh, or choose another scene",
+            Self::Setting { .. } => "change this setting of the navmesh",
+        }
+    }
 }
 
 /// Bakes the navmesh of a scene.
@@ -246,7 +256,8 @@ mod tests {
         assert_eq!(bake(&Model::default(), &NavMeshSettings::default()), Err(BakeError::Empty));
         let mut wide = room(0.8);
         wide.meshes[0].positions[1].x = 9e5;
-        assert!(matches!(bake(&wide, &NavMeshSettings::default()), Err(BakeError::TooLarge { .. })));
+        let too_large = bake(&wide, &NavMeshSettings::default()).unwrap_err();
+        assert!(matches!(too_large, BakeError::TooLarge { .. }) && too_large.hint().contains(".navmesh"));
         let coarse = NavMeshSettings { cell_size_m: 0.0, ..NavMeshSettings::default() };
         assert_eq!(bake(&room(0.8), &coarse).unwrap_err().to_string(), "cell_size_m is 0: expected 0.005 to 10 m");
     }

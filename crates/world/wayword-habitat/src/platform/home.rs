@@ -57,7 +57,7 @@ impl Home {
                 NavMesh::from_bytes(&bytes).map_err(|error| FileError::new(&file, error.to_string(), NAVMESH_HINT))?
             }
             None => bake(&model, &NavMeshSettings::default())
-                .map_err(|error| FileError::new(&stage.asset, error.to_string(), "or choose another scene"))?,
+                .map_err(|error| FileError::new(&stage.asset, error.to_string(), error.hint()))?,
         };
         let columns = Columns::new(model.triangles());
         let ground = Ground::new(&navmesh);
@@ -117,8 +117,9 @@ impl Home {
         image.map(Arc::new).map_err(|error| self.refused(&error))
     }
 
+    /// The error that something in this scene cannot be drawn.
     fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
-        PlatformError::UnknownScene { scene: self.id.to_string(), hint: error.to_string() }
+        PlatformError::NotDrawn { scene: self.id.clone(), reason: error.to_string() }
     }
 
     /// All objects that are visible around a place, found in small pictures.

@@ -13,7 +13,11 @@ use wayword_world::{
 pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f64) -> Result<Path, PlatformError> {
     let dice = rng(seed, &["habitat path", home.id.as_str()]);
     let found = wander(&mut Walker { home, dice, interval_m }, &home.id, request, seed)?;
-    found.ok_or_else(|| PlatformError::NoSuchPath { scene: home.id.clone(), request: refused(home, request) })
+    found.ok_or_else(|| PlatformError::NoSuchPath {
+        scene: home.id.clone(),
+        request: refused(home, request),
+        widen: "--metres",
+    })
 }
 
 /// Walks over the ground of a scene.

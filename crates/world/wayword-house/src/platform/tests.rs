@@ -1,7 +1,7 @@
 use super::super::model::House;
 use super::*;
 use crate::{generate, graph::EYE_M};
-use wayword_core::{DVec3, Heading, Pose};
+use wayword_core::{DVec3, Failure, Heading, Pose};
 
 fn small() -> HousePlatform {
     HousePlatform::new(HouseOptions { width_px: 160, height_px: 120, ..HouseOptions::default() })
@@ -15,7 +15,7 @@ fn scenes_are_named_by_their_seed_and_by_nothing_else() {
     assert!(scenes.is_sorted() && scenes.iter().any(|scene| scene.as_str() == "house-7"));
     for bad in ["house-", "house-07", "house-x", "house--1", "attic-7", "house-99999999999999999999"] {
         let error = platform.graph(&SceneId::new(bad).unwrap()).unwrap_err().to_string();
-        assert!(error.contains("house-7"), "{error}");
+        assert!(error.contains("house-7") && error.contains("--platform matterport"), "{error}");
     }
 }
 
@@ -59,6 +59,18 @@ fn a_view_has_picture_labels_and_room() {
         }
     }
     assert!(rooms.len() >= 3 && labels > 5, "{rooms:?} {labels}");
+}
+
+#[test]
+fn a_picture_that_cannot_be_drawn_is_not_called_a_missing_scene() {
+    let platform = HousePlatform::new(HouseOptions { width_px: 0, ..HouseOptions::default() });
+    let scene = HousePlatform::scene_of(1).unwrap();
+    let graph = platform.graph(&scene).unwrap();
+    let first = graph.viewpoints().next().unwrap().clone();
+    let frame = graph.walk(&[first], None).unwrap().remove(0);
+    let error = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap_err();
+    assert!(error.to_string().starts_with("scene house-1 cannot be drawn: "), "{error}");
+    assert_eq!(error.failure(), Failure::Broken);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::{io, net::SocketAddr};
 #[derive(Debug, thiserror::Error)]
 pub enum TdwError {
     /// The port cannot be opened.
-    #[error("cannot listen on {address}: {source}; is another controller running there?")]
+    #[error("cannot listen on {address}: {source}; another controller may be running there")]
     Bind {
         /// Where.
         address: SocketAddr,
@@ -37,16 +37,18 @@ pub enum TdwError {
         source: WireError,
     },
     /// A frame that cannot be read.
-    #[error("cannot read the build's {0}; is its version between 1.11 and 1.13?")]
+    #[error("cannot read the build's {0}")]
     Output(#[from] OutputError),
     /// An answer without its last frame, the frame's number.
-    #[error("the last frame of the build's answer has length {length}: expected the frame number, 4 bytes big-endian")]
+    #[error(
+        "the last part of the build's answer has {length} bytes: expected the number of its rendered frame, 4 bytes big-endian"
+    )]
     NoFrameNumber {
         /// How long that frame is.
         length: usize,
     },
     /// An answer that lacks what was asked for.
-    #[error("the build sent no `{id}`, although the command {asked} asks for it; does this scene have such data?")]
+    #[error("the build sent no `{id}`, although the command {asked} asks for it")]
     Missing {
         /// The id of the missing frame.
         id: &'static str,
@@ -54,13 +56,13 @@ pub enum TdwError {
         asked: &'static str,
     },
     /// The build never received the commands.
-    #[error("the build asked {times} times for the same commands (`ftre`), so Wayword gave up; see the build's log")]
+    #[error("the build asked {times} times for the same commands (`ftre`), so Wayword gave up")]
     NeverHeard {
         /// How often.
         times: u32,
     },
     /// The build ended by itself.
-    #[error("the build quit because of an error; its Player.log says which")]
+    #[error("the build quit because of an error")]
     Quit,
     /// A picture that cannot be used.
     #[error("the picture of pass {pass}: {reason}")]
@@ -70,9 +72,12 @@ pub enum TdwError {
         /// What is wrong.
         reason: String,
     },
-    /// A scene or package that the user named cannot be used.
+    /// A scene that the user named cannot be used.
     #[error("{0}")]
     Scene(String),
+    /// The Python package `tdw` is needed and was not given, or cannot be used.
+    #[error("{0}")]
+    Package(String),
 }
 
 fn said(last: &Option<WireError>) -> String {

@@ -138,9 +138,14 @@ impl Simulator for Tdw {
     fn hint(error: &TdwError) -> &'static str {
         match error {
             TdwError::Scene(_) => "choose another scene",
-            TdwError::Bind { .. } | TdwError::NoBuild { .. } => {
-                "the build is a separate program that connects to Wayword"
+            TdwError::Package(_) => {
+                "give --data the folder of the Python package tdw, which lists it, or choose another scene"
             }
+            TdwError::Bind { .. } => "free the port, or name another with --at, as in --at 127.0.0.1:1072",
+            TdwError::NoBuild { .. } => "the build is a separate program that connects to Wayword",
+            TdwError::Output(_) => "use a build of version 1.11 to 1.13",
+            TdwError::Missing { .. } => "this scene may have no such data: choose another scene",
+            TdwError::Quit => "look for the error in its Player.log, and restart it",
             _ => "restart the build, or look into its Player.log",
         }
     }
@@ -153,7 +158,7 @@ impl Simulator for Tdw {
         match error {
             error if error.is_loss() => Failure::Lost,
             TdwError::NoBuild { .. } => Failure::Lost,
-            TdwError::Bind { .. } | TdwError::Scene(_) => Failure::Missing,
+            TdwError::Bind { .. } | TdwError::Scene(_) | TdwError::Package(_) => Failure::Missing,
             _ => Failure::Broken,
         }
     }

@@ -70,8 +70,7 @@ impl Plan {
                 let mut commands = vec![Command::AddScene { name: scene.clone(), url }];
                 if let Some(layout) = layout {
                     let package = package.ok_or_else(|| {
-                        let hint = "give the folder of the Python package tdw, which lists it, as --data";
-                        TdwError::Scene(format!("the furniture of {scene}_{layout} is not available: {hint}"))
+                        TdwError::Package(format!("the furniture of {scene}_{layout} is not available"))
                     })?;
                     commands.extend(Furniture::read(package)?.commands(scene, layout)?);
                 }
@@ -153,9 +152,7 @@ impl From<Axes> for Vector3 {
 }
 
 fn read<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
-    let refused = |reason: String| {
-        TdwError::Scene(format!("{}: {reason}; is this the folder of the Python package tdw?", file.display()))
-    };
+    let refused = |reason: String| TdwError::Package(format!("{}: {reason}", file.display()));
     let mut text = String::new();
     let opened = File::open(file).and_then(|file| file.take(MAX_FILE_BYTES).read_to_string(&mut text));
     opened.map_err(|error| refused(error.to_string()))?;
@@ -210,7 +207,7 @@ impl Furniture {
     /// A library's records. Its name comes from a file, so it must not lead out of the folder.
     fn library(&self, name: &str) -> Result<Library, TdwError> {
         if name.contains(['/', '\\']) || name.starts_with('.') {
-            return Err(TdwError::Scene(format!("the package tdw names a library {name:?}: expected a file name")));
+            return Err(TdwError::Package(format!("the package tdw names a library {name:?}: expected a file name")));
         }
         read(&self.package.join("metadata_libraries").join(name))
     }
@@ -268,8 +265,10 @@ mod tests {
         let commands = plan("floorplan_1a_0").unwrap().commands(Some(package.path())).unwrap();
         let Command::AddObject { category, position, id, .. } = &commands[1] else { panic!("{commands:?}") };
         assert_eq!((category.as_str(), position.z, *id), ("sofa", -2.0, 1));
-        let unfurnished = plan("floorplan_1a_0").unwrap().commands(None).unwrap_err().to_string();
-        assert!(unfurnished.contains("package tdw"), "{unfurnished}");
+        let unfurnished = plan("floorplan_1a_0").unwrap().commands(None).unwrap_err();
+        assert!(matches!(&unfurnished, TdwError::Package(_)), "{unfurnished}");
+        let elsewhere = plan("floorplan_1a_0").unwrap().commands(Some(Path::new("nowhere"))).unwrap_err();
+        assert!(matches!(&elsewhere, TdwError::Package(_)), "{elsewhere}");
         let missing = plan("floorplan_1a_1").unwrap().commands(Some(package.path())).unwrap_err().to_string();
         assert!(missing.contains("no layout 1"), "{missing}");
     }

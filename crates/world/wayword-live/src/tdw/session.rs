@@ -57,8 +57,9 @@ pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
         Output::Occupancy(map) => Some(raster(&map)),
         _ => None,
     })?;
-    let unusable =
-        || TdwError::Scene("the build's occupancy map has no usable cells: is the scene's floor at y = 0?".into());
+    let unusable = || {
+        TdwError::Scene("the build's occupancy map has no usable cells; the scene's floor may not be at y = 0".into())
+    };
     let mut raster = raster.ok_or_else(unusable)?;
     raster.keep_largest_part();
     let eyes = eyes(controller, &raster.places())?;

@@ -96,7 +96,7 @@ impl Client {
             let message = quoted(&String::from_utf8_lossy(&body));
             return Err(HomeError::Status { action, status: head.status.as_u16(), message });
         }
-        let answer: Answer = parsed(action, "an answer with `success`", &body)?;
+        let answer: Answer = parsed(action, "JSON with `success`", &body)?;
         if answer.success {
             return Ok(answer);
         }
@@ -132,7 +132,8 @@ impl Client {
     /// When the simulator is gone, or does not say.
     pub fn camera_count(&mut self) -> Result<i64, HomeError> {
         let action = "camera_count";
-        let missing = || HomeError::Malformed { action, expected: "`value`", reason: "found none".to_owned() };
+        let missing =
+            || HomeError::Malformed { action, expected: "JSON with `value`", reason: "it has none".to_owned() };
         self.post(action, &[], &[])?.value.ok_or_else(missing)
     }
 
@@ -166,7 +167,7 @@ impl Client {
         let answer = self.post(action, &[index], &[wanted.to_string()])?;
         let malformed = |reason: String| HomeError::Malformed { action, expected: "a PNG in base64", reason };
         let pictures = answer.message_list.unwrap_or_default();
-        let first = pictures.first().ok_or_else(|| malformed("found no picture".to_owned()))?;
+        let first = pictures.first().ok_or_else(|| malformed("it has no picture".to_owned()))?;
         let file = BASE64_STANDARD.decode(first).map_err(|error| malformed(error.to_string()))?;
         decode::rgb(&file, ImageFormat::Png, (width, height)).map_err(malformed)
     }

@@ -4,7 +4,9 @@
 #[derive(Debug, thiserror::Error)]
 pub enum HomeError {
     /// The simulator does not answer.
-    #[error("action {action}: {reason}; start VirtualHome with -batchmode -http-port=PORT, with this address's port")]
+    #[error(
+        "action {action}: {reason}; start VirtualHome with -batchmode -http-port=PORT, where PORT is the port in --at"
+    )]
     Unreachable {
         /// What was asked.
         action: &'static str,
@@ -30,11 +32,11 @@ pub enum HomeError {
         message: String,
     },
     /// An answer that cannot be read.
-    #[error("action {action}: expected {expected}, {reason}")]
+    #[error("action {action}: the answer is not {expected}: {reason}")]
     Malformed {
         /// What was asked.
         action: &'static str,
-        /// What should have come.
+        /// What it should be.
         expected: &'static str,
         /// What is wrong, and where.
         reason: String,

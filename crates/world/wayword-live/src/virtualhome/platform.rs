@@ -167,7 +167,7 @@ impl Simulator for VirtualHome {
     fn hint(error: &HomeError) -> &'static str {
         match error {
             HomeError::Floor(_) => "choose another home",
-            HomeError::Unreachable { .. } => "the simulator is a separate program that has to run beside Wayword",
+            HomeError::Unreachable { .. } => "it is a separate program that runs beside Wayword",
             _ => "restart the simulator, or look into its log",
         }
     }

@@ -40,9 +40,11 @@ impl Layout {
     pub(crate) fn find(data: &Path) -> Result<Self, PlatformError> {
         let connectivity = first(data, &["matterport/connectivity", "connectivity", "graph"]).ok_or_else(|| {
             let reason = if data.is_dir() {
-                "holds no connectivity graphs: neither `matterport/connectivity` nor `connectivity` is a folder in it"
-            } else {
+                "holds no connectivity graphs: it has no folder `matterport/connectivity`, `connectivity` or `graph`"
+            } else if data.exists() {
                 "is not a folder"
+            } else {
+                "there is no such folder"
             };
             read::wrong(data, reason, HINT)
         })?;
@@ -88,12 +90,15 @@ impl Layout {
             ),
         };
         Some(format!(
-            "warning: {}: there are no REVERIE boxes ({}), and {houses} of {} buildings have a .house file; without \
-             either, the objects of a building are not known: labels name only its rooms, and objects in texts stay \
-             unverified\nhint: {hint}",
+            "warning: {}: no REVERIE boxes (looked for {}), and only {houses} of {} a .house file; where a scene has \
+             neither, its objects are not known: its labels name only rooms, and objects in texts stay unverified\n\
+             hint: {hint}",
             data.display(),
             BOXES.join(", "),
-            scenes.len()
+            match scenes.len() {
+                1 => "1 scene has".to_owned(),
+                count => format!("{count} scenes have"),
+            }
         ))
     }
 
@@ -194,6 +199,7 @@ mod tests {
         let lack = |data: &Path| Layout::find(data).unwrap().lack_of_objects(data);
         let told = lack(&data).unwrap();
         assert!(told.contains(&data.display().to_string()) && told.contains("REVERIE's boxes into"), "{told}");
+        assert!(told.contains("only 0 of 1 scene has a .house file"), "{told}");
         std::fs::create_dir_all(above.path().join("reverie/BBox")).unwrap();
         assert!(lack(&data).unwrap().contains("give the folder above it"));
         assert_eq!(lack(above.path()), None);
@@ -207,8 +213,13 @@ mod tests {
     fn what_is_missing_is_named_with_where_it_was_looked_for() {
         let empty = tempfile::tempdir().unwrap();
         let error = Layout::find(empty.path()).unwrap_err().to_string();
-        assert!(error.contains("`matterport/connectivity`") && error.contains("--data"), "{error}");
-        let nowhere = Layout::find(&empty.path().join("nowhere")).unwrap_err().to_string();
-        assert!(nowhere.contains("is not a folder"), "{nowhere}");
+        assert!(error.contains("`matterport/connectivity`, `connectivity` or `graph`"), "{error}");
+        assert!(error.contains("--data"), "{error}");
+        let place = empty.path().join("place");
+        let nowhere = Layout::find(&place).unwrap_err().to_string();
+        assert!(nowhere.contains("place: there is no such folder; "), "{nowhere}");
+        std::fs::write(&place, "").unwrap();
+        let file = Layout::find(&place).unwrap_err().to_string();
+        assert!(file.contains("place: is not a folder; "), "{file}");
     }
 }

@@ -41,7 +41,10 @@ impl Scene {
         let file = layout.connectivity(scene);
         let read = connectivity::read(&file)?.ok_or_else(|| PlatformError::UnknownScene {
             scene: scene.to_string(),
-            hint: format!("{} does not exist", file.display()),
+            hint: format!(
+                "{} does not exist; copy it from Matterport3DSimulator's folder `connectivity`, or leave the items of this scene out",
+                file.display()
+            ),
         })?;
         let house = layout.house(scene).map(|file| house_file::read(&file)).transpose()?.flatten();
         let rooms = layout.rooms(scene).map(|file| rooms::read(&file)).transpose()?.flatten();

@@ -22,11 +22,11 @@ pub(crate) enum Fault {
     WrongId { asked: u64, found: u64 },
     #[error("speaks version {0} of the protocol; Wayword speaks version {PROTOCOL}")]
     Version(u64),
-    #[error("uses the frame {0:?}, expected {FRAME:?}")]
+    #[error("uses the world frame {0:?}; it must be {FRAME:?}")]
     Frame(String),
     #[error("sent a greeting that cannot be used: {0}")]
     Greeting(String),
-    #[error("offers other things than before it was restarted")]
+    #[error("has another `name` or other `offers` in its greeting than before the restart")]
     Changed,
     #[error("was restarted as often as `restarts` allows, and is not started again; the last time it {0}")]
     GaveUp(String),
@@ -45,9 +45,9 @@ impl Fault {
     /// What to do about it.
     pub(crate) fn hint(&self) -> &'static str {
         match self {
-            Self::NotStarted(_) => "check that the program exists and is executable, and check its arguments",
+            Self::NotStarted(_) => "check its path, that it is executable, and its arguments",
             Self::Died(_) | Self::Closed | Self::GaveUp(_) => {
-                "run the program yourself: its own error output says more"
+                "correct the error above, or run the program yourself to see all of its output"
             }
             Self::Hung(_) => {
                 "give it more time in the world file (answer_within_s, start_within_s), or find out why it is slow"
@@ -56,11 +56,12 @@ impl Fault {
                 "only answers may go to standard output, one JSON object per line; print all else to standard error"
             }
             Self::Version(_) => "use the wayword_platform.py that comes with this version of Wayword",
-            Self::Frame(_) => "convert to this frame in the child, and name it in the greeting: see docs/PROCESS.md",
-            Self::Greeting(_) | Self::Changed | Self::Misfit(_) => {
-                "see docs/PROCESS.md for what an answer must contain"
+            Self::Frame(_) => {
+                "convert to this frame in the world program, and name it in the greeting: see docs/PROCESS.md"
             }
-            Self::Refused { .. } => "the message comes from the world program, not from Wayword",
+            Self::Changed => "send the same greeting each time (docs/PROCESS.md)",
+            Self::Greeting(_) | Self::Misfit(_) => "see docs/PROCESS.md for what an answer must contain",
+            Self::Refused { .. } => "this message is the world program's own: look for its cause there",
         }
     }
 }

@@ -17,7 +17,7 @@ use std::{
     time::Duration,
 };
 use wayword_core::PlatformError;
-use wayword_world::said::Hear;
+use wayword_world::said::{Hear, plain};
 
 /// After this many answers the child may be restarted once more.
 const ANSWERS_FOR_A_RESTART: u32 = 200;
@@ -215,18 +215,30 @@ impl Failed {
         if self.fault.leaves_it_usable() {
             return self.into_wrong(options);
         }
-        let world = options.shown().display().to_string();
-        PlatformError::Lost { world, reason: self.reason(), hint: self.fault.hint() }
+        let (file, reason) = self.place_and_reason(options);
+        PlatformError::Lost { world: file.display().to_string(), reason, hint: self.fault.hint() }
     }
 
     /// The error for a child that does something wrong.
     fn into_wrong(self, options: &ProcessOptions) -> PlatformError {
-        PlatformError::File { file: options.shown(), reason: self.reason(), hint: self.fault.hint() }
+        let (file, reason) = self.place_and_reason(options);
+        PlatformError::File { file, reason, hint: self.fault.hint() }
     }
 
-    fn reason(&self) -> String {
+    /// The file that the error names, and what is wrong. If the program cannot be started, the place to correct is the
+    /// world file, if there is one.
+    fn place_and_reason(&self, options: &ProcessOptions) -> (PathBuf, String) {
         let Self { fault, method, id, last_words } = self;
-        let request = id.map_or_else(|| format!("`{method}`"), |id| format!("request {id} (`{method}`)"));
-        format!("{request}: the child {fault}{last_words}")
+        match (fault, &options.world_file) {
+            (Fault::NotStarted(_), Some(file)) => {
+                let program = plain(&options.program.to_string_lossy(), 200);
+                (file.clone(), format!("field \"command\": the world program {program} {fault}"))
+            }
+            (Fault::NotStarted(_), None) => (options.program.clone(), format!("the world program {fault}")),
+            _ => {
+                let request = id.map_or_else(|| format!("`{method}`"), |id| format!("request {id} (`{method}`)"));
+                (options.shown(), format!("{request}: the world program {fault}{last_words}"))
+            }
+        }
     }
 }

@@ -19,6 +19,8 @@ const MAX_SIDE_PX: u32 = 4096;
 /// A world program, and its settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProcessOptions {
+    /// The world file with these settings, as errors name it; `None` if there is none.
+    pub world_file: Option<PathBuf>,
     /// The program.
     pub program: PathBuf,
     /// Its arguments.
@@ -72,6 +74,7 @@ impl ProcessOptions {
     #[must_use]
     pub fn new(program: impl Into<PathBuf>) -> Self {
         Self {
+            world_file: None,
             program: program.into(),
             arguments: Vec::new(),
             folder: None,
@@ -105,8 +108,9 @@ impl ProcessOptions {
         let text =
             read::text_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
         let world: WorldFile = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-        let file = file.canonicalize().map_err(|error| wrong(error.to_string()))?;
-        world.resolved(file.parent().unwrap_or(Path::new("."))).map_err(wrong)
+        let resolved = file.canonicalize().map_err(|error| wrong(error.to_string()))?;
+        let options = world.resolved(resolved.parent().unwrap_or(Path::new("."))).map_err(wrong)?;
+        Ok(Self { world_file: Some(file.to_owned()), ..options })
     }
 }
 

@@ -57,7 +57,11 @@ pub(crate) fn drawn(
     });
     let Drawn { path } = keeper.ask("sample_path", &asked)?;
     let Some(walk) = path else {
-        return Err(PlatformError::NoSuchPath { scene: scene.clone(), request: graph_walk::in_words(request) });
+        return Err(PlatformError::NoSuchPath {
+            scene: scene.clone(),
+            request: graph_walk::in_words(request),
+            widen: "--hops or --metres",
+        });
     };
     let misfit = |reason: String| keeper.misfit("sample_path", reason);
     if !(2..=MAX_STOPS).contains(&walk.stops.len()) {

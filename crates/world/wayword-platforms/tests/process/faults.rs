@@ -117,7 +117,7 @@ fn an_answer_too_many_spoils_the_next_request_and_no_more() {
 fn a_greeting_that_cannot_be_used_is_refused_at_once() {
     for (role, says) in [
         ("next version", "speaks version 2 of the protocol; Wayword speaks version 1"),
-        ("y up", "uses the frame \"y-up\""),
+        ("y up", "uses the world frame \"y-up\"; it must be \"z-up"),
         ("sees nothing", "`pictures`, `labels` or both"),
         ("no such folder", "/nowhere/at/all"),
     ] {
@@ -130,7 +130,14 @@ fn a_greeting_that_cannot_be_used_is_refused_at_once() {
     assert!(error.contains("did not answer within 1 s"), "{error}");
     let missing = ProcessOptions::new("/nowhere/simulator");
     let error = ProcessPlatform::start(missing, Arc::new(|_: &str| ())).err().unwrap().to_string();
-    assert!(error.contains("cannot be started") && error.contains("/nowhere/simulator"), "{error}");
+    assert!(error.starts_with("/nowhere/simulator: the world program cannot be started: "), "{error}");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("world.json");
+    std::fs::write(&file, r#"{"command": ["/nowhere/simulator"]}"#).unwrap();
+    let error = ProcessPlatform::start(ProcessOptions::read(&file).unwrap(), Arc::new(|_: &str| ())).err().unwrap();
+    let error = error.to_string();
+    let field = ": field \"command\": the world program /nowhere/simulator cannot be started: ";
+    assert!(error.starts_with(&format!("{}{field}", file.display())), "{error}");
 }
 
 #[test]
@@ -140,7 +147,7 @@ fn a_child_that_offers_other_things_after_a_restart_is_not_asked() {
     let platform = ProcessPlatform::start(options, Arc::new(|_: &str| ())).unwrap();
     look(&platform, "good").unwrap();
     look(&platform, "bad").unwrap_err();
-    for says in ["offers other things than before", "offers other things than before", "not started again"] {
+    for says in ["or other `offers` in its greeting", "or other `offers` in its greeting", "not started again"] {
         let error = look(&platform, "good").unwrap_err().to_string();
         assert!(error.contains(says), "{error}");
     }

@@ -71,7 +71,7 @@ fn a_world_may_draw_its_own_paths_and_is_held_to_the_request() {
         ("draws places", &long, "metres: 5.000"),
         ("draws strangers", &request(), "nobody is not in the graph"),
         ("draws stubs", &request(), "`stops` has length 1"),
-        ("draws nothing", &request(), "holds no path with 2 to 3 hops"),
+        ("draws nothing", &request(), "has no path with 2 to 3 hops"),
     ] {
         let error = drawn(role, request).unwrap_err();
         assert!(error.contains(says), "{role}: {error}");

@@ -35,7 +35,7 @@ pub(in crate::commands) fn write_of_folder(folder: &Path, out: &Path, most: usiz
     let path = folder.join(file::COMPARISON);
     if !path.is_file() {
         let problem = format!("{} holds a comparison that was not finished", folder.display());
-        return Err(Error::usage(problem, "give the command that began it once more"));
+        return Err(Error::usage(problem, "give the same `wayword compare` command again"));
     }
     if kept.inputs.get("episodes") != Some(&run::hash_of_file(&kept.episodes)?) {
         let problem = format!("{}: the file has changed since the comparison", kept.episodes.display());

@@ -58,7 +58,7 @@ impl Problems {
     /// Takes an instruction without a trajectory.
     pub(super) fn add_missing(&mut self, instr_id: String) {
         self.missing += 1;
-        self.add(|| Problem::new(instr_id, "it is missing: every instruction needs a trajectory"));
+        self.add(|| Problem::new(instr_id, "the submission has no trajectory for this instruction"));
     }
 
     /// Takes a problem; beyond the limit it is only counted, and not even made.
@@ -89,7 +89,7 @@ impl Refusal {
             problem,
             match all - missing {
                 0 if missing > 0 => {
-                    format!("{without} without a trajectory: hand in all, or score the others with --partial")
+                    format!("add the trajectories of {without}, or score the others with --partial")
                 }
                 _ if missing > 0 => {
                     format!("fix the problems listed above; --partial skips {without} without a trajectory")

@@ -52,8 +52,8 @@ impl World {
     pub(super) fn warning(&self) -> Option<String> {
         let told = |lack: &String| {
             format!(
-                "warning: the Habitat scenes cannot be opened ({lack}), so the corners and distances of their episodes \
-                 come from the frames, not from the navmesh"
+                "warning: the Habitat scenes cannot be opened ({lack}), so the path corners and distances in their episodes \
+                 come from the frames, not from the navmesh; make the scenes available and export again"
             )
         };
         self.lack.as_ref().map(told)

@@ -47,7 +47,7 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
         args.format.parse().map_err(|error| Error::usage(format!("{error}"), "see wayword export --help"))?;
     let mut records = records(&args.run, args.style.as_deref())?;
     if args.out.exists() {
-        output.say(format_args!("{} exists and is replaced", args.out.display()));
+        output.say(format_args!("overwriting the old file {}", args.out.display()));
     }
     let mut scene_needs = BTreeSet::new();
     let provenance = if format == Format::Wayword {
@@ -67,7 +67,9 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
         write_as(format, &args.out, &records, episodes)?
     };
     if !scene_needs.is_empty() {
-        output.say(format_args!("to do before Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"));
+        output.say(format_args!(
+            "do this so that Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"
+        ));
         scene_needs.iter().take(NEEDS_SHOWN).for_each(|needs| output.say(format_args!("  {needs}")));
         if let Some(more) = scene_needs.len().checked_sub(NEEDS_SHOWN).filter(|more| *more > 0) {
             output.say(format_args!("  and {more} more; info.scene_needs of each episode says what it needs"));
@@ -90,8 +92,14 @@ fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> 
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
     records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
     if records.is_empty() {
-        let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
-        return Err(Error::usage("there is no instruction to export", format!("the run has these styles: {styles}")));
+        let runs = runs.iter().map(|run| run.display().to_string()).collect::<Vec<_>>().join(", ");
+        return Err(match style.filter(|_| !styles.is_empty()) {
+            Some(style) => {
+                let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
+                Error::usage(format!("{runs}: no instruction of style {style}"), format!("there are: {styles}"))
+            }
+            None => Error::usage(format!("{runs}: no instruction"), "see errors.jsonl and rejected.jsonl of the run"),
+        });
     }
     Ok(records)
 }
@@ -109,8 +117,8 @@ fn refuse_what_only_records_bear(args: &Export) -> Result<(), Error> {
     }
     if args.style.is_none() {
         return Err(Error::usage(
-            format!("format {} does not say which style a text is in", args.format),
-            "name one with --style",
+            format!("a file of format {} has texts of one style only", args.format),
+            "choose it with --style",
         ));
     }
     Ok(())

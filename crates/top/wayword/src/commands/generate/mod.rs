@@ -16,14 +16,15 @@ use crate::{
     output::Output,
     pipeline::{RunPlatform, make},
     plan::Plan,
-    platforms,
-    run::{RunFolder, WorldData, continued},
-    settings::Job,
+    platforms::{self, has_hops},
+    run::{RunFolder, WorldData, continued, is_begun},
+    settings::{Job, Settings},
     team::Team,
 };
 use keep::keep;
 use progress::Progress;
 use std::path::Path;
+use wayword_core::{PathRequest, Platform, PlatformError};
 
 pub use summary::Summary;
 
@@ -44,17 +45,47 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     Ok(summary.exit)
 }
 
+/// Warns of settings that this run ignores.
+fn warn_of_no_effect(settings: &Settings, output: &Output) {
+    let asks_hops = settings.request.hops != PathRequest::default().hops;
+    if asks_hops && settings.episodes.is_none() && !has_hops(&settings.platform) {
+        output.say(format_args!(
+            "warning: --hops has no effect, because paths of platform {} have no hops; use --metres",
+            settings.platform
+        ));
+    }
+}
+
+/// Refuses random paths that no scene has, before a folder is made. Whether there are any is known once the first path
+/// was looked for in every scene. Its other failures are reported later, as those of its item.
+fn refuse_impossible_paths(items: &[Item], settings: &Settings, platform: &dyn Platform) -> Result<(), Error> {
+    let Some(first @ Item::Random { scenes, .. }) = items.first() else { return Ok(()) };
+    match first.path(settings, platform) {
+        Err(error @ PlatformError::NoSuchPath { .. }) if scenes.len() > 1 => {
+            let problem =
+                format!("none of the {} scenes has such a path; of the first one tried: {error}", scenes.len());
+            Err(Error::usage(problem, "ask for other paths, or name other scenes with --scan"))
+        }
+        Err(error @ PlatformError::NoSuchPath { .. }) => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
 /// Makes or continues a run.
 ///
 /// # Errors
 /// When the settings, the platform, the styles, the folder or the ledger are wrong. An item that fails is a line of
 /// `errors.jsonl`, and the next command tries it again.
 pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summary, Error> {
+    warn_of_no_effect(&job.settings, output);
     Calls::ready(job, output)?;
     let job = &Job { settings: continued(folder, &job.settings)?, ..job.clone() };
     let platform = platforms::open(&job.settings)?;
     let plan = Plan::writing(job, platform.as_ref())?;
     let settings = &plan.settings()?;
+    if !is_begun(folder) {
+        refuse_impossible_paths(&plan.items, settings, platform.as_ref())?;
+    }
     let mut run = RunFolder::open(folder, settings)?;
     let data = WorldData::of(folder)?;
     let calls = plan.models.open(|| run.id(), output)?;

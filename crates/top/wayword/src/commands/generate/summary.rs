@@ -137,10 +137,14 @@ impl fmt::Display for Summary {
             self.rejected
         )?;
         if self.errors > 0 {
-            writeln!(f, "{} failed (see errors.jsonl); the same command tries again", count(self.errors, "item"))?;
+            writeln!(
+                f,
+                "{} failed (see errors.jsonl); remove the cause, and the same command tries again",
+                count(self.errors, "item")
+            )?;
         }
         if let Some(loss) = &self.first_loss {
-            writeln!(f, "the first of them: {}", tame(loss))?;
+            writeln!(f, "first {}: {}", if self.errors > 0 { "failed item" } else { "rejected text" }, tame(loss))?;
         }
         if !self.roles.is_empty() {
             writeln!(f, "roles: {}", self.roles)?;

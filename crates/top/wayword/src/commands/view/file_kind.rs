@@ -48,7 +48,7 @@ impl FileKind {
         kind.ok_or_else(|| {
             let endings: Vec<String> =
                 kinds.iter().flat_map(|kind| kind.endings()).map(|end| format!(".{end}")).collect();
-            let problem = format!("--out {}: its ending does not say what to write", out.display());
+            let problem = format!("--out {}: this command does not write files with this ending", out.display());
             Error::usage(problem, format!("end it in {}", endings.join(" or ")))
         })
     }

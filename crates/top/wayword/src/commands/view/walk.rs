@@ -48,6 +48,13 @@ fn recorded(file: &FilePath, walk: &Walk) -> Result<Path, Error> {
     let in_scene = |path: &Path| walk.scan.as_deref().is_none_or(|scan| path.scene.as_str() == scan);
     let paths = || records.iter().map(|record| &record.path).filter(|path| in_scene(path));
     let chosen = paths().find(|path| walk.item.as_ref().is_none_or(|id| path.id == *id));
+    if paths().next().is_none() {
+        let of_scene = walk.scan.as_ref().map_or_else(String::new, |scan| format!(" in scene {scan}"));
+        return Err(Error::usage(
+            format!("{}: it has no path{of_scene}", file.display()),
+            "give another --scan or file",
+        ));
+    }
     chosen.cloned().ok_or_else(|| absent(walk, paths().map(|path| path.id.clone())))
 }
 
@@ -56,9 +63,6 @@ fn absent(walk: &Walk, ids: impl Iterator<Item = String>) -> Error {
     some.dedup();
     let more = if some.len() > TOLD { " ..." } else { "" };
     some.truncate(TOLD);
-    let problem = match &walk.item {
-        Some(id) => format!("--item {id}: there is no such item"),
-        None => "there is no such item".to_owned(),
-    };
+    let problem = format!("--item {}: there is no such item", walk.item.as_deref().unwrap_or_default());
     Error::usage(problem, format!("there are: {}{more}", some.join(", ")))
 }

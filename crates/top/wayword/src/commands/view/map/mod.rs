@@ -34,8 +34,9 @@ pub(super) fn write(args: &ViewMap, output: &Output) -> Result<Written, Error> {
     let above = level.map(|level| platform.look_down(&scene, level)).transpose()?.flatten();
     let plan = Plan { graph: &graph, level, above: above.as_ref(), path: path.as_ref() };
     let sketch = layout::sketch(&plan).ok_or_else(|| {
-        let hint = "it has no viewpoints, or they are too far apart";
-        Error::usage(format!("scene {scene} cannot be drawn as a map"), hint)
+        let problem =
+            format!("scene {scene} cannot be drawn as a map: it has no viewpoints, or they are too far apart");
+        Error::usage(problem, "choose another --scan")
     })?;
     let (bytes, [width, height]) = if kind == FileKind::Svg {
         let size = sketch.size.map(|side| side.ceil() as u32);
@@ -78,7 +79,9 @@ fn level(
             let starts = path.and_then(|path| path.frames.first()?.level).filter(|level| levels.contains(level));
             let level = starts.or_else(|| levels.first().copied());
             if let Some(level) = level.filter(|_| levels.len() > 1) {
-                output.say(format_args!("drawing storey {level} of {told}; choose another with --level"));
+                output.say(format_args!(
+                    "drawing storey {level} (the scene has storeys {told}); choose another with --level"
+                ));
             }
             Ok(level)
         }

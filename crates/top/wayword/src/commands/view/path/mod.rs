@@ -31,7 +31,7 @@ pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> 
     let path = walk::path(&args.walk, &args.platform, &*platform)?;
     let steps = between::steps(&path, args.smooth.unwrap_or(0))?;
     if steps.len() > MOST_STEPS {
-        let problem = format!("the path would need {} pictures, and {MOST_STEPS} are the most", steps.len());
+        let problem = format!("the path would need {} pictures, but at most {MOST_STEPS} are allowed", steps.len());
         return Err(Error::usage(problem, "ask for a shorter path, or a smaller --smooth"));
     }
     let mut film = place.open(fps, steps.len())?;
