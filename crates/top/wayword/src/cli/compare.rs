@@ -14,7 +14,7 @@ Examples:
       --instructions original --instructions central=runs/central#reverie --instructions panoramic=runs/panoramic#reverie
       Three agents follow what people wrote and what two runs wrote. Labels stand in for photographs.
   wayword compare --episodes runs/houses/instructions.jsonl --instructions houses=runs/houses#r2r --out runs/houses_walked
-      Three agents follow the instructions of a run in generated houses, without any model.
+      Three agents follow a run's own instructions in generated houses, without any model.
   wayword compare --platform matterport --data DATA --episodes R2R_val_seen.json --agents clip-nav \\
       --grounder hf/openai/clip-vit-base-patch32 --out runs/clip      (needs photographs, and the feature full)
   wayword compare --platform matterport --data DATA --episodes REVERIE_val_seen.json --split ollama/qwen3 --out runs/split
@@ -35,8 +35,8 @@ pub struct Compare {
     /// compare sets; all are compared with the first. [default: original]
     #[arg(long, value_name = "SET")]
     pub instructions: Vec<String>,
-    /// The agents: clip-nav, seq-clip-nav, glip-nav. Lower-bound baselines (random, straight ahead) and upper bounds (nearest room,
-    /// oracle) are always added.
+    /// The agents: clip-nav, seq-clip-nav, glip-nav. Always added: lower-bound baselines (random, straight ahead), nearest-room
+    /// (knows the map), and the upper bound (oracle).
     #[arg(
         long,
         value_name = "NAMES",
@@ -59,8 +59,8 @@ pub struct Compare {
     /// Base URL of the provider of --split.
     #[arg(long, value_name = "URL")]
     pub base_url: Option<String>,
-    /// What counts as success: the target is visible from the last viewpoint (REVERIE's rule), or the goal is under 3 m away (R2R's
-    /// rule). [default: visible if every item names an object, else distance]
+    /// What counts as success: the target is visible from the last viewpoint (REVERIE's rule), or the goal is less than 3 m away
+    /// (R2R's rule). [default: visible if every item names an object, else distance]
     #[arg(long)]
     pub rule: Option<SuccessRule>,
     /// Swap tests: how the first set's instructions are made wrong, to see whether the agents follow them at all. `none` makes no
@@ -128,7 +128,7 @@ impl Compare {
 /// What counts as success, as typed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SuccessRule {
-    /// The last viewpoint lies under 3 m from the goal.
+    /// The last viewpoint is less than 3 m from the goal.
     Distance,
     /// The target is visible from the last viewpoint.
     Visible,

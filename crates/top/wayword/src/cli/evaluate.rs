@@ -16,8 +16,8 @@ Examples:
       --platform matterport --data DATA --rule visible --partial --json
       A submission that `wayword compare` wrote. It may lack items, because `compare` walks only the items that all its sets have.
 
-A submission is a JSON list of {\"instr_id\": \"ID_PLACE\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
-plain or gzip, with one entry for every instruction (fewer only with --partial). If an entry is wrong, nothing is scored, the problems
+A submission is a JSON list of {\"instr_id\": \"ID_N\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
+plain or gzip. ID_N is instruction N (from 0) of item ID. Every instruction needs an entry, except with --partial. If an entry is wrong, nothing is scored, the problems
 are listed (20 on the screen, more with --json), and the exit code is 1.")]
 pub struct Evaluate {
     /// File of trajectories, as the evaluators of R2R and REVERIE take it.
@@ -29,7 +29,7 @@ pub struct Evaluate {
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,
-    /// Score a submission that covers only a part of the instructions, and print how many it covers. Leaderboards want all.
+    /// Score a submission that covers only a part of the instructions, and print how many it covers. Leaderboards want every one.
     #[arg(long)]
     pub partial: bool,
     /// Use only this rule of success. [default: every rule that can be applied]

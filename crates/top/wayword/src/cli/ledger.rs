@@ -49,7 +49,7 @@ pub enum LedgerCommand {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Delete calls. A run that needs one of them again pays for it again.
+    /// Delete calls. A run that needs one of them later pays for it again.
     Prune {
         /// Delete calls that are older than this.
         #[arg(long, value_name = "DAYS")]
@@ -57,7 +57,7 @@ pub enum LedgerCommand {
         /// Delete the calls of this model.
         #[arg(long, value_name = "MODEL")]
         model: Option<String>,
-        /// Delete calls whose answer was changed after it was written (its checksum is wrong).
+        /// Delete calls whose answer has a wrong checksum, because it was changed later.
         #[arg(long, conflicts_with_all = ["older_than_days", "model"])]
         changed: bool,
     },

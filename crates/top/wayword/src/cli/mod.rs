@@ -26,7 +26,7 @@ pub use perceive::Perceive;
 pub use similarity::{By, Similarity};
 pub use view::{View, ViewCommand, ViewMap, ViewPanorama, ViewPath, Walk};
 
-/// Writes the wayfinding instructions that a person would give a robot, for any simulator, and checks them.
+/// Writes and checks wayfinding instructions, as a person would give them to a robot, for any simulator.
 #[derive(Debug, Parser)]
 #[command(version, after_long_help = EXAMPLES)]
 pub struct Cli {
@@ -44,7 +44,7 @@ pub struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   wayword demo
-      Write instructions in two styles for a path through a generated house, and open report.html to see them.
+      Write instructions in two styles for a path through a generated house. Then look at wayword-demo/report.html.
   wayword generate --platform house --paths 20 --style r2r --out runs/houses
       Write instructions for 20 random paths through generated houses.
   wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --out runs/val_seen
@@ -59,12 +59,12 @@ Examples:
       Score anyone's trajectories as the official evaluators do, with confidence intervals.
 
 Exit codes:
-  0  done, and every check passed
+  0  done, and no check failed
   1  the input is wrong, or a file cannot be read or written
   2  the command line is wrong
   3  done, but some items failed, or some instructions failed a check; the reasons are listed
   4  another process is writing to the same run folder
-  5  stopped early: the budget is spent or a key was refused; the same command continues
+  5  stopped early: the budget is spent or a key was refused; continue with a larger budget or a correct key
   6  interrupted (Ctrl-C, SIGTERM); the same command continues
   7  the simulator, a service or the disk failed; the same command continues";
 
@@ -77,7 +77,7 @@ pub enum Command {
     Generate(Box<Generate>),
     /// Check anyone's instructions against what their paths show.
     Check(Check),
-    /// Write a run in the file format of a benchmark: R2R, REVERIE, RxR, VLN-CE.
+    /// Write a run as one file, in the format of R2R, REVERIE, RxR, VLN-CE or Wayword.
     Export(Export),
     /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
     Report(Report),
@@ -89,15 +89,15 @@ pub enum Command {
     Compare(Box<Compare>),
     /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with confidence intervals.
     Evaluate(Evaluate),
-    /// Check keys, endpoints, models and data, and say how to fix what is wrong.
+    /// Check keys, servers, models and data, and say how to fix what is wrong.
     Doctor(Box<Doctor>),
-    /// Show the calls to models that are kept, and what they cost.
+    /// Show the kept calls to models, and what they cost.
     Ledger(Ledger),
     /// List, fetch or locate the models that run inside this program.
     Models(Models),
     /// List the platforms: what each needs and offers.
     Platforms,
-    /// Draw a panorama, a path as its walker sees it, or a map.
+    /// Draw a panorama, what is seen along a path, or a map.
     View(View),
     /// Save a generated house as glTF with its navigation data, and as a labelled scene for AI Habitat.
     House(House),
@@ -135,11 +135,11 @@ pub struct Generate {
     /// Settings as TOML, with the names of these flags. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
-    /// Folder for the run. Give the same command again to continue it.
+    /// Folder for the run; required without --dry-run. Give the same command again to continue it.
     #[arg(long, value_name = "DIR", required_unless_present = "dry_run")]
     pub out: Option<PathBuf>,
-    /// Estimate the calls, tokens and money that the run would need, without making a call. Repeated questions and rewritten
-    /// texts are not counted.
+    /// Estimate the calls, tokens and money that the run would need, without making a call. Questions that are asked twice and
+    /// texts that are rewritten are not counted.
     #[arg(long)]
     pub dry_run: bool,
     /// The run.
@@ -176,10 +176,10 @@ Examples:
   wayword export --run runs/val_seen --style reverie --format reverie --out val_seen_generated.json
   wayword export --run runs/a --run runs/b --format wayword --val-share 0.1 --out merged.jsonl")]
 pub struct Export {
-    /// Run folder. Several are merged, with format wayword only.
+    /// Run folder. Several can be merged into one file of format wayword.
     #[arg(long, value_name = "DIR", required = true)]
     pub run: Vec<PathBuf>,
-    /// Export only the instructions of this style.
+    /// Export only the instructions of this style; required for all formats but wayword.
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
     /// File format: r2r, reverie, rxr, vlnce or wayword.

@@ -10,7 +10,7 @@ Examples:
   wayword models fetch hf/Salesforce/blip-vqa-base
   wayword models path hf/Salesforce/blip-vqa-base@main
 
-Models are kept in the cache that the hub's Python client uses too: HF_HUB_CACHE, else hub in HF_HOME, else
+Models are kept in Hugging Face's cache, which its Python client shares: HF_HUB_CACHE, else hub in HF_HOME, else
 ~/.cache/huggingface/hub. HF_ENDPOINT names another hub, HF_TOKEN holds a token for private and gated models, and with
 WAYWORD_OFFLINE=1 nothing is fetched. A model in a folder of your own is named hf/PATH, where PATH begins with / or ., as in
 hf/./models/blip.")]
@@ -30,7 +30,7 @@ pub enum ModelsCommand {
         /// Its name: hf/ORG/NAME or hf/ORG/NAME@REVISION.
         name: String,
     },
-    /// Print the folder of a model, or which file is missing. Nothing is fetched.
+    /// Print a model's folder, or the file that it lacks. Nothing is fetched.
     Path {
         /// Its name.
         name: String,

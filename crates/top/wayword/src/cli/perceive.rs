@@ -29,7 +29,7 @@ pub struct Perceive {
     /// Use only this scene. May be given several times.
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<Vec<String>>,
-    /// Use only this way of asking. May be given several times. [default: all three]
+    /// Use only this kind of perception. May be given several times. [default: all three]
     #[arg(long)]
     pub perception: Option<Vec<Perception>>,
     /// Ask at most this many questions per view in a dialogue. [default: 9]
@@ -38,7 +38,7 @@ pub struct Perceive {
     /// Seed of the random paths. [default: 0]
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Show this many captions of each way of asking.
+    /// Show this many captions of each kind of perception.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub show: usize,
     /// Who asks, sees and summarises.

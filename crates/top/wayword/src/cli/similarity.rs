@@ -13,13 +13,13 @@ Examples:
       Compare texts of different datasets that describe the same paths.
   wayword similarity runs/a runs/b --style r2r --encoder words      (counts words, needs no model)")]
 pub struct Similarity {
-    /// Instructions: a run folder, or a file in R2R, REVERIE, RxR, VLN-CE or Wayword format; #STYLE at its end names one style.
+    /// Instructions: a run folder, or a file in R2R, REVERIE, RxR, VLN-CE or Wayword format. Add #STYLE to take one style.
     #[arg(value_name = "A")]
     pub a: String,
-    /// The instructions to compare with, named the same way. The two anchors (two people, and chance) are measured on these.
+    /// The instructions to compare with, named the same way. The figures for two people and for chance are measured on these.
     #[arg(value_name = "B")]
     pub b: String,
-    /// Compare two texts if they share their item, or their path.
+    /// Compare texts of the same item, or of the same path.
     #[arg(long, default_value = "item")]
     pub by: By,
     /// Sentence encoder as hf/ORG/NAME, or `words` to count words without a model.

@@ -17,7 +17,7 @@ pub struct View {
 pub enum ViewCommand {
     /// Draw everything around a viewpoint, as one picture.
     Panorama(ViewPanorama),
-    /// Draw a path as its walker sees it: pictures in a folder, a GIF or a video.
+    /// Draw what is seen along a path: pictures in a folder, a GIF or a video.
     Path(ViewPath),
     /// Draw a storey from above: where one can walk and, if asked, a path.
     Map(ViewMap),
@@ -29,10 +29,10 @@ pub struct Walk {
     /// Use this scene. [default: the platform's first; with --episodes, that of the item]
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<String>,
-    /// Show the first random path that `generate` makes with this seed. [default: 0]
+    /// Show the first random path that `generate` makes with this seed. [default: 0; `view map` draws no path without a flag for one]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Number of hops of a random path. [default: 4..7]
+    /// Number of hops of a random path, on platforms with a viewpoint graph. [default: 4..7]
     #[arg(long, value_name = "FROM..TO")]
     pub hops: Option<String>,
     /// Length of a random path in metres. [default: 5..20]
@@ -54,7 +54,7 @@ Examples:
   wayword view panorama --platform habitat --data house.glb --viewpoint v0003 --heading-deg 90 --out east.jpg
   wayword view panorama --platform matterport --data DATA --scan SCAN --seed 3 --out start.png
 
-The picture shows 360 degrees, with the heading in its middle. It is made of four views. If one of the four has no picture, that
+The picture shows 360 degrees, with the heading in its centre. It is made of four views. If one of the four has no picture, that
 part is grey; if more have none, no panorama is written.")]
 pub struct ViewPanorama {
     /// The platform.
@@ -69,10 +69,10 @@ pub struct ViewPanorama {
     /// Stand where the random path of this seed starts, with its heading.
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Heading of the middle in degrees: 0 is north (+y), 90 is east. [default: 0; with --seed, that of the path]
+    /// Heading of the centre in degrees: 0 is north (+y), 90 is east. [default: 0; with --seed, that of the path]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub heading_deg: Option<f64>,
-    /// Width of the picture. [default: as much detail as the views have]
+    /// Width of the picture. [default: the full resolution of the views]
     #[arg(long, value_name = "PIXELS")]
     pub width: Option<u32>,
     /// Picture to write: .png or .jpg.
@@ -99,7 +99,7 @@ pub struct ViewPath {
     /// The path.
     #[command(flatten)]
     pub walk: Walk,
-    /// Pictures per second. [default: 1; with --smooth 12]
+    /// Pictures per second. [default: 1, or 12 if --smooth is given]
     #[arg(long, value_name = "N")]
     pub fps: Option<f64>,
     /// Draw this many pictures between two frames. Needs a platform that can draw from anywhere (house, habitat).

@@ -1,7 +1,10 @@
 //! The part of the page above the items: settings, roles and results of the run.
 
 use super::records::{Counts, Records, RolesPlayed};
-use crate::settings::{Against, Perception, Settings, TargetMode};
+use crate::{
+    platforms::has_hops,
+    settings::{Against, Perception, Settings, TargetMode},
+};
 use serde::Serialize;
 use std::path::Path;
 use wayword_synthesis::walk::FrameSelection;
@@ -84,17 +87,12 @@ fn roles(roles: &RolesPlayed) -> RolesView {
 fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
     let file = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (hops, length_m) = (&settings.request.hops, &settings.request.length_m);
+    let hops = match has_hops(&settings.platform) {
+        true => format!(", {} to {} hops", hops.start(), hops.end()),
+        false => String::new(),
+    };
     let paths = settings.episodes.as_deref().map_or_else(
-        || {
-            format!(
-                "{} random, {} to {} hops, {} to {} m",
-                settings.paths,
-                hops.start(),
-                hops.end(),
-                length_m.start(),
-                length_m.end()
-            )
-        },
+        || format!("{} random{hops}, {} to {} m", settings.paths, length_m.start(), length_m.end()),
         |episodes| format!("of {}", file(episodes)),
     );
     let style = |style: &String| match style.split_once('=') {

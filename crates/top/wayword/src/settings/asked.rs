@@ -18,6 +18,13 @@ macro_rules! group {
             pub(super) fn over(self, other: Self) -> Self {
                 Self { $($key: self.$key.or(other.$key),)* }
             }
+
+            /// The flags of the values that are given.
+            #[must_use]
+            pub fn given(&self) -> Vec<String> {
+                let keys = [$((stringify!($key), self.$key.is_some())),*];
+                keys.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| format!("--{}", key.replace('_', "-"))).collect()
+            }
         }
     };
 }
@@ -109,7 +116,8 @@ walks:
         /// Use only this scene. May be given several times.
         #[arg(long, value_name = "SCENE")]
         pub scan: Option<Vec<String>>,
-        /// Number of hops of a random path. [default: 4..7]
+        /// Number of hops of a random path, on platforms with a viewpoint graph (matterport, process, recordings without poses).
+        /// [default: 4..7]
         #[arg(long, value_name = "FROM..TO")]
         pub hops: Option<String>,
         /// Length of a random path in metres. [default: 5..20]
@@ -125,7 +133,7 @@ writing:
         /// given several times. [default: r2r and reverie]
         #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
         pub style: Option<Vec<String>>,
-        /// Describe at each frame the view along the heading, or four views around. [default: central]
+        /// At each frame, describe the view along the heading, or all four views. [default: central]
         #[arg(long)]
         pub frames: Option<Frames>,
         /// How a view is described: question by question, with fixed queries, or with a single request. [default: dialogue]
@@ -134,10 +142,10 @@ writing:
         /// Ask at most this many questions per view. [default: 9]
         #[arg(long, value_name = "N")]
         pub questions: Option<usize>,
-        /// The object of the closing task: the one that the episode gives, or one that the writer chooses. [default: given]
+        /// The target of the task at the end: given by the episode or path, or chosen by the writer. [default: given]
         #[arg(long)]
         pub target: Option<TargetMode>,
-        /// Write a text that failed a check again, at most this many times. [default: 8; if a model writes, 3]
+        /// Rewrite a text that failed a check, at most this many times. [default: 8; if a model writes, 3]
         #[arg(long, value_name = "N")]
         pub repairs: Option<u32>,
         /// Check texts against the platform's labels if it has any, or only against the captions. [default: labels]
@@ -165,7 +173,7 @@ draw:
 pub enum Frames {
     /// The view along the heading.
     Central,
-    /// North, east, south and west, condensed.
+    /// North, east, south and west, condensed into one description.
     Panoramic,
 }
 

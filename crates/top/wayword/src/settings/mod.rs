@@ -105,10 +105,10 @@ pub enum Against {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum TargetMode {
-    /// The episode or the random path gives it.
+    /// The target of the episode or of the random path.
     #[default]
     Given,
-    /// The writer chooses it among what the last frame shows. Exports then carry no object id.
+    /// Chosen by the writer from what the last frame shows. Exports then have no object id.
     Free,
 }
 
@@ -221,7 +221,7 @@ pub(crate) fn nameable(flag: &str, path: Option<&Path>) -> Result<(), Error> {
     match path {
         Some(path) if path.to_str().is_none() => Err(Error::usage(
             format!("{flag} {}: this name is not valid UTF-8, and a run keeps it as text", path.display()),
-            "rename it, or give the name of a link to it",
+            "rename it, or make a symbolic link to it with a plain name and give that",
         )),
         _ => Ok(()),
     }

@@ -44,10 +44,10 @@ group! {
         /// Base URL of the provider. For several providers use [providers.NAME] in the settings file.
         #[arg(long, value_name = "URL")]
         pub base_url: Option<String>,
-        /// Shrink the pictures that models are sent to this length of the longer side. [default: 512]
+        /// Longer side of the pictures that models get; larger pictures are shrunk. [default: 512]
         #[arg(long, value_name = "PX")]
         pub picture_px: Option<u32>,
-        /// Number format of the weights of a model in process: f32, bf16 or f16. [default: f32; for BLIP-2, bf16]
+        /// Number format of the weights of a model that runs inside this program: f32, bf16 or f16. [default: f32; for BLIP-2, bf16]
         #[arg(long, value_name = "NUMBERS")]
         pub precision: Option<Precision>,
         /// Folder with your own prompt templates: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
@@ -63,7 +63,7 @@ group! {
 pub enum Precision {
     /// 32 bits.
     F32,
-    /// 16 bits, with the range of 32.
+    /// 16 bits, with the range of f32.
     Bf16,
     /// 16 bits.
     F16,
@@ -76,7 +76,7 @@ pub enum Finish {
     /// The writer that works by rules.
     #[default]
     Rules,
-    /// Nobody: the instruction is rejected.
+    /// The instruction is rejected.
     Nobody,
 }
 

@@ -12,11 +12,10 @@ group! {
     #[serde(deny_unknown_fields, default)]
     #[command(next_help_heading = "Calls to models")]
     pub struct Service {
-        /// Stop before the run costs more than this, in US dollars, earlier commands included. Models without a known price are
-        /// refused.
+        /// Stop before the run costs more US dollars than this, over all its commands. Models without a known price are refused.
         #[arg(long, value_name = "USD")]
         pub max_usd: Option<f64>,
-        /// Stop before the run has sent more requests than this, earlier commands included.
+        /// Stop before the run sends more requests than this, over all its commands.
         #[arg(long, value_name = "N")]
         pub max_calls: Option<u64>,
         /// Number of requests at the same time, per provider. [default: raised step by step while the provider keeps up, at most 64]
@@ -28,16 +27,16 @@ group! {
         /// Send at most this many tokens per minute to a provider.
         #[arg(long, value_name = "N")]
         pub tokens_per_minute: Option<f64>,
-        /// Give up a request after this many seconds. [default: 120]
+        /// Abandon a request after this many seconds. [default: 120]
         #[arg(long, value_name = "S")]
         pub timeout_s: Option<f64>,
         /// Environment variable that holds the key of the provider. For several providers use the settings file.
         #[arg(long, value_name = "NAME")]
         pub key_env: Option<String>,
-        /// Device for models in process: cpu, cuda, cuda:1 or metal (the last three need a build with that feature). [default: cpu]
+        /// Device for models that run inside this program: cpu, cuda, cuda:1 or metal (the last three need a build with that feature). [default: cpu]
         #[arg(long, value_name = "DEVICE")]
         pub device: Option<String>,
-        /// Limit of the memory that all models in process take, in GiB. [default: the free memory of the machine]
+        /// Limit of the memory that all models inside this program take, in GiB. [default: the free memory of the machine]
         #[arg(long, value_name = "GIB")]
         pub memory_gib: Option<f64>,
         /// File with your own prices, TOML (see docs/MODELS.md).
@@ -46,7 +45,7 @@ group! {
         /// File of the ledger, which keeps every answer. [default: wayword/ledger.db where your system keeps data, as ~/.local/share]
         #[arg(long, value_name = "FILE")]
         pub ledger: Option<PathBuf>,
-        /// Also write every answer that the run uses to this file, for --replay.
+        /// Also save every answer of the run in this file, for --replay.
         #[arg(long, value_name = "FILE")]
         pub record: Option<PathBuf>,
         /// Take every answer from a file that --record wrote. No provider is called.

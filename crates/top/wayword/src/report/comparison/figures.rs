@@ -110,7 +110,7 @@ pub(super) const READS_NOTHING: &str = "reads nothing";
 /// Columns to the right of the differences.
 pub(super) const BESIDE_DIFFERENCES: [&str; 3] = ["only this", "only first", "p"];
 /// Columns to the right of the swaps.
-pub(super) const BESIDE_SWAPS: [&str; 3] = ["changed", "p", "follows"];
+pub(super) const BESIDE_SWAPS: [&str; 3] = ["texts changed", "p", "follows"];
 
 /// The table itself.
 pub(super) fn rows(comparison: &Comparison) -> Vec<Line<'_>> {

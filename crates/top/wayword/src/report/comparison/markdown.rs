@@ -25,7 +25,7 @@ pub fn markdown(comparison: &Comparison) -> String {
     }
     let lost = swaps(comparison);
     if !lost.is_empty() {
-        add(&mut page, format_args!("\n## Lost if {first} is swapped\n\n"));
+        add(&mut page, format_args!("\n## Loss by swap of set {first}\n\n"));
         table(&mut page, "Swap", &lost, &SHOWN, &BESIDE_SWAPS);
     }
     list(&mut page, "Sets", comparison.sets.iter().map(notes::set));

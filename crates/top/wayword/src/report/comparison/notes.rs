@@ -69,7 +69,7 @@ pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
     if !untested.is_empty() {
         let agents = untested.join(", ");
         warnings.push(format!(
-            "{agents}: the swap test with another path's instruction covers fewer than {FEWEST_PATHS} paths, so it is not known whether the rows say anything about the instructions."
+            "{agents}: the swap test with another path's instruction covers fewer than {FEWEST_PATHS} paths, so its rows may say nothing about the instructions."
         ));
     }
     warnings
@@ -112,7 +112,7 @@ fn of_table(comparison: &Comparison) -> Vec<String> {
     let about = &comparison.about;
     let mut notes = vec![
         format!(
-            "The figure of an item is the mean over its texts, that of a row the mean over the {}. Rates and shares are in per cent.",
+            "A row is the mean over the {}, and an item the mean over its texts. Rates and shares are in per cent.",
             count(about.items, "item")
         ),
         format!(
@@ -140,13 +140,19 @@ fn of_differences(comparison: &Comparison) -> Vec<String> {
     let mut notes = Vec::new();
     if comparison.rows.iter().any(|row| row.against_first.is_some()) || !comparison.swaps.is_empty() {
         notes.push(
-            "McNemar's p (on the first text of each item) is descriptive, because it treats items as independent and they are not. \"Only this\" and \"only first\" count the items on which only one of the two succeeds."
+            "McNemar's p (on the first text of each item) is descriptive, because it treats items as independent and they are not."
+                .to_owned(),
+        );
+    }
+    if comparison.rows.iter().any(|row| row.against_first.is_some()) {
+        notes.push(
+            "\"Only this\" and \"only first\" count the items on which only one of the two sets leads to success."
                 .to_owned(),
         );
     }
     if !comparison.swaps.is_empty() {
         notes.push(
-            "Swaps: the loss is the figure with the original texts minus the figure with the swapped ones, over the texts that the swap changes. An agent follows what was swapped if the whole interval of the lost SR is above 0."
+            "Swaps: the loss is the figure with the original texts minus the figure with the swapped ones, over the texts that the swap changes. An agent follows what was swapped if the interval of its loss of SR is above 0."
                 .to_owned(),
         );
     }

@@ -19,7 +19,7 @@ pub fn screen(comparison: &Comparison) -> String {
     }
     let lost = swaps(comparison);
     if !lost.is_empty() {
-        table(&mut text, &format!("lost if {first} is swapped"), &lost, &BESIDE_SWAPS);
+        table(&mut text, &format!("loss by swap of set {first}"), &lost, &BESIDE_SWAPS);
     }
     let sets = comparison.sets.iter().map(notes::set);
     let after =
