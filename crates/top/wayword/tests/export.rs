@@ -7,7 +7,7 @@ mod common;
 use common::{Building, files};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{Heading, Motion, Path, ViewpointId};
+use wayword_core::{DVec3, Frame, Heading, Motion, Path, Pose, ViewpointId};
 use wayword_formats::{Format, jsonl, jsonl::Split};
 
 fn export(building: &Building, format: &str, out: &str) -> Value {
@@ -140,7 +140,8 @@ fn runs_merge_and_no_scene_is_in_both_splits() {
 #[test]
 fn vlnce_says_how_habitat_gets_a_generated_house() {
     let building = Building::new();
-    houses(&building);
+    let run = ["generate", "--paths", "4", "--scan", "house-3", "--style", "r2r", "--out", "a"];
+    assert_eq!(building.wayword(&run).code, Some(0));
     let arguments = ["export", "--run", "a", "--style", "r2r", "--format", "vlnce", "--out", "a.json", "--json"];
     let ran = building.wayword(&arguments);
     assert_eq!(ran.code, Some(0), "{ran:?}");
@@ -154,6 +155,22 @@ fn vlnce_says_how_habitat_gets_a_generated_house() {
         (&"house/house-3/house-3.glb".into(), &needs.into())
     );
     assert_eq!(episode["info"]["geodesic_distance_over"], "frames");
+    let houses = wayword::platforms::open_named("house", None, None, None).unwrap();
+    let (episodes, records) = (Format::Vlnce.read(&building.path("a.json")).unwrap(), building.records("a"));
+    let standing = |floor: DVec3| Frame {
+        pose: Pose::level(floor + DVec3::Z * 1.5, Heading::NORTH),
+        viewpoint: None,
+        level: None,
+    };
+    let mut corners = 0;
+    for (episode, record) in episodes.iter().zip(&records) {
+        corners += episode.floor_positions.len() - record.path.frames.len();
+        for hop in episode.floor_positions.windows(2) {
+            let way = houses.way(&record.path.scene, &standing(hop[0]), &standing(hop[1])).unwrap().unwrap();
+            assert!(way.length_m <= hop[0].distance(hop[1]) + 0.08, "{hop:?} is no straight walk");
+        }
+    }
+    assert!(corners > 0, "no path has a corner between two frames");
     // The command that `scene_needs` names writes the file to this place.
     assert_eq!(building.wayword(&["house", "--seed", "3", "--out", "SCENES/house/house-3"]).code, Some(0));
     assert!(building.path("SCENES").join(episode["scene_id"].as_str().unwrap()).is_file());

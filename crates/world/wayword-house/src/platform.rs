@@ -1,13 +1,14 @@
 //! The built-in platform.
 
 use super::{
+    graph::EYE_M,
     home::{Home, unknown},
     sample,
 };
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
-    ViewpointGraph, ViewpointId,
+    DVec3, Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
+    ViewpointGraph, ViewpointId, Way,
 };
 
 /// How many houses are kept in memory; each takes about 15 MB.
@@ -97,6 +98,12 @@ impl Platform for HousePlatform {
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
         let home = self.home(scene)?;
         home.scene.look_down(&home.graph, level).map_err(|error| home.refused(&error))
+    }
+
+    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+        let feet = |frame: &Frame| frame.pose.position - DVec3::Z * EYE_M;
+        let way = self.home(scene)?.ground.geodesic(feet(from), feet(to)).ok();
+        Ok(way.map(|way| Way { corners: way.corners, length_m: way.length_m }))
     }
 
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

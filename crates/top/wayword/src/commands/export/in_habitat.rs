@@ -15,6 +15,8 @@ const SAME_M: f64 = 1e-3;
 pub(super) struct World {
     /// Habitat's own scenes, with the folder or file that they come from.
     scenes: Option<(Box<dyn Platform>, PathBuf)>,
+    /// The generated houses, if the run has any.
+    houses: Option<Box<dyn Platform>>,
     /// Why the first Habitat scene that failed could not be read.
     lack: Option<String>,
 }
@@ -22,12 +24,11 @@ pub(super) struct World {
 impl World {
     /// The platform of a run's records. If Habitat's scenes cannot be opened, it has none.
     pub(super) fn of(run: &Path, records: &[Record]) -> Self {
-        if !records.iter().any(|record| record.platform == "habitat") {
-            return Self { scenes: None, lack: None };
-        }
-        match scenes(run) {
-            Ok(scenes) => Self { scenes: Some(scenes), lack: None },
-            Err(error) => Self { scenes: None, lack: Some(first_line(&error)) },
+        let has = |platform: &str| records.iter().any(|record| record.platform == platform);
+        let houses = has("house").then(|| platforms::open_named("house", None, None, None).ok()).flatten();
+        match has("habitat").then(|| scenes(run)).transpose() {
+            Ok(scenes) => Self { scenes, houses, lack: None },
+            Err(error) => Self { scenes: None, houses, lack: Some(first_line(&error)) },
         }
     }
 
@@ -43,7 +44,11 @@ impl World {
             }
             ("habitat", None) => episode.in_habitat = without_scene(scene),
             ("matterport", _) => {}
-            ("house", _) => episode.in_habitat = house(scene),
+            ("house", _) => {
+                let path = self.houses.as_deref().and_then(|houses| around_corners(houses, &record.path, episode).ok());
+                episode.floor_positions = path.unwrap_or_else(|| std::mem::take(&mut episode.floor_positions));
+                episode.in_habitat = house(scene);
+            }
             (other, _) => episode.in_habitat = unknown(other, scene),
         }
     }
@@ -80,7 +85,9 @@ fn tell_of_scene(
     episode: &mut Episode,
 ) -> Result<(), PlatformError> {
     let file = platform.scene_file(&walk.scene)?;
-    walk_around_corners(platform, walk, episode)?;
+    let path = around_corners(platform, walk, episode)?;
+    episode.in_habitat.geodesic_m = geodesic_m(platform, walk)?;
+    episode.floor_positions = path;
     episode.in_habitat.scene_id = file.map(|file| below_scenes(&file, data));
     Ok(())
 }
@@ -124,9 +131,9 @@ fn unknown(platform: &str, scene: &SceneId) -> InHabitat {
     InHabitat { scene_id: Some(scene_id), scene_needs: Some(needs), geodesic_m: None }
 }
 
-/// Puts every corner of the way between two frames into the path, so that each hop is a straight walk, and adds the
-/// distance from start to goal over the navmesh. Does neither if the platform knows no ways.
-fn walk_around_corners(platform: &dyn Platform, walk: &Walk, episode: &mut Episode) -> Result<(), PlatformError> {
+/// The path of an episode with every corner of the way between two frames, so that each hop is a straight walk. It is
+/// as before if the platform knows no ways.
+fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Result<Vec<DVec3>, PlatformError> {
     let floors = &episode.floor_positions;
     let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
     for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {
@@ -140,13 +147,13 @@ fn walk_around_corners(platform: &dyn Platform, walk: &Walk, episode: &mut Episo
         }
         path.push(*floor);
     }
-    let whole = match (walk.frames.first(), walk.frames.last()) {
-        (Some(first), Some(last)) => platform.way(&walk.scene, first, last)?,
-        _ => None,
-    };
-    episode.floor_positions = path;
-    episode.in_habitat.geodesic_m = whole.map(|way| way.length_m);
-    Ok(())
+    Ok(path)
+}
+
+/// The distance from start to goal over the navmesh, metres; `None` if the platform knows no ways.
+fn geodesic_m(platform: &dyn Platform, walk: &Walk) -> Result<Option<f64>, PlatformError> {
+    let (Some(first), Some(last)) = (walk.frames.first(), walk.frames.last()) else { return Ok(None) };
+    Ok(platform.way(&walk.scene, first, last)?.map(|way| way.length_m))
 }
 
 #[cfg(test)]
