@@ -122,7 +122,7 @@ impl<'a> Text<'a> {
         let to_floor = self.word(at + 1) == "to" && self.leads_to(at + 2, is_floor);
         self.leads_to_stairs(at + 1)
             || to_floor
-            || (behind_stairs && !matches!(self.word(at + 1), "the" | "a"))
+            || (behind_stairs && !matches!(self.word(at + 1), "the" | "a" | "an"))
             || (ends && GOING.contains(&self.before(at, 1)))
     }
 
@@ -225,6 +225,15 @@ mod tests {
             "Go straight down the hallway",
         ] {
             assert_eq!(swapped(text), None, "{text}");
+        }
+    }
+
+    /// The article changes with the word behind it, and must not decide whether the word before it is swapped.
+    #[test]
+    fn either_article_behind_stairs_keeps_the_word_before_it() {
+        for text in ["stairs up an Upstairs", "stairs up a Downstairs"] {
+            let once = swapped(text).unwrap();
+            assert!(once.starts_with("stairs up") && swapped(&once).unwrap() == text, "{once}");
         }
     }
 
