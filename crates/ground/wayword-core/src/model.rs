@@ -83,7 +83,7 @@ pub trait LanguageModel: Send + Sync {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModelError {
     /// The view lacks what this role looks at.
-    #[error("{name} needs {needs}, but this platform has none for this view: {hint}")]
+    #[error("{name} needs {needs}, but this view has none: {hint}")]
     NothingToSee {
         /// Who: the model's name, or the flag with what it names, as in `--see labels`.
         name: String,

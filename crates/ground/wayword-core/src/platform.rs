@@ -245,14 +245,14 @@ pub enum PlatformError {
         source: GraphError,
     },
     /// No path of the kind that was asked for.
-    #[error("scene {scene} has no path with {request}: widen {widen}")]
+    #[error("scene {scene} has no path with {request}: {hint}")]
     NoSuchPath {
         /// The scene.
         scene: SceneId,
         /// What was asked for, in words.
         request: String,
-        /// The flags that can be widened.
-        widen: &'static str,
+        /// What to do.
+        hint: &'static str,
     },
     /// A file that cannot be read or used.
     #[error("{}: {reason}; {hint}", file.display())]

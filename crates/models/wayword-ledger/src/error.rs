@@ -83,7 +83,7 @@ impl LedgerError {
         }
     }
 
-    /// Whether the disk is full or gone: the ledger is as good as before once there is room.
+    /// Whether the disk is full or fails. The answers so far are kept.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         match self {
@@ -105,6 +105,7 @@ fn hint(error: &rusqlite::Error) -> &'static str {
             "another program has it locked: wait for that program, or give another --ledger"
         }
         Some(ErrorCode::DiskFull) => "the disk is full: make room; all answers so far are kept",
+        Some(ErrorCode::SystemIoFailure) => "the disk fails: check it; all answers so far are kept",
         Some(ErrorCode::ReadOnly | ErrorCode::PermissionDenied | ErrorCode::CannotOpen) => {
             "it cannot be written there: check the folder's permissions, or give another --ledger"
         }

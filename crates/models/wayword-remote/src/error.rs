@@ -54,7 +54,7 @@ pub enum ConfigError {
     },
     /// There is a limit on money, and a model without a price.
     #[error(
-        "the price of {0} is not known, so --max-usd cannot be enforced\nhint: give it with --prices FILE, where FILE has a row like \"{0}\" = {{ usd_per_million_in = 0.4, usd_per_million_out = 1.6, as_of = \"2026-11-01\" }}; if the model runs on this machine, set local = true under its [providers.NAME] instead"
+        "the price of {0} is not known, so --max-usd cannot be enforced\nhint: give it with --prices FILE, where FILE has a row like \"{0}\" = {{ usd_per_million_in = 0.4, usd_per_million_out = 1.6, as_of = \"2026-11-01\" }}; if the model runs on this machine, set local = true under its [providers.NAME] in the --config file instead"
     )]
     NoPrice(String),
     /// A number or a name that makes no sense.

@@ -49,11 +49,15 @@ fn lets_in(endpoint: &Endpoint) -> Result<(), ConfigError> {
     match connect(&provider.base_url) {
         Err(Closed::Port) => not_ready(
             format!("nothing listens at {url}, so {name} cannot be used"),
-            format!("start {name}, or give its address: --base-url URL, or base_url under [providers.{name}]"),
+            format!(
+                "start {name}, or give its address: --base-url URL, or base_url under [providers.{name}] in the --config file"
+            ),
         ),
         Err(Closed::Host(host)) => not_ready(
             format!("the host {host} is not found, so {name} cannot be used at {url}"),
-            format!("check the name and the network, or give --base-url URL, or base_url under [providers.{name}]"),
+            format!(
+                "check the name and the network, or give --base-url URL, or base_url under [providers.{name}] in the --config file"
+            ),
         ),
         Ok(()) => Ok(()),
     }

@@ -29,7 +29,7 @@ pub fn read(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode>, Error>
     match episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         Some(blind) => Err(Error::usage(
             format!("{}: episode {} names no viewpoints, but agents need them", file.display(), blind.id),
-            "give an R2R, REVERIE, RxR or Wayword file",
+            "give an R2R, REVERIE, RxR or Wayword file whose paths name viewpoints or have poses",
         )),
         None => Ok(episodes),
     }

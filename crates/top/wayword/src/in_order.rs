@@ -15,7 +15,7 @@ pub(crate) fn cores() -> usize {
     thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// Calls its function if a panic drops it.
+/// Calls its function if it is dropped during a panic.
 struct AtTheEnd<'a>(&'a dyn Fn());
 
 impl Drop for AtTheEnd<'_> {

@@ -79,7 +79,7 @@ pub fn check() -> Result<(), Error> {
     if is_asked() { Err(Error::Interrupted) } else { Ok(()) }
 }
 
-/// Interrupts that nobody has handled yet.
+/// Interrupts that are not handled yet.
 pub struct Pending(#[cfg(unix)] Option<Signals>);
 
 /// Catches SIGINT and SIGTERM from now on. SIGHUP is left alone, because `nohup` has to work.

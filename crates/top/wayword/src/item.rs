@@ -35,10 +35,11 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
     };
     items.truncate(settings.limit.unwrap_or(usize::MAX));
     if items.is_empty() {
-        return Err(Error::usage(
-            "no item is left: none of the episodes is in the scenes asked for",
-            "check --scan and --episodes",
-        ));
+        let problem = match settings.scan.is_empty() {
+            true => "there are no episodes",
+            false => "no episode is in the scenes that --scan names",
+        };
+        return Err(Error::usage(problem, "check --episodes and --scan"));
     }
     platform.check(&items.iter().map(Item::scene).collect())?;
     Ok(items)
@@ -48,7 +49,10 @@ fn episodes(file: &FilePath, settings: &Settings) -> Result<Vec<Item>, Error> {
     let episodes = wayword_formats::read(file)?;
     if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         let problem = format!("{}: episode {} names no viewpoints, but paths need them", file.display(), blind.id);
-        return Err(Error::usage(problem, "give an R2R, REVERIE, RxR or Wayword file"));
+        return Err(Error::usage(
+            problem,
+            "give an R2R, REVERIE or RxR file, or a Wayword file whose paths name viewpoints (of matterport, say)",
+        ));
     }
     let wanted =
         |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());

@@ -318,7 +318,7 @@ fn a_run_over_buildings_without_boxes_says_what_lacks_and_what_to_do() {
         ran.err
     };
     let told = matterport("data/matterport");
-    assert!(told.contains("warning: data/matterport: no REVERIE boxes (looked for "), "{told}");
+    assert!(told.contains("warning: data/matterport: there are no REVERIE boxes (looked for "), "{told}");
     assert!(told.contains("hint: give the folder above it") && told.contains("/data\n"), "{told}");
     assert_eq!(matterport("data"), "");
 }

@@ -93,10 +93,10 @@ fn a_gguf_file_is_refused_with_the_servers_that_run_it() {
         (
             "hf/org/name:x-q4.gguf",
             "ollama run hf.co/org/name:x-q4.gguf",
-            "as the model ollama/hf.co/org/name:x-q4.gguf",
+            "name the model ollama/hf.co/org/name:x-q4.gguf",
         ),
-        ("hf/org/name:x-q4.gguf", "llama-server -hf org/name -hff x-q4.gguf", "as the model llamacpp/x-q4"),
-        ("hf//models/x.gguf", "llama-server -m /models/x.gguf", "as the model llamacpp/x"),
+        ("hf/org/name:x-q4.gguf", "llama-server -hf org/name -hff x-q4.gguf", "name the model llamacpp/x-q4"),
+        ("hf//models/x.gguf", "llama-server -m /models/x.gguf", "name the model llamacpp/x"),
     ] {
         let ran = generate(&building, "labels", "talks", &["--write", name]);
         let told = ran.refused();

@@ -8,6 +8,8 @@ use wayword_world::wander::{Wander, no_such_walk, wander};
 
 /// A corner nearer than this to the frame before it gets no frame of its own, metres.
 const CROWDED_M: f64 = 0.4;
+/// A way that was found is at most this much longer than the shortest one.
+const GEODESIC_EXCESS: f64 = 1.03;
 /// Largest distance of a target from the last frame, metres.
 const TARGET_REACH_M: f64 = 4.0;
 
@@ -21,7 +23,7 @@ pub(super) fn path(
     seed: u64,
     interval_m: f64,
 ) -> Result<Path, PlatformError> {
-    if longest_m(home) < *request.length_m.start() {
+    if longest_m(home) * GEODESIC_EXCESS < *request.length_m.start() {
         return Err(no_such_walk(scene, request));
     }
     let dice = Dice::new(derive(seed, &["house path"]), &[scene.as_str()]);
@@ -29,8 +31,8 @@ pub(super) fn path(
     wander(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
 }
 
-/// No path is longer than this: the largest distance between two viewpoints over the graph, whose edges are straight
-/// and can be walked. So a path that is too long for the house is refused without a search.
+/// No shortest way is longer than this: the largest distance between two viewpoints over the graph, whose edges are
+/// straight and can be walked. So a path that is too long for the house is refused without a search.
 fn longest_m(home: &Home) -> f64 {
     let from = |id| home.graph.distances_from(id).unwrap_or_default();
     let all = home.graph.viewpoints().flat_map(|id| from(id).into_values());

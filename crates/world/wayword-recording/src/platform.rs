@@ -247,17 +247,21 @@ impl Platform for RecordingPlatform {
         let mut dice = rng(seed, &["stretch", scene.as_str()]);
         let (first, last) = opened.stretch(request, &mut dice).ok_or_else(|| {
             let (hops, length_m) = (&request.hops, &request.length_m);
-            let (request, widen) = match opened.motion() {
+            let (request, hint) = match opened.motion() {
+                _ if opened.graph.viewpoints().count() < 2 => (
+                    "2 frames, because fewer are left".to_owned(),
+                    "record while moving, or set a smaller interval_m or interval_s in recording.toml",
+                ),
                 Motion::Known => (
                     format!("{} to {} metres", length_m.start(), length_m.end()),
-                    "--metres, or keep more frames with interval_m in recording.toml (docs/RECORDINGS.md)",
+                    "widen --metres, or set a smaller interval_m in recording.toml (docs/RECORDINGS.md)",
                 ),
                 Motion::Unknown => (
                     format!("{} to {} hops", hops.start(), hops.end()),
-                    "--hops, or keep more frames with interval_s in recording.toml (docs/RECORDINGS.md)",
+                    "widen --hops, or set a smaller interval_s in recording.toml (docs/RECORDINGS.md)",
                 ),
             };
-            PlatformError::NoSuchPath { scene: scene.clone(), request, widen }
+            PlatformError::NoSuchPath { scene: scene.clone(), request, hint }
         })?;
         let frames = opened.frames(first, last);
         Ok(Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None, motion: opened.motion() })

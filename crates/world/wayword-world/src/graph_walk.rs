@@ -54,7 +54,7 @@ pub fn path(
         None => Err(PlatformError::NoSuchPath {
             scene: scene.clone(),
             request: in_words(request),
-            widen: "--hops or --metres",
+            hint: "widen --hops or --metres",
         }),
     }
 }

@@ -71,7 +71,7 @@ pub fn wander(
 #[must_use]
 pub fn no_such_walk(scene: &SceneId, request: &PathRequest) -> PlatformError {
     let request = format!("{} to {} metres", request.length_m.start(), request.length_m.end());
-    PlatformError::NoSuchPath { scene: scene.clone(), request, widen: "--metres" }
+    PlatformError::NoSuchPath { scene: scene.clone(), request, hint: "widen --metres" }
 }
 
 #[cfg(test)]

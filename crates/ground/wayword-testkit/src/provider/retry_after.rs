@@ -60,7 +60,7 @@ fn whole_seconds(wait: Duration) -> Duration {
     Duration::from_secs(wait.as_millis().div_ceil(1000).max(1).try_into().unwrap_or(u64::MAX))
 }
 
-/// The first whole second after the wait, but at most the latest timestamp that there is.
+/// The first whole second at or after the end of the wait, but at most the latest timestamp that there is.
 fn moment(wait: Duration) -> Timestamp {
     let at = Timestamp::try_from(SystemTime::now() + whole_seconds(wait + Duration::from_millis(999)));
     at.and_then(|at| Timestamp::from_second(at.as_second())).unwrap_or(Timestamp::MAX)

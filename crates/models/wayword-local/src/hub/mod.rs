@@ -144,7 +144,7 @@ impl Hub {
         let folder = repo.snapshot(known.map_or(model.revision.as_str(), Commit::as_str));
         let hint = |file: &str| {
             format!(
-                "download {} and put it there; or, with a network and with WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE unset, run `wayword models fetch {name}`",
+                "unset WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE and run `wayword models fetch {name}`; without a network, download this file ({}) and the others of the model elsewhere, and put them there",
                 self.client.address(model, &model.revision, file)
             )
         };

@@ -22,7 +22,7 @@ pub(super) fn refused(name: &str) -> Option<Error> {
     let problem = format!("{name:?} is a GGUF file, and this program runs no GGUF files in process");
     Some(Error::usage(
         problem,
-        format!("run it with one of these servers, and give the name shown behind it:{servers}"),
+        format!("start it in one of these servers, and pass the model name given for it:{servers}"),
     ))
 }
 
@@ -47,7 +47,7 @@ fn on_disk(path: &str) -> String {
 }
 
 fn line(server: &str, command: &str, name: &str) -> String {
-    format!("\n  {server}: `{command}`, then as the model {name}")
+    format!("\n  {server}: `{command}`, then name the model {name}")
 }
 
 /// The name of a model, made from its file's name.
@@ -88,10 +88,10 @@ mod tests {
             assert_eq!(
                 told(name),
                 [
-                    "Ollama: `ollama run hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf`, then as the model \
+                    "Ollama: `ollama run hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf`, then name the model \
                      ollama/hf.co/Qwen/Qwen3-1.7B-GGUF:Qwen3-1.7B-Q8_0.gguf",
                     "llama.cpp: `llama-server -hf Qwen/Qwen3-1.7B-GGUF -hff Qwen3-1.7B-Q8_0.gguf --alias Qwen3-1.7B-Q8_0`, \
-                     then as the model llamacpp/Qwen3-1.7B-Q8_0",
+                     then name the model llamacpp/Qwen3-1.7B-Q8_0",
                 ]
             );
         }
@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(
             told("hf/org/name:q4/it's(x).gguf"),
             [
-                r"llama.cpp: `llama-server -hf org/name -hff 'q4/it'\''s(x).gguf' --alias it-s-x-`, then as the model llamacpp/it-s-x-"
+                r"llama.cpp: `llama-server -hf org/name -hff 'q4/it'\''s(x).gguf' --alias it-s-x-`, then name the model llamacpp/it-s-x-"
             ]
         );
     }
@@ -112,9 +112,9 @@ mod tests {
         assert_eq!(
             told("hf/./my models/a:b.gguf"),
             [
-                "Ollama: `echo FROM './my models/a:b.gguf' > a-b.Modelfile && ollama create a-b -f a-b.Modelfile`, then as the model \
+                "Ollama: `echo FROM './my models/a:b.gguf' > a-b.Modelfile && ollama create a-b -f a-b.Modelfile`, then name the model \
                  ollama/a-b",
-                "llama.cpp: `llama-server -m './my models/a:b.gguf' --alias a-b`, then as the model llamacpp/a-b",
+                "llama.cpp: `llama-server -m './my models/a:b.gguf' --alias a-b`, then name the model llamacpp/a-b",
             ]
         );
         assert!(told("hf//models/x.GGUF")[1].contains("-m /models/x.GGUF --alias x`"));

@@ -25,7 +25,7 @@ impl Calls {
         let unused: Vec<String> = job.service.given().into_iter().filter(|flag| flag != "--ledger").collect();
         if models.is_empty() && !unused.is_empty() {
             output.say(format_args!(
-                "warning: no model is named, so these have no effect: {} (name models with --llm and --see)",
+                "warning: no role has a model, so these settings have no effect: {}",
                 unused.join(", ")
             ));
         }

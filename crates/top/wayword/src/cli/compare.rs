@@ -35,8 +35,8 @@ pub struct Compare {
     /// compare sets; all are compared with the first. [default: original]
     #[arg(long, value_name = "SET")]
     pub instructions: Vec<String>,
-    /// The agents: clip-nav, seq-clip-nav, glip-nav. Always added: lower-bound baselines (random, straight ahead), nearest-room
-    /// (knows the map), and the upper bound (oracle).
+    /// The agents: clip-nav, seq-clip-nav, glip-nav. Always added: random and straight (lower-bound baselines), nearest-room
+    /// (knows the map) and oracle (upper bound).
     #[arg(
         long,
         value_name = "NAMES",
@@ -87,7 +87,7 @@ pub struct Compare {
     /// Number of replays on the page.
     #[arg(long, value_name = "N", default_value_t = 24)]
     pub replays: usize,
-    /// Settings as TOML; only the providers are used.
+    /// Settings as TOML; only [service] and the providers are used.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How models are reached.

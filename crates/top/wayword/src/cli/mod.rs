@@ -83,7 +83,7 @@ pub enum Command {
     Report(Report),
     /// Measure captions against the labels of their views: objects named rightly, hallucinated objects, calls.
     Perceive(Box<Perceive>),
-    /// Measure how similar two sets of instructions are, next to what people and chance reach.
+    /// Measure how similar two sets of instructions are, compared with two people and with random pairs.
     Similarity(Similarity),
     /// Let agents follow several sets of instructions, and compare how often each set leads them to the goal.
     Compare(Box<Compare>),
@@ -138,8 +138,8 @@ pub struct Generate {
     /// Folder for the run; required without --dry-run. Give the same command again to continue it.
     #[arg(long, value_name = "DIR", required_unless_present = "dry_run")]
     pub out: Option<PathBuf>,
-    /// Estimate the calls, tokens and money that the run would need, without making a call. Questions that are asked twice and
-    /// texts that are rewritten are not counted.
+    /// Estimate the calls, tokens and money that the run would need, without making a call. The real run may need
+    /// more, because questions that are asked twice and texts that are rewritten are not counted.
     #[arg(long)]
     pub dry_run: bool,
     /// The run.

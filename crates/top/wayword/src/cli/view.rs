@@ -29,7 +29,7 @@ pub struct Walk {
     /// Use this scene. [default: the platform's first; with --episodes, that of the item]
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<String>,
-    /// Show the first random path that `generate` makes with this seed. [default: 0; `view map` draws no path without a flag for one]
+    /// Show the first random path that `generate` makes with this seed. [default: 0]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Number of hops of a random path, on platforms with a viewpoint graph. [default: 4..7]
@@ -127,7 +127,7 @@ pub struct ViewMap {
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,
-    /// The path.
+    /// The path; none is drawn without one of these flags.
     #[command(flatten)]
     pub walk: Walk,
     /// Number of the storey; the lowest is 1. [default: where the path starts, else the lowest]

@@ -98,10 +98,15 @@ pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
     PLATFORMS.map(|platform| platform.name)
 }
 
-/// Whether random paths of a platform run over a viewpoint graph, hop by hop. Elsewhere they run over open ground, and
-/// `--hops` has no effect.
+/// Whether random paths of a platform can have hops. Elsewhere they run over open ground, and `--hops` has no effect. A
+/// recording with poses has none either, but whether it has poses is known only once it is opened.
 pub(crate) fn has_hops(name: &str) -> bool {
     matches!(name, "matterport" | "process" | "recording")
+}
+
+/// Whether a platform is a simulator that runs by itself, and may have to be waited for.
+fn is_live(name: &str) -> bool {
+    matches!(name, "tdw" | "virtualhome")
 }
 
 /// Opens the platform that the settings name, and says what its data lacks.
@@ -146,7 +151,7 @@ pub fn open_named(
         let default = if name == "house" { ", the default," } else { "" };
         return Err(Error::usage(
             format!("platform {name}{default} takes no {flag}"),
-            format!("give the platform of this {flag} with --platform, as in --platform {example}"),
+            format!("say with --platform which platform this {flag} is for, as in --platform {example}"),
         ));
     }
     let data = || data.ok_or_else(|| no_data(name));
@@ -188,10 +193,9 @@ fn unused(
     at: Option<&str>,
     island: Option<usize>,
 ) -> Option<(&'static str, &'static str)> {
-    let runs = matches!(name, "tdw" | "virtualhome");
     match (data, at) {
         (Some(_), _) if matches!(name, "house" | "virtualhome") => Some(("--data", "matterport")),
-        (_, Some(_)) if !runs => Some(("--at", "tdw")),
+        (_, Some(_)) if !is_live(name) => Some(("--at", "tdw")),
         _ if island.is_some() && name != "habitat" => Some(("--island", "habitat")),
         _ => None,
     }

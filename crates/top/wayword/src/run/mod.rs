@@ -251,13 +251,12 @@ fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Erro
     let differs = differing_keys(before, settings);
     let differs: Vec<&str> = differs.iter().map(String::as_str).filter(|key| *key != "raised_from").collect();
     let differs = differs.join(", ");
-    let differs = differs.replace("inputs", "contents of its input files");
     let problem = format!("{} holds a run with other settings: {differs}", folder.display());
     let config = folder.join(file::CONFIG);
     Error::usage(
         problem,
         format!(
-            "give the old settings again to continue it ({} has them), or another --out for a new run",
+            "to continue it, give the old settings and input files again ({} has the settings); for a new run, another --out",
             config.display()
         ),
     )
@@ -346,7 +345,15 @@ fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
     let table = |settings: &S| toml::Table::try_from(settings).unwrap_or_default();
     let (a, b) = (table(a), table(b));
     let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
-    keys.into_iter().filter(|key| a.get(*key) != b.get(*key)).cloned().collect()
+    let differs = |key: &&String| a.get(*key) != b.get(*key);
+    let contents = |name: &String| {
+        let (before, after) = (a.get("inputs")?.get(name)?, b.get("inputs")?.get(name)?);
+        (before != after).then(|| format!("contents of {name}"))
+    };
+    let inputs = a.get("inputs").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
+    let inputs: Vec<String> = inputs.filter_map(contents).collect();
+    let settings = keys.into_iter().filter(differs).filter(|key| *key != "inputs").cloned();
+    settings.chain(inputs).collect()
 }
 
 /// The beginning of the hash of a file that settings only name.

@@ -98,7 +98,7 @@ platform:
         #[arg(long, value_name = "ADDRESS")]
         pub at: Option<String>,
         /// Take paths on this island of a Habitat navmesh; 0 is the largest. `wayword view map` lists the islands. [default: the
-        /// largest under a ceiling, so not a roof; outdoors, the largest under the open sky]
+        /// largest that has a ceiling above it, which excludes roofs; in outdoor scenes, the largest]
         #[arg(long, value_name = "N")]
         pub island: Option<usize>,
     }
@@ -107,7 +107,7 @@ walks:
     /// Which paths a run takes.
     #[derive(Debug, Clone, Default, PartialEq, Args)]
     pub struct Walks {
-        /// Take the paths of this dataset file: R2R, REVERIE, RxR or Wayword.
+        /// Take the paths of this dataset file: R2R, REVERIE, RxR, or Wayword if its paths name viewpoints.
         #[arg(long, value_name = "FILE")]
         pub episodes: Option<PathBuf>,
         /// Number of random paths. [default: 10, if no episodes are given]

@@ -105,7 +105,7 @@ pub enum Against {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum TargetMode {
-    /// The target of the episode or of the random path.
+    /// The target of the episode or of the random path, named to the writer.
     #[default]
     Given,
     /// Chosen by the writer from what the last frame shows. Exports then have no object id.

@@ -12,10 +12,11 @@ group! {
     #[serde(deny_unknown_fields, default)]
     #[command(next_help_heading = "Calls to models")]
     pub struct Service {
-        /// Stop before the run costs more US dollars than this, over all its commands. Models without a known price are refused.
+        /// Stop before the costs exceed this, in US dollars. All commands that continue a run count together. Models without a
+        /// known price are refused.
         #[arg(long, value_name = "USD")]
         pub max_usd: Option<f64>,
-        /// Stop before the run sends more requests than this, over all its commands.
+        /// Stop before more requests than this are sent. All commands that continue a run count together.
         #[arg(long, value_name = "N")]
         pub max_calls: Option<u64>,
         /// Number of requests at the same time, per provider. [default: raised step by step while the provider keeps up, at most 64]

@@ -217,8 +217,6 @@ mod tests {
         let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
         let error = Labels.answer(&[Ask { view: &blind, question: "Which room is this?", history: &[] }]).remove(0);
         let message = error.unwrap_err().to_string();
-        assert!(
-            message.starts_with("--see labels needs labels, but this platform has none for this view: name a model")
-        );
+        assert!(message.starts_with("--see labels needs labels, but this view has none: name a model"));
     }
 }

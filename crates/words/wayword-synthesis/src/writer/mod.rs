@@ -52,7 +52,7 @@ pub struct Complaint {
 pub enum WriteError {
     /// The style ends in a task, and no object is known at the end.
     #[error(
-        "this style needs a task, but no object for a task is known at the last frame: use a platform or data folder with objects, or another --style"
+        "this style needs an object at the end of the path, but none is known there: use a platform or data folder with objects, or another --style"
     )]
     NoObject,
     /// The text is unusable; another attempt may be better.

@@ -16,7 +16,7 @@ pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f6
     found.ok_or_else(|| PlatformError::NoSuchPath {
         scene: home.id.clone(),
         request: refused(home, request),
-        widen: "--metres",
+        hint: "widen --metres",
     })
 }
 

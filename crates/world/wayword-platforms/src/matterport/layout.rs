@@ -90,11 +90,12 @@ impl Layout {
             ),
         };
         Some(format!(
-            "warning: {}: no REVERIE boxes (looked for {}), and only {houses} of {} a .house file; where a scene has \
-             neither, its objects are not known: its labels name only rooms, and objects in texts stay unverified\n\
+            "warning: {}: there are no REVERIE boxes (looked for {}), and {} of {} no .house file either; in those, \
+             objects are not known: labels name only rooms, and objects in texts stay unverified\n\
              hint: {hint}",
             data.display(),
             BOXES.join(", "),
+            scenes.len() - houses,
             match scenes.len() {
                 1 => "1 scene has".to_owned(),
                 count => format!("{count} scenes have"),
@@ -199,7 +200,7 @@ mod tests {
         let lack = |data: &Path| Layout::find(data).unwrap().lack_of_objects(data);
         let told = lack(&data).unwrap();
         assert!(told.contains(&data.display().to_string()) && told.contains("REVERIE's boxes into"), "{told}");
-        assert!(told.contains("only 0 of 1 scene has a .house file"), "{told}");
+        assert!(told.contains("1 of 1 scene has no .house file"), "{told}");
         std::fs::create_dir_all(above.path().join("reverie/BBox")).unwrap();
         assert!(lack(&data).unwrap().contains("give the folder above it"));
         assert_eq!(lack(above.path()), None);

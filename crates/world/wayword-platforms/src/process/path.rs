@@ -60,7 +60,7 @@ pub(crate) fn drawn(
         return Err(PlatformError::NoSuchPath {
             scene: scene.clone(),
             request: graph_walk::in_words(request),
-            widen: "--hops or --metres",
+            hint: "widen --hops or --metres",
         });
     };
     let misfit = |reason: String| keeper.misfit("sample_path", reason);

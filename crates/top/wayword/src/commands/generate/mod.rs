@@ -56,18 +56,29 @@ fn warn_of_no_effect(settings: &Settings, output: &Output) {
     }
 }
 
-/// Refuses random paths that no scene has, before a folder is made. Whether there are any is known once the first path
-/// was looked for in every scene. Its other failures are reported later, as those of its item.
+/// Items whose paths are looked for in vain before a run is refused: places are drawn at random, and one search of a
+/// single scene can miss a path that there is.
+const SEARCHES: usize = 3;
+
+/// Refuses random paths that no scene has, before a folder is made. Other failures are reported later, as those of
+/// their items.
 fn refuse_impossible_paths(items: &[Item], settings: &Settings, platform: &dyn Platform) -> Result<(), Error> {
-    let Some(first @ Item::Random { scenes, .. }) = items.first() else { return Ok(()) };
-    match first.path(settings, platform) {
-        Err(error @ PlatformError::NoSuchPath { .. }) if scenes.len() > 1 => {
-            let problem =
-                format!("none of the {} scenes has such a path; of the first one tried: {error}", scenes.len());
-            Err(Error::usage(problem, "ask for other paths, or name other scenes with --scan"))
+    let Some(Item::Random { scenes, .. }) = items.first() else { return Ok(()) };
+    let mut lack = None;
+    for item in items.iter().take(SEARCHES.div_ceil(scenes.len().max(1))) {
+        match item.path(settings, platform) {
+            Err(error @ PlatformError::NoSuchPath { .. }) => lack = Some(error),
+            _ => return Ok(()),
         }
-        Err(error @ PlatformError::NoSuchPath { .. }) => Err(error.into()),
-        _ => Ok(()),
+    }
+    match lack {
+        Some(PlatformError::NoSuchPath { scene, request, hint }) if scenes.len() > 1 => {
+            let problem =
+                format!("none of the {} scenes has a path with {request} (first tried: {scene})", scenes.len());
+            Err(Error::usage(problem, format!("{hint}, or name other scenes with --scan")))
+        }
+        Some(error) => Err(error.into()),
+        None => Ok(()),
     }
 }
 
@@ -78,8 +89,12 @@ fn refuse_impossible_paths(items: &[Item], settings: &Settings, platform: &dyn P
 /// `errors.jsonl`, and the next command tries it again.
 pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summary, Error> {
     warn_of_no_effect(&job.settings, output);
-    Calls::ready(job, output)?;
     let job = &Job { settings: continued(folder, &job.settings)?, ..job.clone() };
+    // A recording that cannot be read is reported before models that cannot be asked: starting these would be in vain.
+    if job.settings.platform == "recording" {
+        platforms::open(&job.settings)?;
+    }
+    Calls::ready(job, output)?;
     let platform = platforms::open(&job.settings)?;
     let plan = Plan::writing(job, platform.as_ref())?;
     let settings = &plan.settings()?;

@@ -116,7 +116,7 @@ struct Told {
 
 fn told(provenance: &Provenance) -> String {
     format!(
-        "{} asked, {} answered, {} summarised, {} wrote, checked against {}",
+        "questions by {}, answers by {}, summary by {}, text by {}; checked against {}",
         provenance.asker,
         provenance.answerer,
         provenance.summariser,
