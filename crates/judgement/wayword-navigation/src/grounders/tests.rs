@@ -85,6 +85,6 @@ fn without_labels_there_is_nothing_to_go_by() {
     let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.5, None, None);
     for grounder in [&Lexical::new(Sees::Views) as &dyn Grounder, &Similar::new(Sees::Views, Arc::new(Letters))] {
         let told = grounder.ground(&[&blind], &["the sink"]).remove(0).unwrap_err().to_string();
-        assert!(told.contains("needs labels, but this platform has none") && told.contains("--grounder hf/"), "{told}");
+        assert!(told.contains("needs labels, but this view has none") && told.contains("--grounder hf/"), "{told}");
     }
 }
