@@ -249,7 +249,7 @@ impl Platform for RecordingPlatform {
             let (hops, length_m) = (&request.hops, &request.length_m);
             let (request, hint) = match opened.motion() {
                 _ if opened.graph.viewpoints().count() < 2 => (
-                    "2 frames, because fewer are left".to_owned(),
+                    format!("2 frames, because it has only {}", opened.graph.viewpoints().count()),
                     "record while moving, or set a smaller interval_m or interval_s in recording.toml",
                 ),
                 Motion::Known => (

@@ -84,10 +84,10 @@ pub struct Compare {
     /// Seed of everything random.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Number of replays on the page.
+    /// Number of walks that the HTML page replays.
     #[arg(long, value_name = "N", default_value_t = 24)]
     pub replays: usize,
-    /// Settings as TOML; only [service] and the providers are used.
+    /// Settings as TOML; only its tables `service` and `providers` are used.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How models are reached.

@@ -17,7 +17,7 @@ pub struct Ledger {
     /// What to do.
     #[command(subcommand)]
     pub command: LedgerCommand,
-    /// File of the ledger. [default: wayword/ledger.db where your system keeps data, as ~/.local/share]
+    /// File of the ledger. [default: wayword/ledger.db in the data folder of your system; on Linux ~/.local/share]
     #[arg(long, value_name = "FILE", global = true)]
     pub ledger: Option<PathBuf>,
 }

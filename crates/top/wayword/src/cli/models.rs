@@ -10,7 +10,7 @@ Examples:
   wayword models fetch hf/Salesforce/blip-vqa-base
   wayword models path hf/Salesforce/blip-vqa-base@main
 
-Models are kept in Hugging Face's cache, which its Python client shares: HF_HUB_CACHE, else hub in HF_HOME, else
+Models are kept in Hugging Face's cache, which its Python client shares: $HF_HUB_CACHE, else $HF_HOME/hub, else
 ~/.cache/huggingface/hub. HF_ENDPOINT names another hub, HF_TOKEN holds a token for private and gated models, and with
 WAYWORD_OFFLINE=1 nothing is fetched. A model in a folder of your own is named hf/PATH, where PATH begins with / or ., as in
 hf/./models/blip.")]
@@ -25,7 +25,8 @@ pub struct Models {
 pub enum ModelsCommand {
     /// List the models on this machine.
     List,
-    /// Fetch a model, or the newest version of its branch. A fetch that was cut off continues where it ended.
+    /// Fetch a model. If it is here already, update it to the newest version of its branch. A fetch that was cut off continues
+    /// where it ended.
     Fetch {
         /// Its name: hf/ORG/NAME or hf/ORG/NAME@REVISION.
         name: String,

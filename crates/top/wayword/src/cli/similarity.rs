@@ -16,7 +16,8 @@ pub struct Similarity {
     /// Instructions: a run folder, or a file in R2R, REVERIE, RxR, VLN-CE or Wayword format. Add #STYLE to take one style.
     #[arg(value_name = "A")]
     pub a: String,
-    /// The instructions to compare with, named the same way. The figures for two people and for chance are measured on these.
+    /// The instructions to compare with, named the same way. For comparison, the program also measures
+    /// pairs of people's texts for one item, and random pairs, within these.
     #[arg(value_name = "B")]
     pub b: String,
     /// Compare texts of the same item, or of the same path.

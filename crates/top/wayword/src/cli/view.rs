@@ -29,7 +29,7 @@ pub struct Walk {
     /// Use this scene. [default: the platform's first; with --episodes, that of the item]
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<String>,
-    /// Show the first random path that `generate` makes with this seed. [default: 0]
+    /// Show the first random path that `generate` makes with this seed. [default: 0, if a random path is shown]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Number of hops of a random path, on platforms with a viewpoint graph. [default: 4..7]

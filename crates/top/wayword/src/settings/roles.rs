@@ -25,16 +25,16 @@ group! {
         /// Language model that asks, summarises and writes, as provider/model.
         #[arg(long, value_name = "MODEL")]
         pub llm: Option<String>,
-        /// Who asks about the views: rules, or a model. [default: rules]
+        /// Who asks about the views: rules, or a model. [default: the model of --llm, else rules]
         #[arg(long, value_name = "MODEL")]
         pub ask: Option<String>,
         /// Who sees: labels (the platform's ground-truth labels answer), or a model that looks at pictures. [default: labels]
         #[arg(long, value_name = "MODEL")]
         pub see: Option<String>,
-        /// Who summarises the answers: rules, or a model. [default: rules]
+        /// Who summarises the answers: rules, or a model. [default: the model of --llm, else rules]
         #[arg(long, value_name = "MODEL")]
         pub summarise: Option<String>,
-        /// Who writes: rules, or a model. [default: rules]
+        /// Who writes: rules, or a model. [default: the model of --llm, else rules]
         #[arg(long, value_name = "MODEL")]
         pub write: Option<String>,
         /// Who writes the instruction if all texts of the model failed a check: rules, or nobody (it is rejected). The provenance

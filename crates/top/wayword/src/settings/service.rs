@@ -12,11 +12,11 @@ group! {
     #[serde(deny_unknown_fields, default)]
     #[command(next_help_heading = "Calls to models")]
     pub struct Service {
-        /// Stop before the costs exceed this, in US dollars. All commands that continue a run count together. Models without a
-        /// known price are refused.
+        /// Stop before the costs exceed this, in US dollars. The limit is for the whole run, however often it is continued. Models
+        /// without a known price are refused.
         #[arg(long, value_name = "USD")]
         pub max_usd: Option<f64>,
-        /// Stop before more requests than this are sent. All commands that continue a run count together.
+        /// Stop before more requests than this are sent. The limit is for the whole run, however often it is continued.
         #[arg(long, value_name = "N")]
         pub max_calls: Option<u64>,
         /// Number of requests at the same time, per provider. [default: raised step by step while the provider keeps up, at most 64]
@@ -43,7 +43,7 @@ group! {
         /// File with your own prices, TOML (see docs/MODELS.md).
         #[arg(long, value_name = "FILE")]
         pub prices: Option<PathBuf>,
-        /// File of the ledger, which keeps every answer. [default: wayword/ledger.db where your system keeps data, as ~/.local/share]
+        /// File of the ledger, which keeps every answer. [default: wayword/ledger.db in the data folder of your system; on Linux ~/.local/share]
         #[arg(long, value_name = "FILE")]
         pub ledger: Option<PathBuf>,
         /// Also save every answer of the run in this file, for --replay.

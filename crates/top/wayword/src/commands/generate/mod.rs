@@ -91,12 +91,15 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     warn_of_no_effect(&job.settings, output);
     let job = &Job { settings: continued(folder, &job.settings)?, ..job.clone() };
     // A recording that cannot be read is reported before models that cannot be asked: starting these would be in vain.
-    if job.settings.platform == "recording" {
-        platforms::open(&job.settings)?;
+    let is_recording = job.settings.platform == "recording";
+    if !is_recording {
+        Calls::ready(job, output)?;
     }
-    Calls::ready(job, output)?;
     let platform = platforms::open(&job.settings)?;
     let plan = Plan::writing(job, platform.as_ref())?;
+    if is_recording {
+        Calls::ready(job, output)?;
+    }
     let settings = &plan.settings()?;
     if !is_begun(folder) {
         refuse_impossible_paths(&plan.items, settings, platform.as_ref())?;
