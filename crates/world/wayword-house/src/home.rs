@@ -41,6 +41,7 @@ pub(super) struct Home {
     pub(super) graph: Arc<ViewpointGraph>,
     /// The viewpoints from which each object is seen; computed on first use.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
+    longest_m: OnceLock<f64>,
 }
 
 impl Home {
@@ -52,7 +53,14 @@ impl Home {
             viewpoint_graph(&house, &ground).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
         let drawn = HouseScene::new(house)
             .map_err(|error| PlatformError::NotDrawn { scene: scene.clone(), reason: error.to_string() })?;
-        Ok(Self { id: scene.clone(), scene: drawn, ground, graph: Arc::new(graph), seen_from: OnceLock::new() })
+        Ok(Self {
+            id: scene.clone(),
+            scene: drawn,
+            ground,
+            graph: Arc::new(graph),
+            seen_from: OnceLock::new(),
+            longest_m: OnceLock::new(),
+        })
     }
 
     /// The view from a pose, with a picture of this size in pixels.
@@ -108,6 +116,16 @@ impl Home {
             all.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
         }
         Ok(all)
+    }
+
+    /// No shortest way is longer than this: the largest distance between two viewpoints over the graph, whose edges are
+    /// straight and can be walked. So a path that is too long for the house is refused without a search.
+    pub(super) fn longest_m(&self) -> f64 {
+        *self.longest_m.get_or_init(|| {
+            let from = |id| self.graph.distances_from(id).unwrap_or_default();
+            let all = self.graph.viewpoints().flat_map(|id| from(id).into_values());
+            all.fold(0.0, f64::max)
+        })
     }
 
     /// The viewpoints from which each object is seen.

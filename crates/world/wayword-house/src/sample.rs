@@ -23,20 +23,12 @@ pub(super) fn path(
     seed: u64,
     interval_m: f64,
 ) -> Result<Path, PlatformError> {
-    if longest_m(home) * GEODESIC_EXCESS < *request.length_m.start() {
+    if home.longest_m() * GEODESIC_EXCESS < *request.length_m.start() {
         return Err(no_such_walk(scene, request));
     }
     let dice = Dice::new(derive(seed, &["house path"]), &[scene.as_str()]);
     let mut walker = Walker { home, places: home.standing_places(), dice, interval_m };
     wander(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
-}
-
-/// No shortest way is longer than this: the largest distance between two viewpoints over the graph, whose edges are
-/// straight and can be walked. So a path that is too long for the house is refused without a search.
-fn longest_m(home: &Home) -> f64 {
-    let from = |id| home.graph.distances_from(id).unwrap_or_default();
-    let all = home.graph.viewpoints().flat_map(|id| from(id).into_values());
-    all.fold(0.0, f64::max)
 }
 
 /// Chooses random paths through a house.
