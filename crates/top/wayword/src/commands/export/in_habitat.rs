@@ -45,8 +45,11 @@ impl World {
             ("habitat", None) => episode.in_habitat = without_scene(scene),
             ("matterport", _) => {}
             ("house", _) => {
-                let path = self.houses.as_deref().and_then(|houses| around_corners(houses, &record.path, episode).ok());
-                episode.floor_positions = path.unwrap_or_else(|| std::mem::take(&mut episode.floor_positions));
+                if let Some(houses) = &self.houses
+                    && let Ok(path) = around_corners(&**houses, &record.path, episode)
+                {
+                    episode.floor_positions = path;
+                }
                 episode.in_habitat = house(scene);
             }
             (other, _) => episode.in_habitat = unknown(other, scene),
