@@ -164,7 +164,7 @@ impl Controller {
                 }
             }
         }
-        self.version().ok_or_else(|| self.nobody(None))
+        self.version().ok_or_else(|| self.no_build(None))
     }
 
     /// Accepts connections until one greets as a build does. A connection that stays silent costs five seconds.
@@ -181,10 +181,10 @@ impl Controller {
                 Err(_) => sleep(Duration::from_millis(5)),
             }
         }
-        Err(self.nobody(last))
+        Err(self.no_build(last))
     }
 
-    fn nobody(&self, last: Option<WireError>) -> TdwError {
+    fn no_build(&self, last: Option<WireError>) -> TdwError {
         TdwError::NoBuild { address: self.address(), seconds: self.options.connect_timeout.as_secs(), last }
     }
 
@@ -203,7 +203,7 @@ impl Controller {
     fn tell(&mut self, commands: &[Command]) -> Result<Response, TdwError> {
         let address = self.address();
         let Some(build) = &mut self.build else {
-            return Err(self.nobody(None));
+            return Err(self.no_build(None));
         };
         let text = serde_json::to_vec(commands).map_err(|error| TdwError::Scene(error.to_string()))?;
         build.peer.until(Instant::now() + self.options.step_timeout);
