@@ -28,6 +28,7 @@ pub mod pose;
 pub mod recent;
 pub mod seed;
 pub mod style;
+pub mod survey;
 pub mod verdict;
 pub mod view;
 
@@ -53,5 +54,6 @@ pub use pose::Pose;
 pub use recent::Recent;
 pub use seed::rng;
 pub use style::{Constraints, Style};
+pub use survey::{Survey, Surveyed};
 pub use verdict::{Check, Finding, Verdict};
 pub use view::{Gaze, GroundTruth, View};

@@ -4,7 +4,8 @@
 //! socket. [`wander`] makes random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
 //! finds shortest ways over a grid, and [`episode_path`] turns an episode of a dataset into a path.
 //! [`seen_from`](mod@seen_from) finds the viewpoints that show an object. [`object_names`] and [`region`] put the names
-//! and letters of Matterport3D's annotators, which other scenes have too, into everyday words.
+//! and letters of Matterport3D's annotators, which other scenes have too, into everyday words. [`survey`](mod@survey) gathers
+//! what is known of all viewpoints of a scene.
 //!
 //! Architecture invariant: nothing here depends on a single platform.
 
@@ -16,7 +17,9 @@ pub mod object_names;
 pub mod region;
 pub mod said;
 pub mod seen_from;
+pub mod survey;
 pub mod wander;
 
 pub use episode_path::{labels_around, path_of};
 pub use seen_from::seen_from;
+pub use survey::survey;

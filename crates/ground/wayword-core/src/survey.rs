@@ -1,0 +1,92 @@
+//! What is known of all viewpoints of a scene.
+
+use crate::{DVec3, Label, ViewpointGraph, ViewpointId, graph::GraphError};
+use std::collections::BTreeMap;
+
+/// What is known of a scene: its viewpoints, the ways between them, and what is at each.
+#[derive(Debug, Clone, Default)]
+pub struct Survey {
+    viewpoints: Vec<Surveyed>,
+    index: BTreeMap<ViewpointId, usize>,
+}
+
+/// What is known of one viewpoint.
+#[derive(Debug, Clone)]
+pub struct Surveyed {
+    /// Its name.
+    pub id: ViewpointId,
+    /// The eye's position, metres, world frame.
+    pub position: DVec3,
+    /// The storey, the lowest being 1.
+    pub level: Option<u32>,
+    /// Places of its neighbours in the survey.
+    pub neighbours: Vec<usize>,
+    /// What the platform knows about it.
+    pub known: Known,
+}
+
+/// What a platform knows to be at a viewpoint.
+#[derive(Debug, Clone, Default)]
+pub struct Known {
+    /// The room ("living room"), where it has a name.
+    pub room: Option<String>,
+    /// The objects that are seen all around; `None` where the platform does not list them.
+    pub things: Option<Vec<Label>>,
+}
+
+impl Survey {
+    /// Surveys a graph; `known` says what is at a viewpoint.
+    ///
+    /// # Errors
+    /// When `known` fails, or an edge of the graph leads nowhere.
+    pub fn of<E: From<GraphError>>(
+        graph: &ViewpointGraph,
+        mut known: impl FnMut(&ViewpointId, DVec3) -> Result<Known, E>,
+    ) -> Result<Self, E> {
+        let ids: Vec<&ViewpointId> = graph.viewpoints().collect();
+        let index: BTreeMap<ViewpointId, usize> = ids.iter().enumerate().map(|(at, id)| ((*id).clone(), at)).collect();
+        let surveyed = |id: &&ViewpointId| {
+            let position = graph.position(id).ok_or_else(|| GraphError::Unknown((*id).clone()))?;
+            let neighbours = graph.neighbours(id).into_iter().filter_map(|to| index.get(to).copied()).collect();
+            let known = known(id, position)?;
+            Ok(Surveyed { id: (*id).clone(), position, level: graph.level(id), neighbours, known })
+        };
+        let viewpoints = ids.iter().map(surveyed).collect::<Result<_, E>>()?;
+        Ok(Self { viewpoints, index })
+    }
+
+    /// All viewpoints, in the order of the graph.
+    #[must_use]
+    pub fn viewpoints(&self) -> &[Surveyed] {
+        &self.viewpoints
+    }
+
+    /// The place of a viewpoint in the survey.
+    #[must_use]
+    pub fn place(&self, id: &ViewpointId) -> Option<usize> {
+        self.index.get(id).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_are_places_in_the_survey() {
+        let id = |name: &str| ViewpointId::new(name).unwrap();
+        let mut graph = ViewpointGraph::default();
+        for (name, x) in [("c", 0.0), ("a", 1.0), ("b", 2.0)] {
+            graph.add(id(name), DVec3::new(x, 0.0, 1.5), Some(1)).unwrap();
+        }
+        graph.join(&id("c"), &id("a")).unwrap();
+        graph.join(&id("a"), &id("b")).unwrap();
+        let room = |id: &ViewpointId, _| Ok::<_, GraphError>(Known { room: Some(id.to_string()), things: None });
+        let survey = Survey::of(&graph, room).unwrap();
+        let a = &survey.viewpoints()[survey.place(&id("a")).unwrap()];
+        let names: Vec<_> = a.neighbours.iter().map(|at| survey.viewpoints()[*at].id.as_str()).collect();
+        assert_eq!(names, ["b", "c"]);
+        assert_eq!(a.known.room.as_deref(), Some("a"));
+        assert_eq!(survey.place(&id("d")), None);
+    }
+}

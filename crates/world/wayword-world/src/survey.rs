@@ -1,0 +1,53 @@
+//! What a platform knows of all viewpoints of a scene.
+
+use wayword_core::{
+    DVec3, Frame, Gaze, Heading, Platform, PlatformError, Pose, SceneId, Survey, ViewpointId, survey::Known,
+};
+
+/// Surveys a scene by its graph and labels, without pictures. Where the platform has no graph, the survey is empty.
+///
+/// # Errors
+/// When there is no such scene, or its data cannot be read.
+pub fn survey(platform: &dyn Platform, scene: &SceneId) -> Result<Survey, PlatformError> {
+    let graph = platform.graph(scene)?;
+    let known = |id: &ViewpointId, position: DVec3| {
+        let pose = Pose::level(position, Heading::NORTH);
+        let frame = Frame { pose, viewpoint: Some(id.clone()), level: graph.level(id) };
+        let mut known = Known { room: None, things: Some(Vec::new()) };
+        for gaze in Gaze::compass() {
+            let view = platform.look_without_picture(scene, &frame, gaze)?;
+            let truth = view.ground_truth();
+            known.room = known.room.or_else(|| truth.and_then(|truth| truth.room.clone()));
+            known.things = match (known.things, truth.filter(|truth| truth.lists_objects)) {
+                (Some(mut things), Some(truth)) => {
+                    things.extend(truth.labels.iter().cloned());
+                    Some(things)
+                }
+                _ => None,
+            };
+        }
+        Ok::<_, Trouble>(known)
+    };
+    Survey::of(&graph, known).map_err(|trouble| match trouble {
+        Trouble::Platform(error) => error,
+        Trouble::Graph(source) => PlatformError::Graph { scene: scene.clone(), source },
+    })
+}
+
+/// Why a survey failed.
+enum Trouble {
+    Platform(PlatformError),
+    Graph(wayword_core::graph::GraphError),
+}
+
+impl From<PlatformError> for Trouble {
+    fn from(error: PlatformError) -> Self {
+        Self::Platform(error)
+    }
+}
+
+impl From<wayword_core::graph::GraphError> for Trouble {
+    fn from(error: wayword_core::graph::GraphError) -> Self {
+        Self::Graph(error)
+    }
+}
