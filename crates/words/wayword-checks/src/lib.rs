@@ -105,14 +105,15 @@ fn names(evidence: &Evidence) -> BTreeSet<String> {
 fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
     let object = reading.task.as_ref().and_then(|task| task.object);
     let kind = |at: usize, event: &Event| match &event.what {
-        What::Place(_) if object == Some(at) => MentionKind::Target,
-        What::Place(place) if place.is_room => MentionKind::Room,
-        What::Place(_) => MentionKind::Landmark,
-        What::Turn(_) | What::Onward => MentionKind::Turn,
-        What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => MentionKind::Floor,
+        What::Place(_) if object == Some(at) => Some(MentionKind::Target),
+        What::Place(place) if place.is_room => Some(MentionKind::Room),
+        What::Place(_) => Some(MentionKind::Landmark),
+        What::Turn(_) | What::Onward => Some(MentionKind::Turn),
+        What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => Some(MentionKind::Floor),
+        What::Stop | What::Face { .. } => None,
     };
     let told = reading.events.iter().zip(frames).enumerate();
-    told.filter_map(|(at, (event, frame))| Some(Mention { span: event.span, kind: kind(at, event), frame: (*frame)? }))
+    told.filter_map(|(at, (event, frame))| Some(Mention { span: event.span, kind: kind(at, event)?, frame: (*frame)? }))
         .collect()
 }
 

@@ -9,112 +9,21 @@ mod denial;
 #[cfg(test)]
 mod growth;
 mod links;
+mod numbers;
 mod onward;
 mod places;
+mod said;
+mod stops;
 mod task;
 mod tokens;
 mod turns;
 pub mod vocabulary;
+mod ways;
 
 use crate::text::{self, Token};
+pub use said::{Event, Floor, Going, Link, Ordinal, Place, Reading, Task, What};
 use std::collections::BTreeSet;
 use tokens::Tokens;
-use wayword_core::{Climb, Side};
-
-/// What an instruction says, in the order of its text.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
-    /// Everything that can be compared with a path.
-    pub events: Vec<Event>,
-    /// The closing task, where the text ends in one.
-    pub task: Option<Task>,
-}
-
-/// One thing that an instruction says.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Event {
-    /// What it is.
-    pub what: What,
-    /// Its byte range in the text.
-    pub span: [usize; 2],
-    /// The number of its clause, counted over the whole text.
-    pub clause: usize,
-    /// Whether the text says not to do it, or that it is not so: "do not turn right".
-    pub denied: bool,
-}
-
-/// The kinds of things that instructions say.
-#[derive(Debug, Clone, PartialEq)]
-pub enum What {
-    /// An object, a room, or a word that can mean either ("the stairs").
-    Place(Place),
-    /// A turn to a side, or around (`Behind`).
-    Turn(Side),
-    /// A command to go up or down a flight of stairs.
-    Climb(Climb),
-    /// A command to go up or down a few steps, fewer than a flight.
-    Steps(Climb),
-    /// A place that lies up or down the stairs ("the bedroom upstairs"), wherever the agent starts.
-    Storey(Climb),
-    /// A storey that the text names.
-    Floor(Floor),
-    /// A command to walk on ("walk straight ahead").
-    Onward,
-}
-
-/// A storey that a text names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Floor {
-    /// Its number, the lowest being 1; `None` for the top storey.
-    pub number: Option<u32>,
-    /// Whether the path comes from there: "from the second floor", "start on level 1".
-    pub leaves: bool,
-    /// Whether the text only says that something leads there: "the stairs leading to the second floor".
-    pub aside: bool,
-}
-
-/// An object or a room in a text.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Place {
-    /// Its name in normal spelling.
-    pub name: String,
-    /// Whether the name can be an object's.
-    pub is_thing: bool,
-    /// Whether the name can be a room's.
-    pub is_room: bool,
-    /// How it is linked to its sentence.
-    pub link: Link,
-    /// The side of the agent on which it is said to be ("on your left").
-    pub side: Option<Side>,
-    /// The colour that it is said to have.
-    pub colour: Option<String>,
-    /// Whether it follows a turn that happens at, by or after it ("turn left at the sofa").
-    pub tells_turn: bool,
-}
-
-/// How a place is linked to its sentence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Link {
-    /// No word links it: "leave the kitchen", "the kitchen is on your left".
-    Plain,
-    /// The agent gets there: "to", "into", "enter".
-    Goal,
-    /// Something is there, or the agent is: "in", "at", "from", "of".
-    Within,
-    /// Something lies beside it, and the agent need not go there: "next to", "across from", "with".
-    Beside,
-    /// The agent goes past or through it: "past", "down".
-    Along,
-}
-
-/// The closing task of an instruction.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Task {
-    /// Its verb.
-    pub verb: String,
-    /// The event that is its object, where it names one.
-    pub object: Option<usize>,
-}
 
 /// Reads a text. `known` has the evidence's names in normal spelling, because the lexicon may lack them.
 #[must_use]
@@ -125,6 +34,7 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     let mut events = turns::turns(tokens, &clauses);
     events.extend(climbs::climbs_and_floors(tokens, &clauses));
     events.extend(onward::onward(tokens, &clauses));
+    events.extend(stops::stops_and_facing(tokens, &clauses));
     let taken: Vec<[usize; 2]> =
         events.iter().filter(|event| matches!(event.what, What::Floor(_))).map(|event| event.span).collect();
     events.extend(places::places(tokens, &clauses, known, &taken));
@@ -136,19 +46,6 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     mark_turn_places(tokens, &mut events);
     let task = task::closing_task(tokens, &events);
     Reading { events, task }
-}
-
-impl Reading {
-    /// The reading without what the text denies: only what it claims.
-    #[must_use]
-    pub fn claims(mut self) -> Self {
-        if let Some(task) = &mut self.task {
-            let claimed = |at: usize| self.events[..at].iter().filter(|event| !event.denied).count();
-            task.object = task.object.filter(|at| !self.events[*at].denied).map(claimed);
-        }
-        self.events.retain(|event| !event.denied);
-        self
-    }
 }
 
 /// The number of each token's clause. Commas, full stops and "then" begin a new clause, and so does an "and" before a
@@ -187,6 +84,7 @@ fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
             }
             (What::Place(_), None) => {}
             (What::Turn(_), _) => turn = Some((event.clause, event.span[1])),
+            (What::Stop | What::Face { .. }, _) => {}
             _ => turn = None,
         }
     }
@@ -195,9 +93,11 @@ fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wayword_core::Side;
 
     fn told(text: &str) -> Vec<String> {
         let reading = read(text, &BTreeSet::new());
+        let events = reading.events.iter().filter(|event| !matches!(event.what, What::Stop | What::Face { .. }));
         let word = |event: &Event| match &event.what {
             What::Place(place) => place.name.clone(),
             What::Turn(side) => format!("turn {side:?}"),
@@ -206,8 +106,9 @@ mod tests {
             What::Storey(climb) => format!("storey {climb:?}"),
             What::Floor(floor) => format!("floor {}", floor.number.map_or("top".into(), |number| number.to_string())),
             What::Onward => "on".into(),
+            What::Stop | What::Face { .. } => String::new(),
         };
-        reading.events.iter().map(word).collect()
+        events.map(word).collect()
     }
 
     #[test]
@@ -231,7 +132,10 @@ mod tests {
 
     #[test]
     fn what_is_not_to_be_done_is_not_claimed() {
-        let claims = |text: &str| read(text, &BTreeSet::new()).claims().events.len();
+        let claims = |text: &str| {
+            let events = read(text, &BTreeSet::new()).claims().events;
+            events.iter().filter(|event| event.what != What::Stop).count()
+        };
         for text in [
             "Do not turn right.",
             "Don't go up the stairs.",

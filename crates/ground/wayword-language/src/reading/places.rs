@@ -1,12 +1,14 @@
 //! Landmarks and rooms.
 
-use super::{Event, Place, What, links::link, tokens::Tokens, vocabulary as v};
-use crate::lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, thing};
+use super::{Event, Place, What, links::link, numbers::Numbers, tokens::Tokens, vocabulary as v, ways::going};
+use crate::lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, says_several, thing};
 use std::collections::BTreeSet;
 use wayword_core::Side;
 
 /// A run of tokens that names a place.
 struct Found {
+    /// Where the words begin that say which one it is: "bedroom" of "the second bedroom door".
+    noun: usize,
     from: usize,
     to: usize,
     name: String,
@@ -32,22 +34,30 @@ pub(super) fn places(
         // because it is a storey.
         let is_floor = |before: &Found| before.is_room && room_name(&before.name) == Some("basement");
         let tells_which = |before: &mut Found| before.to == place.from && !is_floor(before);
-        if let Some(mut before) = found.pop_if(tells_which).filter(|before| !before.is_room && !place.is_room) {
-            before.name.push(' ');
-            before.name.push_str(&place.name);
-            place.name = before.name;
+        if let Some(mut before) = found.pop_if(tells_which) {
+            place.noun = before.noun;
+            if !before.is_room && !place.is_room {
+                before.name.push(' ');
+                before.name.push_str(&place.name);
+                place.name = before.name;
+            }
         }
         found.push(place);
     }
-    let colours = Colours::of(tokens);
+    let (colours, numbers) = (Colours::of(tokens), Numbers::of(tokens));
     let event = |place: Found| {
         let span = tokens.span(place.from, place.to - 1);
+        let clause = clauses[place.from];
         let side = side_after(tokens, place.to);
         let link = link(tokens, clauses, place.from);
         let colour = colours.before(place.from);
+        let going = going(tokens, clauses, place.noun);
+        let (ordinal, count) = (numbers.ordinal(place.noun), numbers.count(place.noun));
+        let several = count.is_some() || says_several(tokens.word(place.to - 1));
         let Found { name, is_thing, is_room, .. } = place;
-        let what = What::Place(Place { name, is_thing, is_room, link, side, colour, tells_turn: false });
-        Event { what, span, clause: clauses[place.from], denied: false }
+        let tells_turn = false;
+        let place = Place { name, is_thing, is_room, link, side, colour, tells_turn, going, ordinal, count, several };
+        Event { what: What::Place(place), span, clause, denied: false }
     };
     found.into_iter().map(event).collect()
 }
@@ -72,7 +82,7 @@ fn named(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Foun
         }
         let name = run.by_ref().map(|at| normal_word(tokens.word(at))).collect::<Vec<_>>().join(" ");
         let (is_thing, is_room) = (is_thing(&name) || known.contains(&name), is_room(&name));
-        (is_thing || is_room).then_some(Found { from: at, to: at + length, name, is_thing, is_room })
+        (is_thing || is_room).then_some(Found { noun: at, from: at, to: at + length, name, is_thing, is_room })
     })
 }
 
@@ -163,7 +173,7 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
         return None;
     }
     let name = (at + 1..to).map(|at| normal_word(word(at))).collect::<Vec<_>>().join(" ");
-    Some(Found { from: at + 1, to, name, is_thing: true, is_room: false })
+    Some(Found { noun: at + 1, from: at + 1, to, name, is_thing: true, is_room: false })
 }
 
 /// "A picture of two horses": the horses are in the picture and not at the place.

@@ -1,0 +1,124 @@
+//! Numbers before a place: which one of several it is, and how many there are.
+
+use super::{Ordinal, tokens::Tokens, vocabulary as v};
+
+/// How far before a noun phrase its number may stand, words.
+const REACH: usize = 5;
+
+/// The number words of a text that stand right before nouns.
+pub(super) struct Numbers<'a> {
+    tokens: Tokens<'a>,
+    /// For each token, where the run of adjectives and numbers before it begins.
+    runs: Vec<usize>,
+}
+
+impl<'a> Numbers<'a> {
+    pub(super) fn of(tokens: Tokens<'a>) -> Self {
+        let may = |word: &str| v::ADJECTIVES.contains(&word) || cardinal(word).is_some() || ordinal(word).is_some();
+        Self { tokens, runs: tokens.runs_before(may) }
+    }
+
+    /// The adjectives and numbers before a token, the nearest first.
+    fn words_before(&self, from: usize) -> impl Iterator<Item = usize> + use<> {
+        (self.runs[from]..from).rev().take(REACH)
+    }
+
+    /// "The second door", "the last two chairs": which one the noun phrase that begins at a token means.
+    pub(super) fn ordinal(&self, from: usize) -> Option<Ordinal> {
+        self.words_before(from).find_map(|at| ordinal(self.tokens.word(at)))
+    }
+
+    /// "Two chairs", "a pair of doors", "both of the doors": how many.
+    pub(super) fn count(&self, from: usize) -> Option<u32> {
+        let counted = |from: usize| self.words_before(from).find_map(|at| cardinal(self.tokens.word(at)));
+        counted(from).or_else(|| {
+            let of = self.runs[from].checked_sub(1)?;
+            let of = if v::DETERMINERS.contains(&self.tokens.word(of)) { of.checked_sub(1)? } else { of };
+            let head = of.checked_sub(1).filter(|_| self.tokens.word(of) == "of")?;
+            match self.tokens.word(head) {
+                "pair" | "couple" => Some(2),
+                "trio" => Some(3),
+                "set" => None,
+                "sets" | "pairs" | "flights" | "rows" => counted(head),
+                word => cardinal(word),
+            }
+        })
+    }
+}
+
+/// The number that a word counts, from 2 on: "one door" only means a door.
+fn cardinal(word: &str) -> Option<u32> {
+    match word {
+        "both" | "two" => Some(2),
+        "three" => Some(3),
+        "four" => Some(4),
+        "five" => Some(5),
+        "six" => Some(6),
+        "seven" => Some(7),
+        "eight" => Some(8),
+        "nine" => Some(9),
+        "ten" => Some(10),
+        "twelve" => Some(12),
+        _ => word.parse().ok().filter(|number| (2..100).contains(number)),
+    }
+}
+
+/// Which one of several a word means.
+pub(super) fn ordinal(word: &str) -> Option<Ordinal> {
+    match word {
+        "last" | "final" => Some(Ordinal::Last),
+        "next" => Some(Ordinal::Next),
+        "ground" | "bottom" => None,
+        _ if cardinal(word).is_some() || matches!(word, "1" | "one") => None,
+        _ => v::floor_number(word).filter(|number| *number < 100).map(Ordinal::Number),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::{Place, What, read};
+    use std::collections::BTreeSet;
+
+    fn first(text: &str) -> Place {
+        let places = read(text, &BTreeSet::new()).events.into_iter();
+        let mut place = places.filter_map(|event| if let What::Place(place) = event.what { Some(place) } else { None });
+        place.next().unwrap_or_else(|| panic!("{text} names no place"))
+    }
+
+    #[test]
+    fn which_one_of_several_is_kept() {
+        for (text, which) in [
+            ("take the second door on the left", Some(Ordinal::Number(2))),
+            ("enter the 3rd bedroom", Some(Ordinal::Number(3))),
+            ("go through the first white bedroom door", Some(Ordinal::Number(1))),
+            ("stop at the last two chairs", Some(Ordinal::Last)),
+            ("enter the next room on your left, the kitchen", None),
+            ("go through the next doorway", Some(Ordinal::Next)),
+            ("turn left and take the door", None),
+            ("stop at the two chairs", None),
+            ("stop on the second floor by the chair", None),
+        ] {
+            assert_eq!(first(text).ordinal, which, "{text}");
+        }
+    }
+
+    #[test]
+    fn how_many_there_are_is_kept() {
+        for (text, count, several) in [
+            ("stop between the two chairs", Some(2), true),
+            ("pass both white chairs", Some(2), true),
+            ("walk past a pair of lamps", Some(2), true),
+            ("pass 3 of the lamps", Some(3), true),
+            ("pass the first two lamps", Some(2), true),
+            ("pass couches", None, true),
+            ("pass several lamps", None, true),
+            ("pass one lamp", None, false),
+            ("pass the second lamp", None, false),
+            ("climb the stairs", None, false),
+        ] {
+            let place = first(text);
+            assert_eq!((place.count, place.several), (count, several), "{text}");
+        }
+    }
+}

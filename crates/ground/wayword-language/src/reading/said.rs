@@ -1,0 +1,159 @@
+//! What a reading of an instruction holds.
+
+use wayword_core::{Climb, Side};
+
+/// What an instruction says, in the order of its text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Everything that can be compared with a path.
+    pub events: Vec<Event>,
+    /// The closing task, where the text ends in one.
+    pub task: Option<Task>,
+}
+
+/// One thing that an instruction says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// What it is.
+    pub what: What,
+    /// Its byte range in the text.
+    pub span: [usize; 2],
+    /// The number of its clause, counted over the whole text.
+    pub clause: usize,
+    /// Whether the text says not to do it, or that it is not so: "do not turn right".
+    pub denied: bool,
+}
+
+/// The kinds of things that instructions say.
+#[derive(Debug, Clone, PartialEq)]
+pub enum What {
+    /// An object, a room, or a word that can mean either ("the stairs").
+    Place(Place),
+    /// A turn to a side, or around (`Behind`).
+    Turn(Side),
+    /// A command to go up or down a flight of stairs.
+    Climb(Climb),
+    /// A command to go up or down a few steps, fewer than a flight.
+    Steps(Climb),
+    /// A place that lies up or down the stairs ("the bedroom upstairs"), wherever the agent starts.
+    Storey(Climb),
+    /// A storey that the text names.
+    Floor(Floor),
+    /// A command to walk on ("walk straight ahead").
+    Onward,
+    /// A command to stop or to wait, or a statement that the walk ends. The places of its clause tell where.
+    Stop,
+    /// The walker looks at the places of this clause ("stop facing the window"), or away from them ("with your back to
+    /// the bed").
+    Face {
+        /// Whether the walker's back is to them.
+        away: bool,
+    },
+}
+
+/// A storey that a text names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Floor {
+    /// Its number, the lowest being 1; `None` for the top storey.
+    pub number: Option<u32>,
+    /// Whether the path comes from there: "from the second floor", "start on level 1".
+    pub leaves: bool,
+    /// Whether the text only says that something leads there: "the stairs leading to the second floor".
+    pub aside: bool,
+}
+
+/// An object or a room in a text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// Its name in normal spelling.
+    pub name: String,
+    /// Whether the name can be an object's.
+    pub is_thing: bool,
+    /// Whether the name can be a room's.
+    pub is_room: bool,
+    /// How it is linked to its sentence.
+    pub link: Link,
+    /// The side of the agent on which it is said to be ("on your left").
+    pub side: Option<Side>,
+    /// The colour that it is said to have.
+    pub colour: Option<String>,
+    /// Whether it follows a turn that happens at, by or after it ("turn left at the sofa").
+    pub tells_turn: bool,
+    /// How the walk goes on by it. `None` where the text only says that something is at it, in it or beside it.
+    pub going: Option<Going>,
+    /// Which one of several it is ("the second door").
+    pub ordinal: Option<Ordinal>,
+    /// How many there are, where the text says a number ("two chairs", "a pair of doors").
+    pub count: Option<u32>,
+    /// Whether the text says that there are several ("two chairs", "pass couches").
+    pub several: bool,
+}
+
+/// How a walk goes on by a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Going {
+    /// It leaves the place: "exit", "leave", "out of", "from".
+    Leaving,
+    /// It gets into the place: "enter", "into", "walk in".
+    Entering,
+    /// It goes through the place: "through", "across", "cross".
+    Through,
+    /// It goes along the place: "down the hallway", "follow the wall", "up the stairs".
+    Along,
+    /// It passes the place: "past", "pass", "walk by", "turn left after".
+    Past,
+    /// It goes around the place: "around the table".
+    Around,
+    /// It goes to the place, or only in its direction: "to", "towards", "approach".
+    Towards,
+    /// It goes on up to the moment of being there: "until you reach", "once you are in", "when you get to".
+    Until,
+}
+
+/// Which one of several things alike is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ordinal {
+    /// The first is 1.
+    Number(u32),
+    /// The last one.
+    Last,
+    /// The next one from here.
+    Next,
+}
+
+/// How a place is linked to its sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Link {
+    /// No word links it: "leave the kitchen", "the kitchen is on your left".
+    Plain,
+    /// The agent gets there: "to", "into", "enter".
+    Goal,
+    /// Something is there, or the agent is: "in", "at", "from", "of".
+    Within,
+    /// Something lies beside it, and the agent need not go there: "next to", "across from", "with".
+    Beside,
+    /// The agent goes past or through it: "past", "down".
+    Along,
+}
+
+/// The closing task of an instruction.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Task {
+    /// Its verb.
+    pub verb: String,
+    /// The event that is its object, where it names one.
+    pub object: Option<usize>,
+}
+
+impl Reading {
+    /// The reading without what the text denies: only what it claims.
+    #[must_use]
+    pub fn claims(mut self) -> Self {
+        if let Some(task) = &mut self.task {
+            let claimed = |at: usize| self.events[..at].iter().filter(|event| !event.denied).count();
+            task.object = task.object.filter(|at| !self.events[*at].denied).map(claimed);
+        }
+        self.events.retain(|event| !event.denied);
+        self
+    }
+}

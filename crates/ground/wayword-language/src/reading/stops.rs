@@ -1,0 +1,166 @@
+//! Where the walk stops, and what the walker looks at there.
+
+use super::{Event, What, tokens::Tokens, vocabulary as v};
+use crate::lexicon::{is_room, is_thing, normal_word};
+
+/// The commands of a text to stop, and what it says of what the walker faces.
+pub(super) fn stops_and_facing(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
+    let text = Text { tokens };
+    let event = |what: What, at: usize| Event { what, span: tokens.span(at, at), clause: clauses[at], denied: false };
+    let told = |at: usize| {
+        let stops = text.stops(at).then(|| event(What::Stop, at));
+        stops.or_else(|| text.faces(at).map(|away| event(What::Face { away }, at)))
+    };
+    (0..tokens.len()).filter_map(told).collect()
+}
+
+struct Text<'a> {
+    tokens: Tokens<'a>,
+}
+
+impl<'a> Text<'a> {
+    fn word(&self, at: usize) -> &'a str {
+        self.tokens.word(at)
+    }
+
+    fn before(&self, at: usize) -> &'a str {
+        self.tokens.before(at)
+    }
+
+    /// Whether a token says that the walk stops.
+    fn stops(&self, at: usize) -> bool {
+        let next = self.word(at + 1);
+        let here = || !self.tokens.is_word(at + 1) || v::AFTER_STOP.contains(&next);
+        match self.word(at) {
+            "waiting" | "stop" if matches!(next, "sign" | "room" | "area") => false,
+            // "The wait", but "make a stop".
+            word if v::STOPPING.contains(&word) => !matches!(self.before(at), "the" | "non" | "t" | "rest"),
+            "end" | "finish" | "rest" | "stand" => self.is_commanded(at) && here(),
+            "stay" | "remain" => self.is_commanded(at) && here(),
+            "standing" => matches!(self.before(at), "be" | "are" | "re"),
+            "done" | "finished" | "arrived" => {
+                matches!(self.before(at), "are" | "you're" | "you’re" | "be" | "have" | "you've" | "you’ve")
+                    && here()
+                    && !self.tells_when(at)
+            }
+            "destination" => matches!(self.before(at), "your" | "the") && !self.tells_when(at),
+            _ => false,
+        }
+    }
+
+    /// Whether a verb begins its clause, or follows words of command.
+    fn is_commanded(&self, at: usize) -> bool {
+        at == 0 || !self.tokens.is_word(at - 1) || v::ADVERBS.contains(&self.before(at))
+    }
+
+    /// "When you are done with that": the walk goes on.
+    fn tells_when(&self, at: usize) -> bool {
+        let mut before = (at.saturating_sub(5)..at).rev().take_while(|at| self.tokens.is_word(*at));
+        before.any(|at| matches!(self.word(at), "when" | "once" | "after" | "if" | "until"))
+    }
+
+    /// Whether the walker looks at the places that follow (`false`) or away from them (`true`).
+    fn faces(&self, at: usize) -> Option<bool> {
+        let next = self.word(at + 1);
+        match self.word(at) {
+            "back" | "backs" if next == "to" && matches!(self.before(at), "your" | "my" | "the") => Some(true),
+            "facing" if next == "away" => Some(true),
+            "face" | "facing" | "faced" if !self.names_direction(at + 1) && self.is_walker(at) => Some(next == "away"),
+            "look" | "looking" if matches!(next, "at" | "toward" | "towards" | "into") && self.is_walker(at) => {
+                Some(false)
+            }
+            _ => None,
+        }
+    }
+
+    /// "Face left", "facing the opposite direction": no place.
+    fn names_direction(&self, from: usize) -> bool {
+        let at = from + usize::from(matches!(self.word(from), "the" | "to" | "your"));
+        let at = at + usize::from(matches!(self.word(at), "the" | "your"));
+        matches!(self.word(at), "left" | "right" | "opposite" | "other" | "direction" | "around" | "straight")
+            && matches!(self.word(at + 1), "" | "direction" | "way" | "and" | "so" | "then" | "." | ",")
+    }
+
+    /// Whether it is the walker who faces something, and not a thing: "stop facing the lamp", but not "the chair facing
+    /// the lamp", "on the face of the clock".
+    fn is_walker(&self, at: usize) -> bool {
+        let before = self.before(at);
+        let name = normal_word(before);
+        let is_noun = is_thing(&name) || is_room(&name) || v::ABSTRACT.contains(&name.as_str());
+        let is_article = v::DETERMINERS.contains(&before) && self.word(at) == "face";
+        // "Turn left facing the lamp": a side is no thing.
+        !self.tokens.is_word(at.wrapping_sub(1))
+            || matches!(before, "left" | "right" | "straight" | "around" | "there" | "here")
+            || !(is_noun || is_article || matches!(before, "that" | "which" | "is" | "it"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::reading::{What, read};
+    use std::collections::BTreeSet;
+
+    fn told(text: &str) -> Vec<What> {
+        let events = read(text, &BTreeSet::new()).events.into_iter().map(|event| event.what);
+        events.filter(|what| matches!(what, What::Stop | What::Face { .. })).collect()
+    }
+
+    #[test]
+    fn a_stop_is_told_in_many_ways() {
+        for text in [
+            "Stop at the sink.",
+            "Walk to the sink and wait there.",
+            "Turn left then stop by the sofa.",
+            "Come to a halt near the sofa.",
+            "Walk on and end at the sofa.",
+            "Please stand in the doorway.",
+            "You should be standing by the sofa.",
+            "Wait.",
+            "You have arrived.",
+            "The sofa is your destination.",
+        ] {
+            assert_eq!(told(text), [What::Stop], "{text}");
+        }
+        for text in [
+            "Walk to the end of the hall.",
+            "Walk past the tv stand.",
+            "Walk past the man standing by the sofa.",
+            "Go to the waiting room.",
+            "Stay to the left of the table.",
+            "When you are done with that turn left.",
+            "Clean the rest of the sink.",
+        ] {
+            assert_eq!(told(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_stop_can_be_denied() {
+        let reading = read("Do not stop at the sofa.", &BTreeSet::new());
+        assert!(reading.events.iter().all(|event| event.denied));
+    }
+
+    #[test]
+    fn what_the_walker_faces_is_told_from_what_a_thing_faces() {
+        for (text, away) in [
+            ("Turn to face the window.", false),
+            ("Face the window.", false),
+            ("Begin facing the window.", false),
+            ("Turn left, facing the window.", false),
+            ("You are looking at the window.", false),
+            ("Turn your back to the window.", true),
+            ("Start with your back to the bed.", true),
+            ("Begin facing away from the bed.", true),
+        ] {
+            assert_eq!(told(text), [What::Face { away }], "{text}");
+        }
+        for text in [
+            "Walk past the chair facing the window.",
+            "Face left.",
+            "Turn around and face the opposite direction.",
+            "Walk past the sofa that is facing the window.",
+        ] {
+            assert_eq!(told(text), [], "{text}");
+        }
+    }
+}
