@@ -5,6 +5,7 @@
 //! the same way.
 
 mod climbs;
+mod coverage;
 mod denial;
 #[cfg(test)]
 mod growth;
@@ -12,7 +13,10 @@ mod links;
 mod numbers;
 mod onward;
 mod places;
+pub mod role_words;
+mod roles;
 mod said;
+mod stems;
 mod stops;
 mod task;
 mod tokens;
@@ -21,6 +25,7 @@ pub mod vocabulary;
 mod ways;
 
 use crate::text::{self, Token};
+pub use roles::{Clause, Role, Word};
 pub use said::{Event, Floor, Going, Link, Ordinal, Place, Reading, Task, What};
 use std::collections::BTreeSet;
 use tokens::Tokens;
@@ -45,7 +50,8 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     }
     mark_turn_places(tokens, &mut events);
     let task = task::closing_task(tokens, &events);
-    Reading { events, task }
+    let (words, clauses) = coverage::coverage(tokens, &clauses, &events, known);
+    Reading { events, task, words, clauses }
 }
 
 /// The number of each token's clause. Commas, full stops and "then" begin a new clause, and so does an "and" before a

@@ -86,6 +86,11 @@ fn named(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Foun
     })
 }
 
+/// The token after the longest known name that begins at a token.
+pub(super) fn name_end(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<usize> {
+    named(tokens, at, known).map(|found| found.to)
+}
+
 /// Whether words that can be a name are not one here: "step" and "turn back" of walking, "light blue", "water the
 /// plant".
 fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {

@@ -1,5 +1,6 @@
 //! What a reading of an instruction holds.
 
+use super::{Clause, Word};
 use wayword_core::{Climb, Side};
 
 /// What an instruction says, in the order of its text.
@@ -9,6 +10,10 @@ pub struct Reading {
     pub events: Vec<Event>,
     /// The closing task, where the text ends in one.
     pub task: Option<Task>,
+    /// Every word of the text with what the reader takes it for.
+    pub words: Vec<Word>,
+    /// The clauses of the text, by the number that events have.
+    pub clauses: Vec<Clause>,
 }
 
 /// One thing that an instruction says.

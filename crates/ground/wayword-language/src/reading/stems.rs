@@ -1,0 +1,38 @@
+//! The plain form of a verb.
+
+/// Whether a word is a verb of a list, in any of its regular forms: "walk", "walks", "walked", "walking".
+pub(super) fn is_form_of(word: &str, list: &[&str]) -> bool {
+    stems(word).any(|stem| list.contains(&stem.as_str()))
+}
+
+/// What the plain form of a word may be, if it is a verb. Some of these are no words.
+fn stems(word: &str) -> impl Iterator<Item = String> {
+    let cut = |end: &str| word.strip_suffix(end).filter(|stem| stem.len() > 1);
+    let y = cut("ies").or(cut("ied")).map(|stem| format!("{stem}y"));
+    let bare = [cut("s"), cut("es"), cut("ed"), cut("ing"), cut("d")].map(|stem| stem.map(str::to_owned));
+    let with_e = cut("ing").map(|stem| format!("{stem}e"));
+    // "Stopping", "stopped".
+    let single = |stem: &str| {
+        let mut ends = stem.bytes().rev();
+        let is_double = ends.next() == ends.next() && stem.is_ascii();
+        is_double.then(|| stem[..stem.len() - 1].to_owned())
+    };
+    let single = [cut("ing"), cut("ed")].map(|stem| stem.and_then(single));
+    [Some(word.to_owned()), y, with_e].into_iter().chain(bare).chain(single).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regular_forms_of_a_verb_are_found() {
+        for word in ["stop", "stops", "stopped", "stopping", "make", "making", "makes", "carries", "carried", "passes"]
+        {
+            assert!(is_form_of(word, &["stop", "make", "carry", "pass"]), "{word}");
+        }
+        for word in ["stopper", "passage", "s", "ing", "", "étopped"] {
+            assert!(!is_form_of(word, &["stop", "pass"]), "{word}");
+        }
+    }
+}
