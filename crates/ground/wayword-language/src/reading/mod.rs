@@ -17,6 +17,7 @@ pub mod role_words;
 mod roles;
 mod said;
 mod stems;
+pub mod steps;
 mod stops;
 mod task;
 mod tokens;

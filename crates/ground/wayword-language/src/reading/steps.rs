@@ -1,0 +1,274 @@
+//! What a text tells a walker to do, step by step. A step is a clause, or a part of one with at most one turn.
+
+mod relation;
+
+use super::{Event, Ordinal, Reading, What, clauses};
+use crate::{
+    lexicon::room_name,
+    text::{self, Token},
+};
+pub use relation::Relation;
+use std::ops::Range;
+use wayword_core::{Climb, Side};
+
+crate::data::lists! {
+    "words/steps.txt";
+    words: MARKING, CONDITIONS, SLIGHT, STRAIGHT, DOOR_WORDS, STAIR_WORDS, OUTDOORS, TOPS, BOTTOMS, LEAVING_WORDS;
+    phrases:;
+}
+
+/// One step of an instruction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Its byte range in the text.
+    pub span: [usize; 2],
+    /// Its turn; `Behind` for a turn around. Never `Ahead`.
+    pub turn: Option<Side>,
+    /// Whether the text calls the turn slight.
+    pub is_slight: bool,
+    /// Its climb: a flight of stairs, or a few steps.
+    pub climb: Option<Climb>,
+    /// Whether it says to stop or to wait.
+    pub stops: bool,
+    /// Whether it says to go straight on.
+    pub is_straight: bool,
+    /// Whether it only says when something happens: "until you reach the sofa", "once you are out".
+    pub is_condition: bool,
+    /// Whether it speaks of the end of something: "at the end of the hallway".
+    pub at_end: bool,
+    /// What it has to do with doors.
+    pub door: Door,
+    /// What it has to do with stairs.
+    pub stairs: Stairs,
+    /// Whether it leads outside the house, and names no room there.
+    pub is_outdoors: bool,
+    /// The side on which something is that the step names, and how the step has to do with it: "the door on your left".
+    pub side: Option<(Relation, Side)>,
+    /// The landmarks and rooms that it names.
+    pub places: Vec<Told>,
+    /// Which words of the list `marking` it has.
+    pub marks: Vec<usize>,
+}
+
+/// A place that a step names.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Told {
+    /// Its event in the reading.
+    pub event: usize,
+    /// How the step has to do with it.
+    pub relation: Relation,
+    /// Which one of several it is.
+    pub ordinal: Option<Ordinal>,
+}
+
+/// What a step has to do with doors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Door {
+    /// Nothing.
+    None,
+    /// It leads from one room to another.
+    Implied,
+    /// It names a door.
+    Named,
+    /// It leads through a door that it names.
+    Through,
+}
+
+/// What a step has to do with stairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stairs {
+    /// Nothing.
+    None,
+    /// It names them.
+    Named,
+    /// It names their upper end.
+    Top,
+    /// It names their lower end.
+    Bottom,
+}
+
+/// The steps of a text that was read. What the text denies is no part of them.
+#[must_use]
+pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
+    let tokens = text::tokens(text);
+    let clauses = clauses(&tokens);
+    let first_token = |event: &Event| tokens.partition_point(|token| token.span[0] < event.span[0]);
+    let events: Vec<(usize, &Event)> = reading.events.iter().map(|event| (first_token(event), event)).collect();
+    let mut next = 0;
+    let mut steps = Vec::new();
+    for range in pieces(&tokens, &clauses, &events) {
+        let from = next;
+        next += events[from..].partition_point(|(at, _)| *at < range.end);
+        steps.extend(Builder { tokens: &tokens, range, first_event: from }.step(&events[from..next]));
+    }
+    steps
+}
+
+/// Cuts the tokens at clauses, before a condition, and before a second turn.
+fn pieces(tokens: &[Token], clauses: &[usize], events: &[(usize, &Event)]) -> Vec<Range<usize>> {
+    let mut turns = events.iter().filter(|(_, event)| matches!(event.what, What::Turn(_))).map(|(at, _)| *at).peekable();
+    let mut cuts = vec![0];
+    let (mut has_word, mut has_turn) = (false, false);
+    for (at, token) in tokens.iter().enumerate() {
+        let is_turn = std::iter::from_fn(|| turns.next_if(|turn| *turn <= at)).last() == Some(at);
+        let new_clause = at > 0 && clauses[at] != clauses[at - 1];
+        let is_condition = CONDITIONS.contains(&token.word.as_str());
+        if new_clause || (has_word && is_condition) || (is_turn && has_turn) {
+            cuts.push(at);
+            (has_word, has_turn) = (false, false);
+        }
+        has_word |= token.is_word() && !matches!(token.word.as_str(), "and" | "then" | "or");
+        has_turn |= is_turn;
+    }
+    cuts.push(tokens.len());
+    cuts.windows(2).map(|pair| pair[0]..pair[1]).collect()
+}
+
+/// Puts one step together.
+struct Builder<'a> {
+    tokens: &'a [Token],
+    range: Range<usize>,
+    /// The number of the first of its events.
+    first_event: usize,
+}
+
+impl Builder<'_> {
+    /// The step; `None` where it has no words.
+    fn step(&self, events: &[(usize, &Event)]) -> Option<Step> {
+        let first = self.range.clone().find(|at| self.tokens[*at].is_word())?;
+        let last = self.range.clone().rev().find(|at| self.tokens[*at].is_word())?;
+        let mut step = Step {
+            span: [self.tokens[first].span[0], self.tokens[last].span[1]],
+            turn: None,
+            is_slight: self.has(&SLIGHT),
+            climb: None,
+            stops: false,
+            is_straight: self.has(&STRAIGHT),
+            is_condition: CONDITIONS.contains(&self.tokens[first].word.as_str()),
+            at_end: self.has(&["end"]),
+            door: Door::None,
+            stairs: self.stairs(),
+            is_outdoors: false,
+            side: None,
+            places: Vec::new(),
+            marks: (0..MARKING.len()).filter(|mark| self.has(&MARKING[*mark..=*mark])).collect(),
+        };
+        let names_room = self.take(events, &mut step);
+        step.is_outdoors = !names_room && self.has(&OUTDOORS);
+        if step.door == Door::None && self.has(&LEAVING_WORDS) {
+            step.door = Door::Implied;
+        }
+        if step.side.is_none() && step.turn.is_none() {
+            step.side = self.side().map(|side| (Relation::Plain, side));
+        }
+        Some(step)
+    }
+
+    /// Takes the events over. Whether one of them names a room.
+    fn take(&self, events: &[(usize, &Event)], step: &mut Step) -> bool {
+        let mut before = None;
+        let mut names_room = false;
+        for (number, (at, event)) in events.iter().enumerate().filter(|(_, (_, event))| !event.denied) {
+            match &event.what {
+                What::Turn(side) => step.turn = step.turn.or(Some(*side)),
+                What::Climb(climb) | What::Steps(climb) => step.climb = step.climb.or(Some(*climb)),
+                What::Stop => step.stops = true,
+                What::Place(place) => {
+                    let relation = Relation::of(place, &self.tokens[self.range.start..*at], before);
+                    before = Some((*at - self.range.start, relation));
+                    names_room |= place.is_room;
+                    step.door = step.door.max(door(&place.name, relation));
+                    if room_name(&place.name) == Some("stairs") {
+                        step.stairs = step.stairs.max(Stairs::Named);
+                    }
+                    if let (Some(side @ (Side::Left | Side::Right)), None) = (place.side, step.side) {
+                        step.side = Some((relation, side));
+                    }
+                    let event = self.first_event + number;
+                    step.places.push(Told { event, relation, ordinal: place.ordinal });
+                }
+                _ => {}
+            }
+        }
+        names_room
+    }
+
+    fn has(&self, list: &[&str]) -> bool {
+        self.tokens[self.range.clone()].iter().any(|token| list.contains(&token.word.as_str()))
+    }
+
+    fn stairs(&self) -> Stairs {
+        match self.has(&STAIR_WORDS) {
+            false => Stairs::None,
+            true if self.has(&BOTTOMS) => Stairs::Bottom,
+            true if self.has(&TOPS) => Stairs::Top,
+            true => Stairs::Named,
+        }
+    }
+
+    /// A side that the step names in any way.
+    fn side(&self) -> Option<Side> {
+        let words = &self.tokens[self.range.clone()];
+        let right_before = |at: usize| words.get(at + 1).is_some_and(|next| matches!(&*next.word, "before" | "after"));
+        words.iter().enumerate().find_map(|(at, token)| match token.word.as_str() {
+            "left" => Some(Side::Left),
+            "right" if !right_before(at) => Some(Side::Right),
+            _ => None,
+        })
+    }
+}
+
+/// What a step that names a place has to do with doors.
+fn door(name: &str, relation: Relation) -> Door {
+    let is_door = name.split(' ').any(|word| DOOR_WORDS.contains(&word)) || name == "room";
+    match relation {
+        Relation::Through | Relation::OutOf | Relation::Into if is_door => Door::Through,
+        Relation::OutOf | Relation::Into => Door::Implied,
+        _ if is_door => Door::Named,
+        _ => Door::None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::read;
+    use std::collections::BTreeSet;
+
+    fn told(text: &str) -> Vec<(String, Step)> {
+        let reading = read(text, &BTreeSet::new());
+        steps(text, &reading).into_iter().map(|step| (text[step.span[0]..step.span[1]].to_owned(), step)).collect()
+    }
+
+    #[test]
+    fn a_step_has_at_most_one_turn() {
+        let text = "Leave the attic and turn left. Take a right and a left, then walk on until you reach the globe.";
+        let steps = told(text);
+        let words: Vec<&str> = steps.iter().map(|(words, _)| words.as_str()).collect();
+        assert_eq!(
+            words,
+            ["Leave the attic", "and turn left", "Take a right and a", "left", "then walk on", "until you reach the globe"]
+        );
+        let turns: Vec<Option<Side>> = steps.iter().map(|(_, step)| step.turn).collect();
+        assert_eq!(turns, [None, Some(Side::Left), Some(Side::Right), Some(Side::Left), None, None]);
+        assert!(steps[5].1.is_condition && !steps[4].1.is_condition);
+    }
+
+    #[test]
+    fn a_step_tells_doors_stairs_and_sides() {
+        let step = |text: &str| told(text).remove(0).1;
+        assert_eq!(step("Go through the door on your left.").door, Door::Through);
+        assert_eq!(step("Go through the door on your left.").side.map(|side| side.1), Some(Side::Left));
+        assert_eq!(step("Leave the kitchen.").door, Door::Implied);
+        assert_eq!(step("Walk to the sofa.").door, Door::None);
+        assert_eq!(step("Wait at the bottom of the stairs.").stairs, Stairs::Bottom);
+        assert_eq!(step("Stop at the top of the staircase.").stairs, Stairs::Top);
+        assert!(step("Wait outside.").is_outdoors && step("Wait outside.").stops);
+        assert_eq!(step("Stop right before the sofa.").side, None);
+    }
+
+    #[test]
+    fn what_is_denied_is_no_part_of_a_step() {
+        assert_eq!(told("Do not turn left.").remove(0).1.turn, None);
+    }
+}

@@ -1,0 +1,123 @@
+//! How a step has to do with a place.
+
+use crate::{
+    reading::{Going, Place},
+    text::Token,
+};
+
+/// How far before a place the word may stand that says it, words.
+const REACH: usize = 7;
+
+/// How a step has to do with a place that it names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Relation {
+    /// No word says it.
+    Plain,
+    /// The step leaves it.
+    OutOf,
+    /// The step leads into it.
+    Into,
+    /// The step is in it, or ends in it.
+    In,
+    /// The step leads through it.
+    Through,
+    /// The step passes it.
+    Past,
+    /// The step leads to it, or towards it.
+    To,
+    /// The step follows it.
+    Along,
+    /// The step is at it.
+    At,
+    /// The step is beside or near it.
+    Near,
+    /// The step is in front of it.
+    Before,
+    /// The step is between it and something else.
+    Between,
+    /// It is seen from there.
+    With,
+    /// It belongs to another place: "the door of the kitchen".
+    Of,
+}
+
+impl Relation {
+    /// All of them.
+    pub const ALL: [Self; 14] = [
+        Self::Plain,
+        Self::OutOf,
+        Self::Into,
+        Self::In,
+        Self::Through,
+        Self::Past,
+        Self::To,
+        Self::Along,
+        Self::At,
+        Self::Near,
+        Self::Before,
+        Self::Between,
+        Self::With,
+        Self::Of,
+    ];
+
+    /// The relation of a place. `words` are those of its step before it; `earlier` is the place before it in the step, by
+    /// its first word, and that place's relation.
+    pub(super) fn of(place: &Place, words: &[Token], earlier: Option<(usize, Self)>) -> Self {
+        let said = Self::said(words, earlier);
+        match place.going {
+            None => said,
+            Some(Going::Leaving) => Self::OutOf,
+            Some(Going::Entering) => Self::Into,
+            Some(Going::Through) => Self::Through,
+            Some(Going::Along | Going::Around) => Self::Along,
+            Some(Going::Past) => Self::Past,
+            Some(Going::Towards | Going::Until) => match said {
+                Self::At | Self::Near | Self::Before | Self::In => said,
+                _ => Self::To,
+            },
+        }
+    }
+
+    /// The relation by the last word before a place that says one.
+    fn said(words: &[Token], earlier: Option<(usize, Self)>) -> Self {
+        let from = earlier.map_or(0, |(at, _)| at + 1).max(words.len().saturating_sub(REACH));
+        let mut is_joined = false;
+        for at in (from..words.len()).rev() {
+            let before = at.checked_sub(1).map_or("", |before| words[before].word.as_str());
+            if let Some(relation) = Self::of_word(&words[at].word, before) {
+                return relation;
+            }
+            is_joined |= matches!(words[at].word.as_str(), "and" | "or");
+        }
+        earlier.filter(|_| is_joined).map_or(Self::Plain, |(_, relation)| relation)
+    }
+
+    fn of_word(word: &str, before: &str) -> Option<Self> {
+        Some(match (word, before) {
+            ("of", "out") => Self::OutOf,
+            ("of", "front") => Self::Before,
+            ("of", "end" | "top" | "bottom" | "middle" | "center" | "centre" | "foot" | "edge") => Self::At,
+            ("of", "left" | "right" | "side") => Self::Near,
+            ("to", "next" | "close" | "closest" | "nearest" | "adjacent") => Self::Near,
+            ("by", "walk" | "go" | "walking" | "going" | "move" | "moving") => Self::Past,
+            ("exit" | "exiting" | "leave" | "leaving" | "from" | "out" | "outside" | "off", _) => Self::OutOf,
+            ("enter" | "entering" | "into" | "onto" | "inside", _) => Self::Into,
+            ("in" | "within", _) => Self::In,
+            ("through" | "thru" | "across" | "cross" | "crossing" | "via" | "over", _) => Self::Through,
+            ("past" | "pass" | "passing" | "passed" | "beyond" | "after" | "behind", _) => Self::Past,
+            ("to" | "toward" | "towards" | "reach" | "reaching" | "until" | "till" | "for", _)
+            | ("approach" | "find" | "see", _) => Self::To,
+            ("down" | "along" | "up" | "follow" | "following" | "around" | "alongside" | "take", _)
+            | ("use" | "climb" | "descend" | "ascend", _) => Self::Along,
+            ("at" | "on" | "against" | "under" | "underneath" | "below", _) => Self::At,
+            ("near" | "by" | "beside" | "next" | "close" | "nearest" | "closest" | "adjacent" | "opposite", _) => {
+                Self::Near
+            }
+            ("front" | "before", _) => Self::Before,
+            ("between", _) => Self::Between,
+            ("with" | "facing" | "face" | "has" | "have" | "is" | "are", _) => Self::With,
+            ("of" | "leading" | "leads", _) => Self::Of,
+            _ => return None,
+        })
+    }
+}
