@@ -143,7 +143,13 @@ fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
         || is_room(&normal_word(word(at + 1)))
         || v::ADJECTIVES.contains(&word(at + 1));
     let shade = word(at) == "light" && v::COLOURS.contains(&word(at + 1));
-    (verb_like && !after_determiner) || (word(at) == "light" && before_noun && !after_determiner) || shade || storey
+    // "There is no sign of a lamp".
+    let of_something = word(at) == "sign" && word(at + 1) == "of";
+    (verb_like && !after_determiner)
+        || of_something
+        || (word(at) == "light" && before_noun && !after_determiner)
+        || shade
+        || storey
 }
 
 /// A noun phrase that begins at a token and has no known name: "the shiny gizmo".
