@@ -1,22 +1,195 @@
 //! Denials: what an instruction says not to do, or says is not there.
 
-use super::tokens::Tokens;
+use super::{tokens::Tokens, vocabulary as v};
 
-/// For each token, whether it follows a "not" of its clause: "do not turn right", "without going up the stairs".
+/// For each token, whether the text denies it: "do not turn right", "without going up the stairs", "there is no piano",
+/// "if you reach the stairs you have gone too far".
 pub(super) fn denied(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
-    let mut denied = false;
+    let mut denied = by_words(tokens, clauses);
+    too_far(tokens, clauses, &mut denied);
+    denied
+}
+
+/// How far a denial reaches.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reach {
+    Nothing,
+    /// To the end of the noun phrase: "no piano in the hall".
+    Phrase,
+    /// To the end of the clause.
+    Clause,
+}
+
+fn by_words(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
+    let mut reach = Reach::Nothing;
     let mut clause = 0;
     let is_denied = |at: usize| {
         let word = tokens.word(at);
         if clauses[at] != clause || matches!(word, "but" | "until" | "till") {
-            (denied, clause) = (false, clauses[at]);
+            (reach, clause) = (Reach::Nothing, clauses[at]);
         }
-        let replaced = matches!(word, "instead" | "rather") && matches!(tokens.word(at + 1), "of" | "than");
-        denied |= replaced
-            || matches!(word, "not" | "never" | "without" | "neither" | "nor" | "avoid" | "cannot" | "dont")
-            || word.ends_with("n't")
-            || word.ends_with("n’t");
-        denied
+        let goes_on = v::DETERMINERS.contains(&word) || matches!(word, "or" | "nor" | "of");
+        if reach == Reach::Phrase && v::BREAKERS.contains(&word) && !goes_on {
+            reach = Reach::Nothing;
+        }
+        match begins(tokens, at) {
+            Reach::Nothing => {}
+            Reach::Phrase if reach == Reach::Clause => {}
+            begun => reach = begun,
+        }
+        reach != Reach::Nothing
     };
     (0..tokens.len()).map(is_denied).collect()
+}
+
+/// What a token begins to deny.
+fn begins(tokens: Tokens<'_>, at: usize) -> Reach {
+    let (word, next) = (tokens.word(at), tokens.word(at + 1));
+    let is_not = matches!(word, "not" | "cannot" | "dont" | "cant") || word.ends_with("n't") || word.ends_with("n’t");
+    match word {
+        _ if is_not && affirms(tokens, at) => Reach::Nothing,
+        _ if is_not => Reach::Clause,
+        "never" | "without" | "neither" | "nor" | "avoid" | "avoiding" => Reach::Clause,
+        "ignore" | "ignoring" | "disregard" => Reach::Clause,
+        "instead" | "rather" if matches!(next, "of" | "than") => Reach::Clause,
+        // "There is no need to turn".
+        "no" if next == "need" => Reach::Clause,
+        // "No more than two doors", "no longer", "no later than the sofa": a limit.
+        "no" if matches!(
+            next,
+            "more"
+                | "less"
+                | "longer"
+                | "further"
+                | "farther"
+                | "later"
+                | "sooner"
+                | "matter"
+                | "other"
+                | "problem"
+                | "doubt"
+                | "fewer"
+                | "trouble"
+        ) =>
+        {
+            Reach::Nothing
+        }
+        "no" if tokens.is_word(at + 1) => Reach::Phrase,
+        _ => Reach::Nothing,
+    }
+}
+
+/// "You can't miss the sofa", "not far from the sofa", "not only", "don't forget to turn left": these deny nothing.
+fn affirms(tokens: Tokens<'_>, at: usize) -> bool {
+    // "Can not".
+    let next = at + 1 + usize::from(matches!(tokens.word(at + 1), "to" | "quite" | "too" | "very" | "so" | "that"));
+    matches!(
+        tokens.word(next),
+        "miss"
+            | "far"
+            | "only"
+            | "just"
+            | "merely"
+            | "simply"
+            | "solely"
+            | "forget"
+            | "fail"
+            | "hesitate"
+            | "help"
+            | "more"
+            | "less"
+            | "fewer"
+            | "unlike"
+            | "until"
+            | "till"
+            | "long"
+            | "much"
+    )
+}
+
+/// "If you reach the stairs, you have gone too far": what the sentence says after its "if" is not done.
+fn too_far(tokens: Tokens<'_>, clauses: &[usize], denied: &mut [bool]) {
+    let mut from = 0;
+    while from < tokens.len() {
+        let ends = |at: &usize| tokens.get(*at).is_some_and(crate::text::Token::ends_sentence);
+        let end = (from..tokens.len()).find(ends).unwrap_or(tokens.len());
+        let is_far = |at: &usize| {
+            let gone = matches!(tokens.before(*at), "gone" | "went" | "walked" | "come" | "go");
+            tokens.word(*at) == "too" && tokens.word(at + 1) == "far" && gone
+        };
+        let begins = |at: &usize| matches!(tokens.word(*at), "if" | "when" | "once");
+        if let Some(far) = (from..end).find(is_far) {
+            // "If you see the bed you have gone too far", or "you have gone too far if you see the bed".
+            let before = (from..far).rev().find(begins).map(|start| start..far);
+            let behind = || (far..end).find(begins).map(|start| start..end_of_clause(clauses, start, end));
+            if let Some(range) = before.or_else(behind) {
+                denied[range].fill(true);
+            }
+        }
+        from = end + 1;
+    }
+}
+
+fn end_of_clause(clauses: &[usize], start: usize, end: usize) -> usize {
+    start + clauses[start..end].iter().take_while(|clause| **clause == clauses[start]).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::reading::{What, read};
+    use std::collections::BTreeSet;
+
+    /// The places that a text claims, and those that it denies.
+    fn told(text: &str) -> (Vec<String>, Vec<String>) {
+        let events = read(text, &BTreeSet::new()).events.into_iter();
+        let places = events.filter_map(|event| match event.what {
+            What::Place(place) => Some((event.denied, place.name)),
+            _ => None,
+        });
+        let (denied, claimed): (Vec<_>, Vec<_>) = places.partition(|(denied, _)| *denied);
+        let names = |places: Vec<(bool, String)>| places.into_iter().map(|(_, name)| name).collect();
+        (names(claimed), names(denied))
+    }
+
+    #[test]
+    fn what_is_not_there_or_not_done_is_denied() {
+        for (text, claimed, denied) in [
+            ("There is no piano.", &[][..], &["piano"][..]),
+            ("There is no piano in the kitchen.", &["kitchen"], &["piano"]),
+            ("Enter the room with no windows or doors on the left.", &[], &["window", "door"]),
+            ("If you reach the stairs you have gone too far.", &[], &["stair"]),
+            ("Stop at the sofa. If you see the bed, you've gone too far.", &["sofa"], &["bed"]),
+            ("You went too far if you see the bed.", &[], &["bed"]),
+            ("If you pass the bed you went too far, go back to the sofa.", &["sofa"], &["bed"]),
+            ("Ignore the sofa and go to the bed.", &["bed"], &["sofa"]),
+            ("Go to the bed without passing the sofa.", &["bed"], &["sofa"]),
+            ("Don't go to the sofa.", &[], &["sofa"]),
+            ("Take not the first door but the second door.", &["door"], &["door"]),
+            ("Take the second door, not the first door.", &["door"], &["door"]),
+            ("There is no need to pass the sofa.", &[], &["sofa"]),
+            ("Go to the bed instead of the sofa.", &["bed"], &["sofa"]),
+        ] {
+            let found = told(text);
+            let found: [Vec<&str>; 2] = [&found.0, &found.1].map(|names| names.iter().map(String::as_str).collect());
+            assert_eq!(found, [claimed.to_vec(), denied.to_vec()], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_not_that_affirms_denies_nothing() {
+        for text in [
+            "You can't miss the sofa.",
+            "You cannot miss the sofa.",
+            "It is not far from the sofa.",
+            "It is not too far from the sofa.",
+            "Walk no more than two metres past the sofa.",
+            "Pass not only the sofa but the bed.",
+            "Don't forget to pass the sofa.",
+            "Go no further than the sofa.",
+            "Go to the sofa, it is not too far.",
+            "Walk far, if you see the sofa stop.",
+        ] {
+            assert_eq!(told(text).1, Vec::<String>::new(), "{text}");
+        }
+    }
 }
