@@ -58,6 +58,7 @@ fn role_of(what: &What) -> Option<Role> {
         What::Onward => Some(Role::Motion),
         What::Stop => Some(Role::Stop),
         What::Face { .. } => Some(Role::Facing),
+        What::Compass { .. } => Some(Role::Compass),
     }
 }
 

@@ -5,6 +5,7 @@
 //! the same way.
 
 mod climbs;
+mod compass;
 mod coverage;
 mod denial;
 #[cfg(test)]
@@ -27,7 +28,7 @@ mod ways;
 
 use crate::text::{self, Token};
 pub use roles::{Clause, Role, Word};
-pub use said::{Event, Floor, Going, Link, Ordinal, Place, Reading, Task, What};
+pub use said::{Compass, Event, Floor, Going, Link, Ordinal, Place, Reading, Task, What};
 use std::collections::BTreeSet;
 use tokens::Tokens;
 
@@ -40,6 +41,7 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     let mut events = turns::turns(tokens, &clauses);
     events.extend(climbs::climbs_and_floors(tokens, &clauses));
     events.extend(onward::onward(tokens, &clauses));
+    events.extend(compass::compass(tokens, &clauses));
     events.extend(stops::stops_and_facing(tokens, &clauses));
     let taken: Vec<[usize; 2]> =
         events.iter().filter(|event| matches!(event.what, What::Floor(_))).map(|event| event.span).collect();
@@ -91,7 +93,7 @@ fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
             }
             (What::Place(_), None) => {}
             (What::Turn(_), _) => turn = Some((event.clause, event.span[1])),
-            (What::Stop | What::Face { .. }, _) => {}
+            (What::Stop | What::Face { .. } | What::Compass { .. }, _) => {}
             _ => turn = None,
         }
     }
@@ -113,7 +115,7 @@ mod tests {
             What::Storey(climb) => format!("storey {climb:?}"),
             What::Floor(floor) => format!("floor {}", floor.number.map_or("top".into(), |number| number.to_string())),
             What::Onward => "on".into(),
-            What::Stop | What::Face { .. } => String::new(),
+            What::Stop | What::Face { .. } | What::Compass { .. } => String::new(),
         };
         events.map(word).collect()
     }

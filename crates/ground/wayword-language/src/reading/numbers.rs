@@ -47,7 +47,7 @@ impl<'a> Numbers<'a> {
 }
 
 /// The number that a word counts, from 2 on: "one door" only means a door.
-fn cardinal(word: &str) -> Option<u32> {
+pub(super) fn cardinal(word: &str) -> Option<u32> {
     match word {
         "both" | "two" => Some(2),
         "three" => Some(3),

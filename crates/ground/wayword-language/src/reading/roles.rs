@@ -45,6 +45,8 @@ pub enum Role {
     Distance,
     /// A verb by which the walker moves, or gets to see something.
     Motion,
+    /// A direction of the compass.
+    Compass,
     /// A stop.
     Stop,
     /// What the walker looks at.

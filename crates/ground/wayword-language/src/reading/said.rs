@@ -54,6 +54,35 @@ pub enum What {
         /// Whether the walker's back is to them.
         away: bool,
     },
+    /// A direction of the compass.
+    Compass {
+        /// Which one.
+        towards: Compass,
+        /// Whether the walk goes or turns that way ("head north"), and not only a place lies there ("the east wall").
+        goes: bool,
+    },
+}
+
+/// The directions of the compass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)] // The names explain themselves.
+pub enum Compass {
+    North,
+    NorthEast,
+    East,
+    SouthEast,
+    South,
+    SouthWest,
+    West,
+    NorthWest,
+}
+
+impl Compass {
+    /// Degrees clockwise from north.
+    #[must_use]
+    pub fn degrees(self) -> f64 {
+        45.0 * f64::from(self as u8)
+    }
 }
 
 /// A storey that a text names.

@@ -1,5 +1,10 @@
 //! Turn words.
 
+mod again;
+mod clock;
+#[cfg(test)]
+mod tests;
+
 use super::{Event, What, tokens::Tokens, vocabulary as v};
 use crate::{
     lexicon::{is_room, is_thing, normal_word},
@@ -19,7 +24,10 @@ pub(super) fn turns(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
         }
         let found = match text.about(at) {
             Some(about) => Some((Side::Behind, about.verb, about.last)),
-            None => text.side(at, told_in_sentence).map(|(side, verb)| (side, verb, at)),
+            None => text
+                .side(at, told_in_sentence)
+                .map(|(side, verb)| (side, verb, at))
+                .or_else(|| clock::turn(tokens, text.before_side_of_turn[at], at)),
         };
         let Some((side, verb, last)) = found else { continue };
         // "Turn 180 degrees to the right" is one turn.
@@ -30,16 +38,23 @@ pub(super) fn turns(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
             verb_of_about = verb;
         }
         told_in_sentence = true;
-        let span = tokens.span(at, last);
-        turns.push(Event { what: What::Turn(side), span, clause: *clause, denied: false });
+        let event = |first, last| Event {
+            what: What::Turn(side),
+            span: tokens.span(first, last),
+            clause: *clause,
+            denied: false,
+        };
+        turns.push(event(at, last));
+        let (more, told_at) = again::more(tokens, at, last);
+        turns.extend((0..more).map(|_| event(told_at.0, told_at.1)));
     }
     turns
 }
 
 fn side_word(word: &str) -> Option<Side> {
     match word {
-        "left" | "leftward" | "leftwards" => Some(Side::Left),
-        "right" | "rightward" | "rightwards" => Some(Side::Right),
+        "left" | "leftward" | "leftwards" | "lefts" => Some(Side::Left),
+        "right" | "rightward" | "rightwards" | "rights" => Some(Side::Right),
         _ => None,
     }
 }
@@ -75,6 +90,10 @@ impl<'a> Text<'a> {
         self.tokens.word(at)
     }
 
+    fn before(&self, at: usize) -> &'a str {
+        self.tokens.before(at)
+    }
+
     /// The turn around that begins at a token.
     fn about(&self, at: usize) -> Option<About> {
         let next = self.word(at + 1);
@@ -97,7 +116,12 @@ impl<'a> Text<'a> {
             "back" if !matches!(next, "around" | "180" | "on" | "off" | "left" | "right") => {
                 verb().filter(|about| about.verb == at.checked_sub(1))
             }
-            "opposite" if matches!(next, "direction" | "way") => verb(),
+            "opposite" | "other" if matches!(next, "direction" | "way") => verb(),
+            "reverse" if matches!(next, "direction" | "course" | "directions") => by_itself(at),
+            "about" if next == "turn" => by_itself(at + 1),
+            "one" if next == "eighty" && matches!(self.before(at), "a" | "turn" | "rotate" | "spin") => {
+                by_itself(at + 1)
+            }
             _ => None,
         }
     }
@@ -106,8 +130,13 @@ impl<'a> Text<'a> {
     fn side(&self, at: usize, told_before: bool) -> Option<(Side, Option<usize>)> {
         let side = side_word(self.word(at))?;
         let after = self.word(at + 1);
-        if after == "turn" || (after == "hand" && self.word(at + 2) == "turn") {
+        let is_counted = again::is_count(self.before(at));
+        let is_turn = |word: &str| word == "turn" || (word == "turns" && is_counted);
+        if is_turn(after) || (after == "hand" && is_turn(self.word(at + 2))) {
             return Some((side, None));
+        }
+        if matches!(self.word(at), "lefts" | "rights") {
+            return is_counted.then_some((side, None));
         }
         // The starts of the runs of words that may come between a verb and the side.
         let (from, far) = (self.before_side[at], self.before_side_of_turn[at]);
@@ -169,7 +198,11 @@ impl<'a> Text<'a> {
     fn goes_there(&self, from: usize, at: usize) -> bool {
         let verb = from.checked_sub(1).map_or("", |verb| self.word(verb));
         let mut skipped = (from..at).map(|at| self.word(at));
-        v::GOING.contains(&verb)
+        // "Make your way left".
+        let is_way = verb == "way" && from > 2 && self.word(from - 2) == "your" && {
+            matches!(self.word(from - 3), "make" | "making" | "work" | "find" | "wind" | "continue")
+        };
+        (v::GOING.contains(&verb) || is_way)
             && (skipped.clone().any(|word| word == "to")
                 || skipped.all(|word| matches!(word, "immediately" | "slightly" | "slight" | "then" | "back")))
     }
@@ -201,139 +234,5 @@ impl<'a> Text<'a> {
         let taken = verb.and_then(|article| article.checked_sub(1)).map_or("", |verb| self.word(verb));
         (is_thing(&name) || is_room(&name) || matches!(self.word(noun), "path" | "way" | "passage"))
             && matches!(taken, "take" | "taking" | "follow" | "following" | "use")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::reading::{What, read};
-    use std::collections::BTreeSet;
-    use wayword_core::Side;
-
-    fn turns(text: &str) -> Vec<Side> {
-        let turn = |what: What| if let What::Turn(side) = what { Some(side) } else { None };
-        read(text, &BTreeSet::new()).events.into_iter().filter_map(|event| turn(event.what)).collect()
-    }
-
-    #[test]
-    fn people_tell_a_turn_in_many_ways() {
-        for text in [
-            "Make a 90 degree left.",
-            "Turn 90 degrees left.",
-            "Turn to the immediate left.",
-            "Go through the doorway and left.",
-            "Exit and then left.",
-            "Continue to the left.",
-            "Continue left.",
-            "Once past the table, go to your left.",
-            "Turn about 90 degrees to your left.",
-            "At the hallway, left.",
-            "Hang left.",
-            "Swing left.",
-            "Round the corner to the left.",
-            "Turn the corner to the left.",
-            "Take the hallway left.",
-            "Walk left.",
-            "Pivot 90 degrees left.",
-            "Turn sharply to the left.",
-            "Rotate left.",
-            "Your first left.",
-            "Left turn.",
-            "Take a left hand turn.",
-            "Make the first available left.",
-            "Turn your body left.",
-            "Slight left.",
-            "Then a left.",
-            "Face left.",
-            "Bend left.",
-            "Veer off to the left.",
-            "Take the second door on your left, turning left.",
-            "Turn, heading left.",
-            "Angle left.",
-            "Keep left.",
-            "Walk forward then left.",
-            "Walk forward, left.",
-            "Turn left hallway.",
-            "Take the first left after the sofa.",
-            "Turn left next to the sofa.",
-        ] {
-            assert_eq!(turns(text), [Side::Left], "{text}");
-        }
-        assert_eq!(turns("Turn right through the door."), [Side::Right]);
-        assert_eq!(turns("Go right into the kitchen, then left."), [Side::Right, Side::Left]);
-    }
-
-    #[test]
-    fn people_tell_a_turn_around_in_many_ways() {
-        for text in [
-            "Turn around.",
-            "Turn all the way around.",
-            "Turn completely around.",
-            "Turn back around.",
-            "Turn right around.",
-            "Do a 180.",
-            "Do a 180 degree turn.",
-            "Make a u-turn.",
-            "U-turn.",
-            "Turn 180 degrees to the right.",
-            "Rotate 180 degrees.",
-            "Turn in the opposite direction.",
-            "Turn and face the opposite direction.",
-            "Spin around.",
-            "About face.",
-        ] {
-            assert_eq!(turns(text), [Side::Behind], "{text}");
-        }
-        for text in ["Walk around the table.", "Turn around the corner.", "Turn back on the lamp."] {
-            assert_eq!(turns(text), [], "{text}");
-        }
-    }
-
-    #[test]
-    fn a_side_that_tells_a_place_is_no_turn() {
-        for text in [
-            "Walk through the door on the right.",
-            "Use the right-hand door.",
-            "Keep the table on your right.",
-            "Go through the left door.",
-            "Walk past the sofa to your left.",
-            "Walk right up to the table.",
-            "Go right through the doorway ahead.",
-            "Leave the room you left before.",
-            "Keep to the left of the table.",
-            "Take the door on the left.",
-            "Walk along the left wall.",
-            "There is a table to the right.",
-            "Stay left of the table.",
-            "Walk straight, keeping the table on your left.",
-            "Go straight past the hallway on the left and then right away stop.",
-            "Head to the left side of the bed.",
-            "Take the left doorway.",
-            "Take left doorway.",
-            "Walk to the far right end.",
-            "Walk towards the bed, right past the table.",
-            "Move to the right bed.",
-            "Move to the right xylorimba.",
-            "The bed should be on your left, stop.",
-            "The doors are on your left and right.",
-            "Enter the right bedroom.",
-            "Face the right wall.",
-            "Then right after the table stop.",
-            "Exit the door to the left of the table.",
-            "Proceed to the right of the bed.",
-            "Continue right along the rug.",
-            "Take two steps right in front of the rug.",
-            "Take the staircase on the right.",
-        ] {
-            assert_eq!(turns(text), [], "{text}");
-        }
-    }
-
-    #[test]
-    fn a_long_text_takes_no_time_to_read() {
-        let began = std::time::Instant::now();
-        let text = "Pass the sofa on level 2 and turn left, ".repeat(5000);
-        assert_eq!(turns(&text).len(), 5000);
-        assert!(began.elapsed() < std::time::Duration::from_secs(20), "{:?}", began.elapsed());
     }
 }
