@@ -110,7 +110,7 @@ fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
         What::Place(_) => Some(MentionKind::Landmark),
         What::Turn(_) | What::Onward => Some(MentionKind::Turn),
         What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => Some(MentionKind::Floor),
-        What::Stop | What::Face { .. } | What::Compass { .. } => None,
+        What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => None,
     };
     let told = reading.events.iter().zip(frames).enumerate();
     told.filter_map(|(at, (event, frame))| Some(Mention { span: event.span, kind: kind(at, event)?, frame: (*frame)? }))

@@ -43,7 +43,7 @@ fn told(event: &Event) -> Option<(Check, &'static str)> {
         What::Climb(_) | What::Steps(_) => Some((Check::Floors, "whether the path goes up or down")),
         What::Storey(_) | What::Floor(_) => Some((Check::Floors, "on which storey the path is")),
         What::Place(place) => place.side.map(|_| (Check::Landmarks, "on which side of the walker that is")),
-        What::Onward | What::Stop | What::Face { .. } | What::Compass { .. } => None,
+        What::Onward | What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => None,
     }
 }
 

@@ -145,7 +145,7 @@ fn step(event: &Event, shown: Vec<usize>, evidence: &Evidence) -> Step {
         }
         What::Onward => Step::Onward,
         What::Place(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => Step::Free,
-        What::Stop | What::Face { .. } | What::Compass { .. } => Step::Free,
+        What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => Step::Free,
     }
 }
 

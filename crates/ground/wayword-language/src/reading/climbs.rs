@@ -79,6 +79,9 @@ impl<'a> Text<'a> {
         if self.describes_stairs(at) {
             return None;
         }
+        if let Some(climb) = self.alone(at) {
+            return Some(What::Climb(climb));
+        }
         let next = self.word(at + 1);
         match self.word(at) {
             "upstairs" => Some(told(Climb::Up, self.commands_upstairs(at))),
@@ -91,6 +94,26 @@ impl<'a> Text<'a> {
             "down" => Some(self.leads_on(at).or(self.behind_stairs(at))?.told(Climb::Down, self.commands(at))),
             _ => None,
         }
+    }
+
+    /// "Go up.", "head down and turn left", "ascend": a climb that names no stairs.
+    fn alone(&self, at: usize) -> Option<Climb> {
+        let (climb, is_verb) = match self.word(at) {
+            "up" | "upward" | "upwards" => (Climb::Up, false),
+            "down" | "downward" | "downwards" => (Climb::Down, false),
+            "ascend" | "ascending" => (Climb::Up, true),
+            "descend" | "descending" => (Climb::Down, true),
+            "climb" | "climbing" if !self.tokens.is_word(at + 1) => (Climb::Up, true),
+            _ => return None,
+        };
+        let end = at + 1 + usize::from(matches!(self.word(at + 1), "again" | "here" | "there" | "now"));
+        let ends = !self.tokens.is_word(end) || matches!(self.word(end), "and" | "then" | "until" | "till" | "again");
+        let verb = self.before_climb(at).map_or("", |before| self.word(before));
+        let goes =
+            is_verb || matches!(verb, "go" | "going" | "head" | "heading" | "walk" | "walking" | "climb" | "step");
+        // "Ascend the ramp", "descend to the kitchen"; what is behind "up" and "down" decides whether those are climbs.
+        let climbs = if is_verb { self.word(at + 1) != "down" } else { ends };
+        (goes && climbs && self.leads_on(at).is_none()).then_some(climb)
     }
 
     /// "The stairs leading up to the bedroom", "the stairs going up": the agent need not climb them.
@@ -209,6 +232,11 @@ mod tests {
             "Go up one floor.",
             "Go up the first flight of stairs.",
             "Turn around and go all the way up the stairs.",
+            "Go up.",
+            "Go up and turn left.",
+            "Keep going up until the sofa.",
+            "Ascend.",
+            "Ascend to the bedroom and wait.",
         ] {
             assert_eq!(told(text), [What::Climb(Climb::Up)], "{text}");
         }
@@ -216,6 +244,9 @@ mod tests {
             ["Go to the bathroom upstairs.", "Clean the upstairs bathroom.", "Go to the bathroom up the stairs."]
         {
             assert_eq!(told(text), [What::Storey(Climb::Up)], "{text}");
+        }
+        for text in ["Go down.", "Descend and turn left.", "Head back down.", "Descend the ramp."] {
+            assert_eq!(told(text), [What::Climb(Climb::Down)], "{text}");
         }
         for text in ["Walk down two steps.", "Go down the few steps to the sofa."] {
             assert_eq!(told(text), [What::Steps(Climb::Down)], "{text}");
@@ -227,6 +258,13 @@ mod tests {
             "Walk down the hallway to the stairs.",
             "Walk up to the stairs.",
             "Stop at the top of the stairs.",
+            "Go up to the table.",
+            "Walk down the hall.",
+            "Sit down.",
+            "Clean up.",
+            "Pick the towel up and go to the sofa.",
+            "Go down to the end of the hall.",
+            "Climb into the tub.",
         ] {
             assert_eq!(told(text), [], "{text}");
         }

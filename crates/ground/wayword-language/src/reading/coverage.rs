@@ -59,6 +59,7 @@ fn role_of(what: &What) -> Option<Role> {
         What::Stop => Some(Role::Stop),
         What::Face { .. } => Some(Role::Facing),
         What::Compass { .. } => Some(Role::Compass),
+        What::Distance { .. } => Some(Role::Distance),
     }
 }
 

@@ -8,6 +8,7 @@ mod climbs;
 mod compass;
 mod coverage;
 mod denial;
+mod distances;
 #[cfg(test)]
 mod growth;
 mod links;
@@ -43,8 +44,9 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     events.extend(onward::onward(tokens, &clauses));
     events.extend(compass::compass(tokens, &clauses));
     events.extend(stops::stops_and_facing(tokens, &clauses));
-    let taken: Vec<[usize; 2]> =
-        events.iter().filter(|event| matches!(event.what, What::Floor(_))).map(|event| event.span).collect();
+    events.extend(distances::distances(tokens, &clauses));
+    let names_no_place = |event: &&Event| matches!(event.what, What::Floor(_) | What::Distance { .. });
+    let taken: Vec<[usize; 2]> = events.iter().filter(names_no_place).map(|event| event.span).collect();
     events.extend(places::places(tokens, &clauses, known, &taken));
     events.sort_by_key(|event| event.span);
     let denied = denial::denied(tokens, &clauses);
@@ -93,7 +95,7 @@ fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
             }
             (What::Place(_), None) => {}
             (What::Turn(_), _) => turn = Some((event.clause, event.span[1])),
-            (What::Stop | What::Face { .. } | What::Compass { .. }, _) => {}
+            (What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. }, _) => {}
             _ => turn = None,
         }
     }
@@ -115,7 +117,7 @@ mod tests {
             What::Storey(climb) => format!("storey {climb:?}"),
             What::Floor(floor) => format!("floor {}", floor.number.map_or("top".into(), |number| number.to_string())),
             What::Onward => "on".into(),
-            What::Stop | What::Face { .. } | What::Compass { .. } => String::new(),
+            What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => String::new(),
         };
         events.map(word).collect()
     }

@@ -144,7 +144,7 @@ fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
         || v::ADJECTIVES.contains(&word(at + 1));
     let shade = word(at) == "light" && v::COLOURS.contains(&word(at + 1));
     // "There is no sign of a lamp".
-    let of_something = word(at) == "sign" && word(at + 1) == "of";
+    let of_something = matches!((word(at), word(at + 1)), ("sign", "of") | ("counter", "clockwise"));
     (verb_like && !after_determiner)
         || of_something
         || (word(at) == "light" && before_noun && !after_determiner)

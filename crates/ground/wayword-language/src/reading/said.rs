@@ -61,6 +61,13 @@ pub enum What {
         /// Whether the walk goes or turns that way ("head north"), and not only a place lies there ("the east wall").
         goes: bool,
     },
+    /// How far to walk, metres. A number of metres or feet is one value, and a number of steps is a range.
+    Distance {
+        /// At least so far.
+        metres_low: f64,
+        /// At most so far.
+        metres_high: f64,
+    },
 }
 
 /// The directions of the compass.

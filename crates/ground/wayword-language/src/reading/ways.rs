@@ -134,7 +134,8 @@ impl<'a> Text<'a> {
 
     /// Whether words before a token say that this is a moment: "until you", "once", "as soon as you".
     fn tells_when(&self, at: usize) -> bool {
-        let mut before = (self.first..at).rev().map(|at| self.word(at));
+        // "Until you get to two chairs in front of a shelf": that of the chairs, and not of the shelf.
+        let mut before = (self.first..at).rev().map(|at| self.word(at)).take_while(|word| !self.is_noun(word));
         before.any(|word| matches!(word, "until" | "till" | "when" | "once" | "soon"))
     }
 }
@@ -204,6 +205,7 @@ mod tests {
             "face the sofa",
             "the exit door",
             "you will see the sofa",
+            "until you get to the two chairs in front of a sofa",
         ] {
             assert_eq!(last(text), None, "{text}");
         }

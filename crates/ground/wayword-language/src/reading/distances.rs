@@ -1,0 +1,224 @@
+//! How far a text says to walk.
+
+use super::{Event, What, numbers::cardinal, tokens::Tokens, vocabulary as v};
+
+/// A foot, metres.
+const FOOT_M: f64 = 0.3048;
+/// People's steps are that long, metres: from short to long ones.
+const STEP_M: [f64; 2] = [0.4, 0.9];
+/// Farther than anybody is told to walk, metres. Greater numbers are mistakes.
+const FARTHEST_M: f64 = 100_000.0;
+
+/// The distances that a text says to walk. A distance that only tells where something is ("two feet from the sofa") is
+/// none, and neither are the steps of stairs.
+pub(super) fn distances(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
+    let mut events = Vec::new();
+    let mut at = 0;
+    while at < tokens.len() {
+        let found = told(tokens, at);
+        if let Some(told) = found.as_ref().filter(|told| is_walked(tokens, at, told)) {
+            let [metres_low, metres_high] = told.metres;
+            let what = What::Distance { metres_low, metres_high };
+            events.push(Event { what, span: tokens.span(at, told.end - 1), clause: clauses[at], denied: false });
+        }
+        at = found.map_or(at + 1, |told| told.end);
+    }
+    events
+}
+
+/// A number with a unit.
+struct Told {
+    metres: [f64; 2],
+    in_steps: bool,
+    /// The token behind it.
+    end: usize,
+}
+
+/// The distance that begins at a token: "500 meters", "10ft", "a few steps", "two or three paces".
+fn told(tokens: Tokens<'_>, at: usize) -> Option<Told> {
+    let word = |at: usize| tokens.word(at);
+    if let Some((number, unit)) = joined(word(at)) {
+        return Some(Told { metres: times([number; 2], unit)?, in_steps: false, end: at + 1 });
+    }
+    let (numbers, behind) = numbers(tokens, at)?;
+    let behind = behind + usize::from(matches!(word(behind), "more" | "big" | "small" | "short" | "of" | "full"));
+    let behind = behind + usize::from(word(behind - 1) == "of" && word(behind) == "a");
+    let in_steps = matches!(word(behind), "step" | "steps" | "pace" | "paces" | "stride" | "strides");
+    let unit = if in_steps { STEP_M } else { [unit_m(word(behind))?; 2] };
+    Some(Told { metres: times(numbers, unit)?, in_steps, end: behind + 1 })
+}
+
+fn times(numbers: [f64; 2], unit: [f64; 2]) -> Option<[f64; 2]> {
+    let metres = [numbers[0] * unit[0], numbers[1] * unit[1]];
+    (0.0 < metres[0] && metres[0] <= metres[1] && metres[1] <= FARTHEST_M).then_some(metres)
+}
+
+/// "10ft", "3.5m".
+fn joined(word: &str) -> Option<(f64, [f64; 2])> {
+    let unit = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let number = word[..word.len() - unit.len()].parse().ok()?;
+    Some((number, [unit_m(unit)?; 2]))
+}
+
+/// The least and the greatest number that words say, and the token behind them.
+fn numbers(tokens: Tokens<'_>, at: usize) -> Option<([f64; 2], usize)> {
+    let word = |at: usize| tokens.word(at);
+    let exact = |number: f64, end| Some(([number; 2], end));
+    match (word(at), word(at + 1)) {
+        ("a" | "another", "few") => Some(([2.0, 5.0], at + 2)),
+        ("a" | "another", "couple") => Some(([2.0, 3.0], at + 2)),
+        ("half", "a" | "an") => exact(0.5, at + 2),
+        ("few", _) => Some(([2.0, 5.0], at + 1)),
+        ("couple", _) => Some(([2.0, 3.0], at + 1)),
+        ("several" | "some", _) => Some(([3.0, 8.0], at + 1)),
+        ("half", _) => exact(0.5, at + 1),
+        _ => {
+            let low = number(word(at))?;
+            // "Two or three", "5-10".
+            let joint = usize::from(matches!(word(at + 1), "or" | "to"));
+            let high = number(word(at + 1 + joint)).filter(|high| *high > low && !matches!(word(at), "a" | "an"));
+            match high {
+                Some(high) => Some(([low, high], at + 2 + joint)),
+                None => exact(low, at + 1),
+            }
+        }
+    }
+}
+
+fn number(word: &str) -> Option<f64> {
+    let many = match word {
+        "a" | "an" | "one" => 1.0,
+        "eleven" => 11.0,
+        "fifteen" => 15.0,
+        "twenty" => 20.0,
+        "thirty" => 30.0,
+        "forty" => 40.0,
+        "fifty" => 50.0,
+        "hundred" => 100.0,
+        _ => {
+            let parsed = word.starts_with(|c: char| c.is_ascii_digit()).then(|| word.parse::<f64>().ok()).flatten();
+            parsed.or(cardinal(word).filter(|_| word != "both").map(f64::from))?
+        }
+    };
+    many.is_finite().then_some(many)
+}
+
+/// A unit in metres.
+fn unit_m(word: &str) -> Option<f64> {
+    match word {
+        "m" | "metre" | "metres" | "meter" | "meters" => Some(1.0),
+        "km" | "kilometre" | "kilometres" | "kilometer" | "kilometers" => Some(1000.0),
+        "cm" | "centimetres" | "centimeters" => Some(0.01),
+        "ft" | "foot" | "feet" => Some(FOOT_M),
+        "yd" | "yds" | "yard" | "yards" => Some(3.0 * FOOT_M),
+        "mile" | "miles" => Some(1609.344),
+        "inch" | "inches" => Some(FOOT_M / 12.0),
+        _ => None,
+    }
+}
+
+/// Whether somebody walks that far.
+fn is_walked(tokens: Tokens<'_>, at: usize, told: &Told) -> bool {
+    // "Three feet from the sofa", "two metres to the left of it", "a ten foot ladder".
+    let next = tokens.word(told.end);
+    let placed = matches!(
+        next,
+        "from"
+            | "away"
+            | "of"
+            | "tall"
+            | "long"
+            | "wide"
+            | "high"
+            | "apart"
+            | "off"
+            | "behind"
+            | "below"
+            | "above"
+            | "thick"
+    ) || matches!((next, tokens.word(told.end + 1)), ("in", "front") | ("to", "the" | "your"));
+    // "Up three steps", "the two steps", "two steps up": stairs.
+    let climbs = |word: &str| {
+        matches!(word, "up" | "down" | "climb" | "climbing" | "ascend" | "descend" | "the" | "these" | "those" | "of")
+    };
+    let leads_up = matches!(next, "up" | "down" | "upwards" | "downwards" | "upward" | "downward" | "leading")
+        || tokens.word(told.end + 2) == "stairs";
+    let stairs = told.in_steps && ((at.saturating_sub(2)..at).any(|at| climbs(tokens.word(at))) || leads_up);
+    let start = at.saturating_sub(6);
+    let mut words = (start..at).rev().take_while(|at| tokens.is_word(*at)).map(|at| tokens.word(at));
+    let verb = words.find(|word| v::WALKING.contains(word) || v::TURNING.contains(word) || word.ends_with("ing"));
+    let goes = verb.is_some_and(|verb| {
+        v::GOING.contains(&verb) || v::CLIMBING.contains(&verb) || matches!(verb, "take" | "taking" | "march" | "make")
+    });
+    let ahead = matches!(next, "forward" | "forwards" | "ahead" | "straight" | "onward");
+    !placed && !stairs && (goes || ahead)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::reading::{What, read};
+    use std::collections::BTreeSet;
+
+    fn told(text: &str) -> Vec<[f64; 2]> {
+        let events = read(text, &BTreeSet::new()).events.into_iter();
+        let metres = events.filter_map(|event| match event.what {
+            What::Distance { metres_low, metres_high } => Some([metres_low, metres_high]),
+            _ => None,
+        });
+        metres.map(|range| range.map(|metres| (metres * 100.0).round() / 100.0)).collect()
+    }
+
+    #[test]
+    fn distances_to_walk_are_read_with_their_range() {
+        for (text, metres) in [
+            ("Walk 500 meters.", [500.0, 500.0]),
+            ("Go forward three feet and stop.", [0.91, 0.91]),
+            ("Walk 10 ft ahead.", [3.05, 3.05]),
+            ("Walk 10ft.", [3.05, 3.05]),
+            ("Take five steps forward.", [2.0, 4.5]),
+            ("Walk forward five paces.", [2.0, 4.5]),
+            ("Go a few steps into the kitchen.", [0.8, 4.5]),
+            ("Walk two or three metres.", [2.0, 3.0]),
+            ("Walk 5-10 metres, then stop.", [5.0, 10.0]),
+            ("Walk a couple of yards.", [1.83, 2.74]),
+            ("Move forward half a metre.", [0.5, 0.5]),
+            ("Turn left and walk 2.5 metres.", [2.5, 2.5]),
+            ("Two steps forward.", [0.8, 1.8]),
+        ] {
+            assert_eq!(told(text), [metres], "{text}");
+        }
+    }
+
+    #[test]
+    fn where_something_is_and_steps_of_stairs_are_no_distances() {
+        for text in [
+            "Stop three feet from the sofa.",
+            "Stop two metres in front of the sofa.",
+            "Walk up three steps.",
+            "Go down the two steps.",
+            "Take two steps up.",
+            "Walk up a few steps.",
+            "Go down exactly two steps.",
+            "Take three steps upwards.",
+            "Take a few steps on the stairs.",
+            "Pass the ten foot tall statue.",
+            "Walk to the sofa 2 metres away.",
+            "Wait 5 minutes.",
+            "Walk 99999999999999999999999999 miles.",
+            "Stop at the foot of the bed.",
+            "Turn 90 degrees.",
+        ] {
+            assert_eq!(told(text), Vec::<[f64; 2]>::new(), "{text}");
+        }
+    }
+
+    #[test]
+    fn steps_that_are_walked_are_no_stairs() {
+        let places = |text: &str| {
+            let events = read(text, &BTreeSet::new()).events.into_iter();
+            events.filter(|event| matches!(event.what, What::Place(_))).count()
+        };
+        assert_eq!(places("Take two steps forward."), 0);
+        assert_eq!(places("Walk up the two steps."), 1);
+    }
+}
