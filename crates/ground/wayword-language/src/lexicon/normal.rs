@@ -17,6 +17,8 @@ const IRREGULAR: [(&str, &str); 7] = [
     ("axes", "axe"),
     ("buses", "bus"),
 ];
+/// Words that have no singular: to clothe is something else.
+const ALWAYS_PLURAL: [&str; 1] = ["clothes"];
 /// Words in "-ie", whose plurals look like those of words in "-y".
 const IN_IE: [&str; 14] = [
     "cookie", "brownie", "movie", "hoodie", "smoothie", "walkie", "talkie", "veggie", "genie", "zombie", "foodie",
@@ -35,6 +37,7 @@ pub fn normal_word(word: &str) -> String {
     // "TVs", but not "bus".
     let is_initials = !word.contains(['a', 'e', 'i', 'o', 'u', 'y']);
     let keeps_its_s = ["ss", "us", "is"].iter().any(|end| word.ends_with(end)) || (word.len() < 4 && !is_initials);
+    let keeps_its_s = keeps_its_s || ALWAYS_PLURAL.contains(&word);
     let Some(stem) = word.strip_suffix('s').filter(|_| !keeps_its_s) else { return word.to_owned() };
     if let Some((end, instead)) = IRREGULAR.into_iter().find(|(end, _)| word.ends_with(end)) {
         return format!("{}{instead}", &word[..word.len() - end.len()]);
@@ -77,6 +80,7 @@ mod tests {
             assert_eq!(normal(many), one);
             assert_eq!(normal(one), one);
         }
+        assert_eq!(normal("Clothes"), "clothes");
         assert_eq!(normal("robot’s"), "robot");
         assert_eq!(normal("glass"), "glass");
         assert_eq!(normal("  dining#chairs "), "dining chair");

@@ -182,9 +182,26 @@ pub fn is_thing(normal_name: &str) -> bool {
     THINGS.by_name.contains_key(normal_name)
 }
 
+/// Whether a name means a part of the building itself: a wall, a floor, a ceiling, a corner, a doorway. Texts name
+/// them everywhere and labels hardly ever, so nobody's silence about one says that there is none.
+#[must_use]
+pub fn is_fabric(name: &str) -> bool {
+    thing(name).is_some_and(|thing| thing.class == Class::Fabric)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn walls_floors_and_corners_are_of_the_building() {
+        for name in ["wall", "brick walls", "tiled floor", "corner", "ceiling", "doorway"] {
+            assert!(is_fabric(name), "{name}");
+        }
+        for name in ["wall lamp", "corner cabinet", "floor lamp", "door", "zorble"] {
+            assert!(!is_fabric(name), "{name}");
+        }
+    }
 
     #[test]
     fn the_files_that_the_list_names_are_there() {

@@ -99,6 +99,9 @@ impl<'a> Text<'a> {
         if v::UNITS.contains(&word) && (numbers::is_number(before) || matches!(before, "few" | "of" | "more")) {
             return Some(Role::Distance);
         }
+        if matches!(word, "leftmost" | "rightmost") {
+            return Some(Role::Ordinal);
+        }
         if is_number
             || numbers::is_number(word) && !matches!(word, "a" | "an" | "several" | "half")
             || matches!(word, "last" | "next" | "final")

@@ -5,6 +5,7 @@
 //! the same way.
 
 mod climbs;
+mod colours;
 mod compass;
 mod coverage;
 mod denial;
@@ -18,6 +19,7 @@ mod places;
 pub mod role_words;
 mod roles;
 mod said;
+mod sides;
 mod stems;
 pub mod steps;
 mod stops;
@@ -47,7 +49,9 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     events.extend(distances::distances(tokens, &clauses));
     let names_no_place = |event: &&Event| matches!(event.what, What::Floor(_) | What::Distance { .. });
     let taken: Vec<[usize; 2]> = events.iter().filter(names_no_place).map(|event| event.span).collect();
-    events.extend(places::places(tokens, &clauses, known, &taken));
+    let turns: Vec<[usize; 2]> =
+        events.iter().filter(|event| matches!(event.what, What::Turn(_))).map(|event| event.span).collect();
+    events.extend(places::places(tokens, &clauses, known, &taken, &turns));
     events.sort_by_key(|event| event.span);
     let denied = denial::denied(tokens, &clauses);
     for event in &mut events {
@@ -222,6 +226,11 @@ mod tests {
         assert_eq!(colour("dust the dark grey sofa"), Some("dark grey".into()));
         assert_eq!(colour("dust the gray leather sofa"), Some("grey".into()));
         assert_eq!(colour("dust the old sofa"), None);
+        assert_eq!(colour("the sofa is green"), Some("green".into()));
+        assert_eq!(colour("the doors on your left are dark brown."), Some("dark brown".into()));
+        assert_eq!(colour("go to the sofa that is green"), Some("green".into()));
+        assert_eq!(colour("the sofa is not green"), None);
+        assert_eq!(colour("the sofa is on the green rug"), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Numbers before a place: which one of several it is, and how many there are.
 
 use super::{Ordinal, tokens::Tokens, vocabulary as v};
+use wayword_core::Side;
 
 /// How far before a noun phrase its number may stand, words.
 const REACH: usize = 5;
@@ -10,12 +11,19 @@ pub(super) struct Numbers<'a> {
     tokens: Tokens<'a>,
     /// For each token, where the run of adjectives and numbers before it begins.
     runs: Vec<usize>,
+    /// For each token, whether it belongs to a turn.
+    turns: Vec<bool>,
 }
 
 impl<'a> Numbers<'a> {
-    pub(super) fn of(tokens: Tokens<'a>) -> Self {
+    /// `spans` are the byte ranges of turns.
+    pub(super) fn of(tokens: Tokens<'a>, spans: &[[usize; 2]]) -> Self {
+        let mut turns = vec![false; tokens.len()];
+        for span in spans {
+            turns[tokens.first_from(span[0])..tokens.first_from(span[1])].fill(true);
+        }
         let may = |word: &str| v::ADJECTIVES.contains(&word) || cardinal(word).is_some() || ordinal(word).is_some();
-        Self { tokens, runs: tokens.runs_before(may) }
+        Self { tokens, runs: tokens.runs_before(may), turns }
     }
 
     /// The adjectives and numbers before a token, the nearest first.
@@ -25,7 +33,7 @@ impl<'a> Numbers<'a> {
 
     /// "The second door", "the last two chairs": which one the noun phrase that begins at a token means.
     pub(super) fn ordinal(&self, from: usize) -> Option<Ordinal> {
-        self.words_before(from).find_map(|at| ordinal(self.tokens.word(at)))
+        self.words_before(from).filter(|at| !self.turns[*at]).find_map(|at| ordinal(self.tokens.word(at)))
     }
 
     /// "Two chairs", "a pair of doors", "both of the doors": how many.
@@ -77,6 +85,8 @@ pub(super) fn ordinal(word: &str) -> Option<Ordinal> {
     match word {
         "last" | "final" => Some(Ordinal::Last),
         "next" => Some(Ordinal::Next),
+        "left" | "leftmost" => Some(Ordinal::Side(Side::Left)),
+        "right" | "rightmost" => Some(Ordinal::Side(Side::Right)),
         "ground" | "bottom" => None,
         _ if cardinal(word).is_some() || matches!(word, "1" | "one") => None,
         _ => v::floor_number(word).filter(|number| *number < 100).map(Ordinal::Number),
@@ -105,6 +115,10 @@ mod tests {
             ("enter the next room on your left, the kitchen", None),
             ("go through the next doorway", Some(Ordinal::Next)),
             ("turn left and take the door", None),
+            ("take the left door", Some(Ordinal::Side(Side::Left))),
+            ("stop at the rightmost chair", Some(Ordinal::Side(Side::Right))),
+            ("turn left hallway", None),
+            ("pass the door on the left", None),
             ("stop at the two chairs", None),
             ("stop on the second floor by the chair", None),
         ] {

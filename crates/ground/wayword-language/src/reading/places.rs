@@ -1,9 +1,11 @@
 //! Landmarks and rooms.
 
-use super::{Event, Place, What, links::link, numbers::Numbers, tokens::Tokens, vocabulary as v, ways::going};
+use super::{
+    Event, Place, What, colours::Colours, links::link, numbers::Numbers, sides, task, tokens::Tokens, vocabulary as v,
+    ways::going,
+};
 use crate::lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, says_several, thing};
 use std::collections::BTreeSet;
-use wayword_core::Side;
 
 /// A run of tokens that names a place.
 struct Found {
@@ -16,12 +18,13 @@ struct Found {
     is_room: bool,
 }
 
-/// The places of a text. Tokens within `taken` spans are skipped.
+/// The places of a text. Tokens within `taken` spans are skipped; sides within `turns` belong to turns.
 pub(super) fn places(
     tokens: Tokens<'_>,
     clauses: &[usize],
     known: &BTreeSet<String>,
     taken: &[[usize; 2]],
+    turns: &[[usize; 2]],
 ) -> Vec<Event> {
     let free = free(tokens, taken);
     let mut found: Vec<Found> = Vec::new();
@@ -44,13 +47,14 @@ pub(super) fn places(
         }
         found.push(place);
     }
-    let (colours, numbers) = (Colours::of(tokens), Numbers::of(tokens));
+    let (colours, numbers) = (Colours::of(tokens), Numbers::of(tokens, turns));
     let event = |place: Found| {
         let span = tokens.span(place.from, place.to - 1);
         let clause = clauses[place.from];
-        let side = side_after(tokens, place.to);
+        let (side, end) = sides::after(tokens, place.to);
+        let side = side.or_else(|| sides::before(tokens, place.noun));
         let link = link(tokens, clauses, place.from);
-        let colour = colours.before(place.from);
+        let colour = colours.before(place.from).or_else(|| colours.behind(end));
         let going = going(tokens, clauses, place.noun);
         let (ordinal, count) = (numbers.ordinal(place.noun), numbers.count(place.noun));
         let several = count.is_some() || says_several(tokens.word(place.to - 1));
@@ -97,6 +101,9 @@ fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
     let word = |at: usize| tokens.word(at);
     if length > 1 {
         return false;
+    }
+    if task::is_done(tokens, at) {
+        return true;
     }
     let after_determiner = at > 0 && (v::DETERMINERS.contains(&word(at - 1)) || v::ADJECTIVES.contains(&word(at - 1)));
     // "The upper floor" is a storey, and not a floor that one sees.
@@ -204,52 +211,4 @@ fn begins_noun(tokens: Tokens<'_>, at: usize) -> bool {
     let begins_clause =
         matches!(before, "where" | "when" | "until" | "till" | "while" | "as" | "if" | "that" | "which" | "and" | "so");
     !begins_clause && (v::BREAKERS.contains(&before) || v::WALKING.contains(&before))
-}
-
-/// The colours among the adjectives before a place.
-struct Colours<'a> {
-    tokens: Tokens<'a>,
-    /// For each token, the last colour in the run of adjectives that ends with it.
-    last: Vec<Option<usize>>,
-}
-
-impl<'a> Colours<'a> {
-    fn of(tokens: Tokens<'a>) -> Self {
-        let mut last = None;
-        let colour = |at: usize| {
-            let word = tokens.word(at);
-            if v::COLOURS.contains(&word) {
-                last = Some(at);
-            } else if !v::ADJECTIVES.contains(&word) {
-                last = None;
-            }
-            last
-        };
-        Self { tokens, last: (0..tokens.len()).map(colour).collect() }
-    }
-
-    /// The colour of the place that begins at a token.
-    fn before(&self, from: usize) -> Option<String> {
-        let at = self.last[from.checked_sub(1)?]?;
-        let colour = if self.tokens.word(at) == "gray" { "grey" } else { self.tokens.word(at) };
-        let shade = Some(self.tokens.before(at)).filter(|word| matches!(*word, "dark" | "light"));
-        Some(shade.map_or(colour.to_owned(), |shade| format!("{shade} {colour}")))
-    }
-}
-
-/// The side that follows a place: "on your left", "to the right", but not "to the right of".
-fn side_after(tokens: Tokens<'_>, to: usize) -> Option<Side> {
-    let word = |at: usize| tokens.word(at);
-    let mut at = to;
-    while matches!(word(at), "that" | "is" | "are" | "which") {
-        at += 1;
-    }
-    let begins = matches!(word(at), "on" | "to") && matches!(word(at + 1), "the" | "your");
-    let side = match word(at + 2) {
-        "left" => Side::Left,
-        "right" => Side::Right,
-        _ => return None,
-    };
-    let of = word(at + 3) == "of" || (word(at + 3) == "side" && word(at + 4) == "of");
-    (begins && !of).then_some(side)
 }

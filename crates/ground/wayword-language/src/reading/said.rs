@@ -160,6 +160,8 @@ pub enum Ordinal {
     Last,
     /// The next one from here.
     Next,
+    /// The one on that side of the others: "the left door".
+    Side(Side),
 }
 
 /// How a place is linked to its sentence.

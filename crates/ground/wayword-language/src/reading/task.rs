@@ -43,6 +43,20 @@ pub(super) fn verb_at(tokens: Tokens<'_>, at: usize) -> Option<usize> {
     (!no_verb).then_some(at)
 }
 
+/// Whether a word that can name a thing is what is done here: "switch on the lamp", "vacuum the rug", "fan the fire".
+pub(super) fn is_done(tokens: Tokens<'_>, at: usize) -> bool {
+    let (word, next, before) = (tokens.word(at), tokens.word(at + 1), tokens.before(at));
+    let begins = at == 0 || !tokens.is_word(at - 1);
+    let joined = v::ADVERBS.contains(&before) || matches!(before, "and" | "or");
+    let object = matches!(next, "the" | "a" | "an" | "your" | "my" | "our" | "all" | "any" | "some" | "me" | "both");
+    // "Past the sofa and chair on the left": only some verbs have such a word behind them.
+    let particle = matches!(
+        (word, next),
+        ("switch" | "light" | "shower", "on" | "off") | ("box" | "board" | "light" | "cover" | "hook", "up")
+    );
+    word != "room" && !word.ends_with('s') && (begins || joined) && (object || particle) && !is_walking(tokens, at)
+}
+
 /// Whether a verb is one of walking here: "take a left" is, "take the towel" is not.
 fn is_walking(tokens: Tokens<'_>, at: usize) -> bool {
     let word = |at: usize| tokens.word(at);
@@ -65,5 +79,45 @@ fn is_walking(tokens: Tokens<'_>, at: usize) -> bool {
         // "Find the lamp" is a task, "you find yourself in a hall" is not.
         "find" => word(at + 1) == "your" || word(at + 1) == "yourself",
         verb => v::WALKING.contains(&verb),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::reading::{What, read};
+    use std::collections::BTreeSet;
+
+    fn places(text: &str) -> Vec<String> {
+        let events = read(text, &BTreeSet::new()).events.into_iter();
+        let name = |what: What| if let What::Place(place) = what { Some(place.name) } else { None };
+        events.filter_map(|event| name(event.what)).collect()
+    }
+
+    #[test]
+    fn what_is_done_is_no_thing() {
+        for (text, wanted) in [
+            ("Switch on the lamp", &["lamp"][..]),
+            ("Go to the kitchen and switch off the light", &["kitchen", "light"]),
+            ("Vacuum the rug", &["rug"]),
+            ("Go to the kitchen and vacuum the rug", &["kitchen", "rug"]),
+            ("Fan the plant", &["plant"]),
+            ("Please water the plant", &["plant"]),
+            ("Mop the kitchen floor", &["floor"]),
+        ] {
+            assert_eq!(places(text), wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_thing_stays_one() {
+        for (text, wanted) in [
+            ("Press the switch on the wall", &["switch", "wall"][..]),
+            ("Pass the sofa and chair on the left", &["sofa", "chair"]),
+            ("Clean the vacuum", &["vacuum"]),
+            ("Turn off the fan", &["fan"]),
+            ("Walk to the bed, lamp on your left", &["bed", "lamp"]),
+        ] {
+            assert_eq!(places(text), wanted, "{text}");
+        }
     }
 }

@@ -1,0 +1,51 @@
+//! The colours of places.
+
+use super::{tokens::Tokens, vocabulary as v};
+use crate::lexicon::{is_room, is_thing, normal_word};
+
+/// The colours that a text gives places.
+pub(super) struct Colours<'a> {
+    tokens: Tokens<'a>,
+    /// For each token, the last colour in the run of adjectives that ends with it.
+    last: Vec<Option<usize>>,
+}
+
+impl<'a> Colours<'a> {
+    pub(super) fn of(tokens: Tokens<'a>) -> Self {
+        let mut last = None;
+        let colour = |at: usize| {
+            let word = tokens.word(at);
+            if v::COLOURS.contains(&word) {
+                last = Some(at);
+            } else if !v::ADJECTIVES.contains(&word) {
+                last = None;
+            }
+            last
+        };
+        Self { tokens, last: (0..tokens.len()).map(colour).collect() }
+    }
+
+    /// The colour of the place that begins at a token.
+    pub(super) fn before(&self, from: usize) -> Option<String> {
+        Some(self.named(self.last[from.checked_sub(1)?]?))
+    }
+
+    /// "Is green", "that are dark red": the colour that is said of a place right behind it.
+    pub(super) fn behind(&self, to: usize) -> Option<String> {
+        let word = |at: usize| self.tokens.word(at);
+        let at = to + usize::from(matches!(word(to), "that" | "which"));
+        let is = matches!(word(at), "is" | "are" | "was" | "were").then_some(at + 1)?;
+        let is_shade = |word: &str| matches!(word, "dark" | "light" | "all" | "mostly" | "very" | "painted" | "bright");
+        let at = is + usize::from(is_shade(word(is)));
+        let name = normal_word(word(at + 1));
+        let is_whole = !is_thing(&name) && !is_room(&name);
+        (v::COLOURS.contains(&word(at)) && is_whole).then(|| self.named(at))
+    }
+
+    /// The colour at a token, with its shade.
+    fn named(&self, at: usize) -> String {
+        let colour = if self.tokens.word(at) == "gray" { "grey" } else { self.tokens.word(at) };
+        let shade = Some(self.tokens.before(at)).filter(|word| matches!(*word, "dark" | "light"));
+        shade.map_or(colour.to_owned(), |shade| format!("{shade} {colour}"))
+    }
+}
