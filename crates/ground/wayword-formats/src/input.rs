@@ -78,6 +78,23 @@ impl<R: Read> Read for Bounded<R> {
     }
 }
 
+/// Reads a file that is one JSON object as a whole. It keeps to the limits on one item.
+pub(crate) fn object(file: &Path) -> Result<Map<String, Value>, FormatError> {
+    let field = RefCell::default();
+    let mut parser = parser(file)?;
+    let value = Strict(&field).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
+    let value = value.map_err(|error| {
+        let within = Some(field.take()).filter(|field| !field.is_empty());
+        let within = within.map_or_else(String::new, |field| format!("field \"{field}\": "));
+        let problem = format!("{within}{} (line {}, column {})", bare(&error), error.line(), error.column());
+        FormatError::document(file, problem, NOT_JSON)
+    })?;
+    match value {
+        Value::Object(map) => Ok(map),
+        _ => Err(FormatError::document(file, "it is not a JSON object", NOT_JSON)),
+    }
+}
+
 /// Reads a file that is one JSON list of objects, and passes each to `take`.
 pub(crate) fn each_item(
     file: &Path,

@@ -9,6 +9,7 @@ mod episode;
 mod error;
 mod format;
 pub mod habitat;
+pub mod hear;
 mod input;
 mod item;
 pub mod jsonl;

@@ -1,0 +1,131 @@
+//! HEAR's annotations: texts about paths, with spans that people called right or wrong.
+//!
+//! The file is one JSON object of items by name. Fields: those of R2R's path (`scan`, `path`, `heading`), `original_instr`
+//! (the text), `numbered_instruction` (its tokens, each followed by its number from 0: `turn (0) left (1) . (2)`) and
+//! `id2label`, from token numbers to a label. A key is one number, or numbers that ascend: "5-8" means tokens 5 to 8.
+//! Labels are 1 (right), 0 and -1 (wrong). Other fields are not read.
+
+use crate::{Episode, FormatError, Item, ItemPlace, input};
+use serde_json::Value;
+use std::path::Path;
+
+/// A text with what people said of its parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LabelledText {
+    /// Its name in the file.
+    pub name: String,
+    /// Its path, with the text as its only instruction. Its id is the text's name.
+    pub episode: Episode,
+    /// The text.
+    pub text: String,
+    /// The spans that people labelled, in the order of the file. Spans may overlap.
+    pub spans: Vec<LabelledSpan>,
+}
+
+/// A span of a text that people called right or wrong.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LabelledSpan {
+    /// Its key in the file ("5-8").
+    pub key: String,
+    /// Byte range in the text.
+    pub span: [usize; 2],
+    /// Whether people called it right.
+    pub is_right: bool,
+}
+
+/// Reads a file of HEAR, plain or gzip.
+///
+/// # Errors
+/// When the file cannot be read, is not such an object, holds no text, or an item is refused: a field is missing or
+/// wrong, the tokens are not those of the text, a key names no tokens, or a label is none of 1, 0 and -1. The error names
+/// the text and the key.
+pub fn read(file: &Path) -> Result<Vec<LabelledText>, FormatError> {
+    let texts = input::object(file)?;
+    if texts.is_empty() {
+        return Err(FormatError::document(file, "it holds no text", "give a file of HEAR's annotations"));
+    }
+    let labelled = |(index, (name, value))| labelled(Item::new(file, ItemPlace::Item(index), value)?, name);
+    texts.into_iter().enumerate().map(labelled).collect()
+}
+
+fn labelled(mut item: Item<'_>, name: String) -> Result<LabelledText, FormatError> {
+    item.call(&name.chars().take(80).collect::<String>());
+    let name = item.name("its name", &Value::String(name))?;
+    let [path_id, scan, path] = [item.take("path_id")?, item.take("scan")?, item.take("path")?];
+    let mut episode = Episode::new(name.clone(), item.name("path_id", &path_id)?, item.scene("scan", &scan)?);
+    episode.viewpoints = item.viewpoints("path", &path)?;
+    let heading = item.take("heading")?;
+    episode.start_heading = Some(item.heading("heading", &heading)?);
+    let text = item.take("original_instr")?;
+    let text = item.instruction("original_instr", &text)?;
+    episode.instructions = vec![text.clone()];
+    let tokens = tokens(&mut item, &text)?;
+    let labels = item.take("id2label")?;
+    let Value::Object(labels) = labels else {
+        return Err(item.expected("id2label", "an object", &labels, "give a label for each range of tokens"));
+    };
+    let spans = labels.into_iter().map(|(key, label)| labelled_span(&item, &tokens, key, &label));
+    let spans = spans.collect::<Result<Vec<_>, _>>()?;
+    Ok(LabelledText { name, episode, text, spans })
+}
+
+/// Byte ranges of the tokens in the text.
+fn tokens(item: &mut Item<'_>, text: &str) -> Result<Vec<[usize; 2]>, FormatError> {
+    const FIELD: &str = "numbered_instruction";
+    const HINT: &str = "number the words of original_instr: each word, then its number from 0 in brackets";
+    let numbered = item.take(FIELD)?;
+    let numbered = item.instruction(FIELD, &numbered)?;
+    let mut parts = numbered.split_whitespace();
+    let mut tokens: Vec<[usize; 2]> = Vec::new();
+    let mut at = 0;
+    while let Some(word) = parts.next() {
+        let number = tokens.len();
+        if parts.next() != Some(format!("({number})").as_str()) {
+            return Err(item.wrong(FIELD, format!("token {number} ({word:?}) is not followed by its number"), HINT));
+        }
+        let from = at + (text[at..].len() - text[at..].trim_start().len());
+        if !text[from..].starts_with(word) {
+            let problem = format!("token {number} ({word:?}) is not the next word of original_instr");
+            return Err(item.wrong(FIELD, problem, HINT));
+        }
+        at = from + word.len();
+        tokens.push([from, at]);
+    }
+    if !text[at..].trim().is_empty() {
+        return Err(item.wrong(FIELD, format!("it ends before byte {at} of original_instr"), HINT));
+    }
+    Ok(tokens)
+}
+
+fn labelled_span(
+    item: &Item<'_>,
+    tokens: &[[usize; 2]],
+    key: String,
+    label: &Value,
+) -> Result<LabelledSpan, FormatError> {
+    // A hostile key may be as long as its file.
+    let field = format!("id2label.{key:.40}");
+    let is_right = match label.as_i64() {
+        Some(1) => true,
+        Some(0 | -1) => false,
+        _ => return Err(item.expected(&field, "1, 0 or -1", label, "1 means right, 0 and -1 mean wrong")),
+    };
+    let Some((first, last)) = ends(&key) else {
+        let problem = "the key is neither the number of a token nor numbers that ascend, joined by hyphens";
+        return Err(item.wrong(&field, problem, "write 5 for one token, 5-8 for several"));
+    };
+    let (Some(from), Some(to)) = (tokens.get(first), tokens.get(last)) else {
+        let problem = format!("it names token {last}, but the text has {}", tokens.len());
+        return Err(item.wrong(&field, problem, "count the tokens of numbered_instruction from 0"));
+    };
+    Ok(LabelledSpan { key, span: [from[0], to[1]], is_right })
+}
+
+/// The first and the last token that a key names.
+fn ends(key: &str) -> Option<(usize, usize)> {
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let number = |part: &str| part.parse::<usize>().ok().filter(|_| is_number(part));
+    let numbers = key.split('-').map(number).collect::<Option<Vec<_>>>()?;
+    let ascend = numbers.windows(2).all(|pair| pair[0] < pair[1]);
+    Some((*numbers.first()?, *numbers.last()?)).filter(|_| ascend)
+}
