@@ -5,12 +5,15 @@ mod calls;
 mod corrupt;
 mod corruptions;
 mod eye;
+mod judged;
 #[cfg(test)]
 mod made_up;
+mod people;
 mod provider;
 mod resources;
 mod reuse;
 mod sample;
+mod share;
 mod skeleton;
 mod stage;
 mod storm;
@@ -139,13 +142,19 @@ enum What {
         #[arg(long, default_value_t = 200)]
         paths: usize,
     },
+    /// Hold the findings of `wayword check` against spans of texts that people called right or wrong: HEAR's file.
+    #[command(mut_arg("file", |file| file.help("File of labelled texts, in HEAR's format")))]
+    #[command(mut_arg("show", |show| show.help("Show at most this many findings about words that people called right")))]
+    #[command(after_long_help = "")]
+    People(judged::Flags),
     /// Try out the settings of agents on a train split.
     Sweep(sweep::Flags),
 }
 
 fn main() -> ExitCode {
-    let output = Output::new(false, false);
-    match run(Cli::parse().what, &output) {
+    let what = Cli::parse().what;
+    let output = Output::new(matches!(&what, What::People(flags) if flags.json), false);
+    match run(what, &output) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             output.error(&error);
@@ -167,6 +176,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
         What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
+        What::People(flags) => people::measure(flags, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }

@@ -133,6 +133,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-remote",
                 "wayword-synthesis",
                 "wayword-testkit",
+                "wayword-world",
             ],
         ),
     ];

@@ -25,7 +25,7 @@ use crate::{
     output::Output,
 };
 
-pub use check::{CheckReport, CheckedText, Counts, check_file};
+pub use check::{CheckReport, CheckedText, Counts, check_file, checked};
 pub use generate::{Summary, generate_into};
 pub use perceive::{Extent, Measured, Row, perceive};
 

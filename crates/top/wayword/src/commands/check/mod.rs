@@ -21,9 +21,17 @@ use wayword_checks::{Evidence, Subject, check};
 use wayword_core::{Check, Finding, Platform, Verdict};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
-    let report = check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, args.style.as_deref(), output)?;
+    let report = checked(args, output)?;
     output.data(&report, Shown { report: &report, most: args.show });
     Ok(if report.failed == 0 { Exit::Done } else { Exit::WithLoss })
+}
+
+/// Checks a file as the flags of `wayword check` ask, without printing the result.
+///
+/// # Errors
+/// As [`check_file`]; also when the flags do not fit together.
+pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
+    check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, args.style.as_deref(), output)
 }
 
 /// What was found in a file.

@@ -1,0 +1,94 @@
+//! Runs `wayword check` over texts that are given one by one, in this process.
+
+use clap::Args;
+use serde_json::{Map, Value};
+use wayword::{
+    cli,
+    commands::{CheckReport, checked},
+    error::Error,
+    output::Output,
+};
+use wayword_core::Finding;
+use wayword_formats::{Episode, r2r, reverie};
+
+/// The flags of a measurement that runs `wayword check`: all that `check` has, so that a new one needs no change here.
+#[derive(Debug, Args)]
+pub(crate) struct Flags {
+    #[command(flatten)]
+    pub(crate) check: cli::Check,
+    /// Seed of the intervals.
+    #[arg(long, default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Print the figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What `check` found.
+pub(crate) struct Judged {
+    /// For each text, in the order given, what did not pass.
+    pub(crate) findings: Vec<Vec<Finding>>,
+    /// The rest of the report of `check`.
+    pub(crate) report: Map<String, Value>,
+}
+
+/// Checks texts. Each comes with the episode that it is about; the episode's own instructions are not used.
+///
+/// # Errors
+/// As `wayword check`.
+pub(crate) fn judged(texts: &[(&Episode, &str)], mut check: cli::Check, output: &Output) -> Result<Judged, Error> {
+    let io = |source| Error::Io { path: std::env::temp_dir(), doing: "write a file of texts in", source };
+    let folder = tempfile::tempdir().map_err(io)?;
+    check.file = folder.path().join("texts.json");
+    let items: Vec<Episode> = texts.iter().enumerate().map(|(at, (of, text))| item(at, of, text)).collect();
+    if items.iter().any(|item| item.target_object.is_some()) {
+        reverie::write(&check.file, &items)?;
+    } else {
+        r2r::write(&check.file, &items)?;
+    }
+    sorted(&checked(&check, output)?, texts.len())
+}
+
+/// An item of its own for a text: `check` tells items by their names.
+pub(crate) fn item(number: usize, of: &Episode, text: &str) -> Episode {
+    let mut item = Episode::new(number.to_string(), number.to_string(), of.scene.clone());
+    item.viewpoints.clone_from(&of.viewpoints);
+    item.start_heading = of.start_heading;
+    item.target_object.clone_from(&of.target_object);
+    item.instructions = vec![text.to_owned()];
+    item
+}
+
+fn sorted(report: &CheckReport, texts: usize) -> Result<Judged, Error> {
+    let mut findings = vec![Vec::new(); texts];
+    for text in &report.not_passed {
+        // REVERIE's names end in the object.
+        let number = text.path.split('_').next().and_then(|number| number.parse::<usize>().ok());
+        let known = number.and_then(|number| findings.get_mut(number));
+        let unknown =
+            || Error::usage(format!("check named an item {} that there is not", text.path), "report this as a bug");
+        known.ok_or_else(unknown)?.extend(text.findings.iter().cloned());
+    }
+    let mut rest = match serde_json::to_value(report) {
+        Ok(Value::Object(rest)) => rest,
+        _ => Map::new(),
+    };
+    rest.shift_remove("not_passed");
+    Ok(Judged { findings, report: rest })
+}
+
+/// What `check` says about its run in words (the evidence, and whatever else it names), a line each.
+pub(crate) fn said_of(report: &Map<String, Value>) -> Vec<String> {
+    let words = |value: &Value| match value {
+        Value::String(word) => Some(word.clone()),
+        Value::Array(list) => list.iter().map(Value::as_str).collect::<Option<Vec<_>>>().map(|list| list.join(", ")),
+        _ => None,
+    };
+    let lines = report.iter().filter_map(|(key, value)| Some(format!("{}: {}", key.replace('_', " "), words(value)?)));
+    lines.collect()
+}
+
+/// Whether a finding is about words of this byte range.
+pub(crate) fn is_about(finding: &Finding, [from, to]: [usize; 2]) -> bool {
+    finding.span.is_some_and(|[start, end]| start < to && from < end)
+}
