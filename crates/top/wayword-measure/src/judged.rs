@@ -2,6 +2,7 @@
 
 use clap::Args;
 use serde_json::{Map, Value};
+use std::path::Path;
 use wayword::{
     cli,
     commands::{CheckReport, checked},
@@ -9,11 +10,11 @@ use wayword::{
     output::Output,
 };
 use wayword_core::Finding;
-use wayword_formats::{Episode, r2r, reverie};
+use wayword_formats::{Episode, FormatError, r2r, reverie};
 
 /// The flags of a measurement that runs `wayword check`: all that `check` has, so that a new one needs no change here.
 #[derive(Debug, Args)]
-pub(crate) struct Flags {
+pub(crate) struct Judging {
     #[command(flatten)]
     pub(crate) check: cli::Check,
     /// Seed of the intervals.
@@ -41,12 +42,14 @@ pub(crate) fn judged(texts: &[(&Episode, &str)], mut check: cli::Check, output: 
     let folder = tempfile::tempdir().map_err(io)?;
     check.file = folder.path().join("texts.json");
     let items: Vec<Episode> = texts.iter().enumerate().map(|(at, (of, text))| item(at, of, text)).collect();
-    if items.iter().any(|item| item.target_object.is_some()) {
-        reverie::write(&check.file, &items)?;
-    } else {
-        r2r::write(&check.file, &items)?;
-    }
+    write_items(&check.file, &items)?;
     sorted(&checked(&check, output)?, texts.len())
+}
+
+/// Writes items in the format of REVERIE where they have objects, and else of R2R.
+pub(crate) fn write_items(file: &Path, items: &[Episode]) -> Result<(), FormatError> {
+    let has_objects = items.iter().any(|item| item.target_object.is_some());
+    if has_objects { reverie::write(file, items) } else { r2r::write(file, items) }
 }
 
 /// An item of its own for a text: `check` tells items by their names.

@@ -3,9 +3,12 @@
 mod budget;
 mod calls;
 mod corrupt;
+mod corrupt_people;
 mod corruptions;
 mod eye;
+mod found;
 mod judged;
+mod key;
 #[cfg(test)]
 mod made_up;
 mod people;
@@ -146,14 +149,26 @@ enum What {
     #[command(mut_arg("file", |file| file.help("File of labelled texts, in HEAR's format")))]
     #[command(mut_arg("show", |show| show.help("Show at most this many findings about words that people called right")))]
     #[command(after_long_help = "")]
-    People(judged::Flags),
+    People(judged::Judging),
+    /// Make people's own texts wrong, without the words of the program's reader: a file of texts and its key.
+    CorruptPeople(corrupt_people::Flags),
+    /// Hold the findings of `wayword check` against the key of such a file: corruptions found, and false alarms.
+    #[command(mut_arg("file", |file| file.help("File of corrupted texts")))]
+    #[command(mut_arg("show", |show| show.help("Show at most this many corruptions that were not found")))]
+    #[command(after_long_help = "")]
+    Found(found::Flags),
     /// Try out the settings of agents on a train split.
     Sweep(sweep::Flags),
 }
 
 fn main() -> ExitCode {
     let what = Cli::parse().what;
-    let output = Output::new(matches!(&what, What::People(flags) if flags.json), false);
+    let is_json = match &what {
+        What::People(flags) => flags.json,
+        What::Found(flags) => flags.judging.json,
+        _ => false,
+    };
+    let output = Output::new(is_json, false);
     match run(what, &output) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -177,6 +192,8 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::People(flags) => people::measure(flags, output),
+        What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
+        What::Found(flags) => found::measure(flags, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }

@@ -4,7 +4,7 @@ mod figures;
 mod kinds;
 
 use crate::{
-    judged::{Flags, Judged, is_about, judged, said_of},
+    judged::{Judged, Judging, is_about, judged, said_of},
     share::{cell, table},
 };
 use figures::{Figures, Held, Row, figures, is_fail};
@@ -15,7 +15,7 @@ use wayword_core::{Platform, PlatformError};
 use wayword_formats::hear::{self, LabelledText};
 use wayword_world::path_of;
 
-pub(super) fn measure(flags: Flags, output: &Output) -> Result<(), Error> {
+pub(super) fn measure(flags: Judging, output: &Output) -> Result<(), Error> {
     let (show, seed, is_json) = (flags.check.show, flags.seed, flags.json);
     let (texts, Judged { findings, report }) = found(flags, output)?;
     let held: Vec<Held<'_>> = texts.iter().zip(&findings).map(|(text, findings)| Held { text, findings }).collect();
@@ -29,7 +29,7 @@ pub(super) fn measure(flags: Flags, output: &Output) -> Result<(), Error> {
 }
 
 /// The texts of a file with what `check` found in each.
-fn found(flags: Flags, output: &Output) -> Result<(Vec<LabelledText>, Judged), Error> {
+fn found(flags: Judging, output: &Output) -> Result<(Vec<LabelledText>, Judged), Error> {
     let texts = hear::read(&flags.check.file)?;
     let platform = platforms::open(&Asked::from(flags.check.platform.clone()).resolve()?)?;
     fit(&texts, &flags.check.file, platform.as_ref())?;

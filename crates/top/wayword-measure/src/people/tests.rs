@@ -18,10 +18,10 @@ fn labelled(path: &[usize], text: &str, labels: &Value) -> Value {
 #[derive(Parser)]
 struct Line {
     #[command(flatten)]
-    flags: Flags,
+    flags: Judging,
 }
 
-fn flags(file: &Path, data: &Path) -> Flags {
+fn flags(file: &Path, data: &Path) -> Judging {
     let words =
         ["people".into(), file.to_owned(), "--platform".into(), "matterport".into(), "--data".into(), data.to_owned()];
     Line::try_parse_from(words).unwrap().flags
