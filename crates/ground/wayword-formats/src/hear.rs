@@ -5,9 +5,10 @@
 //! `id2label`, from token numbers to a label. A key is one number, or numbers that ascend: "5-8" means tokens 5 to 8.
 //! Labels are 1 (right), 0 and -1 (wrong). Other fields are not read.
 
-use crate::{Episode, FormatError, Item, ItemPlace, input};
-use serde_json::Value;
-use std::path::Path;
+use crate::{Episode, FormatError, Item, ItemPlace, input, strict::Strict};
+use serde::de::DeserializeSeed;
+use serde_json::{Map, Value};
+use std::{cell::RefCell, path::Path};
 
 /// A text with what people said of its parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,12 +41,29 @@ pub struct LabelledSpan {
 /// wrong, the tokens are not those of the text, a key names no tokens, or a label is none of 1, 0 and -1. The error names
 /// the text and the key.
 pub fn read(file: &Path) -> Result<Vec<LabelledText>, FormatError> {
-    let texts = input::object(file)?;
+    let texts = object(file)?;
     if texts.is_empty() {
         return Err(FormatError::document(file, "it holds no text", "give a file of HEAR's annotations"));
     }
     let labelled = |(index, (name, value))| labelled(Item::new(file, ItemPlace::Item(index), value)?, name);
     texts.into_iter().enumerate().map(labelled).collect()
+}
+
+/// A file that is one JSON object, read as a whole. It keeps to the limits on one item.
+fn object(file: &Path) -> Result<Map<String, Value>, FormatError> {
+    let field = RefCell::default();
+    let mut parser = input::parser(file)?;
+    let value = Strict(&field).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
+    let value = value.map_err(|error| {
+        let within = Some(field.take()).filter(|field| !field.is_empty());
+        let within = within.map_or_else(String::new, |field| format!("field \"{field}\": "));
+        let problem = format!("{within}{} (line {}, column {})", input::bare(&error), error.line(), error.column());
+        FormatError::document(file, problem, input::NOT_JSON)
+    })?;
+    match value {
+        Value::Object(map) => Ok(map),
+        _ => Err(FormatError::document(file, "it is not a JSON object", input::NOT_JSON)),
+    }
 }
 
 fn labelled(mut item: Item<'_>, name: String) -> Result<LabelledText, FormatError> {

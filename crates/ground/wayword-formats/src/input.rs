@@ -13,7 +13,7 @@ use std::{
 };
 
 const TOO_LARGE: &str = "it is larger than 1 GiB";
-const NOT_JSON: &str = "fetch the file again, or correct it at that place";
+pub(crate) const NOT_JSON: &str = "fetch the file again, or correct it at that place";
 const SPLIT: &str = "split it into parts";
 
 /// Most bytes of a file that are read at a time.
@@ -75,23 +75,6 @@ impl<R: Read> Read for Bounded<R> {
         let count = self.inner.read(buffer)?;
         self.left = self.left.checked_sub(count as u64).ok_or_else(|| io::Error::other(TOO_LARGE))?;
         Ok(count)
-    }
-}
-
-/// Reads a file that is one JSON object as a whole. It keeps to the limits on one item.
-pub(crate) fn object(file: &Path) -> Result<Map<String, Value>, FormatError> {
-    let field = RefCell::default();
-    let mut parser = parser(file)?;
-    let value = Strict(&field).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
-    let value = value.map_err(|error| {
-        let within = Some(field.take()).filter(|field| !field.is_empty());
-        let within = within.map_or_else(String::new, |field| format!("field \"{field}\": "));
-        let problem = format!("{within}{} (line {}, column {})", bare(&error), error.line(), error.column());
-        FormatError::document(file, problem, NOT_JSON)
-    })?;
-    match value {
-        Value::Object(map) => Ok(map),
-        _ => Err(FormatError::document(file, "it is not a JSON object", NOT_JSON)),
     }
 }
 
@@ -170,7 +153,7 @@ fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<Item<'a>,
 }
 
 /// `serde_json`'s message without the line and column at its end.
-fn bare(error: &serde_json::Error) -> String {
+pub(crate) fn bare(error: &serde_json::Error) -> String {
     let text = error.to_string();
     text.rfind(" at line ").map_or(text.clone(), |end| text[..end].to_owned())
 }

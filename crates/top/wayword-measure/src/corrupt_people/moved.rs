@@ -28,7 +28,8 @@ pub(super) fn twice(told: &Told<'_>, rng: &mut impl Rng) -> Option<Vec<Edit>> {
     Some(vec![Edit { span, now: format!("{sentence}{stop} {sentence}") }])
 }
 
-/// Two names in different clauses that change places. Both are known on the path, and at no viewpoint together.
+/// Two rooms or two objects in different clauses that change places. Both are known on the path, and at no viewpoint
+/// together.
 pub(super) fn swapped(told: &Told<'_>, rng: &mut impl Rng) -> Option<Vec<Edit>> {
     let clauses = clauses(told.text);
     let clause = |named: &Named| clauses.iter().position(|clause| named.span[0] < clause[1]);
@@ -39,7 +40,8 @@ pub(super) fn swapped(told: &Told<'_>, rng: &mut impl Rng) -> Option<Vec<Edit>> 
         for (b, at_b) in &known[first + 1..] {
             let is_known = !at_a.is_empty() && !at_b.is_empty();
             let is_apart = !at_a.iter().any(|at| at_b.contains(at));
-            if is_known && is_apart && clause(a) != clause(b) && a.name != b.name {
+            let is_alike = a.is_room == b.is_room && a.name != b.name;
+            if is_known && is_apart && is_alike && clause(a) != clause(b) {
                 pairs.push((*a, *b));
             }
         }
