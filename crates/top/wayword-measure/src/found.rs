@@ -54,6 +54,8 @@ struct Row {
     found: Option<Share>,
     /// Of the same texts before, those with a "fail" at the words that were changed.
     before: Option<Share>,
+    /// The share found of only those that had no "fail" there before.
+    found_anew: Option<Share>,
     /// Of the corrupted texts, those that fail anywhere.
     fails: Option<Share>,
     /// Of the same texts before, those that fail anywhere.
@@ -126,6 +128,10 @@ impl Outcome<'_> {
     fn is_found(&self) -> bool {
         fails_at(self.now, &self.pair.near_now)
     }
+
+    fn is_found_before(&self) -> bool {
+        fails_at(self.was, &self.pair.near_was)
+    }
 }
 
 fn fails(findings: &[Finding]) -> bool {
@@ -138,7 +144,7 @@ fn fails_at(findings: &[Finding], places: &[[usize; 2]]) -> bool {
 }
 
 /// A row for each kind, in the order of the key, and one for all.
-fn rows(outcomes: &[Outcome<'_>], seed: u64) -> Vec<Row> {
+fn rows<'k>(outcomes: &[Outcome<'k>], seed: u64) -> Vec<Row> {
     let mut kinds: Vec<&str> = Vec::new();
     for outcome in outcomes {
         let kind = outcome.pair.corruption.kind.as_str();
@@ -148,13 +154,15 @@ fn rows(outcomes: &[Outcome<'_>], seed: u64) -> Vec<Row> {
     }
     let row = |name: &str, kind: Option<&str>| {
         let of_kind = || outcomes.iter().filter(|outcome| kind.is_none_or(|kind| kind == outcome.pair.corruption.kind));
-        let share = |counts: fn(&Outcome<'_>) -> bool| {
-            Share::of(of_kind().map(|outcome| (&outcome.pair.corruption.path, counts(outcome))), seed)
-        };
+        let case = |outcome: &Outcome<'k>, counts| (&outcome.pair.corruption.path, counts);
+        let share =
+            |counts: fn(&Outcome<'_>) -> bool| Share::of(of_kind().map(|outcome| case(outcome, counts(outcome))), seed);
+        let quiet_before = of_kind().filter(|outcome| !outcome.is_found_before());
         Row {
             kind: name.to_owned(),
             found: share(|outcome| outcome.is_found()),
-            before: share(|outcome| fails_at(outcome.was, &outcome.pair.near_was)),
+            before: share(|outcome| outcome.is_found_before()),
+            found_anew: Share::of(quiet_before.map(|outcome| case(outcome, outcome.is_found())), seed),
             fails: share(|outcome| fails(outcome.now)),
             fails_before: share(|outcome| fails(outcome.was)),
         }
@@ -171,10 +179,11 @@ fn missed(outcome: &Outcome<'_>) -> String {
 }
 
 fn shown(rows: &[Row]) -> String {
-    let head =
-        ["", "found there", "fail there before", "fail at all", "fail at all before"].map(str::to_owned).to_vec();
+    let head = ["", "found there", "fail there before", "found anew", "fail at all", "fail at all before"];
+    let head = head.map(str::to_owned).to_vec();
     let cells = |row: &Row| {
-        let shares = [&row.found, &row.before, &row.fails, &row.fails_before].map(|share| cell(share.as_ref()));
+        let shares = [&row.found, &row.before, &row.found_anew, &row.fails, &row.fails_before];
+        let shares = shares.map(|share| cell(share.as_ref()));
         [row.kind.clone()].into_iter().chain(shares).collect()
     };
     let rows: Vec<Vec<String>> = [head].into_iter().chain(rows.iter().map(cells)).collect();

@@ -110,13 +110,14 @@ fn only_a_fail_at_the_change_or_in_the_clause_beside_it_has_found_it() {
         let far = [finding(Verdict::Fail, at("wait"))];
         let near = [finding(Verdict::Fail, at("Go down"))];
         let outcomes =
-            [Outcome { pair: &pairs[0], now: &near, was: &far }, Outcome { pair: &pairs[1], now: &far, was: &[] }];
+            [Outcome { pair: &pairs[0], now: &near, was: &far }, Outcome { pair: &pairs[1], now: &far, was: &near }];
         let rows = rows(&outcomes, 0);
         let counts = |row: &Row| {
-            let shares = [&row.found, &row.before, &row.fails, &row.fails_before];
+            let shares = [&row.found, &row.before, &row.found_anew, &row.fails, &row.fails_before];
             shares.map(|share| share.as_ref().map(|share| share.count))
         };
-        assert_eq!(counts(&rows[0]), [Some(1), Some(0), Some(2), Some(1)]);
+        assert_eq!(counts(&rows[0]), [Some(1), Some(1), Some(1), Some(2), Some(2)]);
+        assert_eq!(rows[0].found_anew.map(|share| share.of), Some(1), "one of two failed there before");
         assert_eq!((rows[0].kind.as_str(), rows[1].kind.as_str()), ("climb-flipped", "all"));
         assert!(shown(&rows).contains("50.0 % [50.0, 50.0] (1/2)"), "{}", shown(&rows));
         assert_eq!(missed(&outcomes[1]), format!("0 climb-flipped: \"down\" was \"up\"\n    {NOW}"));
