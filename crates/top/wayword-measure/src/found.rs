@@ -56,6 +56,8 @@ struct Row {
     before: Option<Share>,
     /// The share found of only those that had no "fail" there before.
     found_anew: Option<Share>,
+    /// Of the corrupted texts, those with a "fail" or an "unverified" about the changed words themselves.
+    doubted: Option<Share>,
     /// Of the corrupted texts, those that fail anywhere.
     fails: Option<Share>,
     /// Of the same texts before, those that fail anywhere.
@@ -129,6 +131,12 @@ impl Outcome<'_> {
         fails_at(self.now, &self.pair.near_now)
     }
 
+    /// Whether the changed words did not pass.
+    fn is_doubted(&self) -> bool {
+        let changes = &self.pair.corruption.changes;
+        self.now.iter().any(|finding| changes.iter().any(|change| is_about(finding, change.span)))
+    }
+
     fn is_found_before(&self) -> bool {
         fails_at(self.was, &self.pair.near_was)
     }
@@ -163,6 +171,7 @@ fn rows<'k>(outcomes: &[Outcome<'k>], seed: u64) -> Vec<Row> {
             found: share(|outcome| outcome.is_found()),
             before: share(|outcome| outcome.is_found_before()),
             found_anew: Share::of(quiet_before.map(|outcome| case(outcome, outcome.is_found())), seed),
+            doubted: share(|outcome| outcome.is_doubted()),
             fails: share(|outcome| fails(outcome.now)),
             fails_before: share(|outcome| fails(outcome.was)),
         }
@@ -179,10 +188,10 @@ fn missed(outcome: &Outcome<'_>) -> String {
 }
 
 fn shown(rows: &[Row]) -> String {
-    let head = ["", "found there", "fail there before", "found anew", "fail at all", "fail at all before"];
+    let head = ["", "found there", "fail there before", "found anew", "doubted", "fail at all", "fail at all before"];
     let head = head.map(str::to_owned).to_vec();
     let cells = |row: &Row| {
-        let shares = [&row.found, &row.before, &row.found_anew, &row.fails, &row.fails_before];
+        let shares = [&row.found, &row.before, &row.found_anew, &row.doubted, &row.fails, &row.fails_before];
         let shares = shares.map(|share| cell(share.as_ref()));
         [row.kind.clone()].into_iter().chain(shares).collect()
     };

@@ -106,9 +106,15 @@ fn only_a_fail_at_the_change_or_in_the_clause_beside_it_has_found_it() {
             assert!(found(Verdict::Fail, at(words)), "{words}");
             assert!(!found(Verdict::Unverified, at(words)), "{words}");
         }
+        for (verdict, words, is_doubted) in
+            [(Verdict::Fail, "down", true), (Verdict::Unverified, "Go down", true), (Verdict::Fail, "stairs", false)]
+        {
+            let now = [finding(verdict, at(words))];
+            assert_eq!(Outcome { pair: &pairs[0], now: &now, was: &[] }.is_doubted(), is_doubted, "{words}");
+        }
         assert!(!found(Verdict::Fail, at("stop")) && !found(Verdict::Fail, None));
         let far = [finding(Verdict::Fail, at("wait"))];
-        let near = [finding(Verdict::Fail, at("Go down"))];
+        let near = [finding(Verdict::Fail, at("stairs"))];
         let outcomes =
             [Outcome { pair: &pairs[0], now: &near, was: &far }, Outcome { pair: &pairs[1], now: &far, was: &near }];
         let rows = rows(&outcomes, 0);
@@ -117,6 +123,7 @@ fn only_a_fail_at_the_change_or_in_the_clause_beside_it_has_found_it() {
             shares.map(|share| share.as_ref().map(|share| share.count))
         };
         assert_eq!(counts(&rows[0]), [Some(1), Some(1), Some(1), Some(2), Some(2)]);
+        assert_eq!(rows[0].doubted.map(|share| (share.count, share.of)), Some((0, 2)), "no finding is on \"down\"");
         assert_eq!(rows[0].found_anew.map(|share| share.of), Some(1), "one of two failed there before");
         assert_eq!((rows[0].kind.as_str(), rows[1].kind.as_str()), ("climb-flipped", "all"));
         assert!(shown(&rows).contains("50.0 % [50.0, 50.0] (1/2)"), "{}", shown(&rows));
