@@ -106,7 +106,8 @@ pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
 
 /// Cuts the tokens at clauses, before a condition, and before a second turn.
 fn pieces(tokens: &[Token], clauses: &[usize], events: &[(usize, &Event)]) -> Vec<Range<usize>> {
-    let mut turns = events.iter().filter(|(_, event)| matches!(event.what, What::Turn(_))).map(|(at, _)| *at).peekable();
+    let mut turns =
+        events.iter().filter(|(_, event)| matches!(event.what, What::Turn(_))).map(|(at, _)| *at).peekable();
     let mut cuts = vec![0];
     let (mut has_word, mut has_turn) = (false, false);
     for (at, token) in tokens.iter().enumerate() {
@@ -247,7 +248,14 @@ mod tests {
         let words: Vec<&str> = steps.iter().map(|(words, _)| words.as_str()).collect();
         assert_eq!(
             words,
-            ["Leave the attic", "and turn left", "Take a right and a", "left", "then walk on", "until you reach the globe"]
+            [
+                "Leave the attic",
+                "and turn left",
+                "Take a right and a",
+                "left",
+                "then walk on",
+                "until you reach the globe"
+            ]
         );
         let turns: Vec<Option<Side>> = steps.iter().map(|(_, step)| step.turn).collect();
         assert_eq!(turns, [None, Some(Side::Left), Some(Side::Right), Some(Side::Left), None, None]);

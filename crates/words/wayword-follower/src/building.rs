@@ -1,0 +1,152 @@
+//! A building as a follower knows it: the whole of it by a survey, or what was seen of it on the way.
+
+use crate::near::{Near, Nearness};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{DVec3, Survey};
+use wayword_language::lexicon::normal;
+
+/// What is known of a building. Positions are metres, z up; their frame may be any, as long as it is one.
+#[derive(Debug, Default)]
+pub struct Building {
+    pub(crate) viewpoints: Vec<Viewpoint>,
+    pub(crate) things: Vec<Thing>,
+    near: Mutex<BTreeMap<Nearness, Arc<Near>>>,
+}
+
+/// A viewpoint.
+#[derive(Debug, Clone)]
+pub(crate) struct Viewpoint {
+    pub(crate) position: DVec3,
+    pub(crate) neighbours: Vec<usize>,
+    pub(crate) room: Option<String>,
+    /// Whether its room, its things and all its neighbours are known.
+    pub(crate) is_known: bool,
+    /// Whether a way up begins here, and a way down.
+    pub(crate) climbs: [bool; 2],
+}
+
+/// An object.
+#[derive(Debug, Clone)]
+pub(crate) struct Thing {
+    pub(crate) name: String,
+    pub(crate) position: DVec3,
+    /// The viewpoints from which it is seen.
+    pub(crate) seen_from: Vec<usize>,
+}
+
+/// The least slope of a hop that is stairs.
+const STAIRS_SLOPE: f64 = 0.25;
+
+impl Building {
+    /// The building of a survey. A viewpoint's number is its place in the survey.
+    #[must_use]
+    pub fn of(survey: &Survey) -> Self {
+        let mut building = Self::default();
+        for viewpoint in survey.viewpoints() {
+            let (room, neighbours) = (viewpoint.known.room.clone(), viewpoint.neighbours.clone());
+            building.viewpoints.push(Viewpoint {
+                position: viewpoint.position,
+                neighbours,
+                room,
+                is_known: true,
+                climbs: [false; 2],
+            });
+        }
+        let mut things: BTreeMap<&str, Thing> = BTreeMap::new();
+        for (at, viewpoint) in survey.viewpoints().iter().enumerate() {
+            for label in viewpoint.known.things.iter().flatten() {
+                let thing = things.entry(label.object.as_str()).or_insert_with(|| Thing {
+                    name: normal(&label.name),
+                    position: label.position.unwrap_or(viewpoint.position),
+                    seen_from: Vec::new(),
+                });
+                if thing.seen_from.last() != Some(&at) {
+                    thing.seen_from.push(at);
+                }
+            }
+        }
+        building.things = things.into_values().collect();
+        building.find_stairs();
+        building
+    }
+
+    /// Notes at which viewpoints a way up or down begins.
+    pub(crate) fn find_stairs(&mut self) {
+        for at in 0..self.viewpoints.len() {
+            let here = &self.viewpoints[at];
+            let slope = |to: &usize| {
+                let off = self.viewpoints[*to].position - here.position;
+                off.z / libm::hypot(off.x, off.y).max(0.3)
+            };
+            let climbs = [
+                here.neighbours.iter().any(|to| slope(to) > STAIRS_SLOPE),
+                here.neighbours.iter().any(|to| slope(to) < -STAIRS_SLOPE),
+            ];
+            self.viewpoints[at].climbs = climbs;
+        }
+    }
+
+    /// Forgets what was found of names, because something new is known.
+    pub(crate) fn changed(&mut self) {
+        self.near.get_mut().unwrap_or_else(PoisonError::into_inner).clear();
+        self.find_stairs();
+    }
+
+    /// Number of viewpoints.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.viewpoints.len()
+    }
+
+    /// Whether there is no viewpoint.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.viewpoints.is_empty()
+    }
+
+    /// How near each viewpoint is to what a name means. It is found once for each name.
+    pub(crate) fn near(&self, what: &Nearness) -> Arc<Near> {
+        let mut near = self.near.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = near.get(what) {
+            return Arc::clone(known);
+        }
+        let found = Arc::new(Near::find(self, what));
+        near.insert(what.clone(), Arc::clone(&found));
+        found
+    }
+
+    /// The distance between two viewpoints, metres.
+    #[must_use]
+    pub fn distance(&self, a: usize, b: usize) -> f64 {
+        self.hop(a, b).1
+    }
+
+    /// How many viewpoints lie in rooms of the name that a viewpoint's room has: 0 few, 2 many.
+    pub(crate) fn commonness_of_room(&self, viewpoint: usize) -> usize {
+        let room = &self.viewpoints[viewpoint].room;
+        let alike = self.viewpoints.iter().filter(|other| other.room == *room).count();
+        let share = alike as f64 / self.len().max(1) as f64;
+        usize::from(share >= 0.05) + usize::from(share >= 0.15)
+    }
+
+    /// The direction of a hop, radians from +y clockwise, and its length over ground and in space, metres.
+    pub(crate) fn hop(&self, from: usize, to: usize) -> (Option<f64>, f64) {
+        let off = self.viewpoints[to].position - self.viewpoints[from].position;
+        (bearing(off), off.length())
+    }
+}
+
+/// The direction of an offset, radians from +y clockwise; `None` straight up or down.
+pub(crate) fn bearing(off: DVec3) -> Option<f64> {
+    (libm::hypot(off.x, off.y) > 1e-6).then(|| libm::atan2(off.x, off.y))
+}
+
+/// An angle in (-π, π].
+pub(crate) fn wrapped(rad: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    let rad = rad.rem_euclid(TAU);
+    if rad > PI { rad - TAU } else { rad }
+}

@@ -1,0 +1,99 @@
+//! What one change of an instruction gains: how much better it would fit the walk that it was written for.
+//!
+//! A text that says "left" where the walk turns right fits better with that one word changed. Only the known walk is
+//! looked at, so no graph is needed.
+
+use crate::{
+    building::Building,
+    fit::Fit,
+    guide::{Guide, Trial},
+    tree::Tree,
+    weights::Weights,
+};
+use wayword_core::{Climb, Side};
+
+/// A change of one step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A turn to the other side.
+    Turn,
+    /// A turn left out.
+    NoTurn,
+    /// A place on the other side.
+    Side,
+    /// A climb the other way.
+    Climb,
+    /// A step left out.
+    NoStep,
+}
+
+/// A change, and what it gains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// What is changed.
+    pub kind: Kind,
+    /// The step, by its number.
+    pub step: usize,
+    /// The step's byte range in the text.
+    pub span: [usize; 2],
+    /// How much better the changed text fits the walk, in natural logs; negative where it fits worse.
+    pub gain: f64,
+}
+
+/// What each single change gains for a walk, the most gainful first.
+///
+/// `walk` has the viewpoints of the walk, and `heading_rad` says which way it begins (radians from +y, clockwise).
+#[must_use]
+pub fn changes(guide: &Guide, building: &Building, walk: &[usize], heading_rad: f64, weights: &Weights) -> Vec<Change> {
+    let tree = Tree::single(building, walk, heading_rad);
+    let fits = |guide: &Guide| Fit::new(&Trial::new(guide, building), &tree, weights).score(tree.len() - 1);
+    let as_told = fits(guide);
+    let mut changes: Vec<Change> = variants(guide)
+        .into_iter()
+        .map(|(kind, step, changed)| {
+            let gain = fits(&changed) - as_told;
+            Change { kind, step, span: guide.steps[step].step.span, gain: if gain.is_nan() { 0.0 } else { gain } }
+        })
+        .collect();
+    changes.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.step.cmp(&b.step)));
+    changes
+}
+
+/// The texts that differ from one by a single change.
+fn variants(guide: &Guide) -> Vec<(Kind, usize, Guide)> {
+    let mut variants = Vec::new();
+    for (step, told) in guide.steps.iter().enumerate() {
+        let mut add = |kind, change: &dyn Fn(&mut Guide)| {
+            let mut changed = guide.clone();
+            change(&mut changed);
+            variants.push((kind, step, changed));
+        };
+        if let Some(side @ (Side::Left | Side::Right)) = told.step.turn {
+            add(Kind::Turn, &|guide| guide.steps[step].step.turn = Some(other(side)));
+        }
+        if told.step.turn.is_some() {
+            add(Kind::NoTurn, &|guide| guide.steps[step].leave_out_turn());
+        }
+        if told.step.turn.is_none() && (told.step.side.is_some() || told.mentions.iter().any(|at| at.side.is_some())) {
+            add(Kind::Side, &|guide| guide.steps[step].change_sides(other));
+        }
+        if let Some(climb @ (Climb::Up | Climb::Down)) = told.step.climb {
+            let opposite = if climb == Climb::Up { Climb::Down } else { Climb::Up };
+            add(Kind::Climb, &|guide| guide.steps[step].step.climb = Some(opposite));
+        }
+        if guide.len() > 1 {
+            add(Kind::NoStep, &|guide| {
+                guide.steps.remove(step);
+            });
+        }
+    }
+    variants
+}
+
+fn other(side: Side) -> Side {
+    match side {
+        Side::Left => Side::Right,
+        Side::Right => Side::Left,
+        side => side,
+    }
+}

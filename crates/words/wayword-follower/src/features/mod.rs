@@ -1,0 +1,30 @@
+//! What speaks for a step over a stretch of a walk, or for the end of a walk: a list of features that hold. Each has a
+//! weight.
+//!
+//! Left and right are mirrored: a right turn counts like a left turn in the mirror, so both share their weights.
+
+mod ending;
+mod places;
+mod stretch;
+pub(crate) mod tables;
+
+pub(crate) use ending::ending;
+pub(crate) use stretch::{Stretch, stretch};
+
+/// The number of a feature, by which its weight is found.
+pub(crate) type Feature = u32;
+
+/// Which of twelve classes of 30 degrees an angle (radians) falls into, half of them negative.
+fn twelfth(rad: f64) -> usize {
+    angle(rad) / 2
+}
+
+/// Which of 24 classes of 15 degrees an angle (radians) falls into, half of them negative.
+fn angle(rad: f64) -> usize {
+    ((rad.to_degrees() + 180.0) / 15.0).floor().rem_euclid(24.0) as usize
+}
+
+/// Which class a value falls into: the number of limits that it reaches.
+fn class(value: f64, limits: &[f64]) -> usize {
+    limits.iter().filter(|limit| value >= **limit).count()
+}

@@ -1,0 +1,137 @@
+//! The tables of features: each holds a run of numbers.
+
+use crate::{guide::Kind, near::CLASSES};
+use wayword_language::reading::steps::Relation;
+
+/// A table of features.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Table {
+    /// Its name in the file of weights.
+    pub(crate) name: &'static str,
+    /// The number of its first feature.
+    pub(crate) from: usize,
+    /// Number of its features.
+    pub(crate) size: usize,
+    /// Whether it tells fine things apart, for which there are few examples: a fit holds its weights closer to 0.
+    pub(crate) is_fine: bool,
+}
+
+impl Table {
+    /// A feature of the table, by its places in each dimension and the sizes of the dimensions.
+    pub(crate) fn at<const N: usize>(&self, places: [(usize, usize); N]) -> u32 {
+        let place = places.iter().fold(0, |place, (at, size)| {
+            debug_assert!(at < size, "{} in {}", at, self.name);
+            place * size + at
+        });
+        debug_assert!(place < self.size, "{place} in {}", self.name);
+        (self.from + place) as u32
+    }
+}
+
+macro_rules! tables {
+    ($($name:ident $kind:ident $size:expr;)*) => {
+        tables!(@ 0; $($name $kind $size;)*);
+        /// All tables, in the order of their numbers.
+        pub(crate) const ALL: &[Table] = &[$($name),*];
+    };
+    (@ $from:expr; $name:ident $kind:ident $size:expr; $($rest:tt)*) => {
+        pub(crate) const $name: Table =
+            Table { name: stringify!($name), from: $from, size: $size, is_fine: tables!(= $kind) };
+        tables!(@ $from + $size; $($rest)*);
+    };
+    (@ $from:expr;) => {
+        /// Number of features.
+        pub(crate) const COUNT: usize = $from;
+    };
+    (= fine) => { true };
+    (= coarse) => { false };
+}
+
+const KINDS: usize = Kind::COUNT;
+/// Number of relations.
+pub(crate) const RELATIONS: usize = Relation::ALL.len();
+/// Number of groups of relations.
+pub(crate) const GROUPS: usize = 6;
+/// Classes of hops: 0 to 6, and more.
+pub(crate) const HOPS_CLASSES: usize = 8;
+/// Classes of angles.
+pub(crate) const ANGLES: usize = 24;
+/// Number of marking words; a test holds it against the list.
+pub(crate) const MARKS: usize = 90;
+
+tables! {
+    // The stretch itself: how long, how it bends, how it climbs.
+    HOPS coarse KINDS * 2 * HOPS_CLASSES;
+    STOPS coarse 2 * 2 * HOPS_CLASSES;
+    CONDITION coarse 2 * HOPS_CLASSES;
+    FIRST_TURN coarse KINDS * ANGLES;
+    WHOLE_TURN coarse KINDS * ANGLES;
+    WIDEST_TURN coarse KINDS * ANGLES;
+    OPENING_TURN coarse KINDS * ANGLES;
+    TURN_AFTER_OPENING coarse KINDS * ANGLES;
+    LATER_TURNS coarse KINDS * 3;
+    RISE coarse 2 * 11;
+    LENGTH coarse KINDS * 8;
+    ONWARD coarse KINDS * 2 * 2;
+    // Doors, stairs, rooms that it passes.
+    CROSSINGS coarse 4 * 4;
+    SAME_ROOM coarse KINDS * 2;
+    BORDER coarse 4 * 2 * 3;
+    STAIRS_AT coarse 3 * 2 * 2 * 4;
+    SIDE_OF_TURN coarse 4 * 12;
+    // What it names.
+    THING fine RELATIONS * 3 * 3 * CLASSES;
+    THING_AT_END fine RELATIONS * CLASSES;
+    ROOM fine RELATIONS * 3 * CLASSES;
+    ROOM_AT_END fine RELATIONS * CLASSES;
+    ROOM_MOVE fine RELATIONS * 4;
+    GROUP_THING coarse GROUPS * 3 * CLASSES;
+    GROUP_ROOM coarse GROUPS * 3 * CLASSES;
+    TURN_AT coarse 2 * CLASSES;
+    TOWARDS fine RELATIONS * 2 * 4;
+    SIDE_OF_PLACE coarse 12;
+    // Its words.
+    MARK_HOPS fine MARKS * 5;
+    MARK_TURN fine MARKS * 4;
+    MARK_CROSSINGS fine MARKS * 3;
+    // The walk that ends.
+    LAST_ROOM coarse GROUPS * CLASSES;
+    LAST_THING coarse GROUPS * CLASSES;
+    NAMED_ROOM coarse CLASSES;
+    NAMED_THING coarse 3 * CLASSES;
+    UNNAMED_PASSED coarse 5;
+    UNNAMED_END coarse 2 * 3;
+    TURNS_TOLD coarse 6 * 7;
+}
+
+/// The group of a relation.
+pub(crate) fn group(relation: Relation) -> usize {
+    match relation {
+        Relation::OutOf => 0,
+        Relation::Into | Relation::To => 1,
+        Relation::In | Relation::At | Relation::Near | Relation::Before => 2,
+        Relation::Through | Relation::Past | Relation::Along | Relation::Between => 3,
+        Relation::With | Relation::Of => 4,
+        Relation::Plain => 5,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_marking_word_has_a_place() {
+        assert_eq!(wayword_language::reading::steps::MARKING.len(), MARKS);
+    }
+
+    #[test]
+    fn tables_follow_one_another() {
+        let mut from = 0;
+        for table in ALL {
+            assert_eq!(table.from, from, "{}", table.name);
+            from += table.size;
+        }
+        assert_eq!(from, COUNT);
+    }
+}

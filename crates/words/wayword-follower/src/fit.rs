@@ -1,0 +1,125 @@
+//! How well an instruction fits walks: the sum over all ways to cut a walk into stretches, one for each step of the
+//! text, of what speaks for each step over its stretch.
+
+use crate::{
+    features::{Stretch, ending, stretch},
+    guide::Trial,
+    tree::Tree,
+    weights::Weights,
+};
+
+/// Most hops of a step.
+pub(crate) const MOST_HOPS: usize = 6;
+
+/// How well an instruction fits the walks of a tree.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// For each number of steps, from none to all, and each node: the log of the sum over all ways in which these steps lead
+    /// there.
+    sums: Vec<Vec<f64>>,
+    /// For each step, node and number of hops: what speaks for the step over the stretch that ends there.
+    stretches: Vec<f64>,
+    /// For each node: what speaks for the end of the walk there.
+    endings: Vec<f64>,
+}
+
+impl Fit {
+    /// Fits an instruction to all walks of a tree.
+    #[must_use]
+    pub fn new(trial: &Trial<'_>, tree: &Tree, weights: &Weights) -> Self {
+        let (nodes, steps) = (tree.len(), trial.guide.len());
+        let mut sums = vec![vec![f64::NEG_INFINITY; nodes]; steps + 1];
+        sums[0][0] = 0.0;
+        let mut stretches = vec![f64::NEG_INFINITY; steps * nodes * (MOST_HOPS + 1)];
+        let mut found = Vec::new();
+        for step in 0..steps {
+            let (before, after) = sums.split_at_mut(step + 1);
+            let (before, after) = (&before[step], &mut after[0]);
+            for end in 0..nodes {
+                let reached =
+                    tree.back(end).take(MOST_HOPS + 1).enumerate().filter(|(_, from)| before[*from].is_finite());
+                for (hops, from) in reached {
+                    found.clear();
+                    stretch(trial, step, &Stretch::to(tree, end, hops), &mut found);
+                    let speaks = weights.of(&found);
+                    stretches[place(nodes, step, end, hops)] = speaks;
+                    after[end] = log_sum(after[end], before[from] + speaks);
+                }
+            }
+        }
+        let endings = (0..nodes)
+            .map(|end| {
+                found.clear();
+                ending(trial, tree, end, &mut found);
+                weights.of(&found)
+            })
+            .collect();
+        Self { sums, stretches, endings }
+    }
+
+    /// How well the whole text fits the walk that ends at a node: higher is better, and only differences mean anything.
+    #[must_use]
+    pub fn score(&self, walk: usize) -> f64 {
+        self.sums[self.sums.len() - 1][walk] + self.endings[walk]
+    }
+
+    /// The log of the sum over all ways in which the first `steps` steps lead to a node.
+    pub(crate) fn sum(&self, steps: usize, node: usize) -> f64 {
+        self.sums[steps][node]
+    }
+
+    /// Adds to `slope` how the goal changes with each weight. `by_score` says for each node how the goal changes with its
+    /// score. `by_sums` says the same for the sums after some of the steps; it may be empty.
+    pub(crate) fn add_slope(
+        &self,
+        trial: &Trial<'_>,
+        tree: &Tree,
+        by_score: &[f64],
+        by_sums: &[Vec<f64>],
+        slope: &mut [f64],
+    ) {
+        let nodes = tree.len();
+        let mut found = Vec::new();
+        let mut by_sum = by_score.to_vec();
+        for (end, by_score) in by_score.iter().enumerate().filter(|(_, by_score)| by_score.abs() > SMALL) {
+            found.clear();
+            ending(trial, tree, end, &mut found);
+            found.iter().for_each(|feature| slope[*feature as usize] += by_score);
+        }
+        for step in (0..trial.guide.len()).rev() {
+            let mut by_sum_before = vec![0.0; nodes];
+            for (end, by_sum) in by_sum.iter().enumerate().filter(|(_, by_sum)| by_sum.abs() > SMALL) {
+                for (hops, from) in tree.back(end).take(MOST_HOPS + 1).enumerate() {
+                    let speaks = self.stretches[place(nodes, step, end, hops)];
+                    if speaks == f64::NEG_INFINITY {
+                        continue;
+                    }
+                    let share = by_sum * (self.sums[step][from] + speaks - self.sums[step + 1][end]).exp();
+                    by_sum_before[from] += share;
+                    if share.abs() > SMALL {
+                        found.clear();
+                        stretch(trial, step, &Stretch::to(tree, end, hops), &mut found);
+                        found.iter().for_each(|feature| slope[*feature as usize] += share);
+                    }
+                }
+            }
+            if let Some(more) = by_sums.get(step) {
+                by_sum_before.iter_mut().zip(more).for_each(|(by, more)| *by += more);
+            }
+            by_sum = by_sum_before;
+        }
+    }
+}
+
+/// What is too small to matter.
+const SMALL: f64 = 1e-6;
+
+fn place(nodes: usize, step: usize, end: usize, hops: usize) -> usize {
+    (step * nodes + end) * (MOST_HOPS + 1) + hops
+}
+
+/// The log of the sum of two numbers whose logs are given.
+pub(crate) fn log_sum(a: f64, b: f64) -> f64 {
+    let (high, low) = if a > b { (a, b) } else { (b, a) };
+    if low == f64::NEG_INFINITY { high } else { high + (low - high).exp().ln_1p() }
+}

@@ -1,0 +1,204 @@
+//! An instruction as a follower uses it.
+
+use crate::building::Building;
+use crate::near::{Near, Nearness};
+use std::{collections::BTreeSet, sync::Arc};
+use wayword_core::Side;
+use wayword_language::{
+    lexicon::same_room,
+    reading::{
+        What, read,
+        steps::{Relation, Step, steps},
+    },
+};
+
+/// What an instruction tells a walker, step by step, wherever that is.
+#[derive(Debug, Clone)]
+pub struct Guide {
+    pub(crate) steps: Vec<Told>,
+    /// The rooms that it names.
+    rooms: Vec<String>,
+}
+
+/// A step, and what it names.
+#[derive(Debug, Clone)]
+pub(crate) struct Told {
+    pub(crate) step: Step,
+    pub(crate) kind: Kind,
+    pub(crate) mentions: Vec<Mention>,
+}
+
+/// A room or an object that a step names.
+#[derive(Debug, Clone)]
+pub(crate) struct Mention {
+    pub(crate) relation: Relation,
+    pub(crate) side: Option<Side>,
+    /// Whether a turn happens at it.
+    pub(crate) tells_turn: bool,
+    /// What it may be, the likeliest first.
+    pub(crate) meanings: Vec<Nearness>,
+}
+
+/// The kinds of steps, by what they tell first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Turn,
+    SlightTurn,
+    TurnAround,
+    Climb,
+    Stop,
+    Condition,
+    Straight,
+    /// Into, out of or through something.
+    Cross,
+    /// To, past or along something.
+    Go,
+    Other,
+}
+
+impl Kind {
+    /// Number of kinds.
+    pub(crate) const COUNT: usize = 10;
+
+    fn of(step: &Step) -> Self {
+        let crosses = |relation| matches!(relation, Relation::OutOf | Relation::Into | Relation::Through);
+        match step.turn {
+            Some(Side::Left | Side::Right) if step.is_slight => Self::SlightTurn,
+            Some(Side::Left | Side::Right) => Self::Turn,
+            Some(_) => Self::TurnAround,
+            None if step.climb.is_some() => Self::Climb,
+            None if step.stops => Self::Stop,
+            None if step.is_condition => Self::Condition,
+            None if step.is_straight => Self::Straight,
+            None if step.places.iter().any(|place| crosses(place.relation)) => Self::Cross,
+            None if step.places.is_empty() => Self::Other,
+            None => Self::Go,
+        }
+    }
+}
+
+impl Told {
+    /// Makes it tell no turn.
+    pub(crate) fn leave_out_turn(&mut self) {
+        self.step.turn = None;
+        self.kind = Kind::of(&self.step);
+    }
+
+    /// Changes the sides on which its places are.
+    pub(crate) fn change_sides(&mut self, change: impl Fn(Side) -> Side) {
+        self.step.side = self.step.side.map(|(relation, side)| (relation, change(side)));
+        for mention in &mut self.mentions {
+            mention.side = mention.side.map(&change);
+        }
+    }
+}
+
+impl Guide {
+    /// Reads an instruction.
+    #[must_use]
+    pub fn read(text: &str) -> Self {
+        let reading = read(text, &BTreeSet::new());
+        let mut rooms = Vec::new();
+        let told = |step: Step| {
+            let mut mentions: Vec<Mention> = Vec::new();
+            for place in &step.places {
+                let What::Place(named) = &reading.events[place.event].what else { continue };
+                if named.is_room {
+                    rooms.push(named.name.clone());
+                }
+                let (relation, side, tells_turn) = (place.relation, named.side, named.tells_turn);
+                let meanings = meanings(&named.name, named.is_room, named.is_thing);
+                mentions.push(Mention { relation, side, tells_turn, meanings });
+            }
+            if step.is_outdoors {
+                rooms.push("outdoor area".to_owned());
+                let meanings = meanings("outdoor area", true, false);
+                mentions.push(Mention { relation: Relation::Into, side: None, tells_turn: false, meanings });
+            }
+            Told { kind: Kind::of(&step), step, mentions }
+        };
+        let steps = steps(text, &reading).into_iter().map(told).collect();
+        Self { steps, rooms }
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether it tells nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Whether it names a room.
+    pub(crate) fn tells_room(&self, room: &str) -> bool {
+        self.rooms.iter().any(|told| same_room(room, told))
+    }
+
+    /// Number of its turns.
+    pub(crate) fn turns(&self) -> usize {
+        self.steps.iter().filter(|told| told.step.turn.is_some()).count()
+    }
+}
+
+/// What a name may mean. A name that a building has nowhere may be known there by its last word.
+fn meanings(name: &str, is_room: bool, is_thing: bool) -> Vec<Nearness> {
+    let meaning = |is_room: bool, name: &str| Nearness { is_room, name: name.to_owned() };
+    let last = name.rsplit_once(' ').map(|(_, last)| last);
+    let mut meanings = Vec::new();
+    meanings.extend(is_room.then(|| meaning(true, name)));
+    meanings.extend(is_thing.then(|| meaning(false, name)));
+    meanings.extend(last.filter(|_| is_thing).map(|last| meaning(false, last)));
+    meanings
+}
+
+/// An instruction in a building: what it names is found there.
+#[derive(Debug)]
+pub struct Trial<'a> {
+    pub(crate) guide: &'a Guide,
+    pub(crate) building: &'a Building,
+    /// For each step, its mentions that the building has.
+    pub(crate) found: Vec<Vec<Found<'a>>>,
+    /// For each viewpoint, whether the text names its room; `None` where the room has no name.
+    pub(crate) tells_room: Vec<Option<bool>>,
+}
+
+/// A mention, and how near each viewpoint is to it.
+#[derive(Debug)]
+pub(crate) struct Found<'a> {
+    pub(crate) mention: &'a Mention,
+    pub(crate) is_room: bool,
+    pub(crate) near: Arc<Near>,
+}
+
+impl<'a> Trial<'a> {
+    /// Finds in a building what an instruction names. What the building lacks says nothing about walks.
+    #[must_use]
+    pub fn new(guide: &'a Guide, building: &'a Building) -> Self {
+        Self::with(guide, building, false)
+    }
+
+    /// Finds it in what was seen of a building. What was not seen may be anywhere else.
+    #[must_use]
+    pub(crate) fn seen(guide: &'a Guide, building: &'a Building) -> Self {
+        Self::with(guide, building, true)
+    }
+
+    fn with(guide: &'a Guide, building: &'a Building, is_partial: bool) -> Self {
+        let find = |mention: &'a Mention| {
+            let mut meanings = mention.meanings.iter().map(|what| (what.is_room, building.near(what)));
+            let first = meanings.next()?;
+            let exists = |(_, near): &(bool, Arc<Near>)| near.exists;
+            let found = if exists(&first) { Some(first.clone()) } else { meanings.find(exists) };
+            let (is_room, near) = found.or(is_partial.then_some(first))?;
+            Some(Found { mention, is_room, near })
+        };
+        let found = guide.steps.iter().map(|told| told.mentions.iter().filter_map(find).collect()).collect();
+        let room = |at: usize| building.viewpoints[at].room.as_deref();
+        let tells_room = (0..building.len()).map(|at| Some(guide.tells_room(room(at)?))).collect();
+        Self { guide, building, found, tells_room }
+    }
+}

@@ -1,0 +1,155 @@
+//! Fits the weights to texts of known walks, by the slope of the likelihood.
+//!
+//! The likelihood of a walk is its share among all walks of a tree: a softmax of the fits. Adam follows the slope; the
+//! weights that count are the mean over the last round.
+
+use crate::{features::tables, fit::Fit, guide::Trial, posterior::shares, tree::Tree, weights::Weights};
+
+/// How a fit goes.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    /// Rounds over all texts.
+    pub rounds: usize,
+    /// Texts between two steps.
+    pub batch: usize,
+    /// Length of the first step; the steps get shorter up to the end.
+    pub rate: f64,
+    /// How strongly weights are held to where they began.
+    pub hold: f64,
+    /// How much more strongly those of fine tables are.
+    pub hold_fine: f64,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self { rounds: 10, batch: 64, rate: 0.05, hold: 3e-4, hold_fine: 5.0 }
+    }
+}
+
+/// The slope of the loss of texts, by weight, and the loss.
+#[derive(Debug, Clone)]
+pub struct Slope {
+    values: Vec<f64>,
+    /// Sum of the losses.
+    pub loss: f64,
+    texts: usize,
+}
+
+impl Default for Slope {
+    fn default() -> Self {
+        Self { values: vec![0.0; tables::COUNT], loss: 0.0, texts: 0 }
+    }
+}
+
+impl Slope {
+    /// Adds a text. `goal` is the known walk among the tree's. The start alone is no walk.
+    pub fn add(&mut self, trial: &Trial<'_>, tree: &Tree, goal: usize, weights: &Weights) {
+        let fit = Fit::new(trial, tree, weights);
+        let shares = shares(&fit, tree);
+        if !shares[goal].is_normal() {
+            return;
+        }
+        let by_score: Vec<f64> =
+            shares.iter().enumerate().map(|(walk, share)| share - f64::from(u8::from(walk == goal))).collect();
+        fit.add_slope(trial, tree, &by_score, &[], &mut self.values);
+        self.loss -= shares[goal].ln();
+        self.texts += 1;
+    }
+
+    /// Adds another slope.
+    #[must_use]
+    pub fn plus(mut self, other: &Self) -> Self {
+        self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += b);
+        self.loss += other.loss;
+        self.texts += other.texts;
+        self
+    }
+}
+
+/// A fit at work.
+#[derive(Debug)]
+pub struct Learner {
+    descent: Descent,
+}
+
+impl Learner {
+    /// Begins with weights.
+    #[must_use]
+    pub fn new(plan: Plan, start: &Weights) -> Self {
+        Self { descent: Descent::new(plan, start.values().to_vec(), holds(plan)) }
+    }
+
+    /// The weights as they are.
+    #[must_use]
+    pub fn weights(&self) -> Weights {
+        Weights::from_values(&self.descent.values)
+    }
+
+    /// Goes one step down a slope; `round` counts from 0.
+    pub fn step(&mut self, round: usize, slope: &Slope) {
+        self.descent.step(round, &slope.values, slope.texts);
+    }
+
+    /// The mean of the weights over the last round.
+    #[must_use]
+    pub fn finish(self) -> Weights {
+        Weights::from_values(&self.descent.finish())
+    }
+}
+
+/// How strongly each weight is held to where it began.
+pub(crate) fn holds(plan: Plan) -> Vec<f64> {
+    let mut holds = vec![plan.hold; tables::COUNT];
+    for table in tables::ALL.iter().filter(|table| table.is_fine) {
+        holds[table.from..table.from + table.size].fill(plan.hold * plan.hold_fine);
+    }
+    holds
+}
+
+/// Adam, on its way down a slope.
+#[derive(Debug)]
+pub(crate) struct Descent {
+    plan: Plan,
+    start: Vec<f64>,
+    pub(crate) values: Vec<f64>,
+    holds: Vec<f64>,
+    mean: Vec<f64>,
+    square: Vec<f64>,
+    steps: i32,
+    sum: Vec<f64>,
+    summed: usize,
+}
+
+impl Descent {
+    pub(crate) fn new(plan: Plan, start: Vec<f64>, holds: Vec<f64>) -> Self {
+        let zeros = || vec![0.0; start.len()];
+        let (mean, square, sum, values) = (zeros(), zeros(), zeros(), start.clone());
+        Self { plan, start, values, holds, mean, square, steps: 0, sum, summed: 0 }
+    }
+
+    /// Goes one step down; `slope` is a sum over `examples`.
+    pub(crate) fn step(&mut self, round: usize, slope: &[f64], examples: usize) {
+        /// Adam's usual shares of the past.
+        const PAST: [f64; 2] = [0.9, 0.999];
+        let left = 1.0 - round as f64 / self.plan.rounds.max(1) as f64;
+        self.steps += 1;
+        let [bias, bias_square] = PAST.map(|past| 1.0 - past.powi(self.steps));
+        let is_last = round + 1 == self.plan.rounds;
+        for (at, value) in self.values.iter_mut().enumerate() {
+            let down = slope[at] / examples.max(1) as f64 + self.holds[at] * (*value - self.start[at]);
+            self.mean[at] = PAST[0] * self.mean[at] + (1.0 - PAST[0]) * down;
+            self.square[at] = PAST[1] * self.square[at] + (1.0 - PAST[1]) * down * down;
+            *value -= self.plan.rate * left * (self.mean[at] / bias) / ((self.square[at] / bias_square).sqrt() + 1e-6);
+            self.sum[at] += if is_last { *value } else { 0.0 };
+        }
+        self.summed += usize::from(is_last);
+    }
+
+    /// The mean of the values over the last round.
+    pub(crate) fn finish(self) -> Vec<f64> {
+        match self.summed {
+            0 => self.values,
+            count => self.sum.iter().map(|sum| sum / count as f64).collect(),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! How near viewpoints are to what a text names.
+
+use crate::building::{Building, Thing};
+use std::collections::BTreeSet;
+use wayword_core::DVec3;
+use wayword_language::lexicon::{agree, room_name, same_room};
+
+/// What is looked for: a room of a name, or an object.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Nearness {
+    pub(crate) is_room: bool,
+    pub(crate) name: String,
+}
+
+/// How near each viewpoint of a building is to the nearest room or object of a name.
+#[derive(Debug)]
+pub(crate) struct Near {
+    /// For each viewpoint, the class of its distance: 0 there, then farther and farther up to [`FAR`]; [`UNKNOWN`] where
+    /// nobody has been.
+    pub(crate) class: Vec<usize>,
+    /// For each viewpoint, where the nearest is.
+    pub(crate) nearest: Vec<Option<DVec3>>,
+    /// 0 where few viewpoints are near one, 2 where many are.
+    pub(crate) commonness: usize,
+    /// Whether there is one.
+    pub(crate) exists: bool,
+}
+
+/// The class of what is far away.
+pub(crate) const FAR: usize = 5;
+/// The class where it is not known.
+pub(crate) const UNKNOWN: usize = 6;
+/// Number of classes.
+pub(crate) const CLASSES: usize = 7;
+
+/// What a storey between two places adds to their distance, metres.
+const STOREY_M: f64 = 6.0;
+
+impl Near {
+    pub(crate) fn find(building: &Building, what: &Nearness) -> Self {
+        if what.is_room { Self::room(building, &what.name) } else { Self::thing(building, &what.name) }
+    }
+
+    fn thing(building: &Building, name: &str) -> Self {
+        let names: BTreeSet<&str> = building.things.iter().map(|thing| thing.name.as_str()).collect();
+        let meant: BTreeSet<&str> = names.into_iter().filter(|other| agree(other, name)).collect();
+        let things: Vec<&Thing> = building.things.iter().filter(|thing| meant.contains(&*thing.name)).collect();
+        let mut seen = vec![false; building.len()];
+        for at in things.iter().flat_map(|thing| &thing.seen_from) {
+            seen[*at] = true;
+        }
+        let class = |at: usize, far_m: f64| match far_m {
+            far_m if seen[at] && far_m < 1.3 => 0,
+            _ if seen[at] => 1,
+            far_m if far_m < 3.0 => 2,
+            far_m if far_m < 5.0 => 3,
+            far_m if far_m < 8.0 => 4,
+            _ => FAR,
+        };
+        let found: Vec<(usize, Option<DVec3>)> = (0..building.len())
+            .map(|at| {
+                let places = things.iter().map(|thing| (thing.position, thing.seen_from.contains(&at)));
+                // The eye is over most things: only what is well above it, or below its feet, is on another storey.
+                let (far_m, place) = nearest(building.viewpoints[at].position, places, [-2.2, 1.0]);
+                (class(at, far_m), place)
+            })
+            .collect();
+        Self::of(building, found, !things.is_empty(), 3)
+    }
+
+    fn room(building: &Building, name: &str) -> Self {
+        let is_stairs = room_name(name) == Some("stairs");
+        let room = |at: usize| building.viewpoints[at].room.as_deref();
+        let is_exact = |at: usize| room(at).is_some_and(|room| room_name(room) == room_name(name));
+        let is_same: Vec<bool> =
+            (0..building.len()).map(|at| room(at).is_some_and(|room| same_room(room, name))).collect();
+        let places =
+            || (0..building.len()).filter(|at| is_same[*at]).map(|at| (building.viewpoints[at].position, false));
+        let found: Vec<(usize, Option<DVec3>)> = (0..building.len())
+            .map(|at| {
+                let viewpoint = &building.viewpoints[at];
+                let (far_m, place) = nearest(viewpoint.position, places(), [-1.5, 1.5]);
+                let class = match far_m {
+                    _ if is_stairs && viewpoint.climbs.contains(&true) || is_exact(at) => 0,
+                    _ if is_same[at] => 1,
+                    far_m if far_m < 2.2 => 2,
+                    far_m if far_m < 4.0 => 3,
+                    far_m if far_m < 7.0 => 4,
+                    _ => FAR,
+                };
+                (class, place)
+            })
+            .collect();
+        let exists = is_stairs || is_same.contains(&true);
+        Self::of(building, found, exists, 1)
+    }
+
+    /// `least` is the first class that says nothing where nobody has been.
+    fn of(building: &Building, found: Vec<(usize, Option<DVec3>)>, exists: bool, least: usize) -> Self {
+        let known = |(at, (class, _)): (usize, &(usize, Option<DVec3>))| match building.viewpoints[at].is_known {
+            false if *class >= least => UNKNOWN,
+            _ => *class,
+        };
+        let class: Vec<usize> = found.iter().enumerate().map(known).collect();
+        let known = class.iter().filter(|class| **class != UNKNOWN).count();
+        let share = class.iter().filter(|class| **class <= 2).count() as f64 / known.max(1) as f64;
+        let commonness = usize::from(share >= 0.08) + usize::from(share >= 0.25);
+        Self { class, nearest: found.into_iter().map(|(_, place)| place).collect(), commonness, exists }
+    }
+}
+
+/// The nearest of these places, and how far it is over ground, metres. A place that is seen from here, or between these
+/// heights, is on this storey.
+fn nearest(
+    from: DVec3,
+    places: impl Iterator<Item = (DVec3, bool)>,
+    [low_m, high_m]: [f64; 2],
+) -> (f64, Option<DVec3>) {
+    let mut best = (f64::INFINITY, None);
+    for (place, is_seen) in places {
+        let off = place - from;
+        let is_level = is_seen || (low_m..high_m).contains(&off.z);
+        let far_m = libm::hypot(off.x, off.y) + if is_level { 0.0 } else { STOREY_M };
+        if far_m < best.0 {
+            best = (far_m, Some(place));
+        }
+    }
+    best
+}

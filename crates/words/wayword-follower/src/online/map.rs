@@ -1,0 +1,109 @@
+//! What a walker knows of a building: a map of where it was, in its own frame.
+
+use crate::building::{Building, Thing, Viewpoint};
+use wayword_core::DVec3;
+use wayword_language::lexicon::normal;
+
+/// What a walker gets at a viewpoint. Directions are relative to its body.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sighting {
+    /// The ways out.
+    pub hops: Vec<Hop>,
+    /// The room, where the platform has rooms.
+    pub room: Option<String>,
+    /// The objects that are seen, each with the number of the hop that lies nearest to its direction.
+    pub things: Vec<(String, usize)>,
+}
+
+/// A way out of a viewpoint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hop {
+    /// Its direction from straight ahead, radians, positive right.
+    pub turn_rad: f64,
+    /// Its elevation, radians, positive upwards.
+    pub elevation_rad: f64,
+    /// Its length, metres.
+    pub length_m: f64,
+}
+
+/// Two viewpoints that lie closer than this are one, metres. The walker adds up its hops, so the same place comes out a
+/// little different each time.
+const SAME_PLACE_M: f64 = 0.05;
+/// How far away an object is taken to be that is seen in the direction of a hop, metres at most.
+const THING_M: f64 = 1.5;
+
+/// A map of where a walker was.
+#[derive(Debug, Default)]
+pub(super) struct Map {
+    pub(super) building: Building,
+    /// Where the walker stands.
+    pub(super) here: usize,
+    /// Which way it looks, radians clockwise; 0 is the way it looked first.
+    pub(super) heading_rad: f64,
+    /// For each viewpoint, where each hop out of it leads, in the order of its sighting.
+    pub(super) ways: Vec<Vec<usize>>,
+}
+
+impl Map {
+    /// The map of a walker that has not looked yet.
+    pub(super) fn new() -> Self {
+        let mut map = Self::default();
+        map.add(DVec3::ZERO);
+        map
+    }
+
+    /// Goes over to a viewpoint that is one hop away.
+    pub(super) fn go(&mut self, to: usize) {
+        let (bearing_rad, _) = self.building.hop(self.here, to);
+        self.heading_rad = bearing_rad.unwrap_or(self.heading_rad);
+        self.here = to;
+    }
+
+    /// Notes what is seen here.
+    pub(super) fn look(&mut self, seen: &Sighting) {
+        if self.building.viewpoints[self.here].is_known {
+            return;
+        }
+        let here_m = self.building.viewpoints[self.here].position;
+        let offset = |hop: &Hop| {
+            let rad = self.heading_rad + hop.turn_rad;
+            let flat_m = hop.length_m * hop.elevation_rad.cos();
+            DVec3::new(flat_m * rad.sin(), flat_m * rad.cos(), hop.length_m * hop.elevation_rad.sin())
+        };
+        let offsets: Vec<DVec3> = seen.hops.iter().map(offset).collect();
+        let ways: Vec<usize> = offsets.iter().map(|off| self.place(here_m + *off)).collect();
+        for to in &ways {
+            join(&mut self.building.viewpoints, self.here, *to);
+            join(&mut self.building.viewpoints, *to, self.here);
+        }
+        self.ways[self.here] = ways;
+        for (name, hop) in &seen.things {
+            let Some(off) = offsets.get(*hop) else { continue };
+            let position = here_m + off.normalize_or_zero() * off.length().min(THING_M);
+            self.building.things.push(Thing { name: normal(name), position, seen_from: vec![self.here] });
+        }
+        let viewpoint = &mut self.building.viewpoints[self.here];
+        viewpoint.room.clone_from(&seen.room);
+        viewpoint.is_known = true;
+        self.building.changed();
+    }
+
+    /// The viewpoint at a position: a known one, or a new one.
+    fn place(&mut self, position: DVec3) -> usize {
+        let is_here = |viewpoint: &Viewpoint| viewpoint.position.distance(position) < SAME_PLACE_M;
+        self.building.viewpoints.iter().position(is_here).unwrap_or_else(|| self.add(position))
+    }
+
+    fn add(&mut self, position: DVec3) -> usize {
+        let viewpoint = Viewpoint { position, neighbours: Vec::new(), room: None, is_known: false, climbs: [false; 2] };
+        self.building.viewpoints.push(viewpoint);
+        self.ways.push(Vec::new());
+        self.building.viewpoints.len() - 1
+    }
+}
+
+fn join(viewpoints: &mut [Viewpoint], from: usize, to: usize) {
+    if from != to && !viewpoints[from].neighbours.contains(&to) {
+        viewpoints[from].neighbours.push(to);
+    }
+}

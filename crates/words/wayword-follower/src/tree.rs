@@ -1,0 +1,164 @@
+//! Walks that a text may mean, as a tree: walks that begin alike share their beginning.
+
+use crate::building::{Building, wrapped};
+use std::collections::BTreeMap;
+
+/// Walks from one viewpoint. The first node is the start; each node comes after the one before it on its walk.
+#[derive(Debug, Clone)]
+pub struct Tree {
+    pub(crate) nodes: Vec<Node>,
+}
+
+/// A walk of a tree: the one that ends at this node.
+#[derive(Debug, Clone)]
+pub(crate) struct Node {
+    pub(crate) viewpoint: usize,
+    /// The node before it; the start's is itself.
+    pub(crate) before: usize,
+    /// Hops from the start.
+    pub(crate) hops: usize,
+    /// Which way the walker looks there, radians from +y clockwise.
+    pub(crate) heading_rad: f64,
+    /// The turn before the hop that leads there, radians, positive right.
+    pub(crate) turn_rad: f64,
+    /// The length of that hop, metres.
+    pub(crate) length_m: f64,
+}
+
+/// Which walks are thought of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Prior {
+    /// The shortest path to each viewpoint, up to a number of hops.
+    Shortest(usize),
+    /// Walks of two shortest paths, one after the other, that pass no viewpoint twice, up to a number of hops.
+    TwoPieces(usize),
+}
+
+/// Most nodes of a tree. In a large building walks of two pieces are many; the shortest paths come first.
+const MOST_NODES: usize = 20_000;
+
+impl Tree {
+    /// The walks from a start that looks along `heading_rad` (radians from +y, clockwise).
+    #[must_use]
+    pub fn of(building: &Building, start: usize, heading_rad: f64, prior: Prior) -> Self {
+        match prior {
+            Prior::Shortest(hops) => Self::shortest(building, start, heading_rad, hops),
+            Prior::TwoPieces(hops) => Self::two_pieces(building, start, heading_rad, hops),
+        }
+    }
+
+    /// One walk alone, and its beginnings.
+    #[must_use]
+    pub fn single(building: &Building, walk: &[usize], heading_rad: f64) -> Self {
+        let mut tree = Self::begin(walk.first().copied().unwrap_or_default(), heading_rad);
+        for (at, viewpoint) in walk.iter().skip(1).enumerate() {
+            tree.grow(building, at, *viewpoint);
+        }
+        tree
+    }
+
+    fn begin(viewpoint: usize, heading_rad: f64) -> Self {
+        Self { nodes: vec![Node { viewpoint, before: 0, hops: 0, heading_rad, turn_rad: 0.0, length_m: 0.0 }] }
+    }
+
+    /// Adds a walk that is one hop longer than another; returns its node.
+    fn grow(&mut self, building: &Building, before: usize, viewpoint: usize) -> usize {
+        let from = &self.nodes[before];
+        let (bearing_rad, length_m) = building.hop(from.viewpoint, viewpoint);
+        let heading_rad = bearing_rad.unwrap_or(from.heading_rad);
+        let turn_rad = wrapped(heading_rad - from.heading_rad);
+        self.nodes.push(Node { viewpoint, before, hops: from.hops + 1, heading_rad, turn_rad, length_m });
+        self.nodes.len() - 1
+    }
+
+    /// The shortest path (metres) to each viewpoint, up to a number of hops.
+    pub(crate) fn shortest(building: &Building, start: usize, heading_rad: f64, most_hops: usize) -> Self {
+        let count = building.len();
+        let mut far_m = vec![f64::INFINITY; count];
+        // For each viewpoint, the node of the viewpoint before it on its shortest path.
+        let mut before: Vec<Option<usize>> = vec![None; count];
+        let mut is_done = vec![false; count];
+        let mut tree = Self::begin(start, heading_rad);
+        far_m[start] = 0.0;
+        loop {
+            let open = (0..count).filter(|at| !is_done[*at] && far_m[*at].is_finite());
+            let Some(here) = open.min_by(|a, b| far_m[*a].total_cmp(&far_m[*b])) else { return tree };
+            is_done[here] = true;
+            let node = before[here].map_or(0, |before| tree.grow(building, before, here));
+            if tree.nodes[node].hops == most_hops {
+                continue;
+            }
+            for to in &building.viewpoints[here].neighbours {
+                let way_m = far_m[here] + building.hop(here, *to).1;
+                if way_m < far_m[*to] - 1e-9 {
+                    far_m[*to] = way_m;
+                    before[*to] = Some(node);
+                }
+            }
+        }
+    }
+
+    fn two_pieces(building: &Building, start: usize, heading_rad: f64, most_hops: usize) -> Self {
+        let mut tree = Self::shortest(building, start, heading_rad, most_hops);
+        let mut onward: BTreeMap<(usize, usize), usize> =
+            tree.nodes.iter().enumerate().skip(1).map(|(at, node)| ((node.before, node.viewpoint), at)).collect();
+        let first = tree.clone();
+        for node in 1..first.nodes.len() {
+            let way = first.viewpoints(node);
+            let rest = most_hops - first.nodes[node].hops;
+            let second = Self::shortest(building, first.nodes[node].viewpoint, 0.0, rest);
+            // For each node of the second piece, the whole walk's node; `None` where it passes a viewpoint twice.
+            let mut whole = vec![Some(node)];
+            for piece in &second.nodes[1..] {
+                let at = whole[piece.before].filter(|_| !way.contains(&piece.viewpoint)).map(|before| {
+                    let key = (before, piece.viewpoint);
+                    *onward.entry(key).or_insert_with(|| tree.grow(building, before, piece.viewpoint))
+                });
+                whole.push(at);
+            }
+            if tree.nodes.len() > MOST_NODES {
+                break;
+            }
+        }
+        tree
+    }
+
+    /// Number of walks, the start alone among them.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there is no walk but the start alone.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.nodes.len() <= 1
+    }
+
+    /// The viewpoint where a walk ends.
+    #[must_use]
+    pub fn end(&self, walk: usize) -> usize {
+        self.nodes[walk].viewpoint
+    }
+
+    /// The nodes of a walk, from its end back to the start.
+    pub(crate) fn back(&self, walk: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(walk), |at| (*at != 0).then(|| self.nodes[*at].before))
+    }
+
+    /// The viewpoints of a walk, from the start on.
+    #[must_use]
+    pub fn viewpoints(&self, walk: usize) -> Vec<usize> {
+        let mut viewpoints: Vec<usize> = self.back(walk).map(|at| self.nodes[at].viewpoint).collect();
+        viewpoints.reverse();
+        viewpoints
+    }
+
+    /// The walk with these viewpoints.
+    #[must_use]
+    pub fn find(&self, viewpoints: &[usize]) -> Option<usize> {
+        let is_it = |at: &usize| self.nodes[*at].hops + 1 == viewpoints.len() && self.viewpoints(*at) == viewpoints;
+        let end = viewpoints.last()?;
+        (0..self.nodes.len()).filter(|at| self.nodes[*at].viewpoint == *end).find(is_it)
+    }
+}

@@ -1,0 +1,126 @@
+//! The file of weights: JSON, with a list of numbers for each table of features.
+
+use super::Weights;
+use crate::{
+    features::tables::{ALL, Table},
+    online::{AWAY, LEFT, OnwardWeights},
+};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Why a file of weights cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum WeightsError {
+    /// It is not JSON of this kind.
+    #[error("it does not hold weights: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A table is missing, or has the wrong number of weights.
+    #[error("table {table} has {found} weights and needs {needed}")]
+    Table {
+        /// The table.
+        table: &'static str,
+        /// How many weights there are.
+        found: usize,
+        /// How many there have to be.
+        needed: usize,
+    },
+    /// A weight is not a finite number.
+    #[error("table {0} has a weight that is not finite")]
+    NotFinite(&'static str),
+}
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    /// What the weights were fitted to.
+    origin: String,
+    /// The command that fits them.
+    command: String,
+    /// The weights of each table.
+    tables: BTreeMap<String, Vec<f64>>,
+    /// For a walker: the weights of a step that goes on.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    going: BTreeMap<String, Vec<f64>>,
+    /// For a walker: what speaks for going on, by the number of steps after that one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    left: Vec<f64>,
+    /// For a walker: what speaks for stopping at a viewpoint, and for going on to one, by how many hops away it is.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    away: Vec<f64>,
+}
+
+impl Weights {
+    /// Reads a file of weights.
+    ///
+    /// # Errors
+    /// When a table is missing or has the wrong size.
+    pub fn parse(text: &str) -> Result<Self, WeightsError> {
+        of_tables(&serde_json::from_str::<File>(text)?.tables)
+    }
+
+    /// The weights as a file, rounded to thousandths. `origin` says what they were fitted to, `command` how.
+    #[must_use]
+    pub fn to_json(&self, origin: &str, command: &str) -> String {
+        let (origin, command) = (origin.into(), command.into());
+        File { origin, command, tables: to_tables(self), going: BTreeMap::new(), left: Vec::new(), away: Vec::new() }
+            .text()
+    }
+}
+
+impl OnwardWeights {
+    /// Reads a file of a walker's weights.
+    ///
+    /// # Errors
+    /// When a table is missing or has the wrong size.
+    pub fn parse(text: &str) -> Result<Self, WeightsError> {
+        let file: File = serde_json::from_str(text)?;
+        let wrong = |table, found: &[f64], needed| WeightsError::Table { table, found: found.len(), needed };
+        let left = file.left.as_slice().try_into().map_err(|_| wrong("left", &file.left, LEFT))?;
+        let mut away = [[0.0; AWAY]; 2];
+        if file.away.len() != 2 * AWAY {
+            return Err(wrong("away", &file.away, 2 * AWAY));
+        }
+        away.as_flattened_mut().copy_from_slice(&file.away);
+        Ok(Self { done: of_tables(&file.tables)?, going: of_tables(&file.going)?, left, away })
+    }
+
+    /// The weights as a file, rounded to thousandths. `origin` says what they were fitted to, `command` how.
+    #[must_use]
+    pub fn to_json(&self, origin: &str, command: &str) -> String {
+        let (tables, going) = (to_tables(&self.done), to_tables(&self.going));
+        let left = self.left.iter().map(rounded).collect();
+        let away = self.away.as_flattened().iter().map(rounded).collect();
+        File { origin: origin.into(), command: command.into(), tables, going, left, away }.text()
+    }
+}
+
+impl File {
+    fn text(&self) -> String {
+        let mut text = serde_json::to_string(self).unwrap_or_default().replace("],\"", "],\n\"");
+        text.push('\n');
+        text
+    }
+}
+
+fn rounded(weight: &f64) -> f64 {
+    (weight * 1000.0).round() / 1000.0
+}
+
+fn to_tables(weights: &Weights) -> BTreeMap<String, Vec<f64>> {
+    let of = |table: &Table| weights.0[table.from..table.from + table.size].iter().map(rounded).collect();
+    ALL.iter().map(|table| (table.name.to_owned(), of(table))).collect()
+}
+
+fn of_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<Weights, WeightsError> {
+    let mut weights = Weights::none();
+    for table in ALL {
+        let found = tables.get(table.name).map_or(&[][..], Vec::as_slice);
+        if found.len() != table.size {
+            return Err(WeightsError::Table { table: table.name, found: found.len(), needed: table.size });
+        }
+        if !found.iter().all(|weight| weight.is_finite()) {
+            return Err(WeightsError::NotFinite(table.name));
+        }
+        weights.0[table.from..table.from + table.size].copy_from_slice(found);
+    }
+    Ok(weights)
+}

@@ -1,0 +1,67 @@
+//! The weights of the features.
+
+mod by_hand;
+mod file;
+
+use crate::features::{Feature, tables};
+pub use file::WeightsError;
+use std::sync::LazyLock;
+
+/// What each feature speaks for or against a walk, in natural logs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weights(Vec<f64>);
+
+static FITTED: LazyLock<Weights> =
+    LazyLock::new(|| Weights::parse(include_str!("fitted.json")).unwrap_or_else(|_| Weights::by_hand()));
+
+impl Weights {
+    /// The weights that the program has: fitted to people's texts, as their file says.
+    #[must_use]
+    pub fn fitted() -> &'static Self {
+        &FITTED
+    }
+
+    /// Weights that nobody fitted: what the words mean, in numbers written by hand.
+    #[must_use]
+    pub fn by_hand() -> Self {
+        by_hand::weights()
+    }
+
+    /// The sum of the weights of these features.
+    pub(crate) fn of(&self, found: &[Feature]) -> f64 {
+        found.iter().map(|feature| self.0[*feature as usize]).sum()
+    }
+
+    /// Weights of 0.
+    pub(crate) fn none() -> Self {
+        Self(vec![0.0; tables::COUNT])
+    }
+
+    /// The weights, by the features' numbers.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.0
+    }
+
+    pub(crate) fn from_values(values: &[f64]) -> Self {
+        Self(values.to_vec())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_of_weights_can_be_read() {
+        assert!(Weights::parse(include_str!("fitted.json")).is_ok());
+    }
+
+    #[test]
+    fn weights_survive_their_file() {
+        let weights = Weights::by_hand();
+        let again = Weights::parse(&weights.to_json("by hand", "none")).unwrap();
+        let off = weights.values().iter().zip(again.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 0.001, "{off}");
+    }
+}
