@@ -30,6 +30,10 @@ pub enum Check {
     Turns,
     /// Storeys and stairs agree with the path.
     Floors,
+    /// The text leads along its path, and not elsewhere.
+    Route,
+    /// The program understands what the text says.
+    Coverage,
     /// No run of five words is shared with the references.
     Leak,
 }
@@ -51,8 +55,17 @@ pub struct Finding {
 
 impl Check {
     /// All of them, in the order in which they are listed.
-    pub const ALL: [Self; 7] =
-        [Self::Form, Self::Task, Self::Landmarks, Self::Order, Self::Turns, Self::Floors, Self::Leak];
+    pub const ALL: [Self; 9] = [
+        Self::Form,
+        Self::Task,
+        Self::Landmarks,
+        Self::Order,
+        Self::Turns,
+        Self::Floors,
+        Self::Route,
+        Self::Coverage,
+        Self::Leak,
+    ];
 
     /// Its name, in files and on the screen.
     #[must_use]
@@ -64,6 +77,8 @@ impl Check {
             Self::Order => "order",
             Self::Turns => "turns",
             Self::Floors => "floors",
+            Self::Route => "route",
+            Self::Coverage => "coverage",
             Self::Leak => "leak",
         }
     }

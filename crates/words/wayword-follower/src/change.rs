@@ -59,6 +59,12 @@ pub fn changes(guide: &Guide, building: &Building, walk: &[usize], heading_rad: 
     changes
 }
 
+/// The texts that differ from one by a turn to the other side.
+#[must_use]
+pub fn flipped(guide: &Guide) -> Vec<Guide> {
+    variants(guide).into_iter().filter(|(kind, ..)| *kind == Kind::Turn).map(|(_, _, changed)| changed).collect()
+}
+
 /// The texts that differ from one by a single change.
 fn variants(guide: &Guide) -> Vec<(Kind, usize, Guide)> {
     let mut variants = Vec::new();

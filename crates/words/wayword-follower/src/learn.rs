@@ -56,6 +56,31 @@ impl Slope {
         self.texts += 1;
     }
 
+    /// Adds a text of a walk against the same text with one change that makes it wrong: the text as it is should fit better.
+    /// `walk` is a tree of that walk alone.
+    pub fn add_contrast(
+        &mut self,
+        right: &Trial<'_>,
+        wrong: &Trial<'_>,
+        walk: &Tree,
+        weights: &Weights,
+        strength: f64,
+    ) {
+        let fits = [right, wrong].map(|trial| Fit::new(trial, walk, weights));
+        let end = walk.len() - 1;
+        let gain = fits[1].score(end) - fits[0].score(end);
+        if !gain.is_finite() {
+            return;
+        }
+        // The share of the wrong text among the two.
+        let share = strength / (1.0 + (-gain).exp());
+        let mut by_score = vec![0.0; walk.len()];
+        for ((fit, trial), by) in fits.iter().zip([right, wrong]).zip([-share, share]) {
+            by_score[end] = by;
+            fit.add_slope(trial, walk, &by_score, &[], &mut self.values);
+        }
+    }
+
     /// Adds another slope.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {

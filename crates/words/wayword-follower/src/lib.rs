@@ -15,6 +15,7 @@ pub mod learn;
 mod near;
 pub mod online;
 mod posterior;
+pub mod route;
 mod tree;
 mod weights;
 

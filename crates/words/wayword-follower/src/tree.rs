@@ -123,6 +123,15 @@ impl Tree {
         tree
     }
 
+    /// Adds a walk from the tree's start, where it is not there yet; returns its node.
+    pub(crate) fn with(&mut self, building: &Building, walk: &[usize]) -> usize {
+        walk.iter().skip(1).fold(0, |before, viewpoint| {
+            let is_next = |node: &Node| node.hops > 0 && node.before == before && node.viewpoint == *viewpoint;
+            let known = self.nodes.iter().position(is_next);
+            known.unwrap_or_else(|| self.grow(building, before, *viewpoint))
+        })
+    }
+
     /// Number of walks, the start alone among them.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -61,16 +61,17 @@ impl Map {
 
     /// Notes what is seen here.
     pub(super) fn look(&mut self, seen: &Sighting) {
-        if self.building.viewpoints[self.here].is_known {
-            return;
-        }
         let here_m = self.building.viewpoints[self.here].position;
-        let offset = |hop: &Hop| {
-            let rad = self.heading_rad + hop.turn_rad;
-            let flat_m = hop.length_m * hop.elevation_rad.cos();
-            DVec3::new(flat_m * rad.sin(), flat_m * rad.cos(), hop.length_m * hop.elevation_rad.sin())
-        };
-        let offsets: Vec<DVec3> = seen.hops.iter().map(offset).collect();
+        let offsets: Vec<DVec3> = seen.hops.iter().map(|hop| self.offset(hop)).collect();
+        if self.building.viewpoints[self.here].is_known {
+            let ends = self.ways[self.here].iter().map(|to| self.building.viewpoints[*to].position);
+            let is_close = |(end, off): (DVec3, &DVec3)| end.distance(here_m + *off) < 2.0 * SAME_PLACE_M;
+            if offsets.len() == self.ways[self.here].len() && ends.zip(&offsets).all(is_close) {
+                return;
+            }
+            // Another viewpoint at the same place: some graphs have two.
+            self.here = self.add(here_m);
+        }
         let ways: Vec<usize> = offsets.iter().map(|off| self.place(here_m + *off)).collect();
         for to in &ways {
             join(&mut self.building.viewpoints, self.here, *to);
@@ -86,6 +87,13 @@ impl Map {
         viewpoint.room.clone_from(&seen.room);
         viewpoint.is_known = true;
         self.building.changed();
+    }
+
+    /// Where a hop leads, from here.
+    fn offset(&self, hop: &Hop) -> DVec3 {
+        let rad = self.heading_rad + hop.turn_rad;
+        let flat_m = hop.length_m * libm::cos(hop.elevation_rad);
+        DVec3::new(flat_m * libm::sin(rad), flat_m * libm::cos(rad), hop.length_m * libm::sin(hop.elevation_rad))
     }
 
     /// The viewpoint at a position: a known one, or a new one.

@@ -108,21 +108,25 @@ impl<'a> Reader<'a> {
         self.map.heading_rad
     }
 
-    /// Plans the way to the best option.
+    /// Plans the next hop: the one behind which most of what the text may mean lies; or to stop here.
     fn plan(&mut self) {
         let trial = Trial::seen(self.guide, &self.map.building);
         let options = self.options(&trial);
-        let worth = |stops: bool, worths: &[f64]| {
-            let all = worths.iter().copied().enumerate().filter(|(_, worth)| worth.is_finite());
-            all.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(node, worth)| (worth, node, stops))
-        };
-        let both = [worth(true, &options.stop), worth(false, &options.go)];
-        let Some((_, node, stops)) = both.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
-        self.then_stops = stops;
-        let end = options.tree.end(node);
-        let way = (0..options.back.len()).find(|at| options.back.end(*at) == end).unwrap_or(0);
-        self.planned = options.back.back(way).map(|at| options.back.end(at)).collect();
-        self.planned.pop();
+        let all = || options.stop.iter().chain(&options.go).copied().enumerate();
+        let highest = all().map(|(_, worth)| worth).fold(f64::NEG_INFINITY, f64::max);
+        let mut shares = vec![0.0; self.map.building.len()];
+        for (at, worth) in all().filter(|(_, worth)| worth.is_finite()) {
+            let end = options.tree.end(at % options.tree.len());
+            let node = (0..options.back.len()).find(|node| options.back.end(*node) == end).unwrap_or(0);
+            // The first hop on the way there; none where the walker would stop here.
+            let hop = options.back.back(node).take_while(|node| *node != 0).last().unwrap_or(0);
+            shares[options.back.end(hop)] += (worth - highest).exp();
+        }
+        let best = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b])).unwrap_or(self.map.here);
+        self.then_stops = best == self.map.here;
+        if best != self.map.here {
+            self.planned.push(best);
+        }
     }
 
     fn options(&self, trial: &Trial<'_>) -> Options {

@@ -1,0 +1,156 @@
+//! An instruction against the walk that it was written for: which of its turns are wrong, and whether it leads elsewhere.
+
+use crate::{
+    building::Building,
+    change::{Change, Kind, changes},
+    fit::Fit,
+    guide::{Guide, Trial},
+    posterior::shares,
+    tree::{Prior, Tree},
+    weights::Weights,
+};
+use wayword_core::{Check, Climb, Finding, Side, Verdict};
+
+/// A walk that is known: that of a dataset, or of a robot.
+#[derive(Debug, Clone, Copy)]
+pub struct Known<'a> {
+    /// Where it is.
+    pub building: &'a Building,
+    /// Its viewpoints.
+    pub walk: &'a [usize],
+    /// Which way the walker looks first, radians from +y clockwise.
+    pub heading_rad: f64,
+}
+
+/// From which gain on a change of a step is taken for what the text should say, natural logs. Fitted so that few texts
+/// of people fail (`wayword-measure fit-follower`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thresholds {
+    /// Of a turn to the other side.
+    pub turn: f64,
+    /// Of a turn left out.
+    pub no_turn: f64,
+    /// Of a climb the other way.
+    pub climb: f64,
+    /// How much better another walk has to fit.
+    pub route: f64,
+}
+
+impl Default for Thresholds {
+    fn default() -> Self {
+        Self { turn: 2.0, no_turn: 4.0, climb: 1.0, route: 8.0 }
+    }
+}
+
+/// What a follower says of an instruction and its walk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// What is wrong with its turns; empty where nothing is.
+    pub turns: Vec<Finding>,
+    /// Whether it leads elsewhere; `None` where no other walk is known.
+    pub route: Option<Route>,
+    /// What the best change of a turn gains, natural logs: the higher, the likelier the text has a wrong turn. `None` where
+    /// it tells none.
+    pub turn_gain: Option<f64>,
+}
+
+/// An instruction against all walks from the same start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Route {
+    /// What `check` says of it.
+    pub finding: Finding,
+    /// The share of the known walk: how likely it is that the text means it.
+    pub share: f64,
+    /// The share of the likeliest other walk.
+    pub other: f64,
+    /// The viewpoints at which walks end that fit about as well as the known one, its own first: one of each group that
+    /// lies close together.
+    pub ends: Vec<usize>,
+}
+
+/// How far apart two ends lie that are told apart, metres: success on R2R is to stop nearer than this.
+const APART_M: f64 = 3.0;
+/// From which share of the known walk's share on another walk fits about as well.
+const AS_WELL: f64 = 0.5;
+
+/// Judges an instruction by the walk that it was written for. Without `prior`, other walks are not thought of.
+#[must_use]
+pub fn judge(
+    guide: &Guide,
+    known: Known<'_>,
+    prior: Option<Prior>,
+    weights: &Weights,
+    thresholds: Thresholds,
+) -> Judged {
+    let changes = changes(guide, known.building, known.walk, known.heading_rad, weights);
+    let turn_gain = changes.iter().find(|change| change.kind == Kind::Turn).map(|change| change.gain);
+    let turns = wrong_turns(guide, &changes, thresholds);
+    let route = prior.map(|prior| route(guide, known, prior, &changes, weights, thresholds));
+    Judged { turns, route, turn_gain }
+}
+
+/// The steps that one change would make fit much better, each told once.
+fn wrong_turns(guide: &Guide, changes: &[Change], thresholds: Thresholds) -> Vec<Finding> {
+    let mut found: Vec<(usize, Finding)> = Vec::new();
+    for change in changes {
+        let step = &guide.steps[change.step].step;
+        let wrong = match (change.kind, step.turn, step.climb) {
+            (Kind::Turn, Some(side), _) if change.gain > thresholds.turn => {
+                let (told, real) = if side == Side::Left { ("left", "right") } else { ("right", "left") };
+                Some((Check::Turns, format!("the path turns {real} here, and not {told}")))
+            }
+            (Kind::NoTurn, Some(_), _) if change.gain > thresholds.no_turn => {
+                Some((Check::Turns, "the path does not turn like this here".to_owned()))
+            }
+            (Kind::Climb, _, Some(climb)) if change.gain > thresholds.climb => {
+                let (told, real) = if climb == Climb::Up { ("up", "down") } else { ("down", "up") };
+                Some((Check::Floors, format!("the path goes {real} here, and not {told}")))
+            }
+            _ => None,
+        };
+        if let Some((check, reason)) = wrong.filter(|_| found.iter().all(|(step, _)| *step != change.step)) {
+            found.push((change.step, Finding { check, verdict: Verdict::Fail, reason, span: Some(change.span) }));
+        }
+    }
+    found.sort_by_key(|(step, _)| *step);
+    found.into_iter().map(|(_, finding)| finding).collect()
+}
+
+fn route(
+    guide: &Guide,
+    known: Known<'_>,
+    prior: Prior,
+    changes: &[Change],
+    weights: &Weights,
+    thresholds: Thresholds,
+) -> Route {
+    let start = known.walk.first().copied().unwrap_or_default();
+    let mut tree = Tree::of(known.building, start, known.heading_rad, prior);
+    let own = tree.with(known.building, known.walk);
+    let fit = Fit::new(&Trial::new(guide, known.building), &tree, weights);
+    let shares = shares(&fit, &tree);
+    let position = |walk: usize| known.building.viewpoints[tree.end(walk)].position;
+    let is_apart = |a: usize, b: usize| position(a).distance(position(b)) >= APART_M;
+    let mut walks: Vec<usize> = (1..tree.len()).filter(|walk| is_apart(*walk, own)).collect();
+    walks.sort_by(|a, b| shares[*b].total_cmp(&shares[*a]));
+    let other = walks.first().map_or(0.0, |walk| shares[*walk]);
+    let mut ends = vec![own];
+    for walk in walks {
+        if shares[walk] >= AS_WELL * shares[own] && ends.iter().all(|end| is_apart(*end, walk)) {
+            ends.push(walk);
+        }
+    }
+    let gain = (other / shares[own].max(f64::MIN_POSITIVE)).ln();
+    let leads_elsewhere = gain > thresholds.route;
+    let finding = Finding {
+        check: Check::Route,
+        verdict: if leads_elsewhere { Verdict::Fail } else { Verdict::Pass },
+        reason: if leads_elsewhere {
+            "the text leads elsewhere: another walk fits it much better".into()
+        } else {
+            String::new()
+        },
+        span: changes.first().filter(|change| leads_elsewhere && change.gain > 0.0).map(|change| change.span),
+    };
+    Route { finding, share: shares[own], other, ends: ends.into_iter().map(|walk| tree.end(walk)).collect() }
+}
