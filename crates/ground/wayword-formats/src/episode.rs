@@ -28,6 +28,9 @@ pub struct Episode {
     pub split: Option<String>,
     /// The path's instructions; empty where it has none yet.
     pub instructions: Vec<String>,
+    /// The language of each instruction that was read, as its file tags it: "en-IN", "hi-IN" (RxR; VLN-CE where its
+    /// episodes come from RxR). Empty where the file tags none.
+    pub languages: Vec<String>,
     /// Fields that the format does not name, in the order of the file. Written back where the loaders accept them (R2R,
     /// REVERIE, RxR).
     pub extra: Map<String, Value>,
@@ -62,6 +65,7 @@ impl Episode {
             target_object: None,
             split: None,
             instructions: Vec::new(),
+            languages: Vec::new(),
             extra: Map::new(),
             as_read: Map::new(),
         }
@@ -80,6 +84,12 @@ impl Episode {
             instructions,
             ..Self::new(path.id.clone(), path.id.clone(), path.scene.clone())
         }
+    }
+
+    /// The tag of an instruction's language, where the file gives one.
+    #[must_use]
+    pub fn language(&self, instruction: usize) -> Option<&str> {
+        self.languages.get(instruction).map(String::as_str)
     }
 
     /// The item with positions on the floor, which VLN-CE needs. The floor lies `eye_height_m` below the eyes of the

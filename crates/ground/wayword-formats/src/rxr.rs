@@ -42,7 +42,7 @@ fn take_text_fields(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), Fo
         match field {
             "annotator_id" => drop(item.name(field, &value)?),
             "edit_distance" => drop(item.finite(field, &value)?),
-            "language" => drop(item.text(field, &value)?),
+            "language" => episode.languages = vec![item.text(field, &value)?.to_owned()],
             _ => timed_words(item, field, &value)?,
         }
         // Timed words take ten times as much memory as JSON values as they do as text.

@@ -179,6 +179,9 @@ fn take_instruction(
             tokens.insert(text.clone(), numbers.ok_or_else(wrong)?);
         }
     }
+    if let Some(tag) = instruction.get("language").filter(|tag| !tag.is_null()) {
+        episode.languages = vec![item.text("instruction.language", tag)?.to_owned()];
+    }
     episode.instructions = vec![text];
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! English as instructions and answers use it: words, the names of things and rooms, and the reading of a text.
 //!
 //! [`text`] splits a text into words and sentences. [`lexicon`] has the names of things and rooms, which of them mean
-//! the same, and the forms of a name. [`reading`] finds what an instruction says. [`answers`] and [`directions`] have
+//! the same, and the forms of a name. [`reading`] finds what an instruction says. [`Language`] says in which language a text is. [`answers`] and [`directions`] have
 //! the vocabulary by which other crates read answers and split instructions. The lists are data, in `words/`.
 //!
 //! Architecture invariant: nothing here depends on a path, a model or a writer.
@@ -9,8 +9,10 @@
 pub mod answers;
 mod data;
 pub mod directions;
+mod language;
 pub mod lexicon;
 pub mod reading;
 pub mod text;
 
 pub use data::{Phrases, Words};
+pub use language::Language;

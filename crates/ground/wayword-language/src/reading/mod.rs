@@ -29,7 +29,10 @@ mod turns;
 pub mod vocabulary;
 mod ways;
 
-use crate::text::{self, Token};
+use crate::{
+    language::language,
+    text::{self, Token},
+};
 pub use roles::{Clause, Role, Word};
 pub use said::{Compass, Event, Floor, Going, Link, Ordinal, Place, Reading, Task, What};
 use std::collections::BTreeSet;
@@ -60,7 +63,8 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     mark_turn_places(tokens, &mut events);
     let task = task::closing_task(tokens, &events);
     let (words, clauses) = coverage::coverage(tokens, &clauses, &events, known);
-    Reading { events, task, words, clauses }
+    let language = language(text, &words);
+    Reading { events, task, words, clauses, language }
 }
 
 /// The number of each token's clause. Commas, full stops and "then" begin a new clause, and so does an "and" before a

@@ -1,6 +1,7 @@
 //! What a reading of an instruction holds.
 
 use super::{Clause, Word};
+use crate::Language;
 use wayword_core::{Climb, Side};
 
 /// What an instruction says, in the order of its text.
@@ -14,6 +15,8 @@ pub struct Reading {
     pub words: Vec<Word>,
     /// The clauses of the text, by the number that events have.
     pub clauses: Vec<Clause>,
+    /// The language of the text. What it says in another language than English is not read.
+    pub language: Language,
 }
 
 /// One thing that an instruction says.

@@ -1,0 +1,346 @@
+//! In which language a text is written.
+//!
+//! The reader reads English. Whether a text is English decides what can be said of it: what it says in another language
+//! is not understood. A foreign script tells the language by itself. In Latin letters, a sentence is foreign where the
+//! reader knows few of its words, and the small words of a language tell which one.
+
+use crate::{
+    data,
+    reading::Word,
+    text::{Token, tokens},
+};
+use std::{collections::BTreeMap, fmt, sync::LazyLock};
+
+const LIST: &str = include_str!("words/languages.txt");
+
+/// The language of a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Language {
+    /// English, or too short to tell.
+    English,
+    /// Some sentences or words are in another language, of this name.
+    Partly(&'static str),
+    /// Another language, of this name: "Hindi", or "another language" where the program does not know which.
+    Other(&'static str),
+}
+
+/// The name of a language that the program does not know.
+const UNNAMED: &str = "another language";
+
+/// For each small word, the languages that have it.
+static SMALL_WORDS: LazyLock<BTreeMap<&'static str, Vec<&'static str>>> = LazyLock::new(|| {
+    let mut languages: BTreeMap<&'static str, Vec<&'static str>> = BTreeMap::new();
+    for language in data::lines(LIST).filter_map(data::list_name) {
+        for word in data::words(LIST, language) {
+            let known = languages.entry(word).or_default();
+            if !known.contains(&language) {
+                known.push(language);
+            }
+        }
+    }
+    languages
+});
+
+/// Languages by the code that tags begin with, and by their lists in `words/languages.txt`.
+const NAMES: [(&str, &str, &str); 20] = [
+    ("hi", "hindi", "Hindi"),
+    ("te", "telugu", "Telugu"),
+    ("de", "german", "German"),
+    ("fr", "french", "French"),
+    ("es", "spanish", "Spanish"),
+    ("it", "italian", "Italian"),
+    ("pt", "portuguese", "Portuguese"),
+    ("nl", "dutch", "Dutch"),
+    ("sv", "swedish", "Swedish"),
+    ("da", "danish", "Danish"),
+    ("pl", "polish", "Polish"),
+    ("tr", "turkish", "Turkish"),
+    ("id", "indonesian", "Indonesian"),
+    ("zh", "", "Chinese"),
+    ("ja", "", "Japanese"),
+    ("ko", "", "Korean"),
+    ("ru", "", "Russian"),
+    ("ar", "", "Arabic"),
+    ("el", "", "Greek"),
+    ("he", "", "Hebrew"),
+];
+
+/// Scripts outside Latin: first and last letter, and the language that our datasets write in it.
+const SCRIPTS: [(char, char, &str); 19] = [
+    ('\u{900}', '\u{97F}', "Hindi"),
+    ('\u{C00}', '\u{C7F}', "Telugu"),
+    ('\u{980}', '\u{9FF}', "Bengali"),
+    ('\u{A00}', '\u{A7F}', "Punjabi"),
+    ('\u{A80}', '\u{AFF}', "Gujarati"),
+    ('\u{B80}', '\u{BFF}', "Tamil"),
+    ('\u{C80}', '\u{CFF}', "Kannada"),
+    ('\u{D00}', '\u{D7F}', "Malayalam"),
+    ('\u{370}', '\u{3FF}', "Greek"),
+    ('\u{400}', '\u{52F}', "Russian"),
+    ('\u{590}', '\u{5FF}', "Hebrew"),
+    ('\u{600}', '\u{77F}', "Arabic"),
+    ('\u{E00}', '\u{E7F}', "Thai"),
+    ('\u{1100}', '\u{11FF}', "Korean"),
+    ('\u{AC00}', '\u{D7AF}', "Korean"),
+    ('\u{3040}', '\u{30FF}', "Japanese"),
+    ('\u{3400}', '\u{4DBF}', "Chinese"),
+    ('\u{4E00}', '\u{9FFF}', "Chinese"),
+    ('\u{530}', '\u{58F}', "Armenian"),
+];
+
+impl Language {
+    /// The language that a dataset's tag names: "en-IN" is English, "hi-IN" is Hindi.
+    #[must_use]
+    pub fn tagged(tag: &str) -> Self {
+        let code = tag.split(['-', '_']).next().unwrap_or_default().trim().to_lowercase();
+        match code.as_str() {
+            "en" => Self::English,
+            code => Self::Other(NAMES.iter().find(|(known, ..)| *known == code).map_or(UNNAMED, |(.., name)| name)),
+        }
+    }
+
+    /// The language of a text that its dataset gives a tag. A tag of another language is believed; "en" is not where the
+    /// text says otherwise, because people mix languages.
+    #[must_use]
+    pub fn or_tagged(self, tag: Option<&str>) -> Self {
+        match tag.map(Self::tagged) {
+            Some(tagged @ Self::Other(_)) => tagged,
+            _ => self,
+        }
+    }
+
+    /// Whether all of the text is English.
+    #[must_use]
+    pub fn is_english(self) -> bool {
+        self == Self::English
+    }
+
+    /// The name of the language that is not English, where there is one.
+    #[must_use]
+    pub fn foreign(self) -> Option<&'static str> {
+        match self {
+            Self::English => None,
+            Self::Partly(name) | Self::Other(name) => Some(name),
+        }
+    }
+}
+
+impl fmt::Display for Language {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::English => f.write_str("English"),
+            Self::Partly(name) => write!(f, "English and {name}"),
+            Self::Other(name) => f.write_str(name),
+        }
+    }
+}
+
+/// The language of a text, of which these are the words as the reader takes them.
+#[must_use]
+pub(crate) fn language(text: &str, words: &[Word]) -> Language {
+    let by_script = by_script(text);
+    if by_script != Language::English {
+        return by_script;
+    }
+    let tokens = tokens(text);
+    let mut whole = Seen::default();
+    let (mut foreign, mut english) = (None, false);
+    for sentence in tokens.split(Token::ends_sentence) {
+        let seen = Seen::of(sentence, words);
+        match seen.language() {
+            Some(name) => foreign = foreign.or(Some(name)),
+            None => english |= seen.known > seen.words / 2 && seen.known > 1,
+        }
+        whole.add(seen);
+    }
+    match (whole.language(), foreign) {
+        (Some(name), _) if !english => Language::Other(name),
+        (Some(name), _) | (None, Some(name)) => Language::Partly(name),
+        (None, None) => Language::English,
+    }
+}
+
+/// What the letters of a text say.
+fn by_script(text: &str) -> Language {
+    let mut latin = 0;
+    let mut others: BTreeMap<&'static str, usize> = BTreeMap::new();
+    for letter in text.chars().filter(|letter| letter.is_alphabetic()) {
+        match SCRIPTS.iter().find(|(first, last, _)| (*first..=*last).contains(&letter)) {
+            Some((.., name)) => *others.entry(name).or_default() += 1,
+            None => latin += 1,
+        }
+    }
+    // Kana stand in Japanese texts only.
+    let japanese = others.contains_key("Japanese");
+    let other: usize = others.values().sum();
+    let most = others.into_iter().max_by_key(|(_, count)| *count).map(|(name, _)| name);
+    let most = if japanese { Some("Japanese") } else { most };
+    match most {
+        // A letter or two may be a name or a slip.
+        Some(name) if other > 2 && other >= latin => Language::Other(name),
+        Some(name) if other > 2 => Language::Partly(name),
+        _ => Language::English,
+    }
+}
+
+/// What a sentence or a text in Latin letters consists of.
+#[derive(Debug, Default)]
+struct Seen {
+    words: usize,
+    /// Words that the reader of English knows.
+    known: usize,
+    /// Small words of each language that are no English words.
+    small: BTreeMap<&'static str, usize>,
+}
+
+impl Seen {
+    fn of(sentence: &[Token], words: &[Word]) -> Self {
+        let mut seen = Self::default();
+        for token in sentence.iter().filter(|token| token.word.starts_with(char::is_alphabetic)) {
+            let at = words.partition_point(|word| word.span[0] < token.span[0]);
+            seen.words += 1;
+            if words.get(at).is_some_and(Word::is_understood) {
+                seen.known += 1;
+                continue;
+            }
+            for language in small_words(&token.word) {
+                *seen.small.entry(language).or_default() += 1;
+            }
+        }
+        seen
+    }
+
+    fn add(&mut self, other: Self) {
+        self.words += other.words;
+        self.known += other.known;
+        for (language, count) in other.small {
+            *self.small.entry(language).or_default() += count;
+        }
+    }
+
+    /// The name of the language, where it is not English.
+    fn language(&self) -> Option<&'static str> {
+        let best = self.small.iter().max_by_key(|(_, count)| **count);
+        let votes = best.map_or(0, |(_, count)| *count);
+        let share = |of: usize| self.words >= 3 && self.known * of <= self.words;
+        let is_foreign = (votes >= 2 && votes >= self.known && share(2))
+            || (votes >= 1 && share(3))
+            || (self.words >= 4 && share(5));
+        let name = |list: &str| NAMES.iter().find(|(_, known, _)| *known == list).map_or(UNNAMED, |(.., name)| name);
+        is_foreign.then(|| best.map_or(UNNAMED, |(list, _)| name(list)))
+    }
+}
+
+/// The languages that have a word among their small words.
+fn small_words(word: &str) -> impl Iterator<Item = &'static str> {
+    let elided = word.find(['\'', '’']).map(|end| format!("{}'", &word[..end]));
+    let languages = SMALL_WORDS.get(word).or_else(|| SMALL_WORDS.get(elided?.as_str()));
+    languages.into_iter().flatten().copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::read;
+    use std::collections::BTreeSet;
+
+    fn language(text: &str) -> Language {
+        read(text, &BTreeSet::new()).language
+    }
+
+    #[test]
+    fn other_languages_are_named() {
+        for (name, text) in [
+            ("Hindi", "दरवाज़े से बाहर निकलें और बाएँ मुड़ें।"),
+            ("Hindi", "Seedha jaiye aur darwaze ke baad baaye mudiye."),
+            ("Telugu", "తలుపు గుండా వెళ్ళి ఎడమ వైపు తిరగండి."),
+            ("Telugu", "Mee edama vaipu tiragandi, talupu daggara aagandi."),
+            ("German", "Gehen Sie durch die Tür und biegen Sie links ab. Warten Sie neben dem Sofa."),
+            ("German", "Links abbiegen und bis zum Ende gehen."),
+            ("French", "Tournez à gauche et montez l'escalier. Arrêtez-vous devant la porte."),
+            ("Spanish", "Gire a la izquierda y suba las escaleras hasta la puerta."),
+            ("Italian", "Gira a sinistra e sali le scale fino alla porta."),
+            ("Portuguese", "Vire à esquerda e suba as escadas até a porta do quarto."),
+            ("Dutch", "Ga naar de keuken en draai linksaf bij het raam."),
+            ("Swedish", "Gå genom dörren och sväng till vänster vid soffan."),
+            ("Polish", "Idź przez drzwi i skręć w lewo obok kanapy."),
+            ("Turkish", "Kapıdan geçin ve sola dönün, sonra merdivenleri çıkın."),
+            ("Indonesian", "Belok kiri dan berjalan lurus sampai pintu dapur."),
+            ("Chinese", "向左转，走到沙发旁边停下。"),
+            ("Japanese", "左に曲がってソファの横で止まってください。"),
+            ("Russian", "Поверните налево и остановитесь у дивана."),
+            ("another language", "Menjen balra, majd forduljon jobbra, álljon meg."),
+        ] {
+            assert_eq!(language(text), Language::Other(name), "{text}");
+        }
+    }
+
+    #[test]
+    fn short_and_odd_english_is_english() {
+        for text in [
+            "Stop at the sink",
+            "Stop",
+            "Kitchen",
+            "",
+            "123",
+            "Zorble.",
+            "Turn left en route to the den.",
+            "Go to the en suite.",
+            "Walk past the chaise longue, the credenza and the armoire.",
+            "Stop at the El Greco painting.",
+            "Go to the piano, grand piano.",
+            "Wlak thru teh dor adn trun lfet at the sofa.",
+            "Enter the café.",
+            "Pass the π poster.",
+        ] {
+            assert_eq!(language(text), Language::English, "{text}");
+        }
+    }
+
+    #[test]
+    fn mixed_texts_are_partly_english() {
+        for (name, text) in [
+            ("German", "Walk past the sofa and turn left. Dann gehen Sie durch die Tür und warten."),
+            ("Hindi", "Walk past the sofa and turn left. फिर रुकें।"),
+            ("Spanish", "Suba las escaleras hasta la puerta. Stop next to the old sofa."),
+        ] {
+            assert_eq!(language(text), Language::Partly(name), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_texts_of_the_fixture_are_in_the_languages_of_their_tags() {
+        let fixture = include_str!("../../wayword-formats/tests/data/rxr_languages.jsonl");
+        let value = |line: &'static str, field: &str| -> &'static str {
+            let behind = line.split_once(&format!("\"{field}\": \"")).unwrap().1;
+            behind.split_once('"').unwrap().0
+        };
+        for line in fixture.lines() {
+            let (tag, text) = (value(line, "language"), value(line, "instruction"));
+            let reading = read(text, &BTreeSet::new());
+            assert_eq!(reading.language, Language::tagged(tag), "{text}");
+            let understood = reading.clauses.iter().filter(|clause| clause.span[1] > 0).all(|clause| clause.understood);
+            assert_eq!(understood, reading.language.is_english(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_tag_of_another_language_is_believed() {
+        assert_eq!(Language::tagged("en-IN"), Language::English);
+        assert_eq!(Language::tagged("te-IN"), Language::Other("Telugu"));
+        assert_eq!(Language::tagged("hi_IN"), Language::Other("Hindi"));
+        assert_eq!(Language::tagged("xx"), Language::Other("another language"));
+        let text = language("Stop at the sofa.");
+        assert_eq!(text.or_tagged(Some("hi-IN")), Language::Other("Hindi"));
+        assert_eq!(text.or_tagged(Some("en-US")), Language::English);
+        assert_eq!(text.or_tagged(None), Language::English);
+        assert_eq!(Language::Other("German").or_tagged(Some("en-US")), Language::Other("German"));
+    }
+
+    #[test]
+    fn every_list_has_a_name() {
+        for list in data::lines(LIST).filter_map(data::list_name) {
+            assert!(NAMES.iter().any(|(_, known, _)| *known == list), "{list}");
+        }
+    }
+}
