@@ -16,6 +16,8 @@ enum Reach {
     Nothing,
     /// To the end of the noun phrase: "no piano in the hall".
     Phrase,
+    /// To the next "and": "straight without turning and into the hall".
+    And,
     /// To the end of the clause.
     Clause,
 }
@@ -30,6 +32,9 @@ fn by_words(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
         }
         let goes_on = v::DETERMINERS.contains(&word) || matches!(word, "or" | "nor" | "of");
         if reach == Reach::Phrase && v::BREAKERS.contains(&word) && !goes_on {
+            reach = Reach::Nothing;
+        }
+        if reach == Reach::And && word == "and" {
             reach = Reach::Nothing;
         }
         match begins(tokens, at) {
@@ -49,9 +54,10 @@ fn begins(tokens: Tokens<'_>, at: usize) -> Reach {
     match word {
         _ if is_not && affirms(tokens, at) => Reach::Nothing,
         _ if is_not => Reach::Clause,
-        "never" | "without" | "neither" | "nor" | "avoid" | "avoiding" => Reach::Clause,
+        "without" => Reach::And,
+        "never" | "neither" | "nor" | "avoid" | "avoiding" => Reach::Clause,
         "ignore" | "ignoring" | "disregard" => Reach::Clause,
-        "instead" | "rather" if matches!(next, "of" | "than") => Reach::Clause,
+        "instead" | "rather" if matches!(next, "of" | "than") => Reach::And,
         // "There is no need to turn".
         "no" if next == "need" => Reach::Clause,
         // "No more than two doors", "no longer", "no later than the sofa": a limit.
@@ -81,7 +87,11 @@ fn begins(tokens: Tokens<'_>, at: usize) -> Reach {
 
 /// "You can't miss the sofa", "not far from the sofa", "not only", "don't forget to turn left": these deny nothing.
 fn affirms(tokens: Tokens<'_>, at: usize) -> bool {
-    // "Can not".
+    // "Until you can't go any further turn left": what cannot be done is no command.
+    let is_can = matches!(tokens.word(at), "cannot" | "cant" | "can't" | "can’t") || tokens.before(at) == "can";
+    if is_can && v::GOING.contains(&tokens.word(at + 1)) {
+        return true;
+    }
     let next = at + 1 + usize::from(matches!(tokens.word(at + 1), "to" | "quite" | "too" | "very" | "so" | "that"));
     matches!(
         tokens.word(next),
@@ -168,6 +178,7 @@ mod tests {
             ("Take the second door, not the first door.", &["door"], &["door"]),
             ("There is no need to pass the sofa.", &[], &["sofa"]),
             ("Go to the bed instead of the sofa.", &["bed"], &["sofa"]),
+            ("Go on without passing the sofa and into the kitchen.", &["kitchen"], &["sofa"]),
         ] {
             let found = told(text);
             let found: [Vec<&str>; 2] = [&found.0, &found.1].map(|names| names.iter().map(String::as_str).collect());
@@ -186,6 +197,7 @@ mod tests {
             "Pass not only the sofa but the bed.",
             "Don't forget to pass the sofa.",
             "Go no further than the sofa.",
+            "Walk until you can't go any further past the sofa.",
             "Go to the sofa, it is not too far.",
             "Walk far, if you see the sofa stop.",
         ] {

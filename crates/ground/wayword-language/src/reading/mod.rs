@@ -52,9 +52,9 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     events.extend(distances::distances(tokens, &clauses));
     let names_no_place = |event: &&Event| matches!(event.what, What::Floor(_) | What::Distance { .. });
     let taken: Vec<[usize; 2]> = events.iter().filter(names_no_place).map(|event| event.span).collect();
-    let turns: Vec<[usize; 2]> =
-        events.iter().filter(|event| matches!(event.what, What::Turn(_))).map(|event| event.span).collect();
-    events.extend(places::places(tokens, &clauses, known, &taken, &turns));
+    let numbers_of_others = |event: &&Event| matches!(event.what, What::Turn(_) | What::Floor(_));
+    let others: Vec<[usize; 2]> = events.iter().filter(numbers_of_others).map(|event| event.span).collect();
+    events.extend(places::places(tokens, &clauses, known, &taken, &others));
     events.sort_by_key(|event| event.span);
     let denied = denial::denied(tokens, &clauses);
     for event in &mut events {
@@ -112,6 +112,7 @@ fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use wayword_core::Side;
 
     fn told(text: &str) -> Vec<String> {
@@ -128,6 +129,24 @@ mod tests {
             What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => String::new(),
         };
         events.map(word).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_without_a_panic(
+            text in "\\PC{0,80}|((no|not|you|can't|if|too|far|gone|turn|left|right|twice|two|10|ft|steps|few|until|go|up|down|north|east|counter|clockwise|o'clock|at|3|of|the|end|sofa|kitchen|zorble|is|green|on|your|facing|back|to|switch|stop|and|by|from|[,.!])  ?){0,30}",
+        ) {
+            let reading = read(&text, &BTreeSet::new());
+            let is_part = |[from, to]: [usize; 2]| from < to && text.get(from..to).is_some();
+            let tokens = text::tokens(&text);
+            let spans: Vec<[usize; 2]> = tokens.iter().filter(|token| token.is_word()).map(|token| token.span).collect();
+            prop_assert_eq!(reading.words.iter().map(|word| word.span).collect::<Vec<_>>(), spans);
+            for event in &reading.events {
+                let clause = reading.clauses[event.clause];
+                prop_assert!(is_part(event.span) && clause.span[0] <= event.span[0], "{:?}", event);
+            }
+            prop_assert!(reading.claims().events.iter().all(|event| !event.denied));
+        }
     }
 
     #[test]

@@ -11,29 +11,29 @@ pub(super) struct Numbers<'a> {
     tokens: Tokens<'a>,
     /// For each token, where the run of adjectives and numbers before it begins.
     runs: Vec<usize>,
-    /// For each token, whether it belongs to a turn.
-    turns: Vec<bool>,
+    /// For each token, whether it belongs to a turn or a storey.
+    others: Vec<bool>,
 }
 
 impl<'a> Numbers<'a> {
-    /// `spans` are the byte ranges of turns.
+    /// `spans` are the byte ranges of turns and storeys, whose sides and numbers are their own.
     pub(super) fn of(tokens: Tokens<'a>, spans: &[[usize; 2]]) -> Self {
-        let mut turns = vec![false; tokens.len()];
+        let mut others = vec![false; tokens.len()];
         for span in spans {
-            turns[tokens.first_from(span[0])..tokens.first_from(span[1])].fill(true);
+            others[tokens.first_from(span[0])..tokens.first_from(span[1])].fill(true);
         }
         let may = |word: &str| v::ADJECTIVES.contains(&word) || cardinal(word).is_some() || ordinal(word).is_some();
-        Self { tokens, runs: tokens.runs_before(may), turns }
+        Self { tokens, runs: tokens.runs_before(may), others }
     }
 
     /// The adjectives and numbers before a token, the nearest first.
-    fn words_before(&self, from: usize) -> impl Iterator<Item = usize> + use<> {
-        (self.runs[from]..from).rev().take(REACH)
+    fn words_before(&self, from: usize) -> impl Iterator<Item = usize> {
+        (self.runs[from]..from).rev().take(REACH).filter(|at| !self.others[*at])
     }
 
     /// "The second door", "the last two chairs": which one the noun phrase that begins at a token means.
     pub(super) fn ordinal(&self, from: usize) -> Option<Ordinal> {
-        self.words_before(from).filter(|at| !self.turns[*at]).find_map(|at| ordinal(self.tokens.word(at)))
+        self.words_before(from).find_map(|at| ordinal(self.tokens.word(at)))
     }
 
     /// "Two chairs", "a pair of doors", "both of the doors": how many.
@@ -137,6 +137,7 @@ mod tests {
             ("pass couches", None, true),
             ("pass several lamps", None, true),
             ("pass one lamp", None, false),
+            ("go to the level 2 bathroom", None, false),
             ("pass the second lamp", None, false),
             ("climb the stairs", None, false),
         ] {

@@ -18,13 +18,14 @@ struct Found {
     is_room: bool,
 }
 
-/// The places of a text. Tokens within `taken` spans are skipped; sides within `turns` belong to turns.
+/// The places of a text. Tokens within `taken` spans are skipped; sides and numbers within `others` belong to
+/// turns and storeys.
 pub(super) fn places(
     tokens: Tokens<'_>,
     clauses: &[usize],
     known: &BTreeSet<String>,
     taken: &[[usize; 2]],
-    turns: &[[usize; 2]],
+    others: &[[usize; 2]],
 ) -> Vec<Event> {
     let free = free(tokens, taken);
     let mut found: Vec<Found> = Vec::new();
@@ -47,7 +48,7 @@ pub(super) fn places(
         }
         found.push(place);
     }
-    let (colours, numbers) = (Colours::of(tokens), Numbers::of(tokens, turns));
+    let (colours, numbers) = (Colours::of(tokens), Numbers::of(tokens, others));
     let event = |place: Found| {
         let span = tokens.span(place.from, place.to - 1);
         let clause = clauses[place.from];

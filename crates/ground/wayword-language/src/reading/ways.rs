@@ -1,6 +1,6 @@
 //! How the walk goes on by a place: out of it, into it, through it, past it, to it.
 
-use super::{Going, tokens::Tokens, vocabulary as v};
+use super::{Going, role_words as r, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{Class, is_room, normal_word, thing};
 
 /// How far before a place the word that decides may stand, words.
@@ -14,6 +14,9 @@ pub(super) fn going(tokens: Tokens<'_>, clauses: &[usize], from: usize) -> Optio
     let in_clause = |at: &usize| tokens.is_word(*at) && clauses[*at] == clause;
     let first = from - (0..from).rev().take(REACH + MORE).take_while(in_clause).count();
     let text = Text { tokens, first };
+    if text.is_task() {
+        return None;
+    }
     let (at, found) = text.decided((first.max(from.saturating_sub(REACH))..from).rev())?;
     // "Until you are at the sofa", "when you get to the sofa", but not "once you are past the sofa".
     let is_there = matches!(found, None | Some(Going::Towards));
@@ -33,6 +36,16 @@ impl<'a> Text<'a> {
 
     fn before(&self, at: usize) -> &'a str {
         self.tokens.before(at)
+    }
+
+    /// "Take the towel down from the shelf": the towel moves, and not the walker.
+    fn is_task(&self) -> bool {
+        let skips = |at: &usize| v::ADVERBS.contains(&self.word(*at)) || matches!(self.word(*at), "and" | "but");
+        let verb = (self.first..self.tokens.len()).take(MORE).find(|at| !skips(at)).unwrap_or(self.first);
+        let (word, next) = (self.word(verb), self.word(verb + 1));
+        let moves_it = matches!((word, next), ("take", "down" | "off" | "out" | "up" | "away") | ("bring", "me"));
+        let walks = [&v::GOING, &v::TURNING, &v::WALKING].iter().any(|list| list.contains(&word));
+        moves_it || (r::TASKS.contains(&word) && !walks)
     }
 
     /// The nearest of these tokens that decides, and what it says.
@@ -205,6 +218,10 @@ mod tests {
             "face the sofa",
             "the exit door",
             "you will see the sofa",
+            "pick up the lamp",
+            "take down the picture",
+            "remove the lamp from the table",
+            "wipe down the counter",
             "until you get to the two chairs in front of a sofa",
         ] {
             assert_eq!(last(text), None, "{text}");
