@@ -5,6 +5,7 @@ mod calls;
 mod corrupt;
 mod corrupt_people;
 mod corruptions;
+mod coverage;
 mod eye;
 mod found;
 mod judged;
@@ -59,6 +60,8 @@ enum What {
         #[arg(long, default_value_t = 3)]
         show: usize,
     },
+    /// Count the words and clauses of datasets' texts that the reader understands, and show those that it does not.
+    Coverage(coverage::Flags),
     /// Show instructions of each style, picked by seed, beside what people wrote.
     Sample {
         /// Run folder.
@@ -181,6 +184,7 @@ fn main() -> ExitCode {
 fn run(what: What, output: &Output) -> Result<(), Error> {
     match what {
         What::Corruptions { runs, count, seed, show } => corruptions::measure(&runs, count, seed, show, output),
+        What::Coverage(flags) => coverage::measure(&flags, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),
         What::Calls { calls, latency_ms, concurrency } => calls::measure(calls, latency_ms, concurrency, output),
         What::Pictures { calls } => calls::pictures(calls, output),
