@@ -53,7 +53,8 @@ pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
     let names_no_place = |event: &&Event| matches!(event.what, What::Floor(_) | What::Distance { .. });
     let taken: Vec<[usize; 2]> = events.iter().filter(names_no_place).map(|event| event.span).collect();
     let numbers_of_others = |event: &&Event| matches!(event.what, What::Turn(_) | What::Floor(_));
-    let others: Vec<[usize; 2]> = events.iter().filter(numbers_of_others).map(|event| event.span).collect();
+    let mut others: Vec<[usize; 2]> = events.iter().filter(numbers_of_others).map(|event| event.span).collect();
+    others.sort_unstable();
     events.extend(places::places(tokens, &clauses, known, &taken, &others));
     events.sort_by_key(|event| event.span);
     let denied = denial::denied(tokens, &clauses);
@@ -166,6 +167,8 @@ mod tests {
         assert_eq!(told("Turn to your right and head left."), ["turn Right", "turn Left"]);
         assert_eq!(told("The chair to the left of the fireplace"), ["chair", "fireplace"]);
         assert_eq!(told("Turn around and leave."), ["turn Behind"]);
+        assert_eq!(told("Make a U-turn at the sofa."), ["turn Behind", "sofa"]);
+        assert_eq!(told("Do an about-face."), ["turn Behind"]);
     }
 
     #[test]

@@ -31,7 +31,12 @@ pub(super) fn places(
     let mut found: Vec<Found> = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
-        let next = if free[at] { named(tokens, at, known).or_else(|| unnamed(tokens, at, known)) } else { None };
+        let next = if free[at] {
+            named(tokens, at, known)
+                .or_else(|| unnamed(tokens, at, known).filter(|place| is_free_of(others, tokens, place)))
+        } else {
+            None
+        };
         at = next.as_ref().map_or(at + 1, |place| place.to);
         let Some(mut place) = next else { continue };
         // "The kitchen table": a place right before another only says which one the other is. A basement does not,
@@ -56,7 +61,7 @@ pub(super) fn places(
         let side = side.or_else(|| sides::before(tokens, place.noun));
         let link = link(tokens, clauses, place.from);
         let colour = colours.before(place.from).or_else(|| colours.behind(end));
-        let going = going(tokens, clauses, place.noun);
+        let going = going(tokens, clauses, place.noun, &place.name);
         let (ordinal, count) = (numbers.ordinal(place.noun), numbers.count(place.noun));
         let several = count.is_some() || says_several(tokens.word(place.to - 1));
         let Found { name, is_thing, is_room, .. } = place;
@@ -65,6 +70,14 @@ pub(super) fn places(
         Event { what: What::Place(place), span, clause, denied: false }
     };
     found.into_iter().map(event).collect()
+}
+
+/// Whether a place is outside all of these spans: "an about-face" and "a U-turn" are turns.
+fn is_free_of(spans: &[[usize; 2]], tokens: Tokens<'_>, place: &Found) -> bool {
+    let [from, to] = tokens.span(place.from, place.to - 1);
+    // The spans ascend.
+    let next = spans.partition_point(|span| span[1] <= from);
+    spans.get(next).is_none_or(|span| to <= span[0])
 }
 
 /// For each token, whether it is outside all of these spans.

@@ -65,6 +65,8 @@ impl<'a> Text<'a> {
         match self.word(at) {
             "back" | "backs" if next == "to" && matches!(self.before(at), "your" | "my" | "the") => Some(true),
             "facing" if next == "away" => Some(true),
+            // "An about-face" is a turn.
+            "face" if self.before(at) == "about" => None,
             "face" | "facing" | "faced" if !self.names_direction(at + 1) && self.is_walker(at) => Some(next == "away"),
             "look" | "looking" if matches!(next, "at" | "toward" | "towards" | "into") && self.is_walker(at) => {
                 Some(false)
@@ -159,6 +161,7 @@ mod tests {
             "Face left.",
             "Turn around and face the opposite direction.",
             "Walk past the sofa that is facing the window.",
+            "Do an about-face.",
         ] {
             assert_eq!(told(text), [], "{text}");
         }

@@ -8,8 +8,8 @@ const REACH: usize = 7;
 /// How far before that the words may begin that say that it is a moment ("when you get to"), words.
 const MORE: usize = 4;
 
-/// How the walk goes on by the place that begins at a token; `None` where no word says that it does.
-pub(super) fn going(tokens: Tokens<'_>, clauses: &[usize], from: usize) -> Option<Going> {
+/// How the walk goes on by the place of that name that begins at a token; `None` where no word says that it does.
+pub(super) fn going(tokens: Tokens<'_>, clauses: &[usize], from: usize, place: &str) -> Option<Going> {
     let clause = *clauses.get(from)?;
     let in_clause = |at: &usize| tokens.is_word(*at) && clauses[*at] == clause;
     let first = from - (0..from).rev().take(REACH + MORE).take_while(in_clause).count();
@@ -18,6 +18,9 @@ pub(super) fn going(tokens: Tokens<'_>, clauses: &[usize], from: usize) -> Optio
         return None;
     }
     let (at, found) = text.decided((first.max(from.saturating_sub(REACH))..from).rev())?;
+    // "Take the second door".
+    let is_taken = found == Some(Going::Along) && text.is_doorway(place);
+    let found = if is_taken { Some(Going::Through) } else { found };
     // "Until you are at the sofa", "when you get to the sofa", but not "once you are past the sofa".
     let is_there = matches!(found, None | Some(Going::Towards));
     if is_there && text.tells_when(at) { Some(Going::Until) } else { found }
@@ -45,7 +48,7 @@ impl<'a> Text<'a> {
         let (word, next) = (self.word(verb), self.word(verb + 1));
         let moves_it = matches!((word, next), ("take", "down" | "off" | "out" | "up" | "away") | ("bring", "me"));
         let walks = [&v::GOING, &v::TURNING, &v::WALKING].iter().any(|list| list.contains(&word));
-        moves_it || (r::TASKS.contains(&word) && !walks)
+        moves_it || (r::TASKS.contains(&word) && !walks && word != "use")
     }
 
     /// The nearest of these tokens that decides, and what it says.
@@ -175,7 +178,7 @@ mod tests {
             (Going::Entering, &["enter the kitchen", "turn left into the kitchen", "walk in the kitchen"]),
             (Going::Entering, &["step inside the bathroom", "walk out of the bedroom and go into the hall"]),
             (Going::Through, &["walk through the kitchen", "cross the room through the arch", "go across the kitchen"]),
-            (Going::Through, &["walk between the sofas"]),
+            (Going::Through, &["walk between the sofas", "take the second door on the left", "use the doorway"]),
             (Going::Along, &["walk down the hallway", "follow the hallway", "go up the stairs", "take the stairs"]),
             (Going::Past, &["walk past the sofa", "passing the old sofa", "walk by the sofa", "pass by the sofa"]),
             (
