@@ -54,6 +54,6 @@ pub use pose::Pose;
 pub use recent::Recent;
 pub use seed::rng;
 pub use style::{Constraints, Style};
-pub use survey::{Survey, Surveyed};
+pub use survey::{Placed, Survey, Surveyed};
 pub use verdict::{Check, Finding, Verdict};
 pub use view::{Gaze, GroundTruth, View};

@@ -1,7 +1,7 @@
 //! What a platform must offer.
 
 use crate::{
-    Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, SceneId, View, ViewpointGraph, ViewpointId, Way,
+    Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, Placed, SceneId, View, ViewpointGraph, ViewpointId, Way,
     graph::GraphError,
 };
 use serde::{Deserialize, Serialize};
@@ -100,6 +100,15 @@ pub trait Platform: Send + Sync {
         Ok(Vec::new())
     }
 
+    /// All objects that the platform lists in a scene with their places, also those that no viewpoint shows; empty where
+    /// it knows no more than the labels of its views.
+    ///
+    /// # Errors
+    /// When there is no such scene or its data cannot be read.
+    fn listed_objects(&self, _scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+        Ok(Vec::new())
+    }
+
     /// The file that a scene is read from, where Habitat reads the same file; `None` elsewhere.
     ///
     /// # Errors
@@ -165,6 +174,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
         (**self).islands(scene)
+    }
+
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+        (**self).listed_objects(scene)
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {

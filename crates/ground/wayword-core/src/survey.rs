@@ -1,6 +1,6 @@
 //! What is known of all viewpoints of a scene.
 
-use crate::{DVec3, Label, ViewpointGraph, ViewpointId, graph::GraphError};
+use crate::{DVec3, Label, ObjectId, ViewpointGraph, ViewpointId, graph::GraphError};
 use std::collections::BTreeMap;
 
 /// What is known of a scene: its viewpoints, the ways between them, and what is at each.
@@ -8,6 +8,18 @@ use std::collections::BTreeMap;
 pub struct Survey {
     viewpoints: Vec<Surveyed>,
     index: BTreeMap<ViewpointId, usize>,
+    objects: Vec<Placed>,
+}
+
+/// An object that a platform lists in a scene, whether or not a viewpoint shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed {
+    /// Its id in the scene.
+    pub object: ObjectId,
+    /// Its name in plain words.
+    pub name: String,
+    /// Its centre, metres, world frame.
+    pub position: DVec3,
 }
 
 /// What is known of one viewpoint.
@@ -52,7 +64,19 @@ impl Survey {
             Ok(Surveyed { id: (*id).clone(), position, level: graph.level(id), neighbours, known })
         };
         let viewpoints = ids.iter().map(surveyed).collect::<Result<_, E>>()?;
-        Ok(Self { viewpoints, index })
+        Ok(Self { viewpoints, index, objects: Vec::new() })
+    }
+
+    /// The survey with all objects that the platform lists in the scene, also those that no viewpoint shows.
+    #[must_use]
+    pub fn with_objects(self, objects: Vec<Placed>) -> Self {
+        Self { objects, ..self }
+    }
+
+    /// All objects that the platform lists in the scene; empty where it knows no more than its viewpoints show.
+    #[must_use]
+    pub fn objects(&self) -> &[Placed] {
+        &self.objects
     }
 
     /// All viewpoints, in the order of the graph.

@@ -57,7 +57,7 @@ fn counted(all: &[(&Run, &Record)], count: usize, seed: u64) -> (Counts, Vec<Str
             let Some((run, record)) = all.choose(&mut rng) else { break };
             let Some((evidence, style, others)) = run.needed_for(record) else { continue };
             let Some(text) = corrupt(kind, record, evidence, others, style, &mut rng) else { continue };
-            let verdict = check(&text, Subject { evidence, style, target: record.path.target.as_ref() }).verdict();
+            let verdict = check(&text, Subject::closed(evidence, style, record.path.target.as_ref())).verdict();
             let (caught, total) = counts.entry(kind).or_default();
             *total += 1;
             *caught += usize::from(verdict == Verdict::Fail);

@@ -7,6 +7,7 @@ mod corrupt_people;
 mod corruptions;
 mod coverage;
 mod eye;
+mod fit_evidence;
 mod found;
 mod judged;
 mod key;
@@ -88,6 +89,18 @@ enum What {
         /// Share of the objects named by that model that are not there.
         #[arg(long, default_value_t = 0.15)]
         hallucinated: f64,
+    },
+    /// Fit the weights that say how much the silence of labels says about a claim, on people's texts.
+    FitEvidence {
+        /// Folder of Matterport3D's and REVERIE's data.
+        #[arg(long)]
+        data: PathBuf,
+        /// File of people's texts. Its last ten buildings by name are left out, and how the weights do there is shown.
+        #[arg(long)]
+        episodes: PathBuf,
+        /// Write the weights to this file.
+        #[arg(long)]
+        out: Option<PathBuf>,
     },
     /// Measure calls per second, this program's processor time per call, and memory, with a test provider.
     Calls {
@@ -195,6 +208,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
         What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
+        What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
         What::People(flags) => people::measure(flags, output),
         What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
         What::Found(flags) => found::measure(flags, output),

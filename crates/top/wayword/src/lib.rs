@@ -17,6 +17,7 @@ pub mod interrupt;
 pub mod item;
 mod losses;
 pub mod output;
+pub mod people;
 pub mod pictures;
 pub mod pipeline;
 pub mod plan;

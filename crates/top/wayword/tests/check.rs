@@ -39,10 +39,10 @@ fn check(building: &Building, file: &str, more: &[&str]) -> Ran {
     building.wayword(&arguments)
 }
 
-/// Checks one text and returns its findings: check, verdict, and the words that it is about or its reason.
+/// Checks one text in a closed world and returns its findings: check, verdict, and the words that it is about or its reason.
 fn findings(building: &Building, text: &str, style: &str) -> (Option<i32>, Vec<(String, String, String)>) {
     let file = episodes(building, &[text], (style == "reverie").then_some(9));
-    let ran = check(building, &file, &["--style", style, "--json"]);
+    let ran = check(building, &file, &["--style", style, "--world", "closed", "--json"]);
     let report = ran.json();
     let of = |text: &Value| text["findings"].as_array().unwrap().clone();
     let told = |finding: Value| {
@@ -214,11 +214,12 @@ fn people_read_the_text_the_check_and_the_reason() {
     let building = Building::new();
     let wrong = FINE.replace("the lamp", "the piano");
     let file = episodes(&building, &[FINE, &wrong], None);
-    let ran = check(&building, &file, &["--style", "r2r"]);
+    let closed = ["--style", "r2r", "--world", "closed"];
+    let ran = check(&building, &file, &closed);
     assert_eq!(ran.code, Some(3));
     assert!(ran.out.contains(&wrong) && ran.out.contains("no frame of the path shows \"piano\""), "{}", ran.out);
-    assert!(!ran.out.contains(FINE) && ran.out.contains("checked against: labels"), "{}", ran.out);
-    let none = check(&building, &file, &["--style", "r2r", "--show", "0"]);
+    assert!(!ran.out.contains(FINE) && ran.out.contains("checked against: labels\nworld: closed (2)"), "{}", ran.out);
+    let none = check(&building, &file, &[&closed[..], &["--show", "0"]].concat());
     assert!(!none.out.contains(&wrong) && none.code == Some(3), "{}", none.out);
 }
 
@@ -227,8 +228,9 @@ fn the_json_report_counts_texts_and_checks() {
     let building = Building::new();
     let wrong = FINE.replace("the lamp", "the piano");
     let file = episodes(&building, &[FINE, &wrong], None);
-    let report = check(&building, &file, &["--style", "r2r", "--json"]).json();
+    let report = check(&building, &file, &["--style", "r2r", "--world", "closed", "--json"]).json();
     assert_eq!((&report["passed"], &report["unverified"], &report["failed"]), (&1.into(), &0.into(), &1.into()));
+    assert_eq!((&report["worlds"], &report["not_passed"][0]["world"]), (&json!({"closed": 2}), &"closed".into()));
     assert_eq!(report["checked_against"], json!(["labels"]));
     assert_eq!(report["by_check"]["landmarks"], json!({"passed": 1, "unverified": 0, "failed": 1}));
     assert_eq!(report["by_check"]["form"], json!({"passed": 2, "unverified": 0, "failed": 0}));
@@ -242,6 +244,69 @@ fn the_json_report_counts_texts_and_checks() {
     assert_eq!((&finding["check"], &finding["verdict"]), (&"landmarks".into(), &"fail".into()));
     let end = finding["span"][1].as_u64().unwrap() as usize;
     assert!(finding["span"][0].as_u64().unwrap() as usize <= start && end == start + "piano".len(), "{finding}");
+}
+
+#[test]
+fn what_was_written_from_the_labels_is_held_against_a_closed_world_and_everything_else_against_an_open_one() {
+    let building = Building::new();
+    let absent = FINE.replace("the lamp", "the piano");
+    let file = episodes(&building, &[FINE, &absent], None);
+    let ran = check(&building, &file, &["--style", "r2r", "--json"]);
+    let report = ran.json();
+    assert_eq!((ran.code, &report["worlds"]), (Some(0), &json!({"open": 2})), "{report}");
+    assert_eq!(
+        (&report["passed"], &report["unverified"]),
+        (&1.into(), &1.into()),
+        "labels that list no piano deny none"
+    );
+    assert!(check(&building, &file, &["--style", "r2r"]).out.contains("world: open (2)"));
+
+    assert_eq!(building.generate("run", &["--episodes", common::EPISODES, "--style", "r2r"]).code, Some(0));
+    let mut line = building.lines("run/instructions.jsonl").remove(0);
+    let mut worlds = |more: &[&str]| {
+        building.write("told.jsonl", format!("{line}\n"));
+        let worlds = check(&building, "told.jsonl", &[&["--json"], more].concat()).json()["worlds"].clone();
+        line["provenance"]["checked_against"] = "captions".into();
+        worlds
+    };
+    assert_eq!(worlds(&[]), json!({"closed": 1}));
+    assert_eq!(worlds(&[]), json!({"open": 1}), "its evidence is not what is at hand");
+    assert_eq!(worlds(&["--world", "closed"]), json!({"closed": 1}));
+}
+
+#[test]
+fn another_text_about_the_path_is_a_witness() {
+    let building = Building::new();
+    let climbs = "Climb the stairs. Stop at the lamp.";
+    let file = episodes(&building, &[climbs, "Go up the stairs to the lamp. Stop there."], None);
+    let failed = |more: &[&str]| check(&building, &file, &[&["--json"], more].concat()).json()["failed"].clone();
+    assert_eq!((failed(&[]), failed(&["--no-witnesses"])), (0.into(), 2.into()));
+    let alone = episodes(&building, &[climbs, climbs], None);
+    assert_eq!(check(&building, &alone, &["--json"]).json()["failed"], 2, "a copy is no witness");
+}
+
+#[test]
+fn a_calibration_is_made_of_a_file_and_named_where_it_is_used() {
+    let building = Building::new();
+    let file = episodes(&building, &[FINE, "Walk past the piano to the lamp. Stop there."], None);
+    let made = building.wayword(&[
+        "calibrate",
+        "--platform",
+        "matterport",
+        "--data",
+        "data",
+        "--from",
+        &file,
+        "--out",
+        "calibration.toml",
+    ]);
+    assert_eq!(made.code, Some(0), "{made:?}");
+    let written = std::fs::read_to_string(building.path("calibration.toml")).unwrap();
+    assert!(written.contains("from = \"texts.json\"") && !written.contains("Walk past"), "{written}");
+    let ran = check(&building, &file, &["--calibration", "calibration.toml"]);
+    assert!(ran.out.contains("calibration: calibration.toml"), "{ran:?}");
+    building.write("calibration.toml", "words = 3");
+    assert_eq!(check(&building, &file, &["--calibration", "calibration.toml"]).code, Some(1));
 }
 
 /// Leaves the building its connectivity graph and nothing else.

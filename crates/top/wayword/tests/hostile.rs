@@ -14,7 +14,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword::{
-    commands::{check_file, generate_into},
+    commands::{How, check_file, generate_into},
     error::Error,
     output::Output,
     run::{Journal, RunFolder, WalkRecord, read_lines, settings_of},
@@ -273,7 +273,7 @@ fn check_damaged_records(file: &Path, settings: &Settings, line: &str, count: us
     for _ in 0..count {
         let bytes = damaged_line(line, &mut rng);
         fs::write(file, &bytes).unwrap();
-        match check_file(file, settings, Some("reverie"), &quiet) {
+        match check_file(file, settings, How { style: Some("reverie"), ..How::default() }, &quiet) {
             Ok(report) => used += report.passed + report.unverified + report.failed,
             Err(error) => {
                 // The error about a path that does not fit its scene names the scene; that about an unreadable line
@@ -326,7 +326,7 @@ fn a_house_is_not_looked_at_from_nowhere() {
         *changed.pointer_mut(pointer).unwrap() = value.clone();
         fs::write(&file, format!("{changed}\n")).unwrap();
         // The line may be refused, or checked without a result; the command only has to end.
-        if let Err(error) = check_file(&file, &settings, None, &Output::new(true, true)) {
+        if let Err(error) = check_file(&file, &settings, How::default(), &Output::new(true, true)) {
             let told = error.to_string();
             assert!(told.contains("told.jsonl") || told.contains("scene"), "{pointer} = {value}: {told}");
         }

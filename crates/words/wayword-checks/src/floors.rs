@@ -6,7 +6,6 @@ use wayword_core::{Check, Climb, Finding, Motion, Verdict};
 use wayword_language::reading::{Event, Floor, Reading, What};
 
 pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
-    let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();
     let stairs = reading.events.iter().filter_map(|event| {
         let (verdict, wrong) = match event.what {
             What::Climb(climb) => (climbed(climb, evidence), format!("the path does not go {} any stairs", way(climb))),
@@ -20,7 +19,13 @@ pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
         let reason = if verdict == Verdict::Fail { wrong } else { unknown() };
         (verdict != Verdict::Pass).then(|| finding(Check::Floors, verdict, reason, Some(event.span)))
     });
-    or_pass(Check::Floors, stairs.chain(wrong_floor(&told(reading), reading, &levels)).collect())
+    or_pass(Check::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
+}
+
+/// What is wrong with the storeys that a text names.
+pub(super) fn wrong_floors(reading: &Reading, evidence: &Evidence) -> Option<Finding> {
+    let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();
+    wrong_floor(&told(reading), reading, &levels)
 }
 
 fn way(climb: Climb) -> &'static str {

@@ -6,17 +6,21 @@
 //! Architecture invariant: nothing here knows a writer, a prompt or a plan.
 
 mod align;
+mod coverage;
 mod evidence;
 mod floors;
 mod form;
 mod landmarks;
 mod leak;
 mod made_up;
+pub mod open;
 mod order;
 mod sides;
 mod task;
 #[cfg(test)]
 mod tests;
+mod witnesses;
+mod world;
 
 use std::collections::BTreeSet;
 use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
@@ -25,8 +29,10 @@ use wayword_language::{
     reading::{Event, Reading, What, read},
 };
 
-pub use evidence::{Evidence, FrameEvidence, SeenThing, Source};
+pub use evidence::{Building, Distance, Evidence, FrameEvidence, NEAR_M, SeenThing, Source, Surroundings};
 pub use leak::{SHARED_RUN, shared_run};
+pub use witnesses::{Testimony, lift};
+pub use world::{Reach, World};
 
 /// What a text is checked against.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +43,24 @@ pub struct Subject<'a> {
     pub style: &'a Style,
     /// The object that its task has to be about, where one was given.
     pub target: Option<&'a Target>,
+    /// What the silence of the evidence means.
+    pub world: World,
+    /// What an open world knows beyond the frames.
+    pub reach: Reach<'a>,
+}
+
+impl<'a> Subject<'a> {
+    /// A text that was written from this evidence.
+    #[must_use]
+    pub fn closed(evidence: &'a Evidence, style: &'a Style, target: Option<&'a Target>) -> Self {
+        Self { evidence, style, target, world: World::Closed, reach: Reach::default() }
+    }
+
+    /// A text that somebody else wrote.
+    #[must_use]
+    pub fn open(evidence: &'a Evidence, style: &'a Style, reach: Reach<'a>) -> Self {
+        Self { evidence, style, target: None, world: World::Open, reach }
+    }
 }
 
 /// A checked text.
@@ -46,6 +70,8 @@ pub struct Checked {
     pub findings: Vec<Finding>,
     /// The landmarks, rooms, turns, storeys and target that the text mentions, each with its frame.
     pub mentions: Vec<Mention>,
+    /// The world that the text was held against.
+    pub world: World,
 }
 
 impl Checked {
@@ -60,22 +86,27 @@ impl Checked {
 #[must_use]
 pub fn check(text: &str, subject: Subject<'_>) -> Checked {
     let reading = read(text, &names(subject.evidence)).claims();
-    let mut findings = Vec::new();
-    findings.extend(form::form(text, &subject.style.constraints));
+    let mut findings = form::form(text, &subject.style.constraints);
     let ends_in_task = subject.style.constraints.ends_in_task;
     if ends_in_task {
-        findings.push(task::task(&reading, subject.evidence, subject.target));
+        findings.push(task::task(&reading, subject));
     }
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
     let places = landmarks::landmarks(&reading, subject.evidence, object);
-    findings.extend(places.findings);
     let walk = order::order(&reading, subject.evidence, &places.shown);
-    findings.extend(walk.findings);
-    findings.extend(floors::floors(&reading, subject.evidence));
+    match subject.world {
+        World::Closed => {
+            findings.extend(places.findings);
+            findings.extend(walk.findings);
+            findings.extend(floors::floors(&reading, subject.evidence));
+        }
+        World::Open => findings.extend(open::open(text, &reading, subject)),
+    }
+    findings.extend(coverage::coverage(&reading));
     findings.push(leak::leak(text, &subject.style.references));
     findings.sort_by_key(|finding| finding.check);
-    Checked { mentions: mentions(&reading, &walk.frames), findings }
+    Checked { mentions: mentions(&reading, &walk.frames), findings, world: subject.world }
 }
 
 /// Checks a text that this program wrote. It is stricter than [`check`]: where the motion is unknown, the writer made

@@ -1,17 +1,17 @@
 //! The closing task.
 
 use super::{
-    finding, pass,
+    Subject, World, finding, pass,
     sides::{self, lies_on, word},
 };
-use crate::evidence::Evidence;
-use wayword_core::{Check, Finding, Target, Verdict};
+use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{
     lexicon::agree,
     reading::{Reading, What},
 };
 
-pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Target>) -> Finding {
+pub(super) fn task(reading: &Reading, subject: Subject<'_>) -> Finding {
+    let Subject { evidence, target, world, .. } = subject;
     let fail = |reason: String, span| finding(Check::Task, Verdict::Fail, reason, span);
     let Some(task) = &reading.task else { return fail("it does not end in a task".into(), None) };
     let object = task.object.map(|at| &reading.events[at]);
@@ -23,7 +23,8 @@ pub(super) fn task(reading: &Reading, evidence: &Evidence, target: Option<&Targe
         return fail(format!("its task is about {name:?}, and the given target is {:?}", target.name), Some(span));
     }
     let alike: Vec<_> = evidence.final_things().iter().filter(|thing| agree(&thing.name, name)).collect();
-    if alike.is_empty() && !evidence.denies_thing_at_end(name) {
+    // In an open world, labels that do not list an object do not deny it.
+    if alike.is_empty() && (world == World::Open || !evidence.denies_thing_at_end(name)) {
         let reason = format!("the program cannot check whether there is {name:?}");
         return finding(Check::Task, Verdict::Unverified, reason, Some(span));
     }

@@ -45,7 +45,7 @@ fn told(text: &str, evidence: &Evidence) -> (Verdict, Vec<Check>) {
 }
 
 fn told_in(text: &str, evidence: &Evidence, style: &Style) -> (Verdict, Vec<Check>) {
-    let checked = check(text, Subject { evidence, style, target: None });
+    let checked = check(text, Subject::closed(evidence, style, None));
     let verdict = checked.verdict();
     let worst = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
     let mut checks: Vec<Check> = worst.map(|finding| finding.check).collect();
@@ -269,7 +269,7 @@ fn of_an_unknown_motion_places_and_their_order_are_held_against_what_was_seen() 
 #[test]
 fn a_text_of_our_own_tells_nothing_of_an_unknown_motion() {
     let own = |text: &str, evidence: &Evidence| {
-        let checked = check_own(text, Subject { evidence, style: &style(false), target: None });
+        let checked = check_own(text, Subject::closed(evidence, &style(false), None));
         let failed = checked.findings.into_iter().filter(|finding| finding.verdict == Verdict::Fail);
         failed
             .map(|finding| (finding.check, finding.span.map(|[from, to]| text[from..to].to_owned())))
@@ -302,7 +302,7 @@ fn a_text_of_our_own_tells_nothing_of_an_unknown_motion() {
         assert_eq!(own(text, &video), [], "{text}");
     }
     // Each check has one outcome: the finding before about the same words is gone.
-    let checked = check_own("Turn left to the bed.", Subject { evidence: &video, style: &style(false), target: None });
+    let checked = check_own("Turn left to the bed.", Subject::closed(&video, &style(false), None));
     let turns = checked.findings.iter().filter(|finding| finding.check == Check::Turns);
     assert_eq!(turns.map(|finding| finding.verdict).collect::<Vec<_>>(), [Verdict::Fail]);
 }

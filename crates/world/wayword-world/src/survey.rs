@@ -28,10 +28,11 @@ pub fn survey(platform: &dyn Platform, scene: &SceneId) -> Result<Survey, Platfo
         }
         Ok::<_, Trouble>(known)
     };
-    Survey::of(&graph, known).map_err(|trouble| match trouble {
+    let survey = Survey::of(&graph, known).map_err(|trouble| match trouble {
         Trouble::Platform(error) => error,
         Trouble::Graph(source) => PlatformError::Graph { scene: scene.clone(), source },
-    })
+    })?;
+    Ok(survey.with_objects(platform.listed_objects(scene)?))
 }
 
 /// Why a survey failed.

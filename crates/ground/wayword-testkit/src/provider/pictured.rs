@@ -5,8 +5,8 @@ use super::{Gallery, Scenery, Thing, barcode};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    Frame, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph, ViewpointId,
-    Where,
+    Frame, Gaze, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View, ViewpointGraph,
+    ViewpointId, Where,
 };
 
 /// A platform whose views show a number instead of the scene.
@@ -69,6 +69,10 @@ impl<P: Platform> Platform for Pictured<P> {
 
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         self.platform.visible_from(scene, object)
+    }
+
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+        self.platform.listed_objects(scene)
     }
 }
 

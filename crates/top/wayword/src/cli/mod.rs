@@ -13,7 +13,7 @@ use crate::{
     settings::{Asked, AskedPlatform},
     styles,
 };
-use clap::{Args, Parser, Subcommand, builder::PossibleValuesParser};
+use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
 use std::path::PathBuf;
 use wayword_formats::Format;
 
@@ -77,6 +77,8 @@ pub enum Command {
     Generate(Box<Generate>),
     /// Check anyone's instructions against what their paths show.
     Check(Check),
+    /// Learn from people's texts how far labels agree with single names of objects and rooms.
+    Calibrate(Calibrate),
     /// Write a run as one file, in the format of R2R, REVERIE, RxR, VLN-CE or Wayword.
     Export(Export),
     /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
@@ -164,9 +166,49 @@ pub struct Check {
     /// it was written in, and any other text only against its path.
     #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
     pub style: Option<String>,
+    /// What the evidence does not show is wrong in a closed world. In an open one, it counts only if the evidence would have shown
+    /// it.
+    #[arg(long, value_name = "WORLD", value_enum, default_value_t)]
+    pub world: AskedWorld,
+    /// Let a text fail although another text about the same path says the same.
+    #[arg(long)]
+    pub no_witnesses: bool,
+    /// Shares by the names of objects and rooms that `wayword calibrate` made.
+    #[arg(long, value_name = "FILE")]
+    pub calibration: Option<PathBuf>,
     /// Show at most this many of the instructions that did not pass.
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub show: usize,
+}
+
+/// `wayword calibrate`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword calibrate --platform matterport --data DATA --from R2R_train.json --out matterport.toml
+  wayword check R2R_val_seen.json --platform matterport --data DATA --calibration matterport.toml")]
+pub struct Calibrate {
+    /// The platform.
+    #[command(flatten)]
+    pub platform: AskedPlatform,
+    /// File of texts that people wrote: R2R, REVERIE, RxR or Wayword.
+    #[arg(long, value_name = "FILE")]
+    pub from: PathBuf,
+    /// File to write.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// The world that texts are held against, as the user asks for it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum AskedWorld {
+    /// Closed for texts that were written from the evidence at hand, open for all others.
+    #[default]
+    Auto,
+    /// Open for all texts.
+    Open,
+    /// Closed for all texts.
+    Closed,
 }
 
 /// `wayword export`.

@@ -1,5 +1,6 @@
 //! One file per command.
 
+mod calibrate;
 mod check;
 pub(crate) mod compare;
 mod completions;
@@ -25,7 +26,7 @@ use crate::{
     output::Output,
 };
 
-pub use check::{CheckReport, CheckedText, Counts, check_file, checked};
+pub use check::{CheckReport, CheckedText, Counts, How, check_file, checked};
 pub use generate::{Summary, generate_into};
 pub use perceive::{Extent, Measured, Row, perceive};
 
@@ -38,6 +39,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Demo(args) => demo::run(&args, output),
         Command::Generate(args) => generate::run(&args, output),
         Command::Check(args) => check::run(&args, output),
+        Command::Calibrate(args) => calibrate::run(&args, output),
         Command::Export(args) => export::run(&args, output),
         Command::Report(args) => report::run(&args, output),
         Command::Compare(args) => compare::run(&args, output),

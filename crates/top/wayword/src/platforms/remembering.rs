@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View,
+    Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View,
     ViewpointGraph, ViewpointId, Way,
 };
 
@@ -91,6 +91,10 @@ impl Platform for Remembering<'_> {
 
     fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
         self.platform.islands(scene)
+    }
+
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+        self.platform.listed_objects(scene)
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {

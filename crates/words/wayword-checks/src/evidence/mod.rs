@@ -1,7 +1,12 @@
 //! What a text about a path is checked against.
 
+mod building;
 mod from_captions;
 mod from_labels;
+mod surroundings;
+
+pub use building::Building;
+pub use surroundings::{Distance, NEAR_M, Surroundings};
 
 use wayword_core::{Climb, Motion, Move, ObjectId, Path, motion};
 use wayword_language::lexicon::{Class, agree, room_name, same_room, thing};

@@ -1,6 +1,9 @@
 //! Answers from ground truth. It is called `labels` wherever it takes part, because it perceives nothing.
+//!
+//! Labels may reach no farther than two metres. Of a big thing that such a room has, they do not say that it is not there.
 
 use crate::dialogue::{Asked, Wanted, asked};
+use wayword_checks::open::is_expected;
 use wayword_core::{Answer, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
 use wayword_language::lexicon::{agree, counted, normal, plural, same_room, with_article};
 
@@ -98,6 +101,7 @@ fn presence(view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> An
     if let [(wanted, label)] = found.as_slice() {
         return match label {
             Some(label) => format!("Yes, {}.", phrase(third(view, label))),
+            None if is_open(truth, wanted) => not_sure(),
             None => no(&wanted.said, wanted.several),
         };
     }
@@ -107,9 +111,11 @@ fn presence(view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> An
             Some(format!("{} {}", with_article(&wanted.name), phrase(third(view, (*label)?))))
         })
         .collect();
-    let missing: Vec<&str> =
-        found.iter().filter(|(_, label)| label.is_none()).map(|(wanted, _)| wanted.said.as_str()).collect();
+    let absent = found.iter().filter(|(_, label)| label.is_none());
+    let (open, missing): (Vec<_>, Vec<_>) = absent.partition(|(wanted, _)| is_open(truth, wanted));
+    let missing: Vec<&str> = missing.iter().map(|(wanted, _)| wanted.said.as_str()).collect();
     match (there.as_slice(), missing.as_slice()) {
+        ([], []) if !open.is_empty() => not_sure(),
         ([], missing) => no(&missing.join(" or "), false),
         (there, []) => format!("Yes, there is {}.", there.join(" and ")),
         (there, missing) => {
@@ -123,6 +129,13 @@ fn no(said: &str, several: bool) -> Answer {
     format!("No, there {} no {said}.", if several { "are" } else { "is" })
 }
 
+/// Whether labels leave open that there is such a thing. They do not where they list one of another colour or in another
+/// part of the view.
+fn is_open(truth: &GroundTruth, wanted: &Wanted) -> bool {
+    let is_listed = truth.labels.iter().any(|label| agree(&label.name, &wanted.name));
+    !is_listed && truth.room.as_deref().is_some_and(|room| is_expected(&wanted.name, room))
+}
+
 /// The label that a question asks for, of the colour and in the part of the view that it names.
 fn find<'a>(view: &View, truth: &'a GroundTruth, wanted: &Wanted) -> Option<&'a Label> {
     let has_colour = |label: &Label| wanted.colour.is_none() || label.colour == wanted.colour;
@@ -132,6 +145,7 @@ fn find<'a>(view: &View, truth: &'a GroundTruth, wanted: &Wanted) -> Option<&'a 
 
 fn number(truth: &GroundTruth, wanted: &Wanted) -> Answer {
     match truth.labels.iter().filter(|label| agree(&label.name, &wanted.name)).count() {
+        0 if is_open(truth, wanted) => not_sure(),
         0 => format!("There are no {}.", plural(&wanted.name)),
         count => format!("There {} {}.", if count > 1 { "are" } else { "is" }, counted(count, &wanted.name)),
     }
@@ -210,6 +224,20 @@ mod tests {
         ] {
             assert_eq!(ask(question), answer, "{question}");
         }
+    }
+
+    #[test]
+    fn what_a_room_has_beyond_the_reach_of_labels_is_not_denied() {
+        let known = view();
+        let mut truth = known.ground_truth().unwrap().clone();
+        truth.room = Some("dining room".into());
+        let view = View::new(known.pose, known.horizontal_fov_rad, None, Some(truth));
+        let ask = |question: &str| Labels.answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap();
+        assert_eq!(ask("Is there a dining table?"), "I am not sure.");
+        assert_eq!(ask("How many dining tables are there?"), "I am not sure.");
+        assert_eq!(ask("Is there a dining table or a lamp?"), "Yes, there is a lamp on the left.");
+        assert_eq!(ask("Is there a toilet?"), "No, there is no toilet.");
+        assert_eq!(ask("Is there a mirror?"), "No, there is no mirror.");
     }
 
     #[test]

@@ -120,7 +120,7 @@ fn unusable(text: String, reason: String) -> Complaint {
 
 fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
-    let checked = check_own(&text, Subject { evidence: order.evidence, style: order.style, target });
+    let checked = check_own(&text, Subject::closed(order.evidence, order.style, target));
     Instruction {
         style: order.style.name.clone(),
         verdict: checked.verdict(),

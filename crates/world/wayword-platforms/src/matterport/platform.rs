@@ -3,6 +3,7 @@
 use super::{
     boxes::{self, Listed},
     connectivity::Viewpoint,
+    house_file::HouseObject,
     labels,
     layout::Layout,
     object_positions::{self, ObjectPositions},
@@ -15,7 +16,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, Recent,
+    Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, Pose, Recent,
     SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_world::graph_walk;
@@ -196,6 +197,23 @@ impl Platform for Matterport {
 
     /// From the viewpoints where REVERIE's boxes show it, as in REVERIE's evaluator; without boxes, from those where
     /// the `.house` file's labels list it.
+    fn listed_objects(&self, id: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+        let scene = self.scene(id)?;
+        let objects = self.objects(id, &scene)?;
+        if objects.is_empty() {
+            let placed = |object: &HouseObject| {
+                Some(Placed { object: object.id.clone(), name: object.name.clone()?, position: object.centre })
+            };
+            return Ok(scene.house.iter().flat_map(|house| &house.objects).filter_map(placed).collect());
+        }
+        let Some(centres) = self.centres.get(id.as_str()) else { return Ok(Vec::new()) };
+        let placed = |(object, everywhere): (&ObjectId, &Everywhere)| {
+            let position = *centres.get(object.as_str())?;
+            Some(Placed { object: object.clone(), name: everywhere.name.clone()?, position })
+        };
+        Ok(objects.iter().filter_map(placed).collect())
+    }
+
     fn visible_from(&self, id: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         let scene = self.scene(id)?;
         let objects = self.objects(id, &scene)?;

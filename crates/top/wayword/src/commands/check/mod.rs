@@ -2,9 +2,11 @@
 
 mod held;
 mod walks;
+mod worlds;
 
 use crate::{
-    cli::Check as Args,
+    cli::{AskedWorld, Check as Args},
+    commands::calibrate as calibration,
     count::count,
     error::{Error, Exit},
     output::Output,
@@ -16,9 +18,10 @@ use held::Held;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path as FilePath};
-use walks::{Walk, walks};
-use wayword_checks::{Evidence, Subject, check};
+use walks::{Text, Walk, walks};
+use wayword_checks::{Checked, Evidence, Reach, Subject, Testimony, World, check, lift, open::Calibration};
 use wayword_core::{Check, Finding, Platform, Verdict};
+use worlds::{Buildings, world_of};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = checked(args, output)?;
@@ -31,7 +34,29 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
 /// # Errors
 /// As [`check_file`]; also when the flags do not fit together.
 pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
-    check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, args.style.as_deref(), output)
+    let calibration = args.calibration.as_deref().map(calibration::read).transpose()?;
+    let how = How {
+        style: args.style.as_deref(),
+        world: args.world,
+        without_witnesses: args.no_witnesses,
+        calibration: calibration.as_ref(),
+    };
+    let mut report = check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, how, output)?;
+    report.calibration = args.calibration.as_ref().map(|file| file.display().to_string());
+    Ok(report)
+}
+
+/// How the texts of a file are checked.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct How<'a> {
+    /// The style that every text has to keep to.
+    pub style: Option<&'a str>,
+    /// The world that texts are held against.
+    pub world: AskedWorld,
+    /// Whether other writers' texts of a path say nothing for a text that fails.
+    pub without_witnesses: bool,
+    /// What the user's own data says of single names.
+    pub calibration: Option<&'a Calibration>,
 }
 
 /// What was found in a file.
@@ -45,6 +70,11 @@ pub struct CheckReport {
     pub failed: usize,
     /// What the texts were checked against.
     pub checked_against: Vec<String>,
+    /// The worlds that texts were held against, with the number of texts.
+    pub worlds: BTreeMap<&'static str, usize>,
+    /// The file of `--calibration`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
     /// The styles that texts were checked against, with the number of texts; empty for a dataset without `--style`.
     pub styles: BTreeMap<String, usize>,
     /// Styles that texts name, but that differ from the built-in style of that name; those texts were checked against
@@ -76,6 +106,8 @@ pub struct CheckedText {
     pub text: String,
     /// All checks together.
     pub verdict: Verdict,
+    /// The world that it was held against: open or closed.
+    pub world: &'static str,
     /// What was found, without what passed.
     pub findings: Vec<Finding>,
 }
@@ -85,20 +117,16 @@ pub struct CheckedText {
 /// # Errors
 /// When the file, the platform's data or the style cannot be read. A path that does not fit the data is an error too,
 /// because nothing about it could be checked.
-pub fn check_file(
-    file: &FilePath,
-    settings: &Settings,
-    style: Option<&str>,
-    output: &Output,
-) -> Result<CheckReport, Error> {
+pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &Output) -> Result<CheckReport, Error> {
     let platform = platforms::open(settings)?;
-    let held = Held::to(style, settings.seed)?;
+    let held = Held::to(how.style, settings.seed)?;
     let walks = walks(file, platform.as_ref())?;
+    let buildings = Buildings::default();
     let bar = output.progress(walks.len(), "paths");
     let checked: Vec<_> = walks
         .par_iter()
         .map(|walk| {
-            let checked = check_walk(platform.as_ref(), walk, &held);
+            let checked = check_walk(platform.as_ref(), walk, &held, how, &buildings);
             bar.inc(1);
             checked
         })
@@ -126,19 +154,47 @@ pub fn check_file(
 /// What texts were checked against, and each text with its place in the file and everything that was found.
 type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<Finding>)>);
 
-fn check_walk(platform: &dyn Platform, walk: &Walk, held: &Held) -> Result<CheckedWalk, Error> {
+fn check_walk(
+    platform: &dyn Platform,
+    walk: &Walk,
+    held: &Held,
+    how: How<'_>,
+    buildings: &Buildings,
+) -> Result<CheckedWalk, Error> {
     let world = Remembering::new(platform);
     let views = panoramas(&world, &walk.path)?;
     let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
-    let checked = walk.texts.iter().map(|text| {
+    let world_of = |text: &Text| world_of(text, how.world, platform.name(), evidence.source);
+    let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
+    let around = if some_are_open { buildings.around(platform, walk)? } else { None };
+    let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
+    let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
+    let testimony = |text: &Text| hears.then(|| Testimony::of(&text.words, &evidence));
+    let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
+    let checked = walk.texts.iter().enumerate().map(|(at, text)| {
         let style = held.style_of(text);
         // People name a target as they like, so any object of the final viewpoint is accepted.
-        let checked = check(&text.words, Subject { evidence: &evidence, style, target: None });
-        let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
-        let (path, words) = (text.path.clone(), text.words.clone());
-        (text.at, CheckedText { path, text: words, verdict: checked.verdict(), findings }, checked.findings)
+        let subject = match world_of(text) {
+            World::Closed => Subject::closed(&evidence, style, None),
+            World::Open => Subject::open(&evidence, style, reach),
+        };
+        let mut checked = check(&text.words, subject);
+        if let Some(own) = testimonies[at].as_ref().filter(|_| checked.world == World::Open) {
+            let others = walk.texts.iter().zip(&testimonies).filter(|(other, _)| other.words != text.words);
+            let others: Vec<&Testimony> = others.filter_map(|(_, testimony)| testimony.as_ref()).collect();
+            lift(&mut checked, own, &others);
+        }
+        (text.at, CheckedText::of(text, &checked), checked.findings)
     });
     Ok((evidence.source.name(), checked.collect()))
+}
+
+impl CheckedText {
+    fn of(text: &Text, checked: &Checked) -> Self {
+        let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
+        let (path, words) = (text.path.clone(), text.words.clone());
+        Self { path, text: words, verdict: checked.verdict(), world: checked.world.name(), findings }
+    }
 }
 
 impl CheckReport {
@@ -149,6 +205,7 @@ impl CheckReport {
                 self.by_check.entry(check.name()).or_default().count(Verdict::of(&of_check));
             }
         }
+        *self.worlds.entry(text.world).or_default() += 1;
         match text.verdict {
             Verdict::Pass => self.passed += 1,
             Verdict::Unverified => self.unverified += 1,
@@ -192,7 +249,12 @@ impl fmt::Display for Shown<'_> {
         for (name, counts) in report.by_check.iter().chain(std::iter::once((&"all", &all))) {
             writeln!(f, "{name:<10} {:>7} {:>11} {:>7}", counts.passed, counts.unverified, counts.failed)?;
         }
-        write!(f, "checked against: {}", report.checked_against.join(", "))?;
+        let worlds = report.worlds.iter().map(|(name, texts)| format!("{name} ({texts})"));
+        let worlds = worlds.collect::<Vec<_>>().join(", ");
+        write!(f, "checked against: {}\nworld: {worlds}", report.checked_against.join(", "))?;
+        if let Some(file) = &report.calibration {
+            write!(f, "\ncalibration: {file}")?;
+        }
         if !report.styles.is_empty() {
             let styles = report.styles.iter().map(|(name, texts)| format!("{name} ({texts})"));
             write!(f, "\nstyles: {}", styles.collect::<Vec<_>>().join(", "))?;

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use std::{collections::BTreeMap, path::Path as FilePath};
-use wayword_core::{Path, Platform, SceneId, ViewpointId};
+use wayword_core::{Path, Platform, Provenance, SceneId, ViewpointId};
 use wayword_formats::{
     Format,
     jsonl::{self, Record},
@@ -24,6 +24,15 @@ pub(super) struct Text {
     pub(super) words: String,
     /// The style that it was written in, where the file says so.
     pub(super) style: Option<Named>,
+    /// How it came about, where the file says so: the platform, and who did what.
+    pub(super) made: Option<(String, Provenance)>,
+}
+
+impl Text {
+    /// A text of a dataset that says nothing of how it came about.
+    fn of_dataset(path: &Path, words: String) -> Self {
+        Self { at: 0, path: path.id.clone(), words, style: None, made: None }
+    }
 }
 
 /// A style, as a record names it.
@@ -36,9 +45,16 @@ pub(super) struct Named {
 pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk>, Error> {
     let mut walks = Walks::default();
     if wayword_formats::detect(file)? == Format::Wayword {
-        for Record { path, instruction, .. } in jsonl::read(file)? {
-            let style = Named { name: instruction.style, hash: instruction.provenance.style_hash };
-            walks.add(on_graph(platform, path)?, instruction.text, Some(style));
+        for Record { path, instruction, platform: made_on, .. } in jsonl::read(file)? {
+            let path = on_graph(platform, path)?;
+            let text = Text {
+                at: 0,
+                path: path.id.clone(),
+                words: instruction.text,
+                style: Some(Named { name: instruction.style, hash: instruction.provenance.style_hash.clone() }),
+                made: Some((made_on, instruction.provenance)),
+            };
+            walks.add(path, text);
         }
         return Ok(walks.all);
     }
@@ -52,8 +68,8 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
             episode.start_heading,
             episode.target_object.as_ref(),
         )?;
-        for text in episode.instructions {
-            walks.add(path.clone(), text, None);
+        for words in episode.instructions {
+            walks.add(path.clone(), Text::of_dataset(&path, words));
         }
     }
     Ok(walks.all)
@@ -71,10 +87,10 @@ struct Walks {
 type Key = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
 
 impl Walks {
-    fn add(&mut self, path: Path, words: String, style: Option<Named>) {
+    fn add(&mut self, path: Path, text: Text) {
         let frames = path.frames.iter().map(|frame| (frame.place(), frame.pose.heading.rad().to_bits(), frame.level));
         let key = (path.scene.clone(), path.motion.is_known(), frames.collect());
-        let text = Text { at: self.texts, path: path.id.clone(), words, style };
+        let text = Text { at: self.texts, ..text };
         self.texts += 1;
         let place = *self.places.entry(key).or_insert(self.all.len());
         match self.all.get_mut(place) {
@@ -113,7 +129,8 @@ mod tests {
     fn texts_about_one_way_are_one_walk_whatever_their_items_are_called() {
         let mut walks = Walks::default();
         for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
-            walks.add(path(id, end_m), "Stop.".into(), None);
+            let path = path(id, end_m);
+            walks.add(path.clone(), Text::of_dataset(&path, "Stop.".into()));
         }
         let texts: Vec<Vec<(usize, &str)>> = walks
             .all
@@ -123,7 +140,7 @@ mod tests {
         assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
         let mut other = path("1_7", 2.0);
         other.motion = Motion::Unknown;
-        walks.add(other, "Stop.".into(), None);
+        walks.add(other.clone(), Text::of_dataset(&other, "Stop.".into()));
         assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
     }
 }

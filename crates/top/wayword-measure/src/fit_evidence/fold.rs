@@ -1,0 +1,91 @@
+//! Weights, and the ratios at which claims fail: fitted on some buildings, and chosen on others.
+
+use super::logistic::{self, Sample};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword::people::{Held, belongs, is_known};
+use wayword_checks::open::{Case, Missed, Table, Weights};
+
+/// How strongly the weights of a case are pulled to zero. Objects have many classes, and few claims of each.
+fn ridge(case: Case) -> f64 {
+    match case {
+        Case::Thing | Case::ThingAtStop => 5.0,
+        Case::Room | Case::RoomAtStop | Case::RoomLacking => 2.0,
+    }
+}
+
+/// Parts of the buildings that are left out in turn.
+const FOLDS: usize = 5;
+/// A ratio below which no claim fails.
+const LEAST_RATIO: f64 = 3.0;
+
+/// The share of people's texts that each kind of claim may fail.
+pub(crate) fn budget(case: Case) -> f64 {
+    match case {
+        Case::Thing => 0.009,
+        Case::ThingAtStop => 0.003,
+        Case::Room => 0.006,
+        Case::RoomAtStop => 0.002,
+        Case::RoomLacking => 0.0045,
+    }
+}
+
+/// The table of a case: weights from all claims, and the ratio that the budget allows on buildings that are left out in
+/// turn. `building` is the number of a walk's building.
+pub(crate) fn table(held: &[Held], case: Case, building: &dyn Fn(usize) -> usize, texts: usize) -> Table {
+    let of_case: Vec<&Held> = of(held, case);
+    let weights = fitted(&of_case, case);
+    // The highest ratio of each true text, over the folds.
+    let mut highest: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    for fold in 0..FOLDS {
+        let (out, rest): (Vec<&Held>, Vec<&Held>) =
+            of_case.iter().partition(|held| building(held.walk) % FOLDS == fold);
+        let weights = alone(case, fitted(&rest, case));
+        for held in out.iter().filter(|held| !held.wrong) {
+            let Some(ratio) = missed(held, case).and_then(|missed| weights.log_ratio(missed)) else { continue };
+            let most = highest.entry((held.walk, held.text)).or_insert(f64::NEG_INFINITY);
+            *most = most.max(ratio);
+        }
+    }
+    let mut ratios: Vec<f64> = highest.into_values().collect();
+    ratios.sort_by(|a, b| b.total_cmp(a));
+    let allowed = (budget(case) * texts as f64) as usize;
+    let fails_at = ratios.get(allowed).map_or(LEAST_RATIO, |ratio| ratio.exp()).max(LEAST_RATIO);
+    Table { fails_at: (fails_at * 10.0).ceil() / 10.0, weights }
+}
+
+/// The claims that belong to a case.
+pub(crate) fn of(held: &[Held], of: Case) -> Vec<&Held> {
+    held.iter().filter(|held| belongs(&held.claim, of) && is_known(&held.claim)).collect()
+}
+
+/// What the evidence misses of a claim, where that is held against a case and can fail.
+pub(crate) fn missed(held: &Held, of: Case) -> Option<&Missed> {
+    held.missed().filter(|missed| missed.case == of && missed.can_fail())
+}
+
+/// Weights that hold one table.
+pub(crate) fn alone(case: Case, weights: BTreeMap<String, f64>) -> Weights {
+    let table = Table { fails_at: LEAST_RATIO, weights };
+    Weights { cases: [(case.name().to_owned(), table)].into(), ..Weights::default() }
+}
+
+fn fitted(of_case: &[&Held], case: Case) -> BTreeMap<String, f64> {
+    let count = |wrong: bool| of_case.iter().filter(|held| held.wrong == wrong).count().max(1) as f64;
+    // As if there were as many wrong claims as true ones: the odds are then the ratio.
+    let wrong_weight = count(false) / count(true);
+    let sample = |held: &&Held| {
+        let features = missed(held, case)?.features.clone();
+        Some(Sample { features, wrong: held.wrong, weight: if held.wrong { wrong_weight } else { 1.0 } })
+    };
+    let samples: Vec<Sample> = of_case.iter().filter_map(sample).collect();
+    let weights = logistic::fit(&samples, ridge(case));
+    weights.into_iter().map(|(name, weight)| (name, (weight * 1e3).round() / 1e3)).collect()
+}
+
+/// The number of each walk's building.
+pub(crate) fn buildings<'a>(scenes: impl Iterator<Item = &'a str>) -> Vec<usize> {
+    let scenes: Vec<&str> = scenes.collect();
+    let all: BTreeSet<&str> = scenes.iter().copied().collect();
+    let numbers: BTreeMap<&str, usize> = all.into_iter().enumerate().map(|(at, scene)| (scene, at)).collect();
+    scenes.iter().map(|scene| numbers[scene]).collect()
+}

@@ -1,0 +1,66 @@
+//! `wayword calibrate`: what a dataset of the user says of single names of objects and rooms.
+
+use crate::{
+    cli::Calibrate as Args,
+    error::{Error, Exit},
+    output::Output,
+    people::{Held, Labels, belongs, held, is_known, walks},
+    platforms,
+    settings::Asked,
+    text_file,
+};
+use serde::Serialize;
+use std::{collections::BTreeMap, path::Path};
+use wayword_checks::open::{Calibration, Case, Observed, Weights};
+
+pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
+    let platform = platforms::open(&Asked::from(args.platform.clone()).resolve()?)?;
+    let (walks, surveys) = walks(platform.as_ref(), &args.from)?;
+    let texts = walks.iter().map(|walk| walk.texts.len()).sum();
+    let weights = Weights::shipped();
+    let samples = held(&walks.iter().collect::<Vec<_>>(), &Labels::of(surveys.iter()), weights, 0);
+    // As if there were as many wrong claims of a kind as true ones: the odds are then the ratio.
+    let known: Vec<&Held> = samples.iter().filter(|held| is_known(&held.claim)).collect();
+    let count = |case: Case, wrong: bool| {
+        known.iter().filter(|held| held.wrong == wrong && belongs(&held.claim, case)).count().max(1) as f64
+    };
+    let share = |case: Case| (case, count(case, false) / count(case, true));
+    let shares: BTreeMap<Case, f64> = Case::ALL.map(share).into();
+    let observed = known.iter().filter_map(|held| {
+        let missed = held.missed()?;
+        let weight = if held.wrong { shares[&missed.case] } else { 1.0 };
+        Some(Observed { claim: &held.claim, missed, wrong: held.wrong, weight })
+    });
+    let observed: Vec<Observed<'_>> = observed.collect();
+    let from = args.from.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let calibration = Calibration::fit(platform.name(), &from, texts, &observed);
+    std::fs::write(&args.out, written(&calibration)).map_err(Error::io(&args.out, "write"))?;
+    let made = Made { names: calibration.names.len(), texts, claims: observed.len() };
+    output.data(&made, format!("{} names from {} claims of {texts} texts", made.names, made.claims));
+    Ok(Exit::Done)
+}
+
+/// What was made.
+#[derive(Debug, Serialize)]
+struct Made {
+    names: usize,
+    texts: usize,
+    claims: usize,
+}
+
+fn written(calibration: &Calibration) -> String {
+    let head = "# Made by `wayword calibrate`. It comes from a dataset, whose terms apply: keep it to yourself.\n\n";
+    head.to_owned() + &toml::to_string(calibration).unwrap_or_default()
+}
+
+/// Reads a file of calibrations.
+///
+/// # Errors
+/// When it cannot be read, or is none.
+pub(super) fn read(file: &Path) -> Result<Calibration, Error> {
+    let text = text_file::read(file, "read the calibration")?;
+    Calibration::read(&text).map_err(|error| {
+        let hint = "make it with: wayword calibrate --platform matterport --data DIR --from R2R_train.json --out FILE";
+        Error::usage(format!("{} is no calibration: {}", file.display(), error.message()), hint)
+    })
+}

@@ -1,0 +1,247 @@
+//! What is listed around a path, and how far off.
+
+use super::building::{Building, Name, Spot};
+use std::{
+    collections::{BTreeMap, BTreeSet, VecDeque},
+    sync::Arc,
+};
+use wayword_core::{DVec3, Frame, Path};
+use wayword_language::lexicon::{Class, kinds, room_name, same_room};
+
+/// A thing this near to the path was there for whoever walked it, metres.
+pub const NEAR_M: f64 = 3.0;
+/// Labels of objects on this storey differ from the eye's height by no more than this, metres.
+const STOREY_SLACK_M: f64 = 1.9;
+/// How much farther a metre of height is than a metre along the floor, beyond that.
+const HEIGHT_WEIGHT: f64 = 3.0;
+
+/// What is listed around a path.
+#[derive(Debug, Clone)]
+pub struct Surroundings {
+    building: Arc<Building>,
+    /// The eyes along the path.
+    eyes: Vec<DVec3>,
+    /// For each name of the building, how far its objects are.
+    distances: Vec<Distance>,
+    /// The rooms of the building, and how far they are.
+    rooms: Vec<(String, Distance)>,
+    /// The rooms within reach of the path.
+    near_rooms: BTreeSet<String>,
+    /// Whether a viewpoint near the path has no room.
+    has_gap: bool,
+    /// How many objects are listed near the path.
+    near_objects: usize,
+    /// How many objects are listed near its end.
+    end_objects: usize,
+}
+
+/// How far something is; infinite where the building lists none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distance {
+    /// From the nearest point of the path, metres.
+    pub path_m: f64,
+    /// From its last frame, metres.
+    pub end_m: f64,
+    /// Hops from the nearest viewpoint of the path to one beside it.
+    pub path_hops: usize,
+    /// Hops from the last viewpoint of the path to one beside it.
+    pub end_hops: usize,
+}
+
+impl Distance {
+    /// Listed nowhere in the building.
+    pub const NOWHERE: Self =
+        Self { path_m: f64::INFINITY, end_m: f64::INFINITY, path_hops: usize::MAX, end_hops: usize::MAX };
+
+    /// The lesser of both in each respect.
+    #[must_use]
+    pub fn nearer(self, other: Self) -> Self {
+        Self {
+            path_m: self.path_m.min(other.path_m),
+            end_m: self.end_m.min(other.end_m),
+            path_hops: self.path_hops.min(other.path_hops),
+            end_hops: self.end_hops.min(other.end_hops),
+        }
+    }
+}
+
+impl Surroundings {
+    /// What a building lists around a path. `None` where the path's motion is unknown or the building lists nothing.
+    #[must_use]
+    pub fn of(building: &Arc<Building>, path: &Path) -> Option<Self> {
+        if !path.motion.is_known() || building.is_blank() || path.frames.is_empty() {
+            return None;
+        }
+        let eyes: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position).collect();
+        let starts: Vec<usize> = path.frames.iter().filter_map(|frame| place(building, frame)).collect();
+        let path_hops = hops(building, &starts);
+        let end_hops = hops(building, starts.last().map_or(&[], std::slice::from_ref));
+        let to_spot = |spot: &Spot| {
+            let hops = |hops: &[usize]| spot.beside.iter().map(|at| hops[*at]).min().unwrap_or(usize::MAX);
+            Distance { path_hops: hops(&path_hops), end_hops: hops(&end_hops), ..distance(&eyes, spot.position) }
+        };
+        let nearest = |name: &Name| name.spots.iter().map(to_spot).fold(Distance::NOWHERE, Distance::nearer);
+        let distances: Vec<Distance> = building.names.iter().map(nearest).collect();
+        let mut rooms: BTreeMap<&str, Distance> = BTreeMap::new();
+        let mut has_gap = false;
+        for (at, viewpoint) in building.viewpoints.iter().enumerate() {
+            let to = distance(&eyes, viewpoint.position);
+            let to = Distance { path_hops: path_hops[at], end_hops: end_hops[at], ..to };
+            match &viewpoint.room {
+                Some(room) => {
+                    let nearest = rooms.entry(room).or_insert(Distance::NOWHERE);
+                    *nearest = nearest.nearer(to);
+                }
+                None => has_gap |= to.path_m <= NEAR_M,
+            }
+        }
+        let near = rooms.iter().filter(|(_, distance)| distance.path_m <= NEAR_M);
+        let near_rooms = near.map(|(name, _)| room_name(name).unwrap_or(name).to_owned()).collect();
+        let rooms = rooms.into_iter().map(|(room, distance)| (room.to_owned(), distance)).collect();
+        let spots = || building.names.iter().flat_map(|name| &name.spots).map(|spot| distance(&eyes, spot.position));
+        let near_objects = spots().filter(|distance| distance.path_m <= NEAR_M).count();
+        let end_objects = spots().filter(|distance| distance.end_m <= NEAR_M).count();
+        let building = Arc::clone(building);
+        Some(Self { building, eyes, distances, rooms, near_rooms, has_gap, near_objects, end_objects })
+    }
+
+    /// How far the nearest thing is that a name may mean.
+    #[must_use]
+    pub fn thing(&self, name: &str) -> Distance {
+        let wanted = kinds(name);
+        let agreeing = self.building.names.iter().zip(&self.distances).filter(|(name, _)| agrees(name, &wanted));
+        agreeing.map(|(_, distance)| *distance).fold(Distance::NOWHERE, Distance::nearer)
+    }
+
+    /// How far the nearest viewpoint is in a room that a name may mean.
+    #[must_use]
+    pub fn room(&self, name: &str) -> Distance {
+        let meant = self.rooms.iter().filter(|(room, _)| same_room(room, name));
+        meant.map(|(_, distance)| *distance).fold(Distance::NOWHERE, Distance::nearer)
+    }
+
+    /// Where the things are that a name may mean and that lie within some distance of the path.
+    #[must_use]
+    pub fn spots(&self, name: &str, within_m: f64) -> Vec<DVec3> {
+        let wanted = kinds(name);
+        let agreeing = self.building.names.iter().filter(|name| agrees(name, &wanted));
+        let spots = agreeing.flat_map(|name| name.spots.iter().map(|spot| spot.position));
+        spots.filter(|spot| distance(&self.eyes, *spot).path_m <= within_m).collect()
+    }
+
+    /// Where the viewpoints are that lie in a room that a name may mean, within some distance of the path.
+    #[must_use]
+    pub fn room_spots(&self, name: &str, within_m: f64) -> Vec<DVec3> {
+        let viewpoints = self.building.viewpoints.iter();
+        let in_room = viewpoints.filter(|viewpoint| viewpoint.room.as_ref().is_some_and(|room| same_room(room, name)));
+        let spots = in_room.map(|viewpoint| viewpoint.position);
+        spots.filter(|spot| distance(&self.eyes, *spot).path_m <= within_m).collect()
+    }
+
+    /// The eyes along the path.
+    #[must_use]
+    pub fn eyes(&self) -> &[DVec3] {
+        &self.eyes
+    }
+
+    /// Whether the path comes near a room of a kind that lists such a thing somewhere in this building.
+    #[must_use]
+    pub fn passes_home_of(&self, name: &str) -> bool {
+        let wanted = kinds(name);
+        let mut agreeing = self.building.names.iter().filter(|name| agrees(name, &wanted));
+        agreeing.any(|name| !name.homes.is_disjoint(&self.near_rooms))
+    }
+
+    /// Whether an object of a class is listed near the path, or near its end.
+    #[must_use]
+    pub fn has_kin(&self, class: Class, at_end: bool) -> bool {
+        let mut of_class = self.building.names.iter().zip(&self.distances).filter(|(name, _)| name.class == class);
+        of_class.any(|(_, distance)| if at_end { distance.end_m <= NEAR_M } else { distance.path_m <= NEAR_M })
+    }
+
+    /// How many things that a name may mean the building lists.
+    #[must_use]
+    pub fn count(&self, name: &str) -> usize {
+        let wanted = kinds(name);
+        self.building.names.iter().filter(|name| agrees(name, &wanted)).map(|name| name.spots.len()).sum()
+    }
+
+    /// The rooms within reach of the path, by their usual names.
+    #[must_use]
+    pub fn near_rooms(&self) -> &BTreeSet<String> {
+        &self.near_rooms
+    }
+
+    /// Whether a viewpoint within reach of the path lies in no known room.
+    #[must_use]
+    pub fn has_gap(&self) -> bool {
+        self.has_gap
+    }
+
+    /// Whether the building's rooms are known at all.
+    #[must_use]
+    pub fn knows_rooms(&self) -> bool {
+        !self.rooms.is_empty()
+    }
+
+    /// How many objects are listed near the path, per frame of it.
+    #[must_use]
+    pub fn objects_per_frame(&self) -> f64 {
+        self.near_objects as f64 / self.eyes.len() as f64
+    }
+
+    /// How many objects are listed near the end of the path.
+    #[must_use]
+    pub fn objects_at_end(&self) -> usize {
+        self.end_objects
+    }
+
+    /// How many viewpoints of the building list objects.
+    #[must_use]
+    pub fn listing_viewpoints(&self) -> usize {
+        self.building.listing
+    }
+}
+
+fn agrees(name: &Name, wanted: &[String]) -> bool {
+    wanted.contains(&name.kinds[0]) || wanted.first().is_some_and(|kind| name.kinds.contains(kind))
+}
+
+/// The viewpoint of a frame: its own, or else the nearest one.
+fn place(building: &Building, frame: &Frame) -> Option<usize> {
+    let own = frame.viewpoint.as_ref().and_then(|id| building.places.get(id)).copied();
+    let off_m = |at: &usize| building.viewpoints[*at].position.distance(frame.pose.position);
+    own.or_else(|| (0..building.viewpoints.len()).min_by(|a, b| off_m(a).total_cmp(&off_m(b))))
+}
+
+/// The hops from the nearest of some viewpoints to each.
+fn hops(building: &Building, starts: &[usize]) -> Vec<usize> {
+    let mut hops = vec![usize::MAX; building.viewpoints.len()];
+    let mut queue: VecDeque<usize> = starts.iter().copied().collect();
+    starts.iter().for_each(|at| hops[*at] = 0);
+    while let Some(at) = queue.pop_front() {
+        for next in &building.viewpoints[at].neighbours {
+            if hops[*next] == usize::MAX {
+                hops[*next] = hops[at] + 1;
+                queue.push_back(*next);
+            }
+        }
+    }
+    hops
+}
+
+/// How far a spot is from the path between these eyes. Height counts beyond what one storey explains.
+fn distance(eyes: &[DVec3], spot: DVec3) -> Distance {
+    let to_eye = |eye: &DVec3| off(spot - *eye);
+    let to_hop = |hop: &[DVec3]| {
+        let along = hop[1] - hop[0];
+        let share = ((spot - hop[0]).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        off(spot - (hop[0] + along * share))
+    };
+    let end_m = eyes.last().map_or(f64::INFINITY, to_eye);
+    Distance { path_m: eyes.windows(2).map(to_hop).fold(end_m, f64::min), end_m, ..Distance::NOWHERE }
+}
+
+fn off(gap: DVec3) -> f64 {
+    libm::hypot(gap.truncate().length(), (gap.z.abs() - STOREY_SLACK_M).max(0.0) * HEIGHT_WEIGHT)
+}

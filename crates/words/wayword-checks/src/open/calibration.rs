@@ -1,0 +1,157 @@
+//! What a dataset that the user has says of single names of objects and rooms.
+
+use super::{claims::Claim, features::Missed, weights::Weights};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use wayword_language::lexicon::{kinds, room_name};
+
+/// What is added to the logarithm of a likelihood ratio, by the name of what is claimed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Calibration {
+    /// The platform whose labels it is about.
+    pub platform: String,
+    /// The file that it was made from.
+    pub from: String,
+    /// How many texts that file has.
+    pub texts: usize,
+    /// By name.
+    pub names: BTreeMap<String, Offsets>,
+}
+
+/// What is added for one name, by how far the nearest one is that is listed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Offsets {
+    /// Up to 8 m.
+    pub close: f64,
+    /// Farther.
+    pub far: f64,
+    /// The building lists none.
+    pub nowhere: f64,
+}
+
+/// A claim that is not listed within reach, for a calibration.
+#[derive(Debug, Clone)]
+pub struct Observed<'a> {
+    /// What is claimed.
+    pub claim: &'a Claim,
+    /// What the evidence says.
+    pub missed: &'a Missed,
+    /// Whether the claim is wrong.
+    pub wrong: bool,
+    /// How much it counts.
+    pub weight: f64,
+}
+
+/// The logarithm of a claim's ratio by the general weights, whether it is wrong, and how much it counts.
+type Weighed = (f64, bool, f64);
+
+/// Most that a name may add or take away: a factor of 20. It also bounds what a file can do.
+const MOST: f64 = 3.0;
+/// As how many claims the general weights count against a name's own. It keeps rare names close to them.
+const RIDGE: f64 = 4.0;
+const STEPS: usize = 30;
+
+impl Calibration {
+    /// Reads a calibration.
+    ///
+    /// # Errors
+    /// When it is no such file.
+    pub fn read(file: &str) -> Result<Self, toml::de::Error> {
+        toml::from_str(file)
+    }
+
+    /// What it adds to the logarithm of a claim's likelihood ratio.
+    #[must_use]
+    pub fn offset(&self, claim: &Claim, missed: &Missed) -> f64 {
+        let offsets = self.names.get(&name(claim));
+        let offset = offsets.map_or(0.0, |offsets| offsets.of(missed));
+        if offset.is_finite() { offset.clamp(-MOST, MOST) } else { 0.0 }
+    }
+
+    /// Fits what single names add to the general weights. Each name stands for itself.
+    #[must_use]
+    pub fn fit(platform: &str, from: &str, texts: usize, observed: &[Observed<'_>]) -> Self {
+        let weights = Weights::shipped();
+        let mut cells: BTreeMap<(String, usize), Vec<Weighed>> = BTreeMap::new();
+        for one in observed {
+            let Some(ratio) = weights.log_ratio(one.missed) else { continue };
+            let cell = cells.entry((name(one.claim), cell(one.missed))).or_default();
+            cell.push((ratio, one.wrong, one.weight));
+        }
+        let mut names: BTreeMap<String, Offsets> = BTreeMap::new();
+        for ((name, cell), observed) in cells {
+            let offset = (fitted(&observed) * 1e3).round() / 1e3;
+            *names.entry(name).or_default().cell(cell) = offset;
+        }
+        Self { platform: platform.to_owned(), from: from.to_owned(), texts, names }
+    }
+}
+
+impl Offsets {
+    fn of(mut self, missed: &Missed) -> f64 {
+        *self.cell(cell(missed))
+    }
+
+    fn cell(&mut self, cell: usize) -> &mut f64 {
+        match cell {
+            0 => &mut self.close,
+            1 => &mut self.far,
+            _ => &mut self.nowhere,
+        }
+    }
+}
+
+fn cell(missed: &Missed) -> usize {
+    match missed.nearest_m {
+        m if m <= 8.0 => 0,
+        m if m.is_finite() => 1,
+        _ => 2,
+    }
+}
+
+/// The name under which a claim is counted.
+fn name(claim: &Claim) -> String {
+    match room_name(&claim.name).filter(|_| claim.is_only_room()) {
+        Some(room) => room.to_owned(),
+        None => kinds(&claim.name).swap_remove(0),
+    }
+}
+
+/// The offset at which the observed claims are likeliest, by Newton's way.
+fn fitted(observed: &[Weighed]) -> f64 {
+    let mut offset = 0.0;
+    for _ in 0..STEPS {
+        let (mut slope, mut bend) = (-RIDGE * offset, RIDGE);
+        for (ratio, wrong, weight) in observed {
+            let chance = 1.0 / (1.0 + (-(ratio + offset)).exp());
+            slope += (f64::from(u8::from(*wrong)) - chance) * weight;
+            bend += chance * (1.0 - chance) * weight;
+        }
+        offset = (offset + slope / bend).clamp(-MOST, MOST);
+    }
+    offset
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_that_is_often_right_where_it_is_not_listed_is_believed_more() {
+        let often_right: Vec<_> = (0..40).map(|at| (1.0, at % 4 == 0, 1.0)).collect();
+        let often_wrong: Vec<_> = (0..40).map(|at| (1.0, at % 10 != 0, 1.0)).collect();
+        assert!(fitted(&often_right) < -0.5);
+        assert!(fitted(&often_wrong) > 0.5);
+        assert!(fitted(&often_wrong[..1]).abs() < 0.3, "one claim says little");
+    }
+
+    #[test]
+    fn a_file_can_neither_add_without_bound_nor_hold_unknown_keys() {
+        let head = "platform = \"matterport\"\nfrom = \"a.json\"\ntexts = 1\n";
+        let read = Calibration::read(&format!("{head}[names.sofa]\nclose = 99.0\nfar = nan\nnowhere = 0.0"));
+        assert_eq!(read.unwrap().names["sofa"].close, 99.0);
+        assert!(Calibration::read(&format!("{head}words = 1")).is_err());
+    }
+}

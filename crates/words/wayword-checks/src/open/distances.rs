@@ -1,0 +1,28 @@
+//! Told distances, held against the path's length.
+
+use crate::{evidence::Evidence, finding};
+use wayword_core::{Check, Finding, Verdict};
+use wayword_language::reading::{Reading, What};
+
+/// People guess distances badly: a told one may be longer than the whole path by this factor, and by this many metres
+/// besides.
+const FACTOR: f64 = 1.5;
+const SLACK_M: f64 = 3.0;
+
+/// The told distances that are longer than the whole path. A shorter one may be any stretch of it.
+pub(super) fn distances(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
+    let length_m: f64 = evidence.moves.iter().map(|step| step.distance_m).sum();
+    let told = reading.events.iter().filter_map(|event| match event.what {
+        What::Distance { metres_low, .. } => Some((event.span, metres_low)),
+        _ => None,
+    });
+    let judged = told.filter_map(|(span, metres_low)| {
+        if !evidence.motion.is_known() {
+            let reason = "the program cannot check how far the path goes";
+            return Some(finding(Check::Order, Verdict::Unverified, reason, Some(span)));
+        }
+        let reason = || format!("the whole path is {length_m:.0} m long");
+        (metres_low > length_m * FACTOR + SLACK_M).then(|| finding(Check::Order, Verdict::Fail, reason(), Some(span)))
+    });
+    judged.collect()
+}

@@ -1,0 +1,32 @@
+//! What a room has although labels do not list it.
+
+use super::weights::Weights;
+use wayword_language::lexicon::{normal, room_name, thing};
+
+/// The salience of things that are seen from across a room.
+const SEEN_FROM_AFAR: u8 = 3;
+
+/// Whether labels that list no such thing leave it open in a room: it is seen from afar, where labels do not reach, and
+/// such a room has it. Rooms are known by the classes of things that they list, or share a word with the thing: a dining
+/// room has a dining table.
+#[must_use]
+pub fn is_expected(name: &str, room: &str) -> bool {
+    let Some(thing) = thing(name).filter(|thing| thing.salience >= SEEN_FROM_AFAR) else { return false };
+    let room = room_name(room).unwrap_or(room);
+    let is_home = Weights::shipped().homes(thing.class).is_some_and(|homes| homes.contains(room));
+    let name = normal(name);
+    is_home || (name.contains(' ') && name.split(' ').next() == room.split(' ').next())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_room_has_what_it_is_for() {
+        assert!(is_expected("dining table", "dining room"));
+        assert!(is_expected("bed", "bedroom") && is_expected("bathtub", "bathroom"));
+        assert!(!is_expected("dining table", "bathroom") && !is_expected("bathtub", "office"));
+        assert!(!is_expected("candle", "dining room"), "nobody sees a candle from afar");
+    }
+}

@@ -1,0 +1,274 @@
+//! What the evidence shows about a claimed place, as numbers that weights are fitted to.
+
+use super::{claims::Claim, relation::Relation, weights::Weights};
+use crate::evidence::{Distance, Evidence, NEAR_M, Surroundings};
+use wayword_language::lexicon::{Class, room_name, thing};
+
+/// What the evidence says about a claimed place.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sight {
+    /// It is there.
+    Shown,
+    /// Nothing can be said.
+    Unknown,
+    /// It is not listed within reach. How much that says is weighed.
+    Missed(Missed),
+}
+
+/// A claimed place that is not listed within reach.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Missed {
+    /// Which table of weights it is held against.
+    pub case: Case,
+    /// Features by name.
+    pub features: Vec<(String, f64)>,
+    /// How far the nearest one is that is listed.
+    pub nearest_m: f64,
+}
+
+/// The kinds of claims that have a table of weights each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Case {
+    /// An object along the path.
+    Thing,
+    /// An object at which the walker stops.
+    ThingAtStop,
+    /// A room along the path, which the building has elsewhere.
+    Room,
+    /// A room in which or at which the walker stops, which the building has elsewhere.
+    RoomAtStop,
+    /// A room that the building lacks.
+    RoomLacking,
+}
+
+impl Case {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Thing, Self::ThingAtStop, Self::Room, Self::RoomAtStop, Self::RoomLacking];
+
+    /// Its name in the file of weights.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Thing => "thing",
+            Self::ThingAtStop => "thing_at_stop",
+            Self::Room => "room",
+            Self::RoomAtStop => "room_at_stop",
+            Self::RoomLacking => "room_lacking",
+        }
+    }
+}
+
+/// An object that is listed no farther off than this may be seen from the path, metres.
+const SEEN_M: f64 = 8.0;
+
+impl Missed {
+    /// Whether the claim can fail at all. People name objects that they see across a room or through a door.
+    #[must_use]
+    pub fn can_fail(&self) -> bool {
+        self.case != Case::Thing || self.nearest_m >= SEEN_M
+    }
+
+    /// Adds what the evidence says of the other places that the text claims: where the labels have those, they are
+    /// good enough to miss this one too.
+    pub fn keep_company<'a>(&mut self, others: impl Iterator<Item = &'a Sight>) {
+        let (mut shown, mut missed) = (0.0, 0.0);
+        for other in others {
+            match other {
+                Sight::Shown => shown += 1.0,
+                Sight::Unknown => {}
+                Sight::Missed(_) => missed += 1.0,
+            }
+        }
+        self.features.push(("others shown".into(), f64::ln_1p(shown)));
+        self.features.push(("others missed".into(), f64::ln_1p(missed)));
+    }
+}
+
+/// What the evidence says about a claimed place.
+#[must_use]
+pub fn sight(claim: &Claim, evidence: &Evidence, around: Option<&Surroundings>, weights: &Weights) -> Sight {
+    let at_stop = claim.relation == Relation::Stop;
+    if is_everywhere(claim) || shown_by_frames(claim, evidence, at_stop) {
+        return Sight::Shown;
+    }
+    let Some(around) = around else { return Sight::Unknown };
+    if claim.class == Class::Door && crosses_rooms(evidence) || is_doorway(claim) && crosses_rooms(evidence) {
+        return Sight::Shown;
+    }
+    let distance = distance(claim, around);
+    let off_m = if at_stop { distance.end_m } else { distance.path_m };
+    if off_m <= NEAR_M {
+        return Sight::Shown;
+    }
+    match claim.is_only_room() {
+        true if room_is_unknown(claim, evidence, around) => Sight::Unknown,
+        true => Sight::Missed(room(claim, distance, around, weights)),
+        false if matches!(claim.class, Class::Unknown | Class::Fabric | Class::Door) => Sight::Unknown,
+        false => Sight::Missed(object(claim, distance, around, weights)),
+    }
+}
+
+/// Walls, floors and corners are everywhere: naming them claims nothing.
+fn is_everywhere(claim: &Claim) -> bool {
+    matches!(thing(&claim.name).map(|thing| thing.name), Some("wall" | "floor" | "ceiling" | "corner"))
+}
+
+fn is_doorway(claim: &Claim) -> bool {
+    thing(&claim.name).is_some_and(|thing| thing.name == "doorway")
+}
+
+/// A path from one room into another goes through some opening.
+fn crosses_rooms(evidence: &Evidence) -> bool {
+    let mut rooms = evidence.frames.iter().flat_map(|frame| &frame.rooms);
+    let first = rooms.next();
+    rooms.any(|room| Some(room) != first)
+}
+
+fn shown_by_frames(claim: &Claim, evidence: &Evidence, at_stop: bool) -> bool {
+    let mut frames = Vec::new();
+    if claim.is_room {
+        frames.extend(evidence.frames_in_room(&claim.name));
+    }
+    if claim.is_thing {
+        frames.extend(evidence.frames_with_thing(&claim.name));
+    }
+    if claim.class == Class::Stairs {
+        frames.extend(evidence.frames_on_stairs());
+    }
+    let last = evidence.frames.len().saturating_sub(1);
+    frames.iter().any(|frame| !at_stop || *frame == last)
+}
+
+fn distance(claim: &Claim, around: &Surroundings) -> Distance {
+    let room = if claim.is_room { around.room(&claim.name) } else { Distance::NOWHERE };
+    let thing = if claim.is_thing { around.thing(&claim.name) } else { Distance::NOWHERE };
+    room.nearer(thing)
+}
+
+/// A room that may be where no room is known, or that is a storey.
+fn room_is_unknown(claim: &Claim, evidence: &Evidence, around: &Surroundings) -> bool {
+    let known = room_name(&claim.name);
+    let is_storey = matches!(known, None | Some("basement" | "attic"));
+    is_storey || around.has_gap() || !around.knows_rooms() || !evidence.frames_without_room().is_empty()
+}
+
+/// How many hops away something is.
+fn hop_bin(hops: usize) -> &'static str {
+    match hops {
+        0 => "0 hops",
+        1 => "1 hop",
+        2 => "2 hops",
+        3 | 4 => "3-4 hops",
+        usize::MAX => "no way",
+        _ => "5+ hops",
+    }
+}
+
+/// Which of these bounds a distance lies under.
+fn bin(distance_m: f64) -> &'static str {
+    match distance_m {
+        m if m <= NEAR_M => "near",
+        m if m <= 5.0 => "3-5m",
+        m if m <= 8.0 => "5-8m",
+        m if m <= 15.0 => "8-15m",
+        m if m.is_finite() => "15m+",
+        _ => "nowhere",
+    }
+}
+
+/// The same, coarser.
+fn reach(distance_m: f64) -> &'static str {
+    match distance_m {
+        m if m <= NEAR_M => "near",
+        m if m <= 8.0 => "close",
+        m if m.is_finite() => "far",
+        _ => "nowhere",
+    }
+}
+
+fn object(claim: &Claim, distance: Distance, around: &Surroundings, weights: &Weights) -> Missed {
+    let at_stop = claim.relation == Relation::Stop;
+    let nearest_m = if at_stop { distance.end_m } else { distance.path_m };
+    let hops = hop_bin(if at_stop { distance.end_hops } else { distance.path_hops });
+    let (class, relation) = (class_name(claim.class), claim.relation.name());
+    let (bin, reach) = (bin(nearest_m), reach(nearest_m));
+    let mut features: Vec<(String, f64)> = [
+        "bias".to_owned(),
+        format!("off {bin}"),
+        hops.to_owned(),
+        format!("{hops} {reach}"),
+        format!("class {class}"),
+        format!("class {class} {reach}"),
+        format!("relation {relation}"),
+        format!("relation {relation} {reach}"),
+    ]
+    .map(|name| (name, 1.0))
+    .into();
+    if at_stop {
+        features.push((format!("path {}", self::bin(distance.path_m)), 1.0));
+    }
+    let listed = ((1 + if at_stop { around.objects_at_end() } else { 0 }) as f64).ln();
+    let density = if at_stop { listed } else { around.objects_per_frame().ln_1p() };
+    features.push(("listed nearby".into(), density));
+    features.push((format!("listed nearby {reach}"), density));
+    let count = around.count(&claim.name);
+    features.push(("listed in the building".into(), (count as f64).ln_1p()));
+    if count > 0 {
+        let home = if around.passes_home_of(&claim.name) { "passes its room" } else { "passes no room of it" };
+        features.push((home.into(), 1.0));
+        features.push((format!("{home} {reach}"), 1.0));
+    } else {
+        features.push(("size of the building".into(), (around.listing_viewpoints() as f64).ln_1p()));
+    }
+    if around.has_kin(claim.class, at_stop) {
+        features.push((format!("kin {reach}"), 1.0));
+        features.push((format!("kin {class}"), 1.0));
+    }
+    if let Some(homes) = weights.homes(claim.class) {
+        let passes = homes.iter().any(|home| around.near_rooms().contains(home));
+        let home = if passes { "room of the class" } else { "no room of the class" };
+        features.push((home.into(), 1.0));
+        features.push((format!("{home} {class}"), 1.0));
+        features.push((format!("{home} {reach}"), 1.0));
+        features.push((format!("{home} {class} {reach}"), 1.0));
+    }
+    if let Some(thing) = thing(&claim.name) {
+        features.push((format!("salience {} {reach}", thing.salience), 1.0));
+    }
+    let case = if at_stop { Case::ThingAtStop } else { Case::Thing };
+    Missed { case, features, nearest_m }
+}
+
+fn room(claim: &Claim, distance: Distance, around: &Surroundings, weights: &Weights) -> Missed {
+    let at_stop = claim.relation == Relation::Stop;
+    let nearest_m = if at_stop { distance.end_m } else { distance.path_m };
+    let hops = hop_bin(if at_stop { distance.end_hops } else { distance.path_hops });
+    let relation = claim.relation.name();
+    let group = weights.room_group(&claim.name);
+    let (bin, reach) = (bin(nearest_m), reach(nearest_m));
+    let mut features: Vec<(String, f64)> = [
+        "bias".to_owned(),
+        format!("{group} {bin}"),
+        format!("{group} {hops}"),
+        format!("{group} {relation}"),
+        format!("{group} {relation} {reach}"),
+    ]
+    .map(|name| (name, 1.0))
+    .into();
+    if at_stop {
+        features.push((format!("path {}", self::bin(distance.path_m)), 1.0));
+    }
+    features.push(("rooms nearby".into(), around.near_rooms().len() as f64));
+    let case = match (nearest_m.is_finite(), at_stop) {
+        (false, _) => Case::RoomLacking,
+        (true, true) => Case::RoomAtStop,
+        (true, false) => Case::Room,
+    };
+    Missed { case, features, nearest_m }
+}
+
+/// A class's name in the file of weights.
+#[must_use]
+pub fn class_name(class: Class) -> String {
+    format!("{class:?}").to_lowercase()
+}

@@ -1,0 +1,54 @@
+//! The checks of a text that somebody else wrote: an absence counts only if the evidence would have shown the thing.
+//!
+//! A claim fails where the evidence is many times likelier if the claim is wrong than if it is true. The weights that
+//! say how much likelier were fitted on texts of people, by class of object and group of rooms
+//! ([`Weights`]); they hold no text and no rate by the name of an object or a building.
+
+mod calibration;
+mod claims;
+mod climbs;
+mod distances;
+mod expected;
+mod features;
+mod places;
+mod relation;
+mod repeats;
+mod sides;
+mod stretches;
+#[cfg(test)]
+mod tests;
+mod weights;
+
+use crate::{Subject, evidence::Evidence};
+use wayword_core::{Check, Finding, Verdict};
+use wayword_language::reading::{Reading, What};
+
+pub use calibration::{Calibration, Observed, Offsets};
+pub use claims::{Claim, claims};
+pub use expected::is_expected;
+pub use features::{Case, Missed, Sight, class_name, sight};
+pub use relation::Relation;
+pub use weights::{Table, Weights};
+
+/// What is wrong with the places, the order, the turns and the storeys of somebody else's text.
+pub(super) fn open(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
+    let evidence = subject.evidence;
+    let mut findings = places::places(reading, subject);
+    findings.extend(climbs::climbs(text, reading, evidence));
+    findings.extend(repeats::repeats(text, reading, subject));
+    findings.extend(distances::distances(reading, evidence));
+    findings.extend(turns(reading, evidence));
+    for check in [Check::Landmarks, Check::Order, Check::Turns, Check::Floors] {
+        if findings.iter().all(|finding| finding.check != check) {
+            findings.push(crate::pass(check));
+        }
+    }
+    findings
+}
+
+/// Turns are judged where whole walks are compared, and not here. Where the motion is unknown, nobody can judge them.
+fn turns(reading: &Reading, evidence: &Evidence) -> Option<Finding> {
+    let told = reading.events.iter().find(|event| matches!(event.what, What::Turn(_)))?;
+    let reason = "the program cannot check how the path turns";
+    (!evidence.motion.is_known()).then(|| crate::finding(Check::Turns, Verdict::Unverified, reason, Some(told.span)))
+}

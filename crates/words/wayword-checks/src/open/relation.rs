@@ -1,0 +1,75 @@
+//! What the walker does about a place.
+
+use wayword_language::reading::{Going, Link, Reading, What};
+
+/// What the walker does about a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Relation {
+    /// Goes into it.
+    Enter,
+    /// Comes out of it.
+    Exit,
+    /// Goes through it, along it or around it.
+    Through,
+    /// Stops in it or at it.
+    Stop,
+    /// Goes up to it, or towards it.
+    Towards,
+    /// Goes past it.
+    Past,
+    /// Something else is beside it, or it is only named.
+    Beside,
+}
+
+impl Relation {
+    /// Its name in the table of weights.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Enter => "enter",
+            Self::Exit => "exit",
+            Self::Through => "through",
+            Self::Stop => "stop",
+            Self::Towards => "towards",
+            Self::Past => "past",
+            Self::Beside => "beside",
+        }
+    }
+}
+
+/// The relation of each event of a reading, where it is a place.
+pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
+    // The clause, and whether the next place in it is where the walker stops.
+    let (mut clause, mut stops, mut named) = (usize::MAX, false, false);
+    let relation = |event: &wayword_language::reading::Event| {
+        if event.clause != clause {
+            (clause, stops, named) = (event.clause, false, false);
+        }
+        let place = match &event.what {
+            What::Stop => {
+                (stops, named) = (true, false);
+                return None;
+            }
+            What::Face { .. } => {
+                stops = false;
+                return None;
+            }
+            What::Place(place) => place,
+            _ => return None,
+        };
+        let relation = match place.going {
+            Some(Going::Leaving) => Relation::Exit,
+            Some(Going::Entering) => Relation::Enter,
+            Some(Going::Through | Going::Along | Going::Around) => Relation::Through,
+            Some(Going::Past) => Relation::Past,
+            Some(Going::Towards | Going::Until) if stops && !named => Relation::Stop,
+            Some(Going::Towards | Going::Until) => Relation::Towards,
+            // "Stop by the sofa next to the window": the window only says which sofa.
+            None if stops && !(named && place.link == Link::Beside) => Relation::Stop,
+            None => Relation::Beside,
+        };
+        named = true;
+        Some(relation)
+    };
+    reading.events.iter().map(relation).collect()
+}

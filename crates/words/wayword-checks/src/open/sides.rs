@@ -1,0 +1,65 @@
+//! "On your left" in an open world: it is held against every such thing that is listed near the path.
+//!
+//! Of people's true claims, one in three hundred has every listed thing on the other side; of flipped ones, one in a
+//! hundred. That is far from enough to say that a side is wrong, so it is unverified.
+
+use crate::{Subject, evidence::Surroundings, sides};
+use std::f64::consts::{PI, TAU};
+use wayword_core::{DVec3, Side, Verdict};
+use wayword_language::reading::Place;
+
+/// A thing that is told to be on a side is no farther than this from the path, metres.
+const REACH_M: f64 = 6.0;
+/// Such a thing is seen from a point of the path that is no farther off than this, metres.
+const SIGHT_M: f64 = 9.0;
+/// Points of a hop from which the sides are seen.
+const POINTS: usize = 5;
+/// A direction on the other side counts as such from here on, degrees.
+const CLEARLY_DEG: f64 = 20.0;
+
+/// What cannot be said of the side of a place: where every such thing near the path is clearly on the other side all
+/// along the path, or the motion is unknown.
+pub(super) fn unclear_side(place: &Place, subject: Subject<'_>) -> Option<(Verdict, String)> {
+    let side = place.side?;
+    let name = &place.name;
+    if sides::is_unknown(place, subject.evidence) {
+        let reason = format!("the program cannot check on which side of the walker {name:?} is");
+        return Some((Verdict::Unverified, reason));
+    }
+    let sign = match side {
+        Side::Left => -1.0,
+        Side::Right => 1.0,
+        Side::Ahead | Side::Behind => return None,
+    };
+    let turns = turns(name, place.is_room, subject.reach.surroundings?);
+    let is_wrong = |deg: &f64| deg * sign <= -CLEARLY_DEG && deg.abs() <= 180.0 - CLEARLY_DEG;
+    let all_wrong = !turns.is_empty() && turns.iter().all(is_wrong);
+    let reason = || format!("every {name:?} that is listed near the path is on another side, which says little");
+    all_wrong.then(|| (Verdict::Unverified, reason()))
+}
+
+/// The directions of all such things from points along the path, degrees from the way ahead, positive right.
+fn turns(name: &str, is_room: bool, around: &Surroundings) -> Vec<f64> {
+    let mut spots = around.spots(name, REACH_M);
+    if is_room {
+        spots.extend(around.room_spots(name, REACH_M));
+    }
+    let mut turns = Vec::new();
+    for hop in around.eyes().windows(2) {
+        let ahead = heading(hop[1] - hop[0]);
+        for step in 0..=POINTS {
+            let eye = hop[0] + (hop[1] - hop[0]) * (step as f64 / POINTS as f64);
+            let near = spots.iter().filter(|spot| spot.distance(eye) <= SIGHT_M);
+            turns.extend(near.map(|spot| wrap(heading(*spot - eye) - ahead).to_degrees()));
+        }
+    }
+    turns
+}
+
+fn heading(to: DVec3) -> f64 {
+    libm::atan2(to.x, to.y)
+}
+
+fn wrap(rad: f64) -> f64 {
+    (rad + PI).rem_euclid(TAU) - PI
+}

@@ -1,0 +1,92 @@
+//! How many stretches of a path there are of what a text says.
+
+use super::claims::Claim;
+use crate::{Subject, evidence::NEAR_M};
+use wayword_core::{Climb, Side};
+use wayword_language::lexicon::{Class, room_name, same_room, thing};
+
+/// A move that turns by this much may be told as a turn, degrees.
+const TURN_DEG: f64 = 20.0;
+/// A hallway that turns by this much may be told as two, degrees.
+const CORNER_DEG: f64 = 30.0;
+/// A move that rises by this much may be told as stairs, metres.
+const RISE_M: f64 = 0.2;
+
+/// How many stretches of a path there are of what a text says.
+pub(super) struct Stretches<'a> {
+    subject: Subject<'a>,
+}
+
+impl<'a> Stretches<'a> {
+    pub(super) fn of(subject: Subject<'a>) -> Self {
+        Self { subject }
+    }
+
+    /// Turns to a side.
+    pub(super) fn turns(&self, side: Side) -> usize {
+        let turns = |deg: f64| match side {
+            Side::Left => deg <= -TURN_DEG,
+            Side::Right => deg >= TURN_DEG,
+            Side::Ahead | Side::Behind => deg.abs() >= 90.0,
+        };
+        self.subject.evidence.moves.iter().filter(|step| turns(step.turn_rad.to_degrees())).count()
+    }
+
+    /// Moves up or down.
+    pub(super) fn climbs(&self, climb: Climb) -> usize {
+        let way = if climb == Climb::Down { -1.0 } else { 1.0 };
+        self.subject.evidence.moves.iter().filter(|step| step.rise_m * way >= RISE_M).count()
+    }
+
+    /// Places that a claim may mean: separate stays in such a room, or as many such things near the path; 0 where
+    /// that is not known.
+    pub(super) fn places(&self, claim: &Claim) -> usize {
+        match claim.class {
+            Class::Stairs => return (self.climbs(Climb::Up) + self.climbs(Climb::Down)).max(1),
+            Class::Door => return self.thresholds(),
+            _ if thing(&claim.name).is_some_and(|thing| matches!(thing.name, "doorway" | "arch")) => {
+                return self.thresholds();
+            }
+            _ => {}
+        }
+        if claim.is_room {
+            return self.stays(&claim.name);
+        }
+        let spots = self.subject.reach.surroundings.map(|around| around.spots(&claim.name, NEAR_M).len());
+        spots.unwrap_or(0)
+    }
+
+    /// Separate stays in a room. Rooms that people confuse count as one where the text's own kind is nowhere.
+    fn stays(&self, name: &str) -> usize {
+        let frames = &self.subject.evidence.frames;
+        let runs = |is_in: &dyn Fn(&str) -> bool| {
+            let mut before = false;
+            frames
+                .iter()
+                .filter(|frame| {
+                    let now = frame.rooms.iter().any(|room| is_in(room));
+                    !std::mem::replace(&mut before, now) && now
+                })
+                .count()
+        };
+        let stays = match runs(&|room: &str| room_name(room) == room_name(name)) {
+            0 => runs(&|room: &str| same_room(room, name)),
+            stays => stays,
+        };
+        if room_name(name) == Some("hallway") { stays + self.corners(name) } else { stays }
+    }
+
+    /// Corners in a room: people call each straight part of a hallway a hallway.
+    fn corners(&self, name: &str) -> usize {
+        let evidence = self.subject.evidence;
+        let turns = evidence.moves.iter().zip(&evidence.frames).skip(1);
+        let is_in = |rooms: &[String]| rooms.is_empty() || rooms.iter().any(|room| same_room(room, name));
+        turns.filter(|(step, frame)| step.turn_rad.to_degrees().abs() >= CORNER_DEG && is_in(&frame.rooms)).count()
+    }
+
+    /// Steps from one room into another, and one more: not every doorway lies between rooms.
+    fn thresholds(&self) -> usize {
+        let frames = &self.subject.evidence.frames;
+        1 + frames.windows(2).filter(|pair| pair[0].rooms != pair[1].rooms).count()
+    }
+}

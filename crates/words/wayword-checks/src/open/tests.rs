@@ -1,0 +1,204 @@
+//! What the open world says about texts on a made-up building.
+
+use crate::{Building, Evidence, Reach, Subject, Surroundings, Testimony, check, lift};
+use std::sync::Arc;
+use wayword_core::{
+    Check, Constraints, DVec3, Frame, Heading, Label, Motion, ObjectId, Path, Placed, SceneId, Style, Survey, Verdict,
+    ViewpointGraph, ViewpointId, graph::GraphError, path::Stop, survey::Known,
+};
+
+/// A hallway along y with a viewpoint every two metres, and rooms behind it: the room of each viewpoint, what is listed
+/// there, and how high it lies.
+const BUILDING: [(&str, &[&str], f64); 10] = [
+    ("bedroom", &["bed", "lamp", "dresser"], 0.0),
+    ("hallway", &["picture", "rug"], 0.0),
+    ("hallway", &["sofa", "plant"], 0.0),
+    ("hallway", &["chair", "table"], 0.0),
+    ("living room", &["tv", "sofa", "coffee table"], 0.0),
+    ("living room", &["fireplace", "chair"], 0.0),
+    ("dining room", &["dining table", "chandelier"], 0.0),
+    ("kitchen", &["refrigerator", "stove", "sink", "cabinet"], 0.0),
+    ("bathroom", &["toilet", "bathtub", "mirror"], 0.0),
+    ("stairs", &["stairs"], 1.5),
+];
+
+fn id(at: usize) -> ViewpointId {
+    ViewpointId::new(format!("v{at}")).unwrap()
+}
+
+fn position(at: usize) -> DVec3 {
+    DVec3::new(0.0, 2.0 * at as f64, 1.5 + BUILDING[at].2)
+}
+
+fn object(at: usize, name: &str) -> ObjectId {
+    ObjectId::new(format!("{name}-{at}").replace(' ', "-")).unwrap()
+}
+
+fn survey() -> Survey {
+    let mut graph = ViewpointGraph::default();
+    for at in 0..BUILDING.len() {
+        graph.add(id(at), position(at), Some(1)).unwrap();
+    }
+    for at in 1..BUILDING.len() {
+        graph.join(&id(at - 1), &id(at)).unwrap();
+    }
+    let known = |viewpoint: &ViewpointId, eye: DVec3| {
+        let at: usize = viewpoint.as_str()[1..].parse().unwrap();
+        let label = |name: &&str| Label {
+            object: object(at, name),
+            name: (*name).to_owned(),
+            heading: Heading::new(1.5).unwrap(),
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: None,
+            position: Some(eye + DVec3::new(1.0, 0.0, 0.0)),
+            colour: None,
+        };
+        let things = BUILDING[at].1.iter().map(label).collect();
+        Ok::<_, GraphError>(Known { room: Some(BUILDING[at].0.to_owned()), things: Some(things) })
+    };
+    let hidden = Placed { object: object(1, "piano"), name: "piano".into(), position: DVec3::new(1.0, 2.0, 1.0) };
+    Survey::of(&graph, known).unwrap().with_objects(vec![hidden])
+}
+
+/// The path between two viewpoints, with what is known of it.
+fn path(from: usize, to: usize) -> (Path, Evidence, Surroundings) {
+    let stop = |at: usize| Stop { position: position(at), viewpoint: Some(id(at)), level: Some(1) };
+    let frames: Vec<Frame> = Path::frames_along((from..=to).map(stop).collect(), None);
+    let scene = SceneId::new("made-up").unwrap();
+    let path = Path { id: "1".into(), scene, frames, motion: Motion::Known, target: None };
+    let mut evidence = Evidence::of_path_alone(&path);
+    for (frame, at) in evidence.frames.iter_mut().zip(from..) {
+        frame.rooms = vec![BUILDING[at].0.to_owned()];
+        frame.knows_things = true;
+    }
+    evidence.source = crate::Source::Labels;
+    let around = Surroundings::of(&Arc::new(Building::of(&survey())), &path).unwrap();
+    (path, evidence, around)
+}
+
+fn any() -> Style {
+    Style { name: "any".into(), references: Vec::new(), constraints: Constraints::default() }
+}
+
+/// The verdict on a text about the path between two viewpoints, with the checks that have it.
+fn told(text: &str, from: usize, to: usize) -> (Verdict, Vec<Check>) {
+    let (_, evidence, around) = path(from, to);
+    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let checked = check(text, Subject::open(&evidence, &any(), reach));
+    let verdict = checked.verdict();
+    let of = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
+    let mut checks: Vec<Check> = of.map(|finding| finding.check).collect();
+    checks.dedup();
+    (verdict, checks)
+}
+
+const PASSES: (Verdict, Vec<Check>) = (Verdict::Pass, Vec::new());
+
+#[test]
+fn what_is_listed_within_three_metres_passes_also_where_no_viewpoint_shows_it() {
+    assert_eq!(told("Walk past the sofa and stop at the chair.", 0, 3), PASSES);
+    assert_eq!(told("Walk past the piano in the hallway.", 0, 3), PASSES);
+    assert_eq!(told("Walk along the wall to the corner and through the doorway.", 0, 3), PASSES);
+}
+
+#[test]
+fn an_object_that_labels_merely_do_not_list_is_unverified() {
+    for text in ["Walk past the xylorimba.", "Walk past the cabinet and stop by the chair.", "Walk past the pillar."] {
+        assert_eq!(told(text, 0, 3), (Verdict::Unverified, vec![Check::Landmarks]), "{text}");
+    }
+}
+
+#[test]
+fn a_room_that_the_path_comes_nowhere_near_fails() {
+    for text in ["Leave the bedroom and walk into the kitchen.", "Walk through the bathroom and stop by the chair."] {
+        assert_eq!(told(text, 0, 3), (Verdict::Fail, vec![Check::Landmarks]), "{text}");
+    }
+    assert_eq!(told("Leave the bedroom and walk down the hallway.", 0, 3), PASSES);
+    // A room without a name may be any.
+    let (path, mut evidence, around) = path(0, 3);
+    evidence.frames[2].rooms.clear();
+    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let checked = check("Walk into the kitchen.", Subject::open(&evidence, &any(), reach));
+    assert_eq!(checked.verdict(), Verdict::Unverified, "{}", path.id);
+}
+
+#[test]
+fn stairs_are_held_against_floor_heights() {
+    for text in ["Go up the stairs.", "Walk up the first few steps of the stairs.", "Climb the stairs and stop."] {
+        assert_eq!(told(text, 7, 9).0, Verdict::Pass, "{text}");
+        assert_eq!(told(text, 0, 3).1, [Check::Floors], "{text}");
+    }
+    assert_eq!(told("Go down the stairs.", 7, 9), (Verdict::Fail, vec![Check::Floors]));
+    for text in ["Walk past the stairs leading down.", "Stop before you go up the stairs."] {
+        assert_ne!(told(text, 0, 3).1, [Check::Floors], "{text}");
+    }
+    // People count storeys as they like.
+    assert_eq!(told("Walk down the hallway on the third floor.", 0, 3), (Verdict::Unverified, vec![Check::Floors]));
+}
+
+#[test]
+fn what_is_said_twice_needs_two_stretches_of_the_path() {
+    for text in [
+        "Walk past the piano. Turn left. Walk past the piano and stop.",
+        "Enter the hallway. Enter the hallway. Wait there.",
+        "Leave the bedroom and walk past the sofa to the chair. Leave the bedroom and walk past the sofa to the chair.",
+    ] {
+        assert_eq!(told(text, 0, 3), (Verdict::Fail, vec![Check::Order]), "{text}");
+    }
+    for text in [
+        "Walk past the piano. Once past the piano, stop.",
+        "Walk down the hallway. In the hallway, walk to the chair.",
+        "Leave the bedroom. Stop in the hallway.",
+    ] {
+        assert_eq!(told(text, 0, 3), PASSES, "{text}");
+    }
+}
+
+#[test]
+fn a_distance_is_held_against_the_length_of_the_path() {
+    assert_eq!(told("Walk 6 meters down the hallway.", 0, 3), PASSES);
+    assert_eq!(told("Walk 500 meters down the hallway.", 0, 3), (Verdict::Fail, vec![Check::Order]));
+}
+
+#[test]
+fn turns_are_left_to_whoever_compares_walks() {
+    assert_eq!(told("Turn left and walk down the hallway.", 0, 3), PASSES);
+    assert_eq!(told("Turn around and walk down the hallway.", 0, 3), PASSES);
+}
+
+#[test]
+fn without_surroundings_absence_says_nothing() {
+    let (_, evidence, _) = path(0, 3);
+    let verdict = |text: &str| check(text, Subject::open(&evidence, &any(), Reach::default())).verdict();
+    for text in ["Walk into the kitchen.", "Walk past the toilet."] {
+        assert_eq!(verdict(text), Verdict::Unverified, "{text}");
+    }
+    assert_eq!(verdict("Go up the stairs."), Verdict::Fail);
+}
+
+#[test]
+fn another_text_that_says_the_same_lifts_a_failure() {
+    let (_, evidence, around) = path(0, 3);
+    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let verdict = |text: &str, other: &str| {
+        let mut checked = check(text, Subject::open(&evidence, &any(), reach));
+        lift(&mut checked, &Testimony::of(text, &evidence), &[&Testimony::of(other, &evidence)]);
+        checked.verdict()
+    };
+    assert_eq!(verdict("Walk into the kitchen.", "Go to the kitchen and stop."), Verdict::Unverified);
+    assert_eq!(verdict("Walk into the kitchen.", "Go to the chair and stop."), Verdict::Fail);
+    assert_eq!(verdict("Go up the stairs.", "Climb the stairs."), Verdict::Unverified);
+    assert_eq!(verdict("Go up the stairs.", "Go down the stairs."), Verdict::Fail);
+    let twice = "Enter the hallway. Enter the hallway.";
+    assert_eq!(verdict(twice, twice), Verdict::Fail, "what is said twice is the text's own fault");
+}
+
+#[test]
+fn the_weights_that_ship_can_be_read_and_hold_every_case() {
+    let weights = super::Weights::shipped();
+    for case in super::Case::ALL {
+        let table = weights.table(case).unwrap();
+        assert!(table.fails_at >= 3.0 && table.weights.contains_key("bias"), "{case:?}");
+    }
+}

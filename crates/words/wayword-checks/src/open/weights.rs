@@ -1,0 +1,81 @@
+//! The weights that ship: how much the silence of labels says.
+
+use super::features::{Case, Missed, class_name};
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::LazyLock,
+};
+use wayword_language::lexicon::{Class, room_name};
+
+/// The file of the weights. Its head says where they come from, and which command fitted them.
+const FILE: &str = include_str!("weights.toml");
+
+static SHIPPED: LazyLock<Weights> = LazyLock::new(|| Weights::read(FILE).unwrap_or_default());
+
+/// How much the silence of the evidence says about a claim.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Weights {
+    /// Rooms by what makes them: fixtures, seats, desks, storing, ways, the open air.
+    pub room_groups: BTreeMap<String, BTreeSet<String>>,
+    /// For each class of objects, the rooms that list it more often than others.
+    pub homes: BTreeMap<String, BTreeSet<String>>,
+    /// One table per kind of claim.
+    pub cases: BTreeMap<String, Table>,
+}
+
+/// The weights of one kind of claim.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// A claim fails where the evidence is likelier by this factor if the claim is wrong than if it is true.
+    pub fails_at: f64,
+    /// A weight per feature: their sum is the logarithm of that factor.
+    pub weights: BTreeMap<String, f64>,
+}
+
+impl Weights {
+    /// The weights that ship.
+    #[must_use]
+    pub fn shipped() -> &'static Self {
+        &SHIPPED
+    }
+
+    /// Reads a file of weights.
+    ///
+    /// # Errors
+    /// When it is no such file.
+    pub fn read(file: &str) -> Result<Self, toml::de::Error> {
+        toml::from_str(file)
+    }
+
+    /// The rooms that list a class more often than others do; `None` where the class has none.
+    #[must_use]
+    pub fn homes(&self, class: Class) -> Option<&BTreeSet<String>> {
+        self.homes.get(&class_name(class))
+    }
+
+    /// The group of a room; "other" where it has none.
+    #[must_use]
+    pub fn room_group(&self, room: &str) -> &str {
+        let named = room_name(room).unwrap_or(room);
+        let group = self.room_groups.iter().find(|(_, rooms)| rooms.contains(named));
+        group.map_or("other", |(group, _)| group)
+    }
+
+    /// The logarithm of how much likelier the evidence is if the claim is wrong than if it is true; `None` where there
+    /// is no table for such claims.
+    #[must_use]
+    pub fn log_ratio(&self, missed: &Missed) -> Option<f64> {
+        let table = self.table(missed.case)?;
+        let weight = |(name, value): &(String, f64)| table.weights.get(name).map_or(0.0, |weight| weight * value);
+        Some(missed.features.iter().map(weight).sum())
+    }
+
+    /// The table of a kind of claim.
+    #[must_use]
+    pub fn table(&self, case: Case) -> Option<&Table> {
+        self.cases.get(case.name())
+    }
+}
