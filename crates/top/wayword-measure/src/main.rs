@@ -8,6 +8,7 @@ mod corruptions;
 mod coverage;
 mod eye;
 mod fit_evidence;
+mod fit_follower;
 mod found;
 mod judged;
 mod key;
@@ -61,6 +62,8 @@ enum What {
         #[arg(long, default_value_t = 3)]
         show: usize,
     },
+    /// Fit the weights of the follower to people's texts, and print how it does on the buildings that were left out.
+    FitFollower(fit_follower::Flags),
     /// Count the words and clauses of datasets' texts that the reader understands, and show those that it does not.
     Coverage(coverage::Flags),
     /// Show instructions of each style, picked by seed, beside what people wrote.
@@ -197,6 +200,7 @@ fn main() -> ExitCode {
 fn run(what: What, output: &Output) -> Result<(), Error> {
     match what {
         What::Corruptions { runs, count, seed, show } => corruptions::measure(&runs, count, seed, show, output),
+        What::FitFollower(flags) => fit_follower::measure(&flags, output),
         What::Coverage(flags) => coverage::measure(&flags, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),
         What::Calls { calls, latency_ms, concurrency } => calls::measure(calls, latency_ms, concurrency, output),

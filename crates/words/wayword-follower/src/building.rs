@@ -1,12 +1,16 @@
 //! A building as a follower knows it: the whole of it by a survey, or what was seen of it on the way.
 
-use crate::near::{Near, Nearness};
+use crate::{
+    near::{Near, Nearness},
+    tree::Tree,
+};
 use std::{
+    cmp::Reverse,
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{DVec3, Survey};
-use wayword_language::lexicon::normal;
+use wayword_language::lexicon::{normal, thing};
 
 /// What is known of a building. Positions are metres, z up; their frame may be any, as long as it is one.
 #[derive(Debug, Default)]
@@ -116,6 +120,35 @@ impl Building {
         let found = Arc::new(Near::find(self, what));
         near.insert(what.clone(), Arc::clone(&found));
         found
+    }
+
+    /// What tells a viewpoint from others: its room where no other lies in one of that name, or else an object that is seen from
+    /// there alone.
+    #[must_use]
+    pub fn told_apart_by(&self, viewpoint: usize, others: &[usize]) -> Option<&str> {
+        let room = |at: usize| self.viewpoints[at].room.as_deref();
+        let own_room = room(viewpoint).filter(|own| others.iter().all(|other| room(*other) != Some(*own)));
+        let sees =
+            |at: usize, name: &str| self.things.iter().any(|thing| thing.name == name && thing.seen_from.contains(&at));
+        let here = self.things.iter().filter(|thing| thing.seen_from.contains(&viewpoint));
+        own_room.or_else(|| {
+            let apart = here.map(|thing| thing.name.as_str());
+            let mut apart: Vec<&str> = apart.filter(|name| others.iter().all(|other| !sees(*other, name))).collect();
+            apart.sort_by_key(|name| (Reverse(thing(name).map_or(0, |thing| thing.salience)), *name));
+            apart.first().copied()
+        })
+    }
+
+    /// For each viewpoint, how far it is over the graph from one of them, metres; infinite where there is no way.
+    #[must_use]
+    pub fn distances_from(&self, from: usize) -> Vec<f64> {
+        let tree = Tree::shortest(self, from, 0.0, usize::MAX);
+        let mut far_m = vec![f64::INFINITY; self.len()];
+        for node in &tree.nodes {
+            let before_m = if node.hops == 0 { 0.0 } else { far_m[tree.end(node.before)] };
+            far_m[node.viewpoint] = before_m + node.length_m;
+        }
+        far_m
     }
 
     /// The distance between two viewpoints, metres.

@@ -34,7 +34,7 @@ pub struct Change {
     pub kind: Kind,
     /// The step, by its number.
     pub step: usize,
-    /// The step's byte range in the text.
+    /// The byte range in the text of what is changed: of the turn's words, or of the step.
     pub span: [usize; 2],
     /// How much better the changed text fits the walk, in natural logs; negative where it fits worse.
     pub gain: f64,
@@ -52,7 +52,10 @@ pub fn changes(guide: &Guide, building: &Building, walk: &[usize], heading_rad: 
         .into_iter()
         .map(|(kind, step, changed)| {
             let gain = fits(&changed) - as_told;
-            Change { kind, step, span: guide.steps[step].step.span, gain: if gain.is_nan() { 0.0 } else { gain } }
+            let told = &guide.steps[step].step;
+            let turns = matches!(kind, Kind::Turn | Kind::NoTurn);
+            let span = told.turn_span.filter(|_| turns).unwrap_or(told.span);
+            Change { kind, step, span, gain: if gain.is_nan() { 0.0 } else { gain } }
         })
         .collect();
     changes.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.step.cmp(&b.step)));

@@ -24,6 +24,8 @@ pub struct Step {
     pub span: [usize; 2],
     /// Its turn; `Behind` for a turn around. Never `Ahead`.
     pub turn: Option<Side>,
+    /// The byte range of the words of that turn.
+    pub turn_span: Option<[usize; 2]>,
     /// Whether the text calls the turn slight.
     pub is_slight: bool,
     /// Its climb: a flight of stairs, or a few steps.
@@ -141,6 +143,7 @@ impl Builder<'_> {
         let mut step = Step {
             span: [self.tokens[first].span[0], self.tokens[last].span[1]],
             turn: None,
+            turn_span: None,
             is_slight: self.has(&SLIGHT),
             climb: None,
             stops: false,
@@ -171,7 +174,10 @@ impl Builder<'_> {
         let mut names_room = false;
         for (number, (at, event)) in events.iter().enumerate().filter(|(_, (_, event))| !event.denied) {
             match &event.what {
-                What::Turn(side) => step.turn = step.turn.or(Some(*side)),
+                What::Turn(side) => {
+                    step.turn = step.turn.or(Some(*side));
+                    step.turn_span = step.turn_span.or(Some(event.span));
+                }
                 What::Climb(climb) | What::Steps(climb) => step.climb = step.climb.or(Some(*climb)),
                 What::Stop => step.stops = true,
                 What::Place(place) => {

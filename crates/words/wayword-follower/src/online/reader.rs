@@ -37,6 +37,9 @@ pub struct Reader<'a> {
 const MOST_STEPS: usize = 24;
 /// Most hops from the start of the walks that it thinks of.
 const MOST_HOPS: usize = 10;
+/// What speaks against each hop to an option besides the fitted weights. They are fitted to get to the goal at all; going
+/// back and forth costs, too.
+const CAUTION: f64 = 0.3;
 
 /// What a walker could do next.
 struct Options {
@@ -112,7 +115,8 @@ impl<'a> Reader<'a> {
     fn plan(&mut self) {
         let trial = Trial::seen(self.guide, &self.map.building);
         let options = self.options(&trial);
-        let all = || options.stop.iter().chain(&options.go).copied().enumerate();
+        let cost = |at: usize| CAUTION * options.away[at % options.tree.len()] as f64;
+        let all = || options.stop.iter().chain(&options.go).enumerate().map(|(at, worth)| (at, worth - cost(at)));
         let highest = all().map(|(_, worth)| worth).fold(f64::NEG_INFINITY, f64::max);
         let mut shares = vec![0.0; self.map.building.len()];
         for (at, worth) in all().filter(|(_, worth)| worth.is_finite()) {
