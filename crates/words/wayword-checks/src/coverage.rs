@@ -1,9 +1,24 @@
 //! Clauses that the reader did not understand, and languages that it does not read.
 
-use wayword_core::Finding;
-use wayword_language::reading::Reading;
+use super::{finding, pass};
+use wayword_core::{Check, Finding, Verdict};
+use wayword_language::{Language, reading::Reading};
 
-/// What of a text was not understood: such a text is unverified, and never right. The reader does not say so yet.
-pub(super) fn coverage(_reading: &Reading) -> Vec<Finding> {
-    Vec::new()
+/// What of a text was not understood: such a text is unverified, and never right. `language` is that of its words, or
+/// the one that its file names.
+pub(super) fn coverage(reading: &Reading, language: Language) -> Vec<Finding> {
+    if let Language::Other(name) = language {
+        let reason = format!("the text is in {name}, and the program reads English");
+        return vec![finding(Check::Coverage, Verdict::Unverified, reason, None)];
+    }
+    let mut findings = Vec::new();
+    if let Language::Partly(name) = language {
+        let reason = format!("a part of the text is in {name}, and the program reads English");
+        findings.push(finding(Check::Coverage, Verdict::Unverified, reason, None));
+    }
+    for clause in reading.clauses.iter().filter(|clause| !clause.understood) {
+        let reason = "the program does not understand this";
+        findings.push(finding(Check::Coverage, Verdict::Unverified, reason, Some(clause.span)));
+    }
+    if findings.is_empty() { vec![pass(Check::Coverage)] } else { findings }
 }

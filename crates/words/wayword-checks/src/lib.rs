@@ -25,7 +25,7 @@ mod world;
 use std::collections::BTreeSet;
 use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
 use wayword_language::{
-    lexicon::normal,
+    lexicon::{agree, normal},
     reading::{Event, Reading, What, read},
 };
 
@@ -47,19 +47,21 @@ pub struct Subject<'a> {
     pub world: World,
     /// What an open world knows beyond the frames.
     pub reach: Reach<'a>,
+    /// The language that the text's file names for it, as a tag: "en-IN".
+    pub tag: Option<&'a str>,
 }
 
 impl<'a> Subject<'a> {
     /// A text that was written from this evidence.
     #[must_use]
     pub fn closed(evidence: &'a Evidence, style: &'a Style, target: Option<&'a Target>) -> Self {
-        Self { evidence, style, target, world: World::Closed, reach: Reach::default() }
+        Self { evidence, style, target, world: World::Closed, reach: Reach::default(), tag: None }
     }
 
     /// A text that somebody else wrote.
     #[must_use]
     pub fn open(evidence: &'a Evidence, style: &'a Style, reach: Reach<'a>) -> Self {
-        Self { evidence, style, target: None, world: World::Open, reach }
+        Self { evidence, style, target: None, world: World::Open, reach, tag: None }
     }
 }
 
@@ -103,7 +105,7 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
         }
         World::Open => findings.extend(open::open(text, &reading, subject)),
     }
-    findings.extend(coverage::coverage(&reading));
+    findings.extend(coverage::coverage(&reading, reading.language.or_tagged(subject.tag)));
     findings.push(leak::leak(text, &subject.style.references));
     findings.sort_by_key(|finding| finding.check);
     Checked { mentions: mentions(&reading, &walk.frames), findings, world: subject.world }
@@ -127,6 +129,15 @@ pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
     checked
 }
 
+/// How many objects at the end of a path the task of a text may mean; 0 where it names none, or none is known there.
+#[must_use]
+pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
+    let reading = read(text, &names(evidence)).claims();
+    let object = reading.task.as_ref().and_then(|task| task.object);
+    let Some(What::Place(place)) = object.map(|at| &reading.events[at].what) else { return 0 };
+    evidence.final_things().iter().filter(|thing| agree(&thing.name, &place.name)).count()
+}
+
 /// The names of all objects that are known along a path. The reader has to recognise them.
 fn names(evidence: &Evidence) -> BTreeSet<String> {
     let things = evidence.frames.iter().flat_map(|frame| frame.things.iter().map(|thing| normal(&thing.name)));
@@ -146,6 +157,19 @@ fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
     let told = reading.events.iter().zip(frames).enumerate();
     told.filter_map(|(at, (event, frame))| Some(Mention { span: event.span, kind: kind(at, event)?, frame: (*frame)? }))
         .collect()
+}
+
+impl Checked {
+    /// Adds what somebody else found. A check that passed before and fails or is unverified now no longer passes.
+    pub fn add(&mut self, found: impl IntoIterator<Item = Finding>) {
+        for finding in found {
+            if finding.verdict != Verdict::Pass {
+                self.findings.retain(|other| other.check != finding.check || other.verdict != Verdict::Pass);
+            }
+            self.findings.push(finding);
+        }
+        self.findings.sort_by_key(|finding| finding.check);
+    }
 }
 
 /// A check that found nothing wrong.

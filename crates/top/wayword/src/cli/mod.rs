@@ -173,6 +173,10 @@ pub struct Check {
     /// Let a text fail although another text about the same path says the same.
     #[arg(long)]
     pub no_witnesses: bool,
+    /// Do not follow the texts: no check of where they lead, of their turns in an open world, and of how many places they
+    /// may mean.
+    #[arg(long)]
+    pub no_route: bool,
     /// Shares by the names of objects and rooms that `wayword calibrate` made.
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,

@@ -1,6 +1,7 @@
 //! `wayword check`.
 
 mod held;
+mod route;
 mod walks;
 mod worlds;
 
@@ -16,12 +17,16 @@ use crate::{
 };
 use held::Held;
 use rayon::prelude::*;
+pub use route::{Ambiguity, Shares};
+use route::{Followed, Told};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path as FilePath};
 use walks::{Text, Walk, walks};
-use wayword_checks::{Checked, Evidence, Reach, Subject, Testimony, World, check, lift, open::Calibration};
+use wayword_checks::{
+    Checked, Evidence, Reach, Subject, Surroundings, Testimony, World, check, lift, objects_meant, open::Calibration,
+};
 use wayword_core::{Check, Finding, Platform, Verdict};
-use worlds::{Buildings, world_of};
+use worlds::{Scenes, world_of};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = checked(args, output)?;
@@ -39,6 +44,7 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
         style: args.style.as_deref(),
         world: args.world,
         without_witnesses: args.no_witnesses,
+        without_route: args.no_route,
         calibration: calibration.as_ref(),
     };
     let mut report = check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, how, output)?;
@@ -55,6 +61,8 @@ pub struct How<'a> {
     pub world: AskedWorld,
     /// Whether other writers' texts of a path say nothing for a text that fails.
     pub without_witnesses: bool,
+    /// Whether no text is followed.
+    pub without_route: bool,
     /// What the user's own data says of single names.
     pub calibration: Option<&'a Calibration>,
 }
@@ -110,6 +118,15 @@ pub struct CheckedText {
     pub world: &'static str,
     /// What was found, without what passed.
     pub findings: Vec<Finding>,
+    /// How likely it is that the text means its path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub route: Option<Shares>,
+    /// What turning its most doubtful turn around would gain, natural logs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_gain: Option<f64>,
+    /// What the text may mean. It makes no text fail.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambiguity: Option<Ambiguity>,
 }
 
 /// Checks every instruction of a file.
@@ -121,12 +138,12 @@ pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &O
     let platform = platforms::open(settings)?;
     let held = Held::to(how.style, settings.seed)?;
     let walks = walks(file, platform.as_ref())?;
-    let buildings = Buildings::default();
+    let scenes = Scenes::default();
     let bar = output.progress(walks.len(), "paths");
     let checked: Vec<_> = walks
         .par_iter()
         .map(|walk| {
-            let checked = check_walk(platform.as_ref(), walk, &held, how, &buildings);
+            let checked = check_walk(platform.as_ref(), walk, &held, how, &scenes);
             bar.inc(1);
             checked
         })
@@ -159,15 +176,17 @@ fn check_walk(
     walk: &Walk,
     held: &Held,
     how: How<'_>,
-    buildings: &Buildings,
+    scenes: &Scenes,
 ) -> Result<CheckedWalk, Error> {
     let world = Remembering::new(platform);
     let views = panoramas(&world, &walk.path)?;
     let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
     let world_of = |text: &Text| world_of(text, how.world, platform.name(), evidence.source);
     let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
-    let around = if some_are_open { buildings.around(platform, walk)? } else { None };
+    let scene = if some_are_open || !how.without_route { Some(scenes.get(platform, &walk.path.scene)?) } else { None };
+    let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
     let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
+    let followed = scene.as_ref().filter(|_| !how.without_route).and_then(|scene| Followed::new(scene, &walk.path));
     let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
     let testimony = |text: &Text| hears.then(|| Testimony::of(&text.words, &evidence));
     let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
@@ -178,13 +197,29 @@ fn check_walk(
             World::Closed => Subject::closed(&evidence, style, None),
             World::Open => Subject::open(&evidence, style, reach),
         };
-        let mut checked = check(&text.words, subject);
+        let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), ..subject });
+        let told = (!how.without_route).then(|| match &followed {
+            Some(followed) => followed.follow(&text.words),
+            None => Told::unknown("its path does not go along the viewpoints of a graph"),
+        });
+        if checked.world == World::Open {
+            checked.add(told.iter().flat_map(|told| told.findings.clone()));
+        }
         if let Some(own) = testimonies[at].as_ref().filter(|_| checked.world == World::Open) {
             let others = walk.texts.iter().zip(&testimonies).filter(|(other, _)| other.words != text.words);
             let others: Vec<&Testimony> = others.filter_map(|(_, testimony)| testimony.as_ref()).collect();
             lift(&mut checked, own, &others);
         }
-        (text.at, CheckedText::of(text, &checked), checked.findings)
+        let mut shown = CheckedText::of(text, &checked);
+        if let Some(told) = told {
+            shown.ambiguity = Some(Ambiguity {
+                ends: told.ends.as_ref().map(|ends| ends.count),
+                objects: objects_meant(&text.words, &evidence),
+                told_apart_by: told.ends.and_then(|ends| ends.told_apart_by),
+            });
+            (shown.route, shown.turn_gain) = (told.route, told.turn_gain);
+        }
+        (text.at, shown, checked.findings)
     });
     Ok((evidence.source.name(), checked.collect()))
 }
@@ -193,7 +228,8 @@ impl CheckedText {
     fn of(text: &Text, checked: &Checked) -> Self {
         let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
         let (path, words) = (text.path.clone(), text.words.clone());
-        Self { path, text: words, verdict: checked.verdict(), world: checked.world.name(), findings }
+        let (verdict, world) = (checked.verdict(), checked.world.name());
+        Self { path, text: words, verdict, world, findings, route: None, turn_gain: None, ambiguity: None }
     }
 }
 

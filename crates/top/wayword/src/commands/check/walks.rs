@@ -24,14 +24,16 @@ pub(super) struct Text {
     pub(super) words: String,
     /// The style that it was written in, where the file says so.
     pub(super) style: Option<Named>,
+    /// The tag of its language, where the file gives one.
+    pub(super) tag: Option<String>,
     /// How it came about, where the file says so: the platform, and who did what.
     pub(super) made: Option<(String, Provenance)>,
 }
 
 impl Text {
     /// A text of a dataset that says nothing of how it came about.
-    fn of_dataset(path: &Path, words: String) -> Self {
-        Self { at: 0, path: path.id.clone(), words, style: None, made: None }
+    fn of_dataset(path: &Path, words: String, tag: Option<String>) -> Self {
+        Self { at: 0, path: path.id.clone(), words, style: None, tag, made: None }
     }
 }
 
@@ -51,6 +53,7 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
                 at: 0,
                 path: path.id.clone(),
                 words: instruction.text,
+                tag: None,
                 style: Some(Named { name: instruction.style, hash: instruction.provenance.style_hash.clone() }),
                 made: Some((made_on, instruction.provenance)),
             };
@@ -68,8 +71,9 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
             episode.start_heading,
             episode.target_object.as_ref(),
         )?;
-        for words in episode.instructions {
-            walks.add(path.clone(), Text::of_dataset(&path, words));
+        for (at, words) in episode.instructions.iter().enumerate() {
+            let tag = episode.language(at).map(str::to_owned);
+            walks.add(path.clone(), Text::of_dataset(&path, words.clone(), tag));
         }
     }
     Ok(walks.all)
@@ -130,7 +134,7 @@ mod tests {
         let mut walks = Walks::default();
         for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
             let path = path(id, end_m);
-            walks.add(path.clone(), Text::of_dataset(&path, "Stop.".into()));
+            walks.add(path.clone(), Text::of_dataset(&path, "Stop.".into(), None));
         }
         let texts: Vec<Vec<(usize, &str)>> = walks
             .all
@@ -140,7 +144,7 @@ mod tests {
         assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
         let mut other = path("1_7", 2.0);
         other.motion = Motion::Unknown;
-        walks.add(other.clone(), Text::of_dataset(&other, "Stop.".into()));
+        walks.add(other.clone(), Text::of_dataset(&other, "Stop.".into(), None));
         assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
     }
 }

@@ -1,36 +1,47 @@
 //! The world that each text is held against.
 
-use super::walks::{Text, Walk};
+use super::walks::Text;
 use crate::{cli::AskedWorld, error::Error};
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_checks::{Building, Source, Surroundings, World};
-use wayword_core::{Platform, SceneId};
+use wayword_checks::{Building, Source, World};
+use wayword_core::{Platform, SceneId, Survey};
 use wayword_world::survey;
 
-/// Where a scene's building is kept once it is surveyed.
-type Slot = Arc<Mutex<Option<Arc<Building>>>>;
+/// Where what is known of a scene is kept once it is surveyed.
+type Slot = Arc<Mutex<Option<Arc<KnownScene>>>>;
 
-/// What open worlds know of each scene. A scene is surveyed once, when the first text needs it.
+/// What is known of each scene beyond the frames of a path. A scene is surveyed once, when the first text needs it.
 #[derive(Default)]
-pub(super) struct Buildings {
-    by_scene: Mutex<BTreeMap<SceneId, Slot>>,
+pub(super) struct Scenes {
+    by_name: Mutex<BTreeMap<SceneId, Slot>>,
 }
 
-impl Buildings {
-    /// What is listed around a path; `None` where the platform lists nothing beyond its frames.
-    pub(super) fn around(&self, platform: &dyn Platform, walk: &Walk) -> Result<Option<Surroundings>, Error> {
-        let scene = &walk.path.scene;
+/// A scene that was surveyed.
+pub(super) struct KnownScene {
+    /// Its viewpoints.
+    pub(super) survey: Survey,
+    /// What is listed in it, for the checks.
+    pub(super) listed: Arc<Building>,
+    /// The same for the follower.
+    pub(super) followed: wayword_follower::Building,
+}
+
+impl Scenes {
+    /// A scene. It has no viewpoints where the platform has no graph.
+    pub(super) fn get(&self, platform: &dyn Platform, scene: &SceneId) -> Result<Arc<KnownScene>, Error> {
         let cell =
-            Arc::clone(self.by_scene.lock().unwrap_or_else(PoisonError::into_inner).entry(scene.clone()).or_default());
-        let mut building = cell.lock().unwrap_or_else(PoisonError::into_inner);
-        let building = match &*building {
-            Some(known) => Arc::clone(known),
-            None => Arc::clone(building.insert(Arc::new(Building::of(&survey(platform, scene)?)))),
-        };
-        Ok(Surroundings::of(&building, &walk.path))
+            Arc::clone(self.by_name.lock().unwrap_or_else(PoisonError::into_inner).entry(scene.clone()).or_default());
+        let mut known = cell.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = &*known {
+            return Ok(Arc::clone(known));
+        }
+        let survey = survey(platform, scene)?;
+        let listed = Arc::new(Building::of(&survey));
+        let followed = wayword_follower::Building::of(&survey);
+        Ok(Arc::clone(known.insert(Arc::new(KnownScene { survey, listed, followed }))))
     }
 }
 
