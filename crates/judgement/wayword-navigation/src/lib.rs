@@ -1,9 +1,11 @@
 //! Can an agent find the way by an instruction? Zero-shot agents walk the viewpoint graph by instructions, and sets of
 //! instructions are compared by how well the agents do.
 //!
-//! Architecture invariant: an agent gets an instruction and, at each node, how well its phrases fit four views. It gets
-//! no pose, no goal and no map. Agents that know more are in `agents::baselines`. Nothing here opens a file, and
-//! nothing knows a platform beyond the trait.
+//! Architecture invariant: an agent gets an instruction and, at each node, what [`sight`] makes for it. An agent that
+//! walks by phrases gets how well they fit four views ([`Sight`]). One that reads gets the ways out of the node, its
+//! room, and by which way each thing lies (`Sighting`). Neither gets a pose, a goal or a map. Agents that know more are
+//! in `agents::baselines` and `agents::map_reader`. Nothing here opens a file, and nothing knows a platform beyond the
+//! trait.
 
 pub mod agents;
 pub mod comparison;
@@ -17,4 +19,4 @@ mod testing;
 pub mod walk;
 
 pub use error::WalkError;
-pub use sight::{AgentView, Seen, Sight};
+pub use sight::{AgentView, Seen, Sight, Things};

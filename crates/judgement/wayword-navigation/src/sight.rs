@@ -1,4 +1,9 @@
-//! What an agent gets at a node: how well its phrases fit four views, and which neighbours lie in each.
+//! What an agent gets at a node: how well its phrases fit four views, and which neighbours lie in each. What an agent
+//! that reads gets is in `sighting`.
+
+mod sighting;
+
+pub use sighting::Things;
 
 use crate::error::WalkError;
 use std::{

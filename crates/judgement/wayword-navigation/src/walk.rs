@@ -44,6 +44,9 @@ pub struct Step {
     /// The current key phrase when it looked, from 0; beyond the last where only the activity is left.
     #[serde(default)]
     pub phrase: usize,
+    /// What an agent that reads was told there; `None` for the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub told: Option<Told>,
     /// What it did then.
     pub choice: Choice,
 }
@@ -61,15 +64,27 @@ pub struct Scored {
     pub ways: usize,
 }
 
+/// What an agent that reads was told at a step, in short.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Told {
+    /// The room, where it was told one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub room: Option<String>,
+    /// Number of ways out.
+    pub ways: usize,
+    /// Number of things.
+    pub things: usize,
+}
+
 /// What an agent did at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Choice {
     /// Went on through one of the four views, from 0.
     Onward(usize),
-    /// Went on without having looked (baselines and upper bounds).
+    /// Went on without having looked (baselines, upper bounds, and agents that know the map).
     Unseeing,
-    /// Went back to the node before, because the sequence of scores was too low.
+    /// Went back to a node where it had been: the sequence of scores was too low, or the text fits another way better.
     Back,
     /// Ended the walk here.
     Stop,

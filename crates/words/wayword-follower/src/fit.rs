@@ -30,6 +30,10 @@ impl Fit {
         let (nodes, steps) = (tree.len(), trial.guide.len());
         let mut sums = vec![vec![f64::NEG_INFINITY; nodes]; steps + 1];
         sums[0][0] = 0.0;
+        if steps == 0 {
+            // A text that tells nothing speaks against no walk: only the endings count.
+            sums[0].fill(0.0);
+        }
         let mut stretches = vec![f64::NEG_INFINITY; steps * nodes * (MOST_HOPS + 1)];
         let mut found = Vec::new();
         for step in 0..steps {

@@ -69,7 +69,7 @@ fn to(graph: &ViewpointGraph, start: &Start, goal: &ViewpointId) -> Result<Walke
 }
 
 /// Follows `next` until it gives no node, or the hops are used up.
-fn follow(
+pub(super) fn follow(
     graph: &ViewpointGraph,
     start: &Start,
     hops: usize,
@@ -82,6 +82,7 @@ fn follow(
         heading_rad: heading,
         views: Vec::new(),
         phrase: 0,
+        told: None,
         choice,
     };
     while let Some(to) = (steps.len() < hops).then(|| next(&here, heading)).flatten() {

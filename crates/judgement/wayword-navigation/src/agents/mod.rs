@@ -1,13 +1,18 @@
 //! Agents that walk by instructions, and the agents that they are compared with.
 
 mod baselines;
+mod map_reader;
 mod parameters;
 mod phrases;
 mod policy;
+mod reader;
 
 pub use baselines::{last_room_in, nearest_room, oracle, random, straight};
+pub use map_reader::{MapReader, Surveyed};
 pub use parameters::{Back, Parameters};
 pub use phrases::walk_by_phrases;
+pub use reader::walk_by_reading;
+pub use wayword_follower::Prior;
 
 use wayword_core::{Heading, SceneId, ViewpointId};
 

@@ -33,8 +33,8 @@ pub fn walk_by_phrases(
         let is_last = steps.len() >= parameters.max_hops;
         let decision = policy.decide(&here, heading, &sight);
         let scored = scored(&sight, in_hand, directions.phrases.len());
-        let step =
-            |choice| Step { viewpoint: here.clone(), heading_rad: heading, views: scored, phrase: in_hand, choice };
+        let viewpoint = here.clone();
+        let step = |choice| Step { viewpoint, heading_rad: heading, views: scored, phrase: in_hand, told: None, choice };
         match decision {
             Decision::Stop | Decision::DeadEnd => {
                 steps.push(step(Choice::Stop));
@@ -75,7 +75,7 @@ fn go_back(
             break;
         }
         let (viewpoint, choice) = (here.clone(), Choice::Back);
-        steps.push(Step { viewpoint, heading_rad: heading, views: Vec::new(), phrase: 0, choice });
+        steps.push(Step { viewpoint, heading_rad: heading, views: Vec::new(), phrase: 0, told: None, choice });
     }
     (here, heading)
 }

@@ -5,7 +5,7 @@ mod results;
 mod table;
 
 pub use results::Results;
-pub use table::{UNREAD, Walker, compare, swapped_set};
+pub use table::{EMPTY, UNREAD, Walker, compare, empty_set, swapped_set};
 
 use crate::swap::Swap;
 use serde::{Deserialize, Serialize};
@@ -19,9 +19,10 @@ pub struct Comparison {
     pub about: About,
     /// The sets, in the order in which they were asked for.
     pub sets: Vec<Set>,
-    /// One per agent and set, agents in their order; an agent that does not read has one row, whose set is `None`.
+    /// One per agent and set, agents in their order; an agent that does not read has one row, whose set is `None`. One that
+    /// reads and knows the map has two more: by an empty text ([`empty_set`]) and by another path's ([`swapped_set`]).
     pub rows: Vec<Row>,
-    /// One per agent that reads and swap of the first set.
+    /// One per agent that reads all of its text, and swap of the first set.
     pub swaps: Vec<Swapped>,
 }
 
@@ -57,6 +58,9 @@ pub struct About {
     pub failed: usize,
     /// Whether the parameters are the defaults and were swept for this grounder.
     pub swept: bool,
+    /// Which walks an agent that reads and knows the map thinks of; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<String>,
     /// The agents' parameters, by agent and name.
     pub parameters: BTreeMap<String, BTreeMap<String, String>>,
     /// Version of Wayword.
@@ -87,7 +91,7 @@ pub enum AgentKind {
     LowerBound,
     /// It reads.
     Agent,
-    /// It knows what no agent gets: the map, the labels of rooms.
+    /// It knows what no agent gets: the map, the labels of rooms, for some those of objects.
     Informed,
     /// It knows the goal.
     #[serde(alias = "ceiling")]

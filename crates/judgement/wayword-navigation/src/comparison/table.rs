@@ -13,6 +13,15 @@ pub fn swapped_set(set: &str, swap: Swap) -> String {
     format!("{set}~{}", swap.name())
 }
 
+/// The set of walks by an empty text instead of a set's.
+#[must_use]
+pub fn empty_set(set: &str) -> String {
+    format!("{set}~{EMPTY}")
+}
+
+/// What stands for a swap in the name of the set of walks by an empty text.
+pub const EMPTY: &str = "empty";
+
 /// The set under which walks of agents that do not read are kept.
 pub const UNREAD: &str = "none";
 
@@ -25,9 +34,19 @@ pub struct Walker {
     pub kind: AgentKind,
     /// Whether it reads instructions.
     pub reads: bool,
+    /// Whether what it knows may lead it to the goal without its instruction. Then it has two more rows: by an empty text, and by
+    /// another path's.
+    pub has_floors: bool,
 }
 
-/// Makes the table. Swaps are of the first set, and only of agents that know nothing but the instruction and the views.
+impl Walker {
+    /// Whether it is walked by swapped texts: what it reads is its only way to the goal, or rows beside it show the others.
+    fn is_swapped(&self) -> bool {
+        self.kind == AgentKind::Agent || self.has_floors
+    }
+}
+
+/// Makes the table. Swaps are of the first set.
 #[must_use]
 pub fn compare(about: About, sets: Vec<Set>, walkers: &[Walker], swaps: &[Swap], results: &Results) -> Comparison {
     let table = Table { about: &about, results };
@@ -38,13 +57,17 @@ pub fn compare(about: About, sets: Vec<Set>, walkers: &[Walker], swaps: &[Swap],
                 let first = sets.first().filter(|_| at > 0);
                 table.row(walker, Some(&set.name), first.map(|first| first.name.as_str()))
             }));
+            if let Some(first) = sets.first().filter(|_| walker.has_floors) {
+                let floors = [empty_set(&first.name), swapped_set(&first.name, Swap::OtherPath)];
+                rows.extend(floors.iter().map(|set| table.row(walker, Some(set), None)));
+            }
         } else {
             rows.push(table.row(walker, None, None));
         }
     }
     let mut swapped = Vec::new();
     if let Some(first) = sets.first() {
-        for walker in walkers.iter().filter(|walker| walker.kind == AgentKind::Agent) {
+        for walker in walkers.iter().filter(|walker| walker.is_swapped()) {
             swapped.extend(swaps.iter().map(|swap| table.swapped(walker, &first.name, *swap)));
         }
     }

@@ -49,6 +49,7 @@ fn about() -> About {
         paths: 2,
         failed: 0,
         swept: true,
+        prior: None,
         parameters: BTreeMap::new(),
         wayword: "0".into(),
     }
@@ -59,7 +60,7 @@ fn set(name: &str) -> Set {
 }
 
 fn compared(results: &Results, swaps: &[Swap]) -> Comparison {
-    let walker = |name: &str, kind, reads| Walker { name: name.into(), kind, reads };
+    let walker = |name: &str, kind, reads| Walker { name: name.into(), kind, reads, has_floors: false };
     let walkers = [walker("reader", AgentKind::Agent, true), walker("blind", AgentKind::LowerBound, false)];
     compare(about(), vec![set("original"), set("ours")], &walkers, swaps, results)
 }
@@ -137,4 +138,20 @@ fn who_loses_by_a_swap_on_many_paths_listens() {
     assert_eq!(after_losing(15, 30), Listening::Shown);
     assert_eq!(after_losing(1, 30), Listening::NotShown);
     assert_eq!(after_losing(30, FEWEST_PATHS - 1), Listening::TooFew);
+}
+
+#[test]
+fn who_reads_and_knows_the_map_has_rows_for_no_text_and_for_another_paths() {
+    let mut results = results();
+    for (set, item) in [(empty_set("original"), "a"), (swapped_set("original", Swap::OtherPath), "b")] {
+        results.add(&walk("reader", &set, item, 0), "p1", score(item == "b"));
+    }
+    let walker = Walker { name: "reader".into(), kind: AgentKind::Informed, reads: true, has_floors: true };
+    let sets = vec![set("original"), set("ours")];
+    let comparison = compare(about(), sets, &[walker], &[Swap::OtherPath], &results);
+    let rate = |row: &Row| row.figures[&Metric::SuccessRate].mean;
+    let rows: Vec<(&str, f64)> = comparison.rows.iter().map(|row| (row.set.as_deref().unwrap(), rate(row))).collect();
+    let wanted = [("original", 3.5 / 4.0), ("ours", 0.25), ("original~empty", 0.0), ("original~other-path", 1.0)];
+    assert_eq!(rows, wanted);
+    assert_eq!(comparison.swaps.len(), 1, "swap tests apply to it too");
 }

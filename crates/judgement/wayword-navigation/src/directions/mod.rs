@@ -49,6 +49,11 @@ fn beginning(text: &str, most_bytes: usize) -> &str {
     &text[..text.floor_char_boundary(most_bytes)]
 }
 
+/// The part of an instruction that agents read.
+pub(crate) fn beginning_of(instruction: &str) -> &str {
+    beginning(instruction, MOST_BYTES_READ)
+}
+
 /// The beginning of a phrase that is not too long for a grounder.
 fn short(text: &str) -> String {
     let text = beginning(text.trim(), MOST_BYTES);

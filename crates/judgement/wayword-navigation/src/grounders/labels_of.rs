@@ -3,7 +3,7 @@
 use wayword_core::{Label, ModelError, View};
 
 /// The labels of a view and its room, for the grounder named `by`.
-pub(super) fn labels_of<'a>(view: &'a View, by: &str) -> Result<(&'a [Label], Option<&'a str>), ModelError> {
+pub(crate) fn labels_of<'a>(view: &'a View, by: &str) -> Result<(&'a [Label], Option<&'a str>), ModelError> {
     let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
         name: format!("--grounder {by}"),
         needs: "labels",

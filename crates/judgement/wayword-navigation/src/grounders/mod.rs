@@ -4,6 +4,7 @@ mod labels_of;
 mod lexical;
 mod similar;
 
+pub(crate) use labels_of::labels_of;
 pub use lexical::Lexical;
 pub use similar::Similar;
 

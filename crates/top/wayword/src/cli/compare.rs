@@ -2,9 +2,9 @@
 
 use crate::settings::{Asked, AskedPlatform, AskedRoles, Draw, RULES, Service, Walks, can_play};
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
-use std::path::PathBuf;
+use std::{fmt, path::PathBuf};
 use wayword_metrics::Rule;
-use wayword_navigation::swap::Swap;
+use wayword_navigation::{agents::Prior, swap::Swap};
 
 /// `wayword compare`.
 #[derive(Debug, Args)]
@@ -17,6 +17,8 @@ Examples:
       Three agents follow a run's own instructions in generated houses, without any model.
   wayword compare --platform matterport --data DATA --episodes R2R_val_seen.json --agents clip-nav \\
       --grounder hf/openai/clip-vit-base-patch32 --out runs/clip      (needs photographs, and the feature full)
+  wayword compare --platform matterport --data DATA --episodes R2R_val_seen.json --agents reader,reader-map --out runs/read
+      Agents that read turns, rooms, landmarks and stairs: one finds its way, the other knows the map.
   wayword compare --platform matterport --data DATA --episodes REVERIE_val_seen.json --split ollama/qwen3 --out runs/split
       A language model splits the instructions into phrases, instead of rules.
 
@@ -35,7 +37,8 @@ pub struct Compare {
     /// compare sets; all are compared with the first. [default: original]
     #[arg(long, value_name = "SET")]
     pub instructions: Vec<String>,
-    /// The agents: clip-nav, seq-clip-nav, glip-nav. Always added: random and straight (lower-bound baselines), nearest-room
+    /// The agents: clip-nav, seq-clip-nav, glip-nav (walk by phrases), reader (reads every clause, and knows only where it was),
+    /// reader-map (reads the same, and knows the map). Always added: random and straight (lower-bound baselines), nearest-room
     /// (knows the map) and oracle (upper bound).
     #[arg(
         long,
@@ -53,7 +56,11 @@ pub struct Compare {
     /// Sentence encoder of the grounder `labels`.
     #[arg(long, value_name = "MODEL", default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]
     pub encoder: String,
-    /// What splits an instruction into phrases for the agents: rules, or a language model as provider/model.
+    /// Which walks reader-map thinks of: shortest:1-N (the shortest path to each viewpoint 1 to N hops away), or none (walks of two
+    /// shortest pieces). [default: shortest:1-8]
+    #[arg(long, value_name = "PRIOR", value_parser = prior)]
+    pub prior: Option<AskedPrior>,
+    /// What splits an instruction into phrases for the agents that walk by phrases: rules, or a language model as provider/model.
     #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = splitter)]
     pub split: String,
     /// Base URL of the provider of --split.
@@ -96,7 +103,44 @@ pub struct Compare {
 }
 
 /// The agents that `--agents` takes.
-const AGENTS: [&str; 3] = ["clip-nav", "seq-clip-nav", "glip-nav"];
+const AGENTS: [&str; 5] = ["clip-nav", "seq-clip-nav", "glip-nav", "reader", "reader-map"];
+
+/// Which walks an agent that knows the map thinks of, as typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AskedPrior(pub Prior);
+
+/// Most hops of a walk that an agent thinks of.
+const MOST_HOPS: usize = 20;
+/// Hops of the walks of two pieces.
+const HOPS_OF_PIECES: usize = 8;
+
+impl Default for AskedPrior {
+    fn default() -> Self {
+        Self(Prior::Shortest(8))
+    }
+}
+
+impl fmt::Display for AskedPrior {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Prior::Shortest(hops) => write!(f, "shortest:1-{hops}"),
+            Prior::TwoPieces(_) => f.write_str("none"),
+        }
+    }
+}
+
+/// Which walks are thought of, as typed.
+///
+/// # Errors
+/// When it is neither form.
+pub(crate) fn prior(typed: &str) -> Result<AskedPrior, String> {
+    let hops = typed.strip_prefix("shortest:1-").and_then(|hops| hops.parse().ok());
+    match hops.filter(|hops| (1..=MOST_HOPS).contains(hops)) {
+        Some(hops) => Ok(AskedPrior(Prior::Shortest(hops))),
+        None if typed == "none" => Ok(AskedPrior(Prior::TwoPieces(HOPS_OF_PIECES))),
+        None => Err(format!("give shortest:1-8, with 1 to {MOST_HOPS} hops at most, or none")),
+    }
+}
 
 /// What splits instructions into phrases, as typed.
 fn splitter(name: &str) -> Result<String, String> {

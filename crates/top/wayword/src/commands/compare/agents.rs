@@ -1,12 +1,16 @@
 //! Agents by their names, and their thresholds.
 
+use super::kept::Kept;
 use crate::{error::Error, text_file};
 use std::{collections::BTreeMap, path::Path};
 use wayword_navigation::{
-    agents::{Back, Parameters},
+    agents::{Back, Parameters, Prior},
     comparison::{AgentKind, Walker},
 };
 
+/// The agent that reads, and its fellow that knows the map.
+pub(super) const READER: &str = "reader";
+pub(super) const READER_MAP: &str = "reader-map";
 /// The agent that uses a detector.
 pub(super) const BY_DETECTOR: &str = "glip-nav";
 
@@ -22,6 +26,10 @@ pub(super) const RANDOM_WALKS: usize = 10;
 pub(super) enum Agent {
     /// Walks by phrases, with the grounder of boxes or that of whole views.
     Phrases { name: String, parameters: Parameters, by_detector: bool },
+    /// Reads, and knows only where it was. Things are labels, or what scores at least a threshold.
+    Reader(Option<f32>),
+    /// Reads, and knows the map.
+    ReaderMap(Prior),
     /// This many random hops.
     Random(usize),
     /// At most this many hops straight ahead.
@@ -34,14 +42,20 @@ pub(super) enum Agent {
 
 impl Agent {
     /// The agents that were asked for, with the lower-bound baselines and upper bounds.
-    pub(super) fn all(parameters: &BTreeMap<String, Parameters>, asked: &[String]) -> Vec<Self> {
-        let reader = |name: &String| {
-            let parameters = *parameters.get(name)?;
-            Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
+    pub(super) fn all(kept: &Kept, prior: Prior) -> Vec<Self> {
+        let agent = |name: &String| match name.as_str() {
+            READER => Some(Self::Reader(kept.reader_threshold)),
+            READER_MAP => None,
+            _ => {
+                let parameters = *kept.parameters.get(name)?;
+                Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
+            }
         };
-        let mut all: Vec<Self> = asked.iter().filter_map(reader).collect();
+        let mut all: Vec<Self> = kept.agents.iter().filter_map(agent).collect();
         all.extend(RANDOM_HOPS.map(Self::Random));
-        all.extend([Self::Straight(STRAIGHT_HOPS), Self::NearestRoom, Self::Oracle]);
+        all.push(Self::Straight(STRAIGHT_HOPS));
+        all.extend(kept.knows_map().then_some(Self::ReaderMap(prior)));
+        all.extend([Self::NearestRoom, Self::Oracle]);
         all
     }
 
@@ -49,6 +63,8 @@ impl Agent {
     pub(super) fn name(&self) -> String {
         match self {
             Self::Phrases { name, .. } => name.clone(),
+            Self::Reader(_) => READER.to_owned(),
+            Self::ReaderMap(_) => READER_MAP.to_owned(),
             Self::Random(hops) => format!("random/{hops}"),
             Self::Straight(hops) => format!("straight/{hops}"),
             Self::NearestRoom => "nearest-room".to_owned(),
@@ -59,13 +75,22 @@ impl Agent {
     /// The agent as the comparison takes it.
     pub(super) fn walker(&self) -> Walker {
         let (kind, reads) = match self {
-            Self::Phrases { .. } => (AgentKind::Agent, true),
+            Self::Phrases { .. } | Self::Reader(_) => (AgentKind::Agent, true),
             Self::Random(_) | Self::Straight(_) => (AgentKind::LowerBound, false),
-            Self::NearestRoom => (AgentKind::Informed, true),
+            Self::ReaderMap(_) | Self::NearestRoom => (AgentKind::Informed, true),
             Self::Oracle => (AgentKind::UpperBound, false),
         };
-        Walker { name: self.name(), kind, reads }
+        Walker { name: self.name(), kind, reads, has_floors: matches!(self, Self::ReaderMap(_)) }
     }
+}
+
+/// The thresholds of the agents.
+#[derive(Debug, Default)]
+pub(super) struct Thresholds {
+    /// Of those that walk by phrases.
+    pub(super) of_phrases: BTreeMap<String, Parameters>,
+    /// From which score on a thing counts as seen by the agent that reads; `None` where labels say what is there.
+    pub(super) of_reader: Option<f32>,
 }
 
 /// The thresholds of each agent: the defaults of its grounder, changed by a file.
@@ -76,20 +101,31 @@ pub(super) fn parameters(
     names: &[String],
     grounder: &str,
     file: Option<&Path>,
-) -> Result<BTreeMap<String, Parameters>, Error> {
+) -> Result<Thresholds, Error> {
+    if let Some(name) = (1..names.len()).find(|at| names[..*at].contains(&names[*at])).map(|at| &names[at]) {
+        return Err(Error::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
+    }
     let mut tables = toml::Table::new();
     if let Some(file) = file {
         let wrong = |error: toml::de::Error| wrong(file, error.to_string().trim());
         tables = text_file::read(file, "read the parameters")?.parse().map_err(wrong)?;
     }
-    let mut all = BTreeMap::new();
+    let mut all = Thresholds::default();
     for name in names {
         let default = Parameters::default_of(name, grounder);
         let own = tables.remove(name);
-        let own =
-            own.map(|own| changed(&default, own).map_err(|problem| wrong(file.unwrap_or(Path::new("")), &problem)));
-        if all.insert(name.clone(), own.transpose()?.unwrap_or(default)).is_some() {
-            return Err(Error::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
+        let is_reader = name == READER && !grounder.starts_with("labels");
+        let changed = match (name.as_str(), own) {
+            (_, None) => Ok(default),
+            (READER, Some(own)) if is_reader => changed_for_reader(&default, own),
+            (READER | READER_MAP, Some(_)) => Err(format!("{name} has no thresholds here: it is told the labels")),
+            (_, Some(own)) => changed(&default, own),
+        };
+        let changed = changed.map_err(|problem| wrong(file.unwrap_or(Path::new("")), &problem))?;
+        match name.as_str() {
+            READER if is_reader => all.of_reader = Some(changed.phrase_threshold),
+            READER | READER_MAP => {}
+            _ => drop(all.of_phrases.insert(name.clone(), changed)),
         }
     }
     match (tables.keys().next(), file) {
@@ -101,6 +137,15 @@ pub(super) fn parameters(
 fn wrong(file: &Path, problem: &str) -> Error {
     let hint = "write a table per agent, as in: [clip-nav] on one line and stop_threshold = 0.7 on the next";
     Error::usage(format!("{}: {problem}", file.display()), hint)
+}
+
+/// The same for the agent that reads, which has one threshold.
+fn changed_for_reader(default: &Parameters, own: toml::Value) -> Result<Parameters, String> {
+    let has_other = |own: &toml::Table| own.keys().any(|key| key != "phrase_threshold");
+    match own {
+        toml::Value::Table(own) if has_other(&own) => Err("reader has no threshold but phrase_threshold".to_owned()),
+        own => changed(default, own),
+    }
 }
 
 /// Parameters with some of their values changed.

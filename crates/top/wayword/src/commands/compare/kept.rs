@@ -1,5 +1,6 @@
 //! The settings of a comparison, kept in its folder so that it is continued as it was begun.
 
+use super::agents::READER_MAP;
 use crate::{
     cli::{Compare, SwapName},
     error::Error,
@@ -55,7 +56,13 @@ pub(crate) struct Kept {
     pub(crate) limit: Option<usize>,
     /// Seed of everything random.
     pub(crate) seed: u64,
-    /// Thresholds of the agents.
+    /// Which walks the agent that reads and knows the map thinks of, if it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) prior: Option<String>,
+    /// From which score on a thing counts as seen by the agent that reads, if a grounder says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) reader_threshold: Option<f32>,
+    /// Thresholds of the agents that walk by phrases.
     pub(crate) parameters: BTreeMap<String, Parameters>,
     /// Hashes of the files that are read; a comparison is not continued with others.
     pub(crate) inputs: BTreeMap<String, String>,
@@ -92,7 +99,7 @@ impl Kept {
             }
             instructions.push((name, source));
         }
-        let parameters = super::agents::parameters(&args.agents, &args.grounder, args.parameters.as_deref())?;
+        let thresholds = super::agents::parameters(&args.agents, &args.grounder, args.parameters.as_deref())?;
         Ok(Self {
             format: FORMAT,
             platform: settings.platform.clone(),
@@ -109,9 +116,16 @@ impl Kept {
             swaps: swaps(&args.swaps)?,
             limit: settings.limit,
             seed: settings.seed,
-            parameters,
+            prior: prior(args)?,
+            reader_threshold: thresholds.of_reader,
+            parameters: thresholds.of_phrases,
             inputs,
         })
+    }
+
+    /// Whether the agent that reads and knows the map was asked for.
+    pub(super) fn knows_map(&self) -> bool {
+        self.agents.iter().any(|agent| agent == READER_MAP)
     }
 
     /// The platform.
@@ -128,6 +142,18 @@ fn is_name(name: &str) -> bool {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     let is_taken = [ORIGINAL, UNREAD].contains(&name.to_lowercase().as_str());
     name.starts_with(char::is_alphanumeric) && name.chars().all(is_plain) && !is_taken
+}
+
+/// Which walks the agent that knows the map thinks of; `None` without that agent.
+fn prior(args: &Compare) -> Result<Option<String>, Error> {
+    let knows_map = args.agents.iter().any(|agent| agent == READER_MAP);
+    if let (false, Some(prior)) = (knows_map, args.prior) {
+        return Err(Error::usage(
+            format!("--prior {prior} has no effect: it is for the agent {READER_MAP}"),
+            format!("add {READER_MAP} to --agents, or leave --prior out"),
+        ));
+    }
+    Ok(knows_map.then(|| args.prior.unwrap_or_default().to_string()))
 }
 
 /// The swaps that were asked for. `none` cannot be combined.

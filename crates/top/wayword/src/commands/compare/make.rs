@@ -3,13 +3,16 @@
 use super::{
     agents::{Agent, RANDOM_WALKS},
     grounders::Grounders,
-    sets::{Item, Text},
+    sets::{Item, Purpose, Text},
+    surveys::Surveys,
 };
 use std::collections::BTreeMap;
 use wayword_core::{Platform, rng};
 use wayword_navigation::{
-    AgentView, WalkError,
-    agents::{Walked, last_room_in, nearest_room, oracle, random, straight, walk_by_phrases},
+    AgentView, Things, WalkError,
+    agents::{
+        MapReader, Walked, last_room_in, nearest_room, oracle, random, straight, walk_by_phrases, walk_by_reading,
+    },
     comparison::UNREAD,
     directions::{Directions, Splitter},
     walk::Walk,
@@ -21,21 +24,30 @@ pub(super) struct Crew<'a> {
     pub(super) grounders: &'a Grounders,
     pub(super) splitter: &'a dyn Splitter,
     pub(super) agents: &'a [Agent],
+    pub(super) surveys: &'a Surveys,
     pub(super) seed: u64,
+}
+
+impl Agent {
+    /// The texts of an item that this agent walks by.
+    fn texts<'i>(&self, item: &'i Item) -> impl Iterator<Item = &'i Text> {
+        let last = match self {
+            Self::ReaderMap(_) => Purpose::Floor,
+            Self::NearestRoom => Purpose::Set,
+            _ => Purpose::Swap,
+        };
+        item.texts.iter().filter(move |text| text.purpose <= last)
+    }
 }
 
 impl Crew<'_> {
     /// Agent, set and place of the text of every walk for an item, in the order in which they are made.
     pub(super) fn names(&self, item: &Item) -> Vec<(String, String, usize)> {
         let of_agent = |agent: &Agent| {
-            let read = |swapped_too: bool| {
-                let texts = item.texts.iter().filter(|text| swapped_too || !text.is_swapped);
-                texts.map(|text| (text.set.clone(), text.index)).collect::<Vec<_>>()
-            };
-            let unread = |walks| (0..walks).map(|index| (UNREAD.to_owned(), index)).collect();
+            let read = || agent.texts(item).map(|text| (text.set.clone(), text.index)).collect();
+            let unread = |walks| (0..walks).map(|index| (UNREAD.to_owned(), index)).collect::<Vec<_>>();
             let places = match agent {
-                Agent::Phrases { .. } => read(true),
-                Agent::NearestRoom => read(false),
+                Agent::Phrases { .. } | Agent::Reader(_) | Agent::ReaderMap(_) | Agent::NearestRoom => read(),
                 Agent::Random(_) => unread(RANDOM_WALKS),
                 Agent::Straight(_) | Agent::Oracle => unread(1),
             };
@@ -55,19 +67,32 @@ impl Crew<'_> {
         let (views, boxes) = (look_with(self.grounders.views.as_ref())?, look_with(self.grounders.boxes.as_ref())?);
         let mut walks = Vec::new();
         for agent in self.agents {
+            let mut add = |text: &Text, directions, walked| walks.push(walk(agent, item, text, directions, walked));
             match agent {
                 Agent::Phrases { parameters, by_detector, .. } => {
                     let agent_view = if *by_detector { &boxes } else { &views };
-                    for text in &item.texts {
+                    for text in agent.texts(item) {
                         let directions = &directions[text.text.as_str()];
                         let walked = walk_by_phrases(agent_view, &item.start, directions, parameters)?;
-                        walks.push(walk(agent, item, text, Some(directions.clone()), walked));
+                        add(text, Some(directions.clone()), walked);
                     }
                 }
+                Agent::Reader(threshold) => {
+                    for text in agent.texts(item) {
+                        let things = threshold.map_or(Things::Labels, |least| Things::named_in(&text.text, least));
+                        add(text, None, walk_by_reading(&views, &item.start, &text.text, &things)?);
+                    }
+                }
+                Agent::ReaderMap(prior) => {
+                    let graph = self.platform.graph(&item.start.scene)?;
+                    let known = self.surveys.of(self.platform, &item.start.scene)?;
+                    let reader = MapReader::new(&graph, &known, &item.start, *prior)?;
+                    agent.texts(item).for_each(|text| add(text, None, reader.walk(&text.text)));
+                }
                 Agent::NearestRoom => {
-                    for text in item.texts.iter().filter(|text| !text.is_swapped) {
+                    for text in agent.texts(item) {
                         let walked = nearest_room(self.platform, &item.start, last_room_in(&text.text).as_deref())?;
-                        walks.push(walk(agent, item, text, None, walked));
+                        add(text, None, walked);
                     }
                 }
                 Agent::Random(_) | Agent::Straight(_) | Agent::Oracle => walks.extend(self.blind(agent, item)?),
@@ -76,9 +101,11 @@ impl Crew<'_> {
         Ok(walks)
     }
 
-    /// The texts of an item, each split once.
+    /// The texts of an item that agents walk by phrase by phrase, each split once.
     fn directions<'i>(&self, item: &'i Item) -> Result<BTreeMap<&'i str, Directions>, WalkError> {
-        let mut texts: Vec<&str> = item.texts.iter().map(|text| text.text.as_str()).collect();
+        let by_phrases = self.agents.iter().find(|agent| matches!(agent, Agent::Phrases { .. }));
+        let texts = by_phrases.into_iter().flat_map(|agent| agent.texts(item));
+        let mut texts: Vec<&str> = texts.map(|text| text.text.as_str()).collect();
         texts.sort_unstable();
         texts.dedup();
         let parts = self.splitter.split(&texts).into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -89,7 +116,7 @@ impl Crew<'_> {
     fn blind(&self, agent: &Agent, item: &Item) -> Result<Vec<Walk>, WalkError> {
         let graph = self.platform.graph(&item.start.scene)?;
         let goal = &item.episode.viewpoints[item.episode.viewpoints.len() - 1];
-        let unread = |index| Text { set: UNREAD.to_owned(), index, text: String::new(), is_swapped: false };
+        let unread = |index| Text { set: UNREAD.to_owned(), index, text: String::new(), purpose: Purpose::Set };
         let one = |walked| vec![walk(agent, item, &unread(0), None, walked)];
         Ok(match agent {
             Agent::Random(hops) => {

@@ -8,10 +8,11 @@ mod outputs;
 mod page;
 mod score;
 mod sets;
+mod surveys;
 
 use crate::{
     calls::Calls,
-    cli::Compare,
+    cli::{AskedPrior, Compare, prior},
     commands::config,
     count::count,
     demands::Demands,
@@ -30,6 +31,7 @@ use make::Crew;
 use outputs::Gathered;
 use score::Judge;
 use sets::Item;
+use surveys::Surveys;
 use std::{fs, path::Path};
 use wayword_core::{Failure, ModelError};
 use wayword_navigation::{
@@ -79,12 +81,17 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     run::keep_config(&args.out, &kept)?;
     let calls = models.open(|| run::id_of(&args.out, "compare"), output)?;
     let splitter = splitter(&kept.split, calls.as_ref())?;
-    let agents = Agent::all(&kept.parameters, &kept.agents);
+    let prior = kept.prior.as_deref().map_or(Ok(AskedPrior::default()), prior).map_err(|problem| {
+        Error::usage(format!("prior = {:?}: {problem}", kept.prior), "compare again in another folder")
+    })?;
+    let agents = Agent::all(&kept, prior.0);
+    let surveys = Surveys::default();
     let crew = Crew {
         platform: platform.as_ref(),
         grounders: &grounders,
         splitter: splitter.as_ref(),
         agents: &agents,
+        surveys: &surveys,
         seed: kept.seed,
     };
     let failed = walk_all(&args.out, &items, &crew, calls.as_ref(), output)?;

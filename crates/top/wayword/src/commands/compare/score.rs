@@ -1,7 +1,7 @@
 //! From walks to figures.
 
 use super::{
-    agents::Agent,
+    agents::{Agent, READER},
     file,
     kept::{Kept, last_part},
     make::Crew,
@@ -122,11 +122,19 @@ pub(super) fn comparison(
         paths,
         failed,
         swept: is_swept(kept),
-        parameters: kept.parameters.iter().map(|(agent, of)| (agent.clone(), of.named())).collect(),
+        prior: kept.prior.clone(),
+        parameters: parameters(kept),
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
     };
     let walkers: Vec<Walker> = crew.agents.iter().map(Agent::walker).collect();
     compare(about, sets, &walkers, &kept.swaps, results)
+}
+
+/// The agents' parameters, by agent and name.
+fn parameters(kept: &Kept) -> BTreeMap<String, BTreeMap<String, String>> {
+    let of_phrases = kept.parameters.iter().map(|(agent, of)| (agent.clone(), of.named()));
+    let named = |least: f32| BTreeMap::from([("phrase_threshold".to_owned(), least.to_string())]);
+    of_phrases.chain(kept.reader_threshold.map(|least| (READER.to_owned(), named(least)))).collect()
 }
 
 /// Whether the agents use thresholds that were chosen for their grounder.

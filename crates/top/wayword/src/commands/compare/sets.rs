@@ -9,7 +9,7 @@ use wayword_language::text::word_count;
 use wayword_metrics::Distances;
 use wayword_navigation::{
     agents::Start,
-    comparison::{Set, swapped_set},
+    comparison::{Set, empty_set, swapped_set},
     swap::{Candidate, Swap, other_path, swapped},
 };
 
@@ -32,8 +32,19 @@ pub(super) struct Text {
     /// Its place among the item's texts in that set.
     pub(super) index: usize,
     pub(super) text: String,
-    /// Whether it is a swapped text of the first set.
-    pub(super) is_swapped: bool,
+    /// What it is for.
+    pub(super) purpose: Purpose,
+}
+
+/// What a text is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Purpose {
+    /// It is of a set, and every agent that reads gets it.
+    Set,
+    /// It is a swapped text of the first set, for the swap tests.
+    Swap,
+    /// It shows what an agent that knows the map reaches without the instruction.
+    Floor,
 }
 
 /// The common items, the number of items of each set, and the number of episodes.
@@ -102,7 +113,7 @@ pub(super) fn item(episode: Episode, sets: &[(&str, BTreeMap<String, Vec<String>
             set: (*set).to_owned(),
             index,
             text: text.clone(),
-            is_swapped: false,
+            purpose: Purpose::Set,
         };
         texts.get(&episode.id).into_iter().flatten().enumerate().map(of_item).collect::<Vec<_>>()
     };
@@ -122,9 +133,13 @@ fn add_swaps(items: &mut [Item], kept: &Kept, demands: &Demands<'_>) -> Result<(
         .iter()
         .map(|item| item.texts.iter().filter(|text| text.set == *first).map(|text| text.text.clone()).collect())
         .collect();
-    let elsewhere = if kept.swaps.contains(&Swap::OtherPath) { other_items(items, kept, demands)? } else { Vec::new() };
+    // Without a swap test, another path's text is only for the agent that knows the map.
+    let is_floor = kept.knows_map() && !kept.swaps.contains(&Swap::OtherPath);
+    let swaps: Vec<Swap> = kept.swaps.iter().copied().chain(is_floor.then_some(Swap::OtherPath)).collect();
+    let elsewhere = if swaps.contains(&Swap::OtherPath) { other_items(items, kept, demands)? } else { Vec::new() };
     for (at, item) in items.iter_mut().enumerate() {
-        for swap in &kept.swaps {
+        for swap in &swaps {
+            let purpose = if is_floor && *swap == Swap::OtherPath { Purpose::Floor } else { Purpose::Swap };
             for (index, text) in of_first[at].iter().enumerate() {
                 let wrong = match swap {
                     Swap::OtherPath => elsewhere.get(at).copied().flatten().and_then(|other| {
@@ -133,9 +148,12 @@ fn add_swaps(items: &mut [Item], kept: &Kept, demands: &Demands<'_>) -> Result<(
                     }),
                     swap => swapped(*swap, text, kept.seed, &format!("{}_{index}", item.episode.id)),
                 };
-                let added = |text| Text { set: swapped_set(first, *swap), index, text, is_swapped: true };
+                let added = |text| Text { set: swapped_set(first, *swap), index, text, purpose };
                 item.texts.extend(wrong.map(added));
             }
+        }
+        if kept.knows_map() {
+            item.texts.push(Text { set: empty_set(first), index: 0, text: String::new(), purpose: Purpose::Floor });
         }
     }
     Ok(())

@@ -1,0 +1,93 @@
+//! What an agent that reads is told at a node: the ways out of it relative to its body, the room, and by which way each
+//! thing lies. This is all that it gets, and it is told nothing of other nodes.
+//!
+//! Rooms and labelled things are ground truth, not perception. With a grounder that looks, things are what it finds.
+
+use super::AgentView;
+use crate::{directions::places, error::WalkError, grounders::labels_of};
+use wayword_core::{Compass, DVec3, Heading, View, ViewpointId};
+use wayword_follower::online::{Hop, Sighting};
+
+/// Where the things come from that an agent is told of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Things {
+    /// From the platform's labels.
+    Labels,
+    /// From the grounder's scores.
+    Scores {
+        /// What is looked for.
+        names: Vec<String>,
+        /// A name that scores at least this in a view is a thing there.
+        threshold: f32,
+    },
+}
+
+impl Things {
+    /// The things that an instruction names, by the grounder's scores.
+    #[must_use]
+    pub fn named_in(text: &str, threshold: f32) -> Self {
+        let names = places(text).into_iter().filter(|place| !place.is_room).map(|place| place.name).collect();
+        Self::Scores { names, threshold }
+    }
+}
+
+/// What an agent is told at a node, and which node each way leads to. The agent gets only the first.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Surroundings {
+    pub(crate) sighting: Sighting,
+    /// In the order of the sighting's hops.
+    pub(crate) ways: Vec<ViewpointId>,
+}
+
+impl AgentView<'_> {
+    /// What an agent that looks along `heading` is told at a node.
+    ///
+    /// # Errors
+    /// When the platform gives no view, labels are asked for and there are none, or the grounder fails.
+    pub(crate) fn told(&self, here: &ViewpointId, heading: Heading, things: &Things) -> Result<Surroundings, WalkError> {
+        let around = self.around(here)?;
+        let position = |id: &ViewpointId| self.graph.position(id).unwrap_or_default();
+        let ways: Vec<ViewpointId> = self.graph.neighbours(here).into_iter().cloned().collect();
+        let hops: Vec<Hop> = ways.iter().map(|to| hop(position(here), position(to), heading)).collect();
+        let nearest = |direction: Heading| {
+            let off_rad = |hop: &Hop| heading.turned(hop.turn_rad).turn_to(direction).abs();
+            (0..hops.len()).min_by(|a, b| off_rad(&hops[*a]).total_cmp(&off_rad(&hops[*b])))
+        };
+        let mut found: Vec<(String, usize)> = Vec::new();
+        match things {
+            Things::Labels => {
+                for view in &around.views {
+                    let labels = labels_of(view, self.grounder.name())?.0;
+                    found.extend(labels.iter().filter_map(|label| Some((label.name.clone(), nearest(label.heading)?))));
+                }
+            }
+            Things::Scores { names, .. } if names.is_empty() => {}
+            Things::Scores { names, threshold } => {
+                let scores = self.scores(here, &around, names)?;
+                for (view, compass) in Compass::ALL.into_iter().enumerate() {
+                    // The first way in the view is the nearest node there.
+                    let first = around.onward[view].first().and_then(|to| ways.iter().position(|way| way == to));
+                    let Some(hop) = first.or_else(|| nearest(compass.heading())) else { continue };
+                    let passes = names.iter().zip(&scores[view]).filter(|(_, score)| **score >= *threshold);
+                    found.extend(passes.map(|(name, _)| (name.clone(), hop)));
+                }
+            }
+        }
+        Ok(Surroundings { sighting: Sighting { hops, room: around.views.iter().find_map(room), things: found }, ways })
+    }
+}
+
+/// The way from one place to another, for somebody who looks along `heading`.
+fn hop(from: DVec3, to: DVec3, heading: Heading) -> Hop {
+    let off = to - from;
+    Hop {
+        // Straight up or down counts as ahead, because the walker's heading stays.
+        turn_rad: Heading::towards(from, to).map_or(0.0, |bearing| heading.turn_to(bearing)),
+        elevation_rad: libm::atan2(off.z, libm::hypot(off.x, off.y)),
+        length_m: off.length(),
+    }
+}
+
+fn room(view: &View) -> Option<String> {
+    view.ground_truth()?.room.clone()
+}
