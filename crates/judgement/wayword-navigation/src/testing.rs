@@ -4,7 +4,7 @@ use crate::agents::Start;
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::{
-        Arc,
+        Arc, Mutex,
         atomic::{AtomicUsize, Ordering},
     },
 };
@@ -18,10 +18,19 @@ use wayword_core::{
 pub(crate) struct Cross {
     graph: Arc<ViewpointGraph>,
     things: BTreeMap<&'static str, &'static str>,
+    rooms: BTreeMap<&'static str, &'static str>,
+    has_labels: bool,
     pub(crate) looks: AtomicUsize,
+    looked_from: Mutex<BTreeSet<ViewpointId>>,
 }
 
 const ARMS: [(&str, f64); 4] = [("n", 0.0), ("e", 90.0), ("s", 180.0), ("w", 270.0)];
+
+/// Which way a node's arm leads.
+fn outward(node: &str) -> Heading {
+    let (_, deg) = ARMS.into_iter().find(|(arm, _)| node.starts_with(arm)).unwrap_or(("", 0.0));
+    Heading::new(deg.to_radians()).unwrap()
+}
 
 pub(crate) fn id(name: &str) -> ViewpointId {
     ViewpointId::new(name).unwrap()
@@ -46,7 +55,45 @@ impl Cross {
                 before = node;
             }
         }
-        Self { graph: Arc::new(graph), things: things.iter().copied().collect(), looks: AtomicUsize::new(0) }
+        Self {
+            graph: Arc::new(graph),
+            things: things.iter().copied().collect(),
+            rooms: BTreeMap::new(),
+            has_labels: true,
+            looks: AtomicUsize::new(0),
+            looked_from: Mutex::default(),
+        }
+    }
+
+    /// Without labels.
+    pub(crate) fn blind() -> Self {
+        Self { has_labels: false, ..Self::new(&[]) }
+    }
+
+    /// The rooms of nodes.
+    pub(crate) fn with_rooms(mut self, rooms: &[(&'static str, &'static str)]) -> Self {
+        self.rooms = rooms.iter().copied().collect();
+        self
+    }
+
+    /// The nodes from which somebody looked.
+    pub(crate) fn looked_from(&self) -> BTreeSet<ViewpointId> {
+        self.looked_from.lock().unwrap().clone()
+    }
+
+    /// The thing that is seen from a node.
+    pub(crate) fn labels(&self, node: &ViewpointId) -> Vec<Label> {
+        let label = |name: &&str| Label {
+            object: ObjectId::new(*name).unwrap(),
+            name: (*name).to_owned(),
+            heading: outward(node.as_str()),
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: Some(1.0),
+            position: None,
+            colour: None,
+        };
+        self.things.get(node.as_str()).iter().map(|name| label(name)).collect()
     }
 
     /// In the middle, looking north.
@@ -74,23 +121,12 @@ impl Platform for Cross {
 
     fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         self.looks.fetch_add(1, Ordering::Relaxed);
-        let node = from.viewpoint.as_ref().map_or("", ViewpointId::as_str);
-        let (_, deg) = ARMS.into_iter().find(|(arm, _)| node.starts_with(arm)).unwrap_or(("", 0.0));
-        let heading = Heading::new(deg.to_radians()).unwrap();
-        let seen = self.things.get(node).filter(|_| gaze.holds(heading));
-        let label = |name: &&str| Label {
-            object: ObjectId::new(*name).unwrap(),
-            name: (*name).to_owned(),
-            heading,
-            elevation_rad: 0.0,
-            box_px: None,
-            distance_m: Some(1.0),
-            position: None,
-            colour: None,
-        };
-        let truth =
-            GroundTruth { labels: seen.iter().map(|name| label(name)).collect(), lists_objects: true, room: None };
-        Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, Some(truth)))
+        let node = from.viewpoint.clone().unwrap();
+        let labels = if gaze.holds(outward(node.as_str())) { self.labels(&node) } else { Vec::new() };
+        let room = self.rooms.get(node.as_str()).map(|room| (*room).to_owned());
+        self.looked_from.lock().unwrap().insert(node);
+        let truth = self.has_labels.then_some(GroundTruth { labels, lists_objects: true, room });
+        Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, truth))
     }
 
     fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {

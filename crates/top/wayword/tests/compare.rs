@@ -252,3 +252,85 @@ fn a_page_is_made_of_what_was_compared_or_not_at_all() {
     let ran = compare(&building, R2R, &["--swaps", "none", "--rule", "distance", "--resamples", "300"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
 }
+
+/// Agents that read, on people's texts: rows, walks, page, and the same end after a stop.
+#[test]
+fn readers_have_their_rows_their_walks_and_their_floors() {
+    let building = Building::new();
+    let ran = compare(&building, R2R, &["--agents", "reader,reader-map"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found = comparison(&building);
+    assert_eq!(found["about"]["prior"], "shortest:1-8");
+    let row = |agent: &str, set: &str| {
+        let rows = found["rows"].as_array().unwrap();
+        rows.iter().find(|row| row["agent"] == agent && row["set"] == set).unwrap().clone()
+    };
+    assert_eq!(row("reader", "original")["kind"], "agent");
+    for set in ["original", "original~empty", "original~other-path"] {
+        assert_eq!(row("reader-map", set)["kind"], "informed");
+    }
+    let (reads, empty) =
+        (rate(&found, "reader-map", Some("original")), rate(&found, "reader-map", Some("original~empty")));
+    assert!(reads > empty && rate(&found, "reader", Some("original")) > rate(&found, "random/5", None), "{found}");
+    let tested: Vec<&str> =
+        found["swaps"].as_array().unwrap().iter().map(|swap| swap["agent"].as_str().unwrap()).collect();
+    assert_eq!(tested, [["reader"; 4], ["reader-map"; 4]].concat());
+    for told in ["reader-map, knows the map", "an empty text", "Rooms and labels are ground truth", "1-8 hops away"] {
+        assert!(ran.out.contains(told), "{told} is not in {}", ran.out);
+    }
+    assert!(!ran.out.contains("split into phrases"), "{}", ran.out);
+    let page = fs::read_to_string(building.path("walked/report.html")).unwrap();
+    assert!(page.contains("is told: ") && page.contains(">reader-map, original, "), "both are replayed");
+    let walks = fs::read(building.path("walked/walks.jsonl")).unwrap();
+    fs::write(building.path("walked/walks.jsonl"), &walks[..walks.len() / 2]).unwrap();
+    assert_eq!(compare(&building, R2R, &["--agents", "reader,reader-map"]).code, Some(0));
+    assert_eq!(fs::read(building.path("walked/walks.jsonl")).unwrap(), walks);
+    assert_eq!(comparison(&building), found);
+    let submissions: Vec<String> = fs::read_dir(building.path("walked/submissions"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert!(submissions.contains(&"reader.original.json".to_owned()), "{submissions:?}");
+    assert!(submissions.iter().all(|name| !name.contains('~')), "{submissions:?}");
+}
+
+#[test]
+fn floors_are_printed_without_swap_tests_and_by_the_prior_that_was_asked_for() {
+    let building = Building::new();
+    let args = ["--agents", "reader-map", "--swaps", "none", "--prior", "none"];
+    let ran = compare(&building, R2R, &args);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found = comparison(&building);
+    assert!(found["about"]["prior"] == "none" && found["swaps"].as_array().unwrap().is_empty());
+    for set in ["original~empty", "original~other-path"] {
+        assert!((0.0..=1.0).contains(&rate(&found, "reader-map", Some(set))), "{set}");
+    }
+    assert!(ran.out.contains("walks of two shortest pieces"), "{}", ran.out);
+    // Another prior is another comparison.
+    let other = compare(&building, R2R, &["--agents", "reader-map", "--swaps", "none"]);
+    assert!(other.refused().contains("other settings: prior"), "{other:?}");
+    let near = ["--agents", "reader-map", "--swaps", "none", "--prior", "shortest:1-1", "--out", "near"];
+    assert_eq!(compare(&building, R2R, &near).code, Some(0));
+    for walk in building.lines("near/walks.jsonl") {
+        let hops = walk["steps"].as_array().unwrap().len() - 1;
+        assert!(walk["agent"] != "reader-map" || hops <= 1, "{walk}");
+    }
+}
+
+#[test]
+fn what_readers_do_not_have_is_refused() {
+    let building = Building::new();
+    fs::write(building.path("p.toml"), "[reader]\nphrase_threshold = 0.3\n").unwrap();
+    for (args, told) in [
+        (vec!["--prior", "none"], "--prior none has no effect"),
+        (vec!["--agents", "reader", "--parameters", "p.toml"], "reader has no thresholds here"),
+        (vec!["--agents", "reader,reader"], "is named twice"),
+    ] {
+        let ran = compare(&building, R2R, &args);
+        assert!(ran.refused().contains(told), "{args:?}: {ran:?}");
+    }
+    for typed in ["shortest", "shortest:1-0", "shortest:1-99", "shortest:2-8", "longest:1-8"] {
+        let ran = compare(&building, R2R, &["--agents", "reader-map", "--prior", typed]);
+        assert!(ran.code == Some(1) && ran.err.contains("shortest:1-8"), "{typed}: {ran:?}");
+    }
+}

@@ -157,7 +157,8 @@ fn no_crate_is_built_on_one_above_it() {
 /// Texts are written and checked in memory, so that the result is the same for every platform and every caller.
 #[test]
 fn words_are_made_and_checked_without_a_file_or_a_connection() {
-    let crates = ["ground/wayword-language", "words/wayword-checks", "words/wayword-follower", "words/wayword-synthesis"];
+    let crates =
+        ["ground/wayword-language", "words/wayword-checks", "words/wayword-follower", "words/wayword-synthesis"];
     for file in crates.iter().flat_map(|name| sources(&workspace().join("crates").join(name).join("src"))) {
         let text = fs::read_to_string(&file).unwrap();
         for way_out in ["fs", "net", "process", "File", "TcpStream"] {

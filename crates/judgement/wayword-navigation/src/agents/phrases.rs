@@ -34,7 +34,8 @@ pub fn walk_by_phrases(
         let decision = policy.decide(&here, heading, &sight);
         let scored = scored(&sight, in_hand, directions.phrases.len());
         let viewpoint = here.clone();
-        let step = |choice| Step { viewpoint, heading_rad: heading, views: scored, phrase: in_hand, told: None, choice };
+        let step =
+            |choice| Step { viewpoint, heading_rad: heading, views: scored, phrase: in_hand, told: None, choice };
         match decision {
             Decision::Stop | Decision::DeadEnd => {
                 steps.push(step(Choice::Stop));

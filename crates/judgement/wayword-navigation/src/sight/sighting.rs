@@ -44,7 +44,12 @@ impl AgentView<'_> {
     ///
     /// # Errors
     /// When the platform gives no view, labels are asked for and there are none, or the grounder fails.
-    pub(crate) fn told(&self, here: &ViewpointId, heading: Heading, things: &Things) -> Result<Surroundings, WalkError> {
+    pub(crate) fn told(
+        &self,
+        here: &ViewpointId,
+        heading: Heading,
+        things: &Things,
+    ) -> Result<Surroundings, WalkError> {
         let around = self.around(here)?;
         let position = |id: &ViewpointId| self.graph.position(id).unwrap_or_default();
         let ways: Vec<ViewpointId> = self.graph.neighbours(here).into_iter().cloned().collect();

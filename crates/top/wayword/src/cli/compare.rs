@@ -2,7 +2,7 @@
 
 use crate::settings::{Asked, AskedPlatform, AskedRoles, Draw, RULES, Service, Walks, can_play};
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
-use std::{fmt, path::PathBuf};
+use std::{fmt, path::PathBuf, str::FromStr};
 use wayword_metrics::Rule;
 use wayword_navigation::{agents::Prior, swap::Swap};
 
@@ -58,7 +58,7 @@ pub struct Compare {
     pub encoder: String,
     /// Which walks reader-map thinks of: shortest:1-N (the shortest path to each viewpoint 1 to N hops away), or none (walks of two
     /// shortest pieces). [default: shortest:1-8]
-    #[arg(long, value_name = "PRIOR", value_parser = prior)]
+    #[arg(long, value_name = "PRIOR")]
     pub prior: Option<AskedPrior>,
     /// What splits an instruction into phrases for the agents that walk by phrases: rules, or a language model as provider/model.
     #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = splitter)]
@@ -129,16 +129,16 @@ impl fmt::Display for AskedPrior {
     }
 }
 
-/// Which walks are thought of, as typed.
-///
-/// # Errors
-/// When it is neither form.
-pub(crate) fn prior(typed: &str) -> Result<AskedPrior, String> {
-    let hops = typed.strip_prefix("shortest:1-").and_then(|hops| hops.parse().ok());
-    match hops.filter(|hops| (1..=MOST_HOPS).contains(hops)) {
-        Some(hops) => Ok(AskedPrior(Prior::Shortest(hops))),
-        None if typed == "none" => Ok(AskedPrior(Prior::TwoPieces(HOPS_OF_PIECES))),
-        None => Err(format!("give shortest:1-8, with 1 to {MOST_HOPS} hops at most, or none")),
+impl FromStr for AskedPrior {
+    type Err = String;
+
+    fn from_str(typed: &str) -> Result<Self, String> {
+        let hops = typed.strip_prefix("shortest:1-").and_then(|hops| hops.parse().ok());
+        match hops.filter(|hops| (1..=MOST_HOPS).contains(hops)) {
+            Some(hops) => Ok(Self(Prior::Shortest(hops))),
+            None if typed == "none" => Ok(Self(Prior::TwoPieces(HOPS_OF_PIECES))),
+            None => Err(format!("give shortest:1-8 (with 1 to {MOST_HOPS} hops at most) or none")),
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
 use std::path::PathBuf;
 use wayword_formats::Format;
 
-pub use compare::{Compare, SuccessRule, SwapName};
+pub use compare::{AskedPrior, Compare, SuccessRule, SwapName};
 pub use doctor::Doctor;
 pub use evaluate::Evaluate;
 pub use ledger::{Ledger, LedgerCommand};

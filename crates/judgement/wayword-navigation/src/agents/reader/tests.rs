@@ -1,0 +1,192 @@
+//! Texts that were made up here, on a cross of corridors.
+
+use super::*;
+use crate::{
+    agents::{MapReader, Prior, Surveyed},
+    grounders::{Lexical, Sees},
+    testing::{Cross, id, scene},
+};
+use std::collections::BTreeSet;
+use wayword_core::{Grounder, ModelError, Platform, Survey, View, survey::Known};
+
+const THINGS: [(&str, &str); 4] = [("n2", "plant"), ("e2", "sofa"), ("s2", "bed"), ("w2", "sink")];
+const ROOMS: [(&str, &str); 3] = [("e2", "living room"), ("s2", "bedroom"), ("w2", "kitchen")];
+
+fn cross() -> Cross {
+    Cross::new(&THINGS).with_rooms(&ROOMS)
+}
+
+fn stood(walked: &Walked) -> Vec<&str> {
+    walked.steps.iter().map(|step| step.viewpoint.as_str()).collect()
+}
+
+fn walked(world: &Cross, text: &str) -> Walked {
+    let grounder = Lexical::new(Sees::Views);
+    let agent_view = AgentView::new(world, &grounder, false, &scene()).unwrap();
+    walk_by_reading(&agent_view, &Cross::start(), text, &Things::Labels).unwrap()
+}
+
+#[test]
+fn it_turns_where_the_text_says_and_stops_there() {
+    for (text, way) in [
+        ("Turn right and walk to the sofa in the living room. Stop next to the sofa.", ["middle", "e1", "e2"]),
+        ("Turn left and walk into the kitchen. Stop next to the sink.", ["middle", "w1", "w2"]),
+        ("Walk straight ahead to the plant. Stop next to the plant.", ["middle", "n1", "n2"]),
+    ] {
+        let walked = walked(&cross(), text);
+        assert_eq!((stood(&walked), walked.end), (way.to_vec(), End::Stopped), "{text}");
+        let told = walked.steps[2].told.as_ref().unwrap();
+        assert_eq!((told.ways, told.things), (1, 1));
+    }
+}
+
+/// The text does not say which way the bed is, and it is not where the agent looks first.
+#[test]
+fn it_comes_back_from_a_dead_end() {
+    let text = "Walk into the bedroom. Stop at the bed in the bedroom.";
+    let walked = walked(&cross(), text);
+    let stood = stood(&walked);
+    assert_eq!(stood.last(), Some(&"s2"), "{stood:?}");
+    assert!(stood.len() > 3 && walked.steps.iter().any(|step| step.choice == Choice::Back), "{stood:?}");
+}
+
+/// Everything that the agent was given, and where: the ways out of the node, its room, its things, and nothing of any
+/// node where it did not stand.
+#[test]
+fn it_is_told_of_no_node_but_the_one_where_it_stands() {
+    let world = cross();
+    let grounder = Lexical::new(Sees::Views);
+    let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
+    let guide = Guide::read("Turn right and walk to the sofa in the living room. Stop next to the sofa.");
+    let mut reader = Reader::new(&guide, OnwardWeights::fitted());
+    let mut given: Vec<Sighting> = Vec::new();
+    let walked = walk(&agent_view, &Cross::start(), &Things::Labels, |seen| {
+        given.push(seen.clone());
+        reader.decide(seen)
+    });
+    let walked = walked.unwrap();
+    assert_eq!(given.len(), walked.steps.len());
+    let graph = world.graph(&scene()).unwrap();
+    for (seen, step) in given.iter().zip(&walked.steps) {
+        let node = step.viewpoint.as_str();
+        assert_eq!(seen.hops.len(), graph.neighbours(&step.viewpoint).len(), "{node}");
+        assert!(seen.hops.iter().all(|hop| (hop.length_m - 2.0).abs() < 1e-9 && hop.elevation_rad == 0.0));
+        let room = ROOMS.iter().find(|(at, _)| *at == node).map(|(_, room)| *room);
+        assert_eq!(seen.room.as_deref(), room, "{node}");
+        let things: Vec<&str> = THINGS.iter().filter(|(at, _)| *at == node).map(|(_, name)| *name).collect();
+        assert_eq!(seen.things.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), things, "{node}");
+    }
+    let stood: BTreeSet<ViewpointId> = walked.steps.iter().map(|step| step.viewpoint.clone()).collect();
+    assert_eq!(world.looked_from(), stood, "nobody looked from elsewhere");
+}
+
+#[test]
+fn ways_are_told_relative_to_the_body() {
+    let (world, grounder) = (cross(), Lexical::new(Sees::Views));
+    let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
+    let turns = |heading_deg: f64| {
+        let heading = Heading::new(heading_deg.to_radians()).unwrap();
+        let told = agent_view.told(&id("middle"), heading, &Things::Labels).unwrap();
+        let mut turns: Vec<(String, i32)> = told
+            .ways
+            .iter()
+            .zip(&told.sighting.hops)
+            .map(|(way, hop)| (way.to_string(), hop.turn_rad.to_degrees().round() as i32))
+            .collect();
+        turns.sort();
+        turns
+    };
+    let named =
+        |turns: [i32; 4]| ["e1", "n1", "s1", "w1"].map(str::to_owned).into_iter().zip(turns).collect::<Vec<_>>();
+    assert_eq!(turns(0.0), named([90, 0, 180, -90]));
+    assert_eq!(turns(90.0), named([0, -90, 90, 180]));
+}
+
+/// Finds a phrase in the west alone.
+struct West;
+
+impl Grounder for West {
+    fn name(&self) -> &'static str {
+        "west"
+    }
+
+    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        let score = |at: usize, phrase: &&str| if at == 3 && *phrase == "sink" { 0.5 } else { 0.1 };
+        (0..views.len()).map(|at| Ok(phrases.iter().map(|phrase| score(at, phrase)).collect())).collect()
+    }
+}
+
+#[test]
+fn with_a_grounder_that_looks_things_are_what_scores_high_enough() {
+    let world = cross();
+    let agent_view = AgentView::new(&world, &West, false, &scene()).unwrap();
+    let told = |threshold: f32| {
+        let things = Things::named_in("Walk past the sofa in the kitchen to the sink", threshold);
+        let told = agent_view.told(&id("middle"), Heading::NORTH, &things).unwrap();
+        told.sighting.things.iter().map(|(name, hop)| (name.clone(), told.ways[*hop].to_string())).collect::<Vec<_>>()
+    };
+    assert_eq!(told(0.3), [("sink".to_owned(), "w1".to_owned())]);
+    assert_eq!(told(0.6), []);
+    assert_eq!(told(0.05).len(), 2 * 4, "the sofa and the sink in four views; a room is no thing");
+    let nowhere = walk_by_reading(&agent_view, &Cross::start(), "", &Things::named_in("", 0.3)).unwrap();
+    assert_eq!(stood(&nowhere), ["middle"]);
+}
+
+#[test]
+fn labels_that_are_not_there_are_asked_for() {
+    let (world, grounder) = (Cross::blind(), Lexical::new(Sees::Views));
+    let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
+    let error = walk_by_reading(&agent_view, &Cross::start(), "Turn left.", &Things::Labels).unwrap_err();
+    assert!(error.to_string().contains("needs labels"), "{error}");
+}
+
+fn surveyed(world: &Cross) -> Surveyed {
+    let known = |at: &ViewpointId, _| {
+        let room = ROOMS.iter().find(|(name, _)| *name == at.as_str()).map(|(_, room)| (*room).to_owned());
+        Ok::<_, wayword_core::graph::GraphError>(Known { room, things: Some(world.labels(at)) })
+    };
+    Surveyed::of(&Survey::of(&world.graph(&scene()).unwrap(), known).unwrap())
+}
+
+#[test]
+fn who_knows_the_map_goes_straight_there() {
+    let world = cross();
+    let (graph, known, start) = (world.graph(&scene()).unwrap(), surveyed(&world), Cross::start());
+    for prior in [Prior::Shortest(8), Prior::TwoPieces(8)] {
+        let reader = MapReader::new(&graph, &known, &start, prior).unwrap();
+        let walked = reader.walk("Walk into the bedroom. Stop at the bed in the bedroom.");
+        assert_eq!(stood(&walked), ["middle", "s1", "s2"], "{prior:?}");
+        let left = reader.walk("Turn left and walk into the kitchen. Stop next to the sink.");
+        assert_eq!(stood(&left), ["middle", "w1", "w2"], "{prior:?}");
+    }
+    let near = MapReader::new(&graph, &known, &start, Prior::Shortest(1)).unwrap();
+    assert_eq!(near.walk("Walk into the bedroom.").steps.len(), 2, "nothing farther is thought of");
+    let lost = Start { viewpoint: id("attic"), ..start.clone() };
+    assert!(matches!(MapReader::new(&graph, &known, &lost, Prior::Shortest(8)), Err(WalkError::Unknown { .. })));
+}
+
+#[test]
+fn an_empty_text_gives_the_same_walk_each_time() {
+    let world = cross();
+    let (graph, start) = (world.graph(&scene()).unwrap(), Cross::start());
+    let walk = || {
+        let known = surveyed(&world);
+        let reader = MapReader::new(&graph, &known, &start, Prior::Shortest(8)).unwrap();
+        stood(&reader.walk("")).into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let first = walk();
+    assert!(first.len() > 1, "it goes where its weights alone lead: {first:?}");
+    assert!((0..5).all(|_| walk() == first));
+    let online = walked(&world, "");
+    assert_eq!(stood(&online), ["middle"], "who knows no map stays");
+}
+
+#[test]
+fn a_text_without_end_is_not_followed() {
+    let world = cross();
+    let (graph, known, start) = (world.graph(&scene()).unwrap(), surveyed(&world), Cross::start());
+    let reader = MapReader::new(&graph, &known, &start, Prior::TwoPieces(8)).unwrap();
+    let long = "Turn left. ".repeat(100_000);
+    assert!(!reader.walk(&long).steps.is_empty());
+    assert!(!walked(&world, &long).steps.is_empty());
+}

@@ -1,7 +1,7 @@
 //! Agents by their names, and their thresholds.
 
 use super::kept::Kept;
-use crate::{error::Error, text_file};
+use crate::{cli::AskedPrior, error::Error, text_file};
 use std::{collections::BTreeMap, path::Path};
 use wayword_navigation::{
     agents::{Back, Parameters, Prior},
@@ -42,7 +42,7 @@ pub(super) enum Agent {
 
 impl Agent {
     /// The agents that were asked for, with the lower-bound baselines and upper bounds.
-    pub(super) fn all(kept: &Kept, prior: Prior) -> Vec<Self> {
+    pub(super) fn all(kept: &Kept, prior: AskedPrior) -> Vec<Self> {
         let agent = |name: &String| match name.as_str() {
             READER => Some(Self::Reader(kept.reader_threshold)),
             READER_MAP => None,
@@ -54,7 +54,7 @@ impl Agent {
         let mut all: Vec<Self> = kept.agents.iter().filter_map(agent).collect();
         all.extend(RANDOM_HOPS.map(Self::Random));
         all.push(Self::Straight(STRAIGHT_HOPS));
-        all.extend(kept.knows_map().then_some(Self::ReaderMap(prior)));
+        all.extend(kept.knows_map().then_some(Self::ReaderMap(prior.0)));
         all.extend([Self::NearestRoom, Self::Oracle]);
         all
     }
@@ -97,11 +97,7 @@ pub(super) struct Thresholds {
 ///
 /// # Errors
 /// When an agent is named twice, or the file names an unknown agent or threshold.
-pub(super) fn parameters(
-    names: &[String],
-    grounder: &str,
-    file: Option<&Path>,
-) -> Result<Thresholds, Error> {
+pub(super) fn parameters(names: &[String], grounder: &str, file: Option<&Path>) -> Result<Thresholds, Error> {
     if let Some(name) = (1..names.len()).find(|at| names[..*at].contains(&names[*at])).map(|at| &names[at]) {
         return Err(Error::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
     }

@@ -12,7 +12,7 @@ mod surveys;
 
 use crate::{
     calls::Calls,
-    cli::{AskedPrior, Compare, prior},
+    cli::Compare,
     commands::config,
     count::count,
     demands::Demands,
@@ -31,8 +31,8 @@ use make::Crew;
 use outputs::Gathered;
 use score::Judge;
 use sets::Item;
-use surveys::Surveys;
 use std::{fs, path::Path};
+use surveys::Surveys;
 use wayword_core::{Failure, ModelError};
 use wayword_navigation::{
     WalkError,
@@ -81,10 +81,7 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     run::keep_config(&args.out, &kept)?;
     let calls = models.open(|| run::id_of(&args.out, "compare"), output)?;
     let splitter = splitter(&kept.split, calls.as_ref())?;
-    let prior = kept.prior.as_deref().map_or(Ok(AskedPrior::default()), prior).map_err(|problem| {
-        Error::usage(format!("prior = {:?}: {problem}", kept.prior), "compare again in another folder")
-    })?;
-    let agents = Agent::all(&kept, prior.0);
+    let agents = Agent::all(&kept, args.prior.unwrap_or_default());
     let surveys = Surveys::default();
     let crew = Crew {
         platform: platform.as_ref(),

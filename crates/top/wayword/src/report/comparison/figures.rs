@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fmt};
 use wayword_metrics::{Estimate, McNemar, Metric};
 use wayword_navigation::{
-    comparison::{AgentKind, Comparison, Listening, Row, Swapped},
+    comparison::{AgentKind, Comparison, EMPTY, Listening, Row, Swapped},
     swap::Swap,
 };
 
@@ -131,7 +131,7 @@ pub(super) fn differences(comparison: &Comparison) -> Vec<Line<'_>> {
 pub(super) fn swaps(comparison: &Comparison) -> Vec<Line<'_>> {
     opened(comparison.swaps.iter().map(|swapped| Line {
         agent: name(&swapped.agent),
-        kind: AgentKind::Agent,
+        kind: comparison.rows.iter().find(|row| row.agent == swapped.agent).map_or(AgentKind::Agent, |row| row.kind),
         opens: false,
         is_deaf: is_deaf(comparison, &swapped.agent),
         label: swap_words(swapped.swap).to_owned(),
@@ -160,7 +160,7 @@ fn of_row<'a>(
         kind: row.kind,
         opens: false,
         is_deaf: row.set.is_some() && is_deaf(comparison, &row.agent),
-        label: row.set.as_deref().map_or_else(|| READS_NOTHING.to_owned(), name),
+        label: row.set.as_deref().map_or_else(|| READS_NOTHING.to_owned(), set_words),
         figures,
         beside,
     }
@@ -188,6 +188,15 @@ pub(super) fn other_path(comparison: &Comparison) -> impl Iterator<Item = &Swapp
 
 fn is_deaf(comparison: &Comparison, agent: &str) -> bool {
     deaf(comparison).any(|swapped| swapped.agent == agent)
+}
+
+/// A set by its name. Those that show what an agent reaches without its instruction are named after the first set.
+fn set_words(set: &str) -> String {
+    match set.split_once('~') {
+        Some((_, EMPTY)) => "an empty text".to_owned(),
+        Some((_, swap)) if swap == Swap::OtherPath.name() => swap_words(Swap::OtherPath).to_owned(),
+        _ => name(set),
+    }
 }
 
 /// A swap in words.

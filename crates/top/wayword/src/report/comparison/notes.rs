@@ -5,6 +5,10 @@ use crate::count::count;
 use wayword_metrics::{Metric, Rule};
 use wayword_navigation::comparison::{About, AgentKind, Comparison, FEWEST_PATHS, Listening, Set, Swapped};
 
+/// The agents that read.
+const READER: &str = "reader";
+const READER_MAP: &str = "reader-map";
+
 /// What was compared, and on how many items.
 pub(super) fn subject(about: &About) -> String {
     format!(
@@ -125,12 +129,44 @@ fn of_table(comparison: &Comparison) -> Vec<String> {
         ),
     ];
     notes.extend(grounding(comparison));
-    notes.push(format!("Instructions are split into phrases by {}.", name(&about.splitter)));
+    if about.parameters.keys().any(|agent| agent != READER) {
+        notes.push(format!("Instructions are split into phrases by {}.", name(&about.splitter)));
+    }
+    notes.extend(readers(comparison));
     if comparison.rows.iter().any(|row| row.kind != AgentKind::Agent) {
         notes.push(
             "A lower bound reads no instruction. An agent that knows the map also knows the label of every room, and reads which room is meant. The upper bound knows the goal."
                 .to_owned(),
         );
+    }
+    notes
+}
+
+/// What the agents that read are told. Ground truth is named as such.
+fn readers(comparison: &Comparison) -> Vec<String> {
+    let about = &comparison.about;
+    let has = |agent: &str| comparison.rows.iter().any(|row| row.agent == agent);
+    let mut notes = Vec::new();
+    if has(READER) {
+        let things = match about.grounder.starts_with("labels") {
+            true => "and by which way each labelled object lies".to_owned(),
+            false => format!("and which things its text names score high enough by {}", name(&about.grounder)),
+        };
+        notes.push(format!(
+            "{READER} is told at each viewpoint the ways out, the name of the room {things}. Rooms and labels are ground truth, not perception."
+        ));
+    }
+    if let Some(prior) = about.prior.as_deref().filter(|_| has(READER_MAP)) {
+        let walks = match prior.strip_prefix("shortest:") {
+            Some(hops) => format!("the shortest path to each viewpoint {} hops away", name(hops)),
+            None => "walks of two shortest pieces".to_owned(),
+        };
+        notes.push(format!(
+            "{READER_MAP} knows the whole graph, every room and every label: ground truth, not perception. It chooses among {walks}. What it reaches by an empty text, its weights alone reach: only what it gains over that comes from the instruction."
+        ));
+    }
+    if !notes.is_empty() {
+        notes.push("The weights of the agents that read were fitted to R2R's train split.".to_owned());
     }
     notes
 }
@@ -174,10 +210,14 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
                 .to_owned(),
         );
     }
-    notes.push(match about.swept {
-        true => "The thresholds of the agents were chosen on REVERIE's train split.".to_owned(),
-        false => "The thresholds of the agents were not chosen for this grounder: read its rows with care.".to_owned(),
-    });
+    if !about.parameters.is_empty() {
+        notes.push(match about.swept {
+            true => "The thresholds of the agents were chosen on REVERIE's train split.".to_owned(),
+            false => {
+                "The thresholds of the agents were not chosen for this grounder: read its rows with care.".to_owned()
+            }
+        });
+    }
     if about.failed > 0 {
         notes.push(format!(
             "{} could not be walked, because a model failed on one of their texts.",

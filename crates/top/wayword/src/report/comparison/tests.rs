@@ -72,6 +72,7 @@ fn comparison() -> Comparison {
             paths: 126,
             failed: 2,
             swept: true,
+            prior: None,
             parameters: BTreeMap::from([("clip-nav".to_owned(), parameters)]),
             wayword: "0.0.0".into(),
         },
@@ -184,6 +185,37 @@ fn an_agent_that_follows_has_no_warning_and_one_that_was_not_tested_has_its_own(
     comparison.swaps.clear();
     let warnings = notes::warnings(&comparison);
     assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav, glip-nav: the swap test"), "{warnings:?}");
+}
+
+/// Nobody takes what a reader is told for perception, nor what the map gives away for reading.
+#[test]
+fn readers_say_what_they_know() {
+    let mut comparison = comparison();
+    comparison.about.prior = Some("shortest:1-8".into());
+    comparison.about.parameters.clear();
+    comparison.rows = vec![
+        row("reader", AgentKind::Agent, Some("original"), 0.5, None),
+        row("reader-map", AgentKind::Informed, Some("original"), 0.7, None),
+        row("reader-map", AgentKind::Informed, Some("original~empty"), 0.1, None),
+        row("reader-map", AgentKind::Informed, Some("original~other-path"), 0.12, None),
+    ];
+    comparison.swaps = vec![swapped("reader-map", Swap::Directions, 0.2, Listening::Shown)];
+    for text in [markdown(&comparison), latex(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+        for told in
+            ["reader is told at each viewpoint", "ground truth, not perception", "1-8 hops away", "an empty text"]
+        {
+            assert!(text.contains(told), "{told} is not in {text}");
+        }
+        assert!(text.contains("knows the map") && text.contains("another path"), "{text}");
+        assert!(!text.contains("split into phrases") && !text.contains("REVERIE's train split"), "{text}");
+    }
+    comparison.about.prior = Some("none".into());
+    comparison.about.grounder = "hf/some/clip".into();
+    let text = screen(&comparison);
+    assert!(
+        text.contains("walks of two shortest pieces") && text.contains("score high enough by hf/some/clip"),
+        "{text}"
+    );
 }
 
 #[test]

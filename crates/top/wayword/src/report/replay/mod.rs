@@ -74,6 +74,7 @@ pub(super) struct ReplayView {
     entry: Entry,
     meta: Vec<String>,
     text: String,
+    reads_nothing: bool,
     phrases: Vec<String>,
     phrases_left_out: usize,
     /// `None` if the agent does not read.
@@ -101,6 +102,7 @@ impl ReplayView {
             entry,
             meta: replay.meta(),
             text: bounded(&walk.text),
+            reads_nothing: walk.set == UNREAD,
             phrases: phrases.iter().take(MOST_PHRASES).map(|phrase| bounded(phrase)).collect(),
             phrases_left_out: phrases.len().saturating_sub(MOST_PHRASES),
             activity: walk.directions.as_ref().map(|directions| bounded(&directions.activity)),

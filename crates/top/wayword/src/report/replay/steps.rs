@@ -1,9 +1,12 @@
 //! The steps of a walk: where the agent stood, its scores, and its choice.
 
-use crate::report::palette::{Colour, colour};
+use crate::{
+    count::count,
+    report::palette::{Colour, colour},
+};
 use serde::Serialize;
 use wayword_core::Compass;
-use wayword_navigation::walk::{Choice, Scored, Step, Walk};
+use wayword_navigation::walk::{Choice, Scored, Step, Told, Walk};
 
 /// Longest phrase in a cell, characters.
 const MOST_PHRASE_CHARS: usize = 120;
@@ -18,8 +21,10 @@ pub(super) struct StepView {
     again: Option<usize>,
     colour: Colour,
     heading: String,
-    /// The current phrase; `None` if the agent does not look.
+    /// The current phrase; `None` if the agent does not look by phrases.
     phrase: Option<String>,
+    /// What an agent that reads was told; `None` for the others.
+    told: Option<String>,
     /// Empty if the agent does not look.
     views: Vec<ViewView>,
     class: &'static str,
@@ -65,6 +70,7 @@ pub(super) fn steps(
         colour: colour(at, shown),
         heading: format!("{:.0}°", step.heading_rad.deg()),
         phrase: (!step.views.is_empty()).then(|| phrase(walk, step)),
+        told: step.told.as_ref().map(told),
         views: step.views.iter().zip(Compass::ALL).enumerate().map(|(at, view)| look(step, at, view, range)).collect(),
         class: match step.choice {
             Choice::Onward(_) | Choice::Unseeing => "onward",
@@ -94,6 +100,14 @@ fn phrase(walk: &Walk, step: &Step) -> String {
         || "the activity alone".to_owned(),
         |phrase| format!("{}. {}", step.phrase + 1, phrase.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
     )
+}
+
+fn told(told: &Told) -> String {
+    let room = match &told.room {
+        Some(room) => format!("in room {}", room.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
+        None => "in a room without a name".to_owned(),
+    };
+    format!("{room}, {}, {}", count(told.ways, "way on"), count(told.things, "thing"))
 }
 
 fn then(choice: Choice) -> String {

@@ -6,7 +6,7 @@ use wayword_core::{Heading, SceneId};
 use wayword_metrics::Grounding;
 use wayword_navigation::{
     directions::Directions,
-    walk::{Scored, Step},
+    walk::{Scored, Step, Told},
 };
 
 const SCRIPT: &str = "<script>alert('x')</script>";
@@ -32,6 +32,7 @@ fn step(viewpoint: &str, deg: f64, best: Option<usize>, choice: Choice) -> Step 
         heading_rad: Heading::new(deg.to_radians()).unwrap(),
         views: if best.is_some() { (0..4).map(view).collect() } else { vec![] },
         phrase: usize::from(choice == Choice::Stop),
+        told: None,
         choice,
     }
 }
@@ -166,10 +167,30 @@ fn a_walk_of_an_agent_that_reads_nothing_is_shown() {
     let score = town.score();
     let walk = Walk {
         text: String::new(),
+        set: UNREAD.into(),
         directions: None,
         steps: vec![step("a", 0.0, None, Choice::Unseeing), step("b", 90.0, None, Choice::Stop)],
         ..town.walk("random/5")
     };
     let card = card(&replay(&town, &walk, &score));
     assert!(card.contains("this agent reads nothing") && card.matches("does not look").count() == 2);
+}
+
+#[test]
+fn what_an_agent_that_reads_was_told_is_shown() {
+    let town = Town::new();
+    let score = town.score();
+    let told = Told { room: Some(SCRIPT.into()), ways: 2, things: 1 };
+    let mut walk = Walk { directions: None, ..town.walk("reader") };
+    for step in &mut walk.steps {
+        step.views.clear();
+        step.told = Some(told.clone());
+    }
+    walk.steps[4].told = Some(Told { room: None, ..told });
+    let shown = card(&replay(&town, &walk, &score));
+    assert_eq!((shown.matches("is told: ").count(), shown.matches("↩ goes back").count()), (5, 1));
+    assert!(shown.contains("2 ways on, 1 thing") && shown.contains("in a room without a name"));
+    assert!(!shown.contains("<script") && !shown.contains("does not look"));
+    walk.text.clear();
+    assert!(card(&replay(&town, &walk, &score)).contains("(an empty text)"));
 }
