@@ -62,7 +62,7 @@ pub(super) fn weights() -> Weights {
         }
     }
     for at in 0..12 {
-        let goes = (-180.0 + 30.0 * at as f64 + 15.0f64).to_radians().sin();
+        let goes = libm::sin((-180.0 + 30.0 * at as f64 + 15.0f64).to_radians());
         // The place lies on a side of the walker: positive right, and mirrored so that right is told.
         set(&SIDE_OF_PLACE, &[(at, 12)], 0.5 * goes);
         set(&SIDE_OF_TURN, &[(0, 4), (at, 12)], 0.5 * goes);

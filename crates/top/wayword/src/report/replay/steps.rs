@@ -107,7 +107,7 @@ fn told(told: &Told) -> String {
         Some(room) => format!("in room {}", room.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
         None => "in a room without a name".to_owned(),
     };
-    format!("{room}, {}, {}", count(told.ways, "way on"), count(told.things, "thing"))
+    format!("{room}, {} on, {}", count(told.ways, "way"), count(told.things, "thing"))
 }
 
 fn then(choice: Choice) -> String {
