@@ -52,17 +52,29 @@ impl<'a> MapReader<'a> {
         Ok(Self { graph, known, start, tree })
     }
 
-    /// The walk that an instruction fits best; of walks that it fits equally well, the one with the farthest end. The
-    /// start alone where there is none.
+    /// The walk that an instruction fits best; the start alone where there is none. Of walks that it fits equally well, the
+    /// one of middle length, because an end of the list would make the floor of an empty text too low.
     #[must_use]
     pub fn walk(&self, text: &str) -> Walked {
         let guide = Guide::read(beginning_of(text));
         let mut walk = Vec::new();
         if guide.len().saturating_mul(self.tree.len()) <= MOST_WORK {
             let fit = Fit::new(&Trial::new(&guide, &self.known.building), &self.tree, Weights::fitted());
-            walk = best(&fit, &self.tree).map(|best| self.tree.viewpoints(best)).unwrap_or_default();
+            walk = best(&fit, &self.tree).map(|best| self.middle(&fit, best)).unwrap_or_default();
         }
         let mut rest = walk.into_iter().skip(1);
         follow(self.graph, self.start, usize::MAX, |_, _| self.known.viewpoints.get(rest.next()?).cloned())
+    }
+
+    /// The viewpoints of the walk of middle length, among those that fit as well as the best.
+    fn middle(&self, fit: &Fit, best: usize) -> Vec<usize> {
+        let least = fit.score(best) - 1e-9;
+        let equal = (1..self.tree.len()).filter(|walk| fit.score(*walk) >= least);
+        let length_m =
+            |walk: &[usize]| -> f64 { walk.windows(2).map(|hop| self.known.building.distance(hop[0], hop[1])).sum() };
+        let mut equal: Vec<(f64, Vec<usize>)> =
+            equal.map(|walk| self.tree.viewpoints(walk)).map(|walk| (length_m(&walk), walk)).collect();
+        equal.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+        equal.swap_remove(equal.len() / 2).1
     }
 }
