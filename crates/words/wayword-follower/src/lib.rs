@@ -16,6 +16,8 @@ mod near;
 pub mod online;
 mod posterior;
 pub mod route;
+#[cfg(test)]
+mod tests;
 mod tree;
 mod weights;
 

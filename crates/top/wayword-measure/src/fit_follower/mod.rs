@@ -37,7 +37,7 @@ pub(super) struct Flags {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Rounds over all texts.
-    #[arg(long, default_value_t = 10)]
+    #[arg(long, default_value_t = 8)]
     rounds: usize,
     /// Fit on at most this many texts.
     #[arg(long, default_value_t = usize::MAX)]

@@ -31,7 +31,7 @@ impl<'a> Body<'a> {
             let bearing = Heading::towards(here.position, viewpoints[*to].position);
             Hop {
                 turn_rad: bearing.map_or(0.0, |bearing| self.heading.turn_to(bearing)),
-                elevation_rad: off.z.atan2(off.x.hypot(off.y)),
+                elevation_rad: libm::atan2(off.z, libm::hypot(off.x, off.y)),
                 length_m: off.length(),
             }
         };

@@ -67,7 +67,7 @@ impl<'a> Reader<'a> {
     pub fn decide(&mut self, seen: &Sighting) -> Decision {
         self.look(seen);
         if self.planned.is_empty() {
-            if self.then_stops || self.hops >= MOST_STEPS {
+            if self.then_stops || self.hops >= MOST_STEPS || self.guide.is_empty() {
                 return Decision::Stop;
             }
             self.plan();

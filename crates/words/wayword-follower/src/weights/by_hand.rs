@@ -3,8 +3,9 @@
 use super::Weights;
 use crate::{
     features::tables::{
-        ANGLES, CROSSINGS, HOPS, HOPS_CLASSES, NAMED_ROOM, NAMED_THING, OPENING_TURN, RELATIONS, RISE, ROOM,
-        SIDE_OF_PLACE, SIDE_OF_TURN, THING, TURN_AFTER_OPENING, TURN_AT, Table, WHOLE_TURN, WIDEST_TURN,
+        ANGLES, CROSSINGS, GROUPS, HOPS, HOPS_CLASSES, LAST_ROOM, LAST_THING, NAMED_ROOM, NAMED_THING, OPENING_TURN,
+        RELATIONS, RISE, ROOM, SIDE_OF_PLACE, SIDE_OF_TURN, THING, TURN_AFTER_OPENING, TURN_AT, Table, WHOLE_TURN,
+        WIDEST_TURN,
     },
     guide::Kind,
     near::CLASSES,
@@ -13,16 +14,16 @@ use wayword_language::reading::steps::Relation;
 
 /// How a step of each kind goes with 0, 1, 2 ... hops.
 const OF_HOPS: [[f64; HOPS_CLASSES]; Kind::COUNT] = [
-    [-1.0, 0.0, -0.3, -1.0, -2.0, -3.0, -4.0, -5.0],
-    [-0.5, 0.0, -0.3, -1.0, -2.0, -3.0, -4.0, -5.0],
-    [-0.5, 0.0, -1.0, -2.0, -3.0, -4.0, -4.0, -5.0],
-    [-3.0, -0.3, 0.0, 0.0, 0.0, -0.5, -1.0, -2.0],
-    [0.5, 0.0, -1.0, -2.0, -3.0, -4.0, -5.0, -6.0],
-    [0.3, 0.0, -0.5, -1.0, -1.5, -2.0, -3.0, -4.0],
-    [-1.0, 0.0, 0.0, -0.3, -0.7, -1.0, -1.5, -2.0],
-    [-1.0, 0.0, 0.0, -0.3, -1.0, -1.5, -2.0, -3.0],
-    [-0.7, 0.0, 0.0, 0.0, -0.3, -0.7, -1.0, -2.0],
-    [0.0, -0.3, -0.7, -1.0, -1.5, -2.0, -2.5, -3.0],
+    [-2.4, 0.0, -1.6, -3.5, -5.6, -8.0, -9.6, -11.2],
+    [-1.6, 0.0, -1.6, -3.5, -5.6, -8.0, -9.6, -11.2],
+    [-1.1, 0.0, -2.4, -4.8, -6.4, -8.0, -9.6, -11.2],
+    [-6.4, -0.8, 0.0, 0.0, -0.5, -1.6, -3.2, -4.8],
+    [0.0, -1.1, -4.0, -6.4, -8.0, -9.6, -11.2, -12.8],
+    [0.0, -0.5, -1.9, -4.0, -5.6, -7.2, -8.8, -10.4],
+    [-1.6, 0.0, -0.3, -1.3, -2.6, -4.0, -5.6, -7.2],
+    [-1.9, 0.0, -0.3, -1.6, -3.2, -4.8, -6.4, -8.0],
+    [-1.6, 0.0, -0.3, -0.8, -1.9, -3.2, -4.8, -6.4],
+    [0.0, -1.3, -2.9, -4.5, -6.1, -8.0, -9.6, -11.2],
 ];
 /// How a climb goes with what the stretch gains, from 3 m against it to 3 m along it.
 const OF_RISE: [f64; 11] = [-4.0, -4.0, -4.0, -3.5, -3.0, -2.0, 0.5, 1.5, 2.0, 2.5, 2.5];
@@ -74,6 +75,11 @@ pub(super) fn weights() -> Weights {
         set(&TURN_AT, &[(0, 2), (class, CLASSES)], 0.4 * OF_THING[class]);
         set(&TURN_AT, &[(1, 2), (class, CLASSES)], 0.4 * OF_ROOM[class]);
         set(&NAMED_ROOM, &[(class, CLASSES)], 0.5 * OF_ROOM[class]);
+        // The last room and the last thing that a step leads to, or that it is in or at, are where the walk ends.
+        for group in [1, 2] {
+            set(&LAST_ROOM, &[(group, GROUPS), (class, CLASSES)], 0.8 * OF_ROOM[class]);
+            set(&LAST_THING, &[(group, GROUPS), (class, CLASSES)], 0.6 * OF_THING[class]);
+        }
         for commonness in 0..3 {
             set(&NAMED_THING, &[(commonness, 3), (class, CLASSES)], 0.5 * OF_THING[class]);
         }

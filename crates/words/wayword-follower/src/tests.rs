@@ -1,0 +1,186 @@
+//! A follower on a small made-up building: a hall that runs north, with a room on either side of its end.
+
+use crate::{
+    Building, Fit, Guide, Prior, Tree, Trial, Weights, best,
+    change::{Kind, changes},
+    online::{Decision, Hop, OnwardWeights, Reader, Sighting},
+    route::{Known, Thresholds, judge},
+    shares,
+};
+use wayword_core::{
+    Check, DVec3, Heading, Label, ObjectId, Survey, ViewpointGraph, ViewpointId, graph::GraphError, survey,
+};
+
+/// Viewpoints: name, east and north (metres), room.
+const PLACES: [(&str, f64, f64, &str); 8] = [
+    ("start", 0.0, 0.0, "hallway"),
+    ("middle", 0.0, 2.5, "hallway"),
+    ("end", 0.0, 5.0, "hallway"),
+    ("west", -2.5, 5.0, "bedroom"),
+    ("far west", -5.0, 5.0, "bedroom"),
+    ("east", 2.5, 5.0, "kitchen"),
+    ("far east", 5.0, 5.0, "kitchen"),
+    ("south", 0.0, -2.5, "bathroom"),
+];
+const WAYS: [(usize, usize); 7] = [(0, 1), (1, 2), (2, 3), (3, 4), (2, 5), (5, 6), (0, 7)];
+
+fn id(at: usize) -> ViewpointId {
+    ViewpointId::new(PLACES[at].0.replace(' ', "-")).unwrap()
+}
+
+fn label(name: &str, east: f64, north: f64, eye: DVec3) -> Label {
+    let position = DVec3::new(east, north, 1.0);
+    Label {
+        object: ObjectId::new(name).unwrap(),
+        name: name.to_owned(),
+        heading: Heading::towards(eye, position).unwrap_or(Heading::NORTH),
+        elevation_rad: 0.0,
+        box_px: None,
+        distance_m: None,
+        position: Some(position),
+        colour: None,
+    }
+}
+
+fn surveyed() -> Survey {
+    let mut graph = ViewpointGraph::default();
+    for (at, (_, east, north, _)) in PLACES.iter().enumerate() {
+        graph.add(id(at), DVec3::new(*east, *north, 1.5), Some(1)).unwrap();
+    }
+    for (a, b) in WAYS {
+        graph.join(&id(a), &id(b)).unwrap();
+    }
+    let known = |name: &ViewpointId, eye: DVec3| {
+        let at = (0..PLACES.len()).find(|at| id(*at) == *name).unwrap();
+        let things = match at {
+            4 => vec![label("bed", -5.5, 5.5, eye)],
+            6 => vec![label("oven", 5.5, 5.5, eye)],
+            _ => Vec::new(),
+        };
+        Ok::<_, GraphError>(survey::Known { room: Some(PLACES[at].3.to_owned()), things: Some(things) })
+    };
+    Survey::of(&graph, known).unwrap()
+}
+
+/// The end of the walk that a text means, from the start looking north.
+fn end_of(text: &str, weights: &Weights) -> &'static str {
+    let building = Building::of(&surveyed());
+    let guide = Guide::read(text);
+    let tree = Tree::of(&building, 0, 0.0, Prior::Shortest(8));
+    let fit = Fit::new(&Trial::new(&guide, &building), &tree, weights);
+    PLACES[tree.end(best(&fit, &tree).unwrap())].0
+}
+
+const TO_KITCHEN: &str = "Walk down the hallway and turn right. Walk into the kitchen and wait by the oven.";
+const TO_BEDROOM: &str = "Walk down the hallway and turn left. Walk into the bedroom and wait by the bed.";
+
+#[test]
+fn a_text_leads_where_it_says() {
+    for weights in [Weights::fitted(), &Weights::by_hand()] {
+        assert_eq!(end_of(TO_KITCHEN, weights), "far east");
+        assert_eq!(end_of(TO_BEDROOM, weights), "far west");
+    }
+    assert_eq!(end_of("Turn around and go into the bathroom.", Weights::fitted()), "south");
+}
+
+#[test]
+fn shares_add_up_to_one() {
+    let building = Building::of(&surveyed());
+    let guide = Guide::read(TO_KITCHEN);
+    let tree = Tree::of(&building, 0, 0.0, Prior::Shortest(8));
+    let fit = Fit::new(&Trial::new(&guide, &building), &tree, Weights::fitted());
+    let shares = shares(&fit, &tree);
+    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    assert!(shares[0].abs() < f64::EPSILON, "the start alone is no walk");
+}
+
+#[test]
+fn one_wrong_turn_is_what_changing_it_gains() {
+    let building = Building::of(&surveyed());
+    let walk = [0, 1, 2, 5, 6];
+    let gain = |text: &str| {
+        let changes = changes(&Guide::read(text), &building, &walk, 0.0, Weights::fitted());
+        let turn = changes.into_iter().find(|change| change.kind == Kind::Turn).unwrap();
+        (turn.gain, text[turn.span[0]..turn.span[1]].to_owned())
+    };
+    let (right, _) = gain(TO_KITCHEN);
+    let wrong = TO_KITCHEN.replace("right", "left");
+    let (gained, words) = gain(&wrong);
+    assert!(right < 0.0 && gained > 2.0, "{right} {gained}");
+    assert!("turn left".ends_with(&words), "{words:?}");
+}
+
+#[test]
+fn a_text_of_another_walk_leads_elsewhere() {
+    let building = Building::of(&surveyed());
+    let known = Known { building: &building, walk: &[0, 1, 2, 5, 6], heading_rad: 0.0 };
+    let judge = |text: &str| {
+        judge(&Guide::read(text), known, Some(Prior::Shortest(8)), Weights::fitted(), Thresholds::default())
+    };
+    let own = judge(TO_KITCHEN).route.unwrap();
+    assert_eq!(own.ends, [6]);
+    assert!(own.share > 0.5, "{}", own.share);
+    let other = judge(TO_BEDROOM).route.unwrap();
+    assert!(other.share < 0.01 && other.other > 0.5, "{} {}", other.share, other.other);
+    assert_eq!(other.finding.check, Check::Route);
+    assert!(judge("Go.").route.unwrap().ends.len() > 1, "a text that says nothing may end anywhere");
+}
+
+#[test]
+fn walks_of_two_pieces_pass_no_viewpoint_twice() {
+    let building = Building::of(&surveyed());
+    let tree = Tree::of(&building, 0, 0.0, Prior::TwoPieces(6));
+    for walk in 0..tree.len() {
+        let mut viewpoints = tree.viewpoints(walk);
+        assert_eq!(tree.find(&viewpoints), Some(walk));
+        let count = viewpoints.len();
+        viewpoints.sort_unstable();
+        viewpoints.dedup();
+        assert_eq!(viewpoints.len(), count);
+    }
+}
+
+/// What a body sees at a viewpoint.
+fn sight(survey: &Survey, here: usize, heading: Heading) -> Sighting {
+    let all = survey.viewpoints();
+    let hop = |to: &usize| Hop {
+        turn_rad: heading.turn_to(Heading::towards(all[here].position, all[*to].position).unwrap()),
+        elevation_rad: 0.0,
+        length_m: all[here].position.distance(all[*to].position),
+    };
+    Sighting {
+        hops: all[here].neighbours.iter().map(hop).collect(),
+        room: all[here].known.room.clone(),
+        things: all[here].known.things.iter().flatten().map(|label| (label.name.clone(), 0)).collect(),
+    }
+}
+
+#[test]
+fn a_walker_gets_there_without_a_map() {
+    let survey = surveyed();
+    for (text, goal) in [(TO_KITCHEN, "kitchen"), (TO_BEDROOM, "bedroom")] {
+        let guide = Guide::read(text);
+        let mut reader = Reader::new(&guide, OnwardWeights::fitted());
+        let (mut here, mut heading) = (0, Heading::NORTH);
+        for _ in 0..40 {
+            let Decision::Go(hop) = reader.decide(&sight(&survey, here, heading)) else { break };
+            let to = survey.viewpoints()[here].neighbours[hop];
+            heading = Heading::towards(survey.viewpoints()[here].position, survey.viewpoints()[to].position).unwrap();
+            here = to;
+        }
+        assert_eq!(PLACES[here].3, goal, "{text}");
+    }
+}
+
+#[test]
+fn a_walker_where_no_way_leads_stops() {
+    let guide = Guide::read("Walk on.");
+    let mut reader = Reader::new(&guide, OnwardWeights::fitted());
+    assert_eq!(reader.decide(&Sighting::default()), Decision::Stop);
+}
+
+#[test]
+fn a_text_without_words_tells_no_step() {
+    assert!(Guide::read("").is_empty() && Guide::read(" . ! ").is_empty());
+    assert_eq!(Guide::read("Turn left, then turn right.").len(), 2);
+}
