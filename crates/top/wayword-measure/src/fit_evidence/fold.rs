@@ -21,11 +21,11 @@ const LEAST_RATIO: f64 = 3.0;
 /// The share of people's texts that each kind of claim may fail.
 pub(crate) fn budget(case: Case) -> f64 {
     match case {
-        Case::Thing => 0.009,
-        Case::ThingAtStop => 0.003,
-        Case::Room => 0.006,
-        Case::RoomAtStop => 0.002,
-        Case::RoomLacking => 0.0045,
+        Case::Thing => 0.004,
+        Case::ThingAtStop => 0.0015,
+        Case::Room => 0.005,
+        Case::RoomAtStop => 0.0015,
+        Case::RoomLacking => 0.0035,
     }
 }
 
