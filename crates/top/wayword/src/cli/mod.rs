@@ -177,6 +177,9 @@ pub struct Check {
     /// may mean.
     #[arg(long)]
     pub no_route: bool,
+    /// Let a text fail that may mean several places, or several objects at the end of its path.
+    #[arg(long, conflicts_with = "no_route")]
+    pub reject_ambiguous: bool,
     /// Shares by the names of objects and rooms that `wayword calibrate` made.
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,

@@ -45,6 +45,7 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
         world: args.world,
         without_witnesses: args.no_witnesses,
         without_route: args.no_route,
+        reject_ambiguous: args.reject_ambiguous,
         calibration: calibration.as_ref(),
     };
     let mut report = check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, how, output)?;
@@ -63,6 +64,8 @@ pub struct How<'a> {
     pub without_witnesses: bool,
     /// Whether no text is followed.
     pub without_route: bool,
+    /// Whether a text that may mean several places or objects fails.
+    pub reject_ambiguous: bool,
     /// What the user's own data says of single names.
     pub calibration: Option<&'a Calibration>,
 }
@@ -90,6 +93,8 @@ pub struct CheckReport {
     pub unknown_styles: BTreeMap<String, usize>,
     /// Per check, the texts that passed, were unverified, or failed it.
     pub by_check: BTreeMap<&'static str, Counts>,
+    /// Texts that may mean several places, or several objects at the end of the path. None of them fails for that.
+    pub ambiguous: usize,
     /// Every text that did not pass, with its findings.
     pub not_passed: Vec<CheckedText>,
 }
@@ -210,13 +215,11 @@ fn check_walk(
             let others: Vec<&Testimony> = others.filter_map(|(_, testimony)| testimony.as_ref()).collect();
             lift(&mut checked, own, &others);
         }
+        let ambiguity = told.as_ref().map(|told| told.ambiguity(objects_meant(&text.words, &evidence)));
+        checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(Ambiguity::rejection));
         let mut shown = CheckedText::of(text, &checked);
+        shown.ambiguity = ambiguity;
         if let Some(told) = told {
-            shown.ambiguity = Some(Ambiguity {
-                ends: told.ends.as_ref().map(|ends| ends.count),
-                objects: objects_meant(&text.words, &evidence),
-                told_apart_by: told.ends.and_then(|ends| ends.told_apart_by),
-            });
             (shown.route, shown.turn_gain) = (told.route, told.turn_gain);
         }
         (text.at, shown, checked.findings)
@@ -242,6 +245,7 @@ impl CheckReport {
             }
         }
         *self.worlds.entry(text.world).or_default() += 1;
+        self.ambiguous += usize::from(text.ambiguity.as_ref().is_some_and(Ambiguity::is_ambiguous));
         match text.verdict {
             Verdict::Pass => self.passed += 1,
             Verdict::Unverified => self.unverified += 1,
@@ -288,6 +292,9 @@ impl fmt::Display for Shown<'_> {
         let worlds = report.worlds.iter().map(|(name, texts)| format!("{name} ({texts})"));
         let worlds = worlds.collect::<Vec<_>>().join(", ");
         write!(f, "checked against: {}\nworld: {worlds}", report.checked_against.join(", "))?;
+        if report.ambiguous > 0 {
+            write!(f, "\nambiguous: {} may mean several places or objects", count(report.ambiguous, "text"))?;
+        }
         if let Some(file) = &report.calibration {
             write!(f, "\ncalibration: {file}")?;
         }

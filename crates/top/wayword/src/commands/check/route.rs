@@ -45,6 +45,24 @@ pub struct Ambiguity {
     pub told_apart_by: Option<String>,
 }
 
+impl Ambiguity {
+    /// Whether the text may mean several places, or several objects.
+    pub(super) fn is_ambiguous(&self) -> bool {
+        self.ends.is_some_and(|ends| ends > 1) || self.objects > 1
+    }
+
+    /// What is wrong with an ambiguous text, for a user who wants none.
+    pub(super) fn rejection(&self) -> Option<Finding> {
+        let ends = self.ends.unwrap_or(1);
+        let reason = match (ends > 1, self.objects > 1) {
+            (true, _) => format!("the text is ambiguous: it may end at {ends} places"),
+            (_, true) => format!("the text is ambiguous: its task may mean {} objects", self.objects),
+            _ => return None,
+        };
+        Some(Finding { check: Check::Route, verdict: Verdict::Fail, reason, span: None })
+    }
+}
+
 /// The ends that a text may mean.
 pub(super) struct Ends {
     pub(super) count: usize,
@@ -88,6 +106,15 @@ impl<'a> Followed<'a> {
 }
 
 impl Told {
+    /// What the text may mean, where its task may mean this number of objects.
+    pub(super) fn ambiguity(&self, objects: usize) -> Ambiguity {
+        Ambiguity {
+            ends: self.ends.as_ref().map(|ends| ends.count),
+            objects,
+            told_apart_by: self.ends.as_ref().and_then(|ends| ends.told_apart_by.clone()),
+        }
+    }
+
     /// What is said of a text whose path cannot be followed.
     pub(super) fn unknown(why: &str) -> Self {
         let finding = Finding {
