@@ -105,6 +105,7 @@ fn no_crate_is_built_on_one_above_it() {
             &[
                 "wayword-checks",
                 "wayword-core",
+                "wayword-follower",
                 "wayword-formats",
                 "wayword-habitat",
                 "wayword-house",
@@ -128,6 +129,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword",
                 "wayword-checks",
                 "wayword-core",
+                "wayword-follower",
                 "wayword-formats",
                 "wayword-language",
                 "wayword-ledger",

@@ -160,9 +160,18 @@ fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
 }
 
 impl Checked {
-    /// Adds what somebody else found. A check that passed before and fails or is unverified now no longer passes.
+    /// Adds what somebody else found. A check that passed before and fails or is unverified now no longer passes. What
+    /// the same check said of the same words before is not said twice.
     pub fn add(&mut self, found: impl IntoIterator<Item = Finding>) {
         for finding in found {
+            let is_same = |other: &Finding| match (other.span, finding.span) {
+                (Some(a), Some(b)) => a[0] < b[1] && b[0] < a[1],
+                _ => false,
+            };
+            let alike = |other: &&Finding| other.check == finding.check && other.verdict == finding.verdict;
+            if self.findings.iter().filter(alike).any(is_same) {
+                continue;
+            }
             if finding.verdict != Verdict::Pass {
                 self.findings.retain(|other| other.check != finding.check || other.verdict != Verdict::Pass);
             }

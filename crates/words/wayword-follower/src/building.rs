@@ -41,6 +41,19 @@ pub(crate) struct Thing {
     pub(crate) seen_from: Vec<usize>,
 }
 
+/// A place on a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// The eye's position, metres.
+    pub position: DVec3,
+    /// The room, where it is known.
+    pub room: Option<String>,
+    /// The objects that are seen, each with its direction (radians from +y, clockwise), where that is known.
+    pub things: Vec<(String, Option<f64>)>,
+}
+
+/// How far away an object is taken to be that is seen from a path, metres.
+const NEARBY_M: f64 = 1.5;
 /// The least slope of a hop that is stairs.
 const STAIRS_SLOPE: f64 = 0.25;
 
@@ -73,6 +86,27 @@ impl Building {
             }
         }
         building.things = things.into_values().collect();
+        building.find_stairs();
+        building
+    }
+
+    /// What is known along a path alone: a place for each of its frames, one after another.
+    #[must_use]
+    pub fn along(path: Vec<Place>) -> Self {
+        let mut building = Self::default();
+        let last = path.len().saturating_sub(1);
+        for (at, place) in path.into_iter().enumerate() {
+            let neighbours = [at.checked_sub(1), (at < last).then_some(at + 1)];
+            let neighbours = neighbours.into_iter().flatten().collect();
+            for (name, direction) in place.things {
+                let off =
+                    direction.map_or(DVec3::ZERO, |rad| DVec3::new(libm::sin(rad), libm::cos(rad), 0.0) * NEARBY_M);
+                let (name, position) = (normal(&name), place.position + off);
+                building.things.push(Thing { name, position, seen_from: vec![at] });
+            }
+            let (position, room) = (place.position, place.room);
+            building.viewpoints.push(Viewpoint { position, neighbours, room, is_known: true, climbs: [false; 2] });
+        }
         building.find_stairs();
         building
     }

@@ -21,7 +21,7 @@ mod tests;
 mod tree;
 mod weights;
 
-pub use building::Building;
+pub use building::{Building, Place};
 pub use fit::Fit;
 pub use guide::{Guide, Trial};
 pub use posterior::{best, shares};

@@ -191,7 +191,8 @@ fn check_walk(
     let scene = if some_are_open || !how.without_route { Some(scenes.get(platform, &walk.path.scene)?) } else { None };
     let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
     let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
-    let followed = scene.as_ref().filter(|_| !how.without_route).and_then(|scene| Followed::new(scene, &walk.path));
+    let follows = !how.without_route;
+    let followed = follows.then(|| Followed::new(scene.as_deref(), &walk.path, &evidence)).flatten();
     let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
     let testimony = |text: &Text| hears.then(|| Testimony::of(&text.words, &evidence));
     let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
@@ -205,7 +206,7 @@ fn check_walk(
         let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), ..subject });
         let told = (!how.without_route).then(|| match &followed {
             Some(followed) => followed.follow(&text.words),
-            None => Told::unknown("its path does not go along the viewpoints of a graph"),
+            None => Told::unknown("it is not known how its path goes"),
         });
         if checked.world == World::Open {
             checked.add(told.iter().flat_map(|told| told.findings.clone()));

@@ -2,17 +2,26 @@
 
 use super::worlds::KnownScene;
 use serde::Serialize;
-use wayword_core::{Check, Finding, Path, Verdict};
+use wayword_checks::{Evidence, FrameEvidence};
+use wayword_core::{Check, Finding, Frame, Path, Verdict};
 use wayword_follower::{
-    Guide, Prior, Weights,
+    Building, Guide, Place, Prior, Weights,
     route::{Known, Route, Thresholds, judge},
 };
 
 /// A path as the follower knows it.
 pub(super) struct Followed<'a> {
-    scene: &'a KnownScene,
+    place: Surrounded<'a>,
     walk: Vec<usize>,
     heading_rad: f64,
+}
+
+/// What is known around a path.
+enum Surrounded<'a> {
+    /// The building with its viewpoint graph.
+    By(&'a KnownScene),
+    /// The path alone: no other walk is known.
+    Nothing(Building),
 }
 
 /// What was found of a text.
@@ -73,35 +82,63 @@ pub(super) struct Ends {
 const PRIOR: Prior = Prior::Shortest(8);
 
 impl<'a> Followed<'a> {
-    /// A path in its scene; `None` where the path does not go along the viewpoints of a graph, or its motion is unknown.
-    pub(super) fn new(scene: &'a KnownScene, path: &Path) -> Option<Self> {
-        let place = |frame: &wayword_core::Frame| scene.survey.place(frame.viewpoint.as_ref()?);
-        let walk: Vec<usize> = path.frames.iter().map(place).collect::<Option<_>>()?;
+    /// A path in its scene; `None` where its motion is unknown, or it goes nowhere. A path that does not go along the viewpoints
+    /// of a graph is followed by what its own frames show.
+    pub(super) fn new(scene: Option<&'a KnownScene>, path: &Path, evidence: &Evidence) -> Option<Self> {
         let heading_rad = path.frames.first()?.pose.heading.rad();
-        (path.motion.is_known() && walk.len() > 1).then_some(Self { scene, walk, heading_rad })
+        if !path.motion.is_known() || path.frames.len() < 2 {
+            return None;
+        }
+        let on_graph = |scene: &KnownScene| {
+            let place = |frame: &Frame| scene.survey.place(frame.viewpoint.as_ref()?);
+            path.frames.iter().map(place).collect::<Option<Vec<usize>>>()
+        };
+        if let Some((scene, walk)) = scene.and_then(|scene| Some((scene, on_graph(scene)?))) {
+            return Some(Self { place: Surrounded::By(scene), walk, heading_rad });
+        }
+        let place = |(frame, seen): (&Frame, &FrameEvidence)| Place {
+            position: frame.pose.position,
+            room: seen.rooms.first().cloned(),
+            things: seen
+                .things
+                .iter()
+                .map(|thing| (thing.name.clone(), thing.turn_rad.map(|rad| frame.pose.heading.turned(rad).rad())))
+                .collect(),
+        };
+        let building = Building::along(path.frames.iter().zip(&evidence.frames).map(place).collect());
+        let walk = (0..path.frames.len()).collect();
+        Some(Self { place: Surrounded::Nothing(building), walk, heading_rad })
     }
 
     /// Follows a text.
     pub(super) fn follow(&self, text: &str) -> Told {
-        let building = &self.scene.followed;
+        let (building, prior) = match &self.place {
+            Surrounded::By(scene) => (&scene.followed, Some(PRIOR)),
+            Surrounded::Nothing(building) => (building, None),
+        };
         let known = Known { building, walk: &self.walk, heading_rad: self.heading_rad };
         let guide = Guide::read(text);
         if guide.is_empty() {
             return Told::unknown("the text tells no step");
         }
-        let judged = judge(&guide, known, Some(PRIOR), Weights::fitted(), Thresholds::default());
-        let mut findings = judged.turns;
-        findings.extend(judged.route.iter().map(|route| route.finding.clone()));
-        let ends = judged.route.as_ref().map(|route: &Route| Ends {
-            count: route.ends.len(),
-            told_apart_by: route
-                .ends
-                .split_first()
-                .filter(|(_, others)| !others.is_empty())
-                .and_then(|(own, others)| building.told_apart_by(*own, others).map(str::to_owned)),
-        });
-        let route = judged.route.map(|route| Shares { annotated: route.share, other: route.other });
-        Told { findings, route, turn_gain: judged.turn_gain, ends }
+        let judged = judge(&guide, known, prior, Weights::fitted(), Thresholds::default());
+        let apart = |route: &Route| match route.ends.split_first() {
+            Some((own, others)) if !others.is_empty() => building.told_apart_by(*own, others).map(str::to_owned),
+            _ => None,
+        };
+        let ends = judged.route.as_ref().map(|route| Ends { count: route.ends.len(), told_apart_by: apart(route) });
+        let mut told = match judged.route {
+            Some(route) => Told {
+                findings: vec![route.finding],
+                route: Some(Shares { annotated: route.share, other: route.other }),
+                turn_gain: None,
+                ends,
+            },
+            None => Told::unknown("no viewpoint graph is known on which it lies, so no other walk is"),
+        };
+        told.findings.extend(judged.turns);
+        told.turn_gain = judged.turn_gain;
+        told
     }
 }
 
