@@ -1,7 +1,7 @@
 //! Can an agent find the way by an instruction? Zero-shot agents walk the viewpoint graph by instructions, and sets of
 //! instructions are compared by how well the agents do.
 //!
-//! Architecture invariant: an agent gets an instruction and, at each node, what [`sight`] makes for it. An agent that
+//! Architecture invariant: an agent gets an instruction and, at each node, what `sight` makes for it. An agent that
 //! walks by phrases gets how well they fit four views ([`Sight`]). One that reads gets the ways out of the node, its
 //! room, and by which way each thing lies (`Sighting`). Neither gets a pose, a goal or a map. Agents that know more are
 //! in `agents::baselines` and `agents::map_reader`. Nothing here opens a file, and nothing knows a platform beyond the
