@@ -1,9 +1,6 @@
 //! A building as a follower knows it: the whole of it by a survey, or what was seen of it on the way.
 
-use crate::{
-    near::{Near, Nearness},
-    tree::Tree,
-};
+use crate::near::{Near, Nearness};
 use std::{
     cmp::Reverse,
     collections::BTreeMap,
@@ -171,18 +168,6 @@ impl Building {
             apart.sort_by_key(|name| (Reverse(thing(name).map_or(0, |thing| thing.salience)), *name));
             apart.first().copied()
         })
-    }
-
-    /// For each viewpoint, how far it is over the graph from one of them, metres; infinite where there is no way.
-    #[must_use]
-    pub fn distances_from(&self, from: usize) -> Vec<f64> {
-        let tree = Tree::shortest(self, from, 0.0, usize::MAX);
-        let mut far_m = vec![f64::INFINITY; self.len()];
-        for node in &tree.nodes {
-            let before_m = if node.hops == 0 { 0.0 } else { far_m[tree.end(node.before)] };
-            far_m[node.viewpoint] = before_m + node.length_m;
-        }
-        far_m
     }
 
     /// The distance between two viewpoints, metres.

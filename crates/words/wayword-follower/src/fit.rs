@@ -2,14 +2,11 @@
 //! text, of what speaks for each step over its stretch.
 
 use crate::{
-    features::{Stretch, ending, stretch},
+    features::{MOST_HOPS, Stretch, ending, stretch},
     guide::Trial,
     tree::Tree,
     weights::Weights,
 };
-
-/// Most hops of a step.
-pub(crate) const MOST_HOPS: usize = 6;
 
 /// How well an instruction fits the walks of a tree.
 #[derive(Debug, Clone)]

@@ -16,7 +16,7 @@ pub(crate) struct Nearness {
 #[derive(Debug)]
 pub(crate) struct Near {
     /// For each viewpoint, the class of its distance: 0 there, then farther and farther up to [`FAR`]; [`UNKNOWN`] where
-    /// nobody has been.
+    /// the walker was not.
     pub(crate) class: Vec<usize>,
     /// For each viewpoint, where the nearest is.
     pub(crate) nearest: Vec<Option<DVec3>>,
@@ -95,7 +95,7 @@ impl Near {
         Self::of(building, found, exists, 1)
     }
 
-    /// `least` is the first class that says nothing where nobody has been.
+    /// `least` is the first class that says nothing where the walker was not.
     fn of(building: &Building, found: Vec<(usize, Option<DVec3>)>, exists: bool, least: usize) -> Self {
         let known = |(at, (class, _)): (usize, &(usize, Option<DVec3>))| match building.viewpoints[at].is_known {
             false if *class >= least => UNKNOWN,

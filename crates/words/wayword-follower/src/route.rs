@@ -22,8 +22,8 @@ pub struct Known<'a> {
     pub heading_rad: f64,
 }
 
-/// From which gain on a change of a step is taken for what the text should say, natural logs. Fitted so that few texts
-/// of people fail (`wayword-measure fit-follower`).
+/// From which gain on a change of a step is taken for what the text should say, natural logs. They were set by hand, so
+/// that few of people's texts in R2R's train split fail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// Of a turn to the other side.

@@ -143,11 +143,7 @@ fn walks_of_two_pieces_pass_no_viewpoint_twice() {
 /// What a body sees at a viewpoint.
 fn sight(survey: &Survey, here: usize, heading: Heading) -> Sighting {
     let all = survey.viewpoints();
-    let hop = |to: &usize| Hop {
-        turn_rad: heading.turn_to(Heading::towards(all[here].position, all[*to].position).unwrap()),
-        elevation_rad: 0.0,
-        length_m: all[here].position.distance(all[*to].position),
-    };
+    let hop = |to: &usize| Hop::between(all[here].position, all[*to].position, heading);
     Sighting {
         hops: all[here].neighbours.iter().map(hop).collect(),
         room: all[here].known.room.clone(),

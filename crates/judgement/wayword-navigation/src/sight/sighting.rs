@@ -5,7 +5,7 @@
 
 use super::AgentView;
 use crate::{directions::places, error::WalkError, grounders::labels_of};
-use wayword_core::{Compass, DVec3, Heading, View, ViewpointId};
+use wayword_core::{Compass, Heading, View, ViewpointId};
 use wayword_follower::online::{Hop, Sighting};
 
 /// Where the things come from that an agent is told of.
@@ -53,11 +53,8 @@ impl AgentView<'_> {
         let around = self.around(here)?;
         let position = |id: &ViewpointId| self.graph.position(id).unwrap_or_default();
         let ways: Vec<ViewpointId> = self.graph.neighbours(here).into_iter().cloned().collect();
-        let hops: Vec<Hop> = ways.iter().map(|to| hop(position(here), position(to), heading)).collect();
-        let nearest = |direction: Heading| {
-            let off_rad = |hop: &Hop| heading.turned(hop.turn_rad).turn_to(direction).abs();
-            (0..hops.len()).min_by(|a, b| off_rad(&hops[*a]).total_cmp(&off_rad(&hops[*b])))
-        };
+        let hops: Vec<Hop> = ways.iter().map(|to| Hop::between(position(here), position(to), heading)).collect();
+        let nearest = |direction: Heading| Hop::nearest(&hops, heading, direction);
         let mut found: Vec<(String, usize)> = Vec::new();
         match things {
             Things::Labels => {
@@ -79,17 +76,6 @@ impl AgentView<'_> {
             }
         }
         Ok(Surroundings { sighting: Sighting { hops, room: around.views.iter().find_map(room), things: found }, ways })
-    }
-}
-
-/// The way from one place to another, for somebody who looks along `heading`.
-fn hop(from: DVec3, to: DVec3, heading: Heading) -> Hop {
-    let off = to - from;
-    Hop {
-        // Straight up or down counts as ahead, because the walker's heading stays.
-        turn_rad: Heading::towards(from, to).map_or(0.0, |bearing| heading.turn_to(bearing)),
-        elevation_rad: libm::atan2(off.z, libm::hypot(off.x, off.y)),
-        length_m: off.length(),
     }
 }
 

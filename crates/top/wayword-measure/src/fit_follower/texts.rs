@@ -8,7 +8,7 @@ use wayword::{
     platforms,
     settings::{Asked, AskedPlatform},
 };
-use wayword_core::{SceneId, Survey};
+use wayword_core::{SceneId, Survey, Surveyed};
 use wayword_follower::{Building, Guide};
 
 /// A building.
@@ -44,9 +44,14 @@ pub(super) fn texts(data: &Path, episodes: &Path) -> Result<(Vec<Scene>, Vec<Tex
     let texts = walks.par_iter().map(|walk| {
         let scene = numbers[&walk.path.scene];
         let place = |frame: &wayword_core::Frame| scenes[scene].survey.place(frame.viewpoint.as_ref()?);
-        let Some(known) = walk.path.frames.iter().map(place).collect::<Option<Vec<usize>>>() else { return Vec::new() };
-        let Some(goal) = known.last() else { return Vec::new() };
-        let to_goal_m = scenes[scene].building.distances_from(*goal);
+        let Some(known) = walk.path.frames.iter().map(place).collect::<Option<Vec<usize>>>() else {
+            return Ok(Vec::new());
+        };
+        let viewpoints = scenes[scene].survey.viewpoints();
+        let graph = platform.graph(&walk.path.scene)?;
+        let far_m = known.last().and_then(|goal| graph.distances_from(&viewpoints[*goal].id).ok()).unwrap_or_default();
+        let far_m = |viewpoint: &Surveyed| far_m.get(&viewpoint.id).copied().unwrap_or(f64::INFINITY);
+        let to_goal_m: Vec<f64> = viewpoints.iter().map(far_m).collect();
         let heading_rad = walk.path.frames[0].pose.heading.rad();
         let text = |text: &wayword::people::Text| Text {
             scene,
@@ -55,9 +60,9 @@ pub(super) fn texts(data: &Path, episodes: &Path) -> Result<(Vec<Scene>, Vec<Tex
             heading_rad,
             to_goal_m: to_goal_m.clone(),
         };
-        walk.texts.iter().map(text).collect()
+        Ok(walk.texts.iter().map(text).collect())
     });
-    let texts: Vec<Vec<Text>> = texts.collect();
+    let texts = texts.collect::<Result<Vec<Vec<Text>>, Error>>()?;
     Ok((scenes, texts.into_iter().flatten().filter(|text| text.walk.len() > 1).collect()))
 }
 

@@ -26,23 +26,12 @@ impl<'a> Body<'a> {
     fn sight(&self) -> Sighting {
         let viewpoints = self.scene.survey.viewpoints();
         let here = &viewpoints[self.here];
-        let hop = |to: &usize| {
-            let off = viewpoints[*to].position - here.position;
-            let bearing = Heading::towards(here.position, viewpoints[*to].position);
-            Hop {
-                turn_rad: bearing.map_or(0.0, |bearing| self.heading.turn_to(bearing)),
-                elevation_rad: libm::atan2(off.z, libm::hypot(off.x, off.y)),
-                length_m: off.length(),
-            }
-        };
+        let hop = |to: &usize| Hop::between(here.position, viewpoints[*to].position, self.heading);
         let hops: Vec<Hop> = here.neighbours.iter().map(hop).collect();
-        let things = here.known.things.iter().flatten().filter_map(|label| {
-            let to = self.heading.turned(0.0);
-            let off = |hop: &Hop| to.turned(hop.turn_rad).turn_to(label.heading).abs();
-            let nearest = (0..hops.len()).min_by(|a, b| off(&hops[*a]).total_cmp(&off(&hops[*b])))?;
-            Some((label.name.clone(), nearest))
-        });
-        let things = things.collect();
+        let labels = here.known.things.iter().flatten();
+        let things = labels
+            .filter_map(|label| Some((label.name.clone(), Hop::nearest(&hops, self.heading, label.heading)?)))
+            .collect();
         Sighting { hops, room: here.known.room.clone(), things }
     }
 
@@ -82,14 +71,11 @@ pub(super) fn teach(scene: &Scene, text: &Text, weights: &OnwardWeights, is_own:
         reader.look(&seen);
         let way = body.way(text);
         let right = way.first().copied();
-        if !reader.is_on_its_way() {
-            reader.learn(way, slope);
-        }
+        reader.learn(way, slope);
         let own = if is_own { Some(reader.decide(&seen)) } else { None };
         match (own, right) {
             (Some(Decision::Go(hop)), _) => body.take(hop),
             (_, Some(hop)) => {
-                reader.go_on();
                 reader.take(hop);
                 body.take(hop);
             }

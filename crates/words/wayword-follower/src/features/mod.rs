@@ -9,7 +9,7 @@ mod stretch;
 pub(crate) mod tables;
 
 pub(crate) use ending::ending;
-pub(crate) use stretch::{Stretch, stretch};
+pub(crate) use stretch::{MOST_HOPS, Stretch, stretch};
 
 /// The number of a feature, by which its weight is found.
 pub(crate) type Feature = u32;

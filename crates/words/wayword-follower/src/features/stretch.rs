@@ -11,13 +11,14 @@ use super::{
 };
 use crate::{
     building::{Viewpoint, wrapped},
-    fit::MOST_HOPS,
     guide::{Kind, Told, Trial},
     tree::Tree,
 };
 use wayword_core::{Climb, Side};
 use wayword_language::reading::steps::{Relation, Stairs};
 
+/// Most hops of a step.
+pub(crate) const MOST_HOPS: usize = 6;
 /// A turn that is no bend of a corridor, radians.
 const CLEAR_TURN_RAD: f64 = 0.7;
 /// How far a way onward may lie from straight ahead, radians.

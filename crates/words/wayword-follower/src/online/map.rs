@@ -1,7 +1,7 @@
 //! What a walker knows of a building: a map of where it was, in its own frame.
 
 use crate::building::{Building, Thing, Viewpoint};
-use wayword_core::DVec3;
+use wayword_core::{DVec3, Heading};
 use wayword_language::lexicon::normal;
 
 /// What a walker gets at a viewpoint. Directions are relative to its body.
@@ -24,6 +24,27 @@ pub struct Hop {
     pub elevation_rad: f64,
     /// Its length, metres.
     pub length_m: f64,
+}
+
+impl Hop {
+    /// The way from one place to another (metres, world frame), for a walker that looks along `heading`. Straight up or
+    /// down counts as ahead, because the walker's heading stays.
+    #[must_use]
+    pub fn between(from: DVec3, to: DVec3, heading: Heading) -> Self {
+        let off = to - from;
+        Self {
+            turn_rad: Heading::towards(from, to).map_or(0.0, |bearing| heading.turn_to(bearing)),
+            elevation_rad: libm::atan2(off.z, libm::hypot(off.x, off.y)),
+            length_m: off.length(),
+        }
+    }
+
+    /// The number of the hop that lies nearest to a direction; `None` where there is none. `heading` is the walker's.
+    #[must_use]
+    pub fn nearest(hops: &[Self], heading: Heading, direction: Heading) -> Option<usize> {
+        let off_rad = |hop: &Self| heading.turned(hop.turn_rad).turn_to(direction).abs();
+        (0..hops.len()).min_by(|a, b| off_rad(&hops[*a]).total_cmp(&off_rad(&hops[*b])))
+    }
 }
 
 /// Two viewpoints that lie closer than this are one, metres. The walker adds up its hops, so the same place comes out a

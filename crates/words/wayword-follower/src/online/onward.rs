@@ -1,9 +1,9 @@
-//! How well the beginning of an instruction fits a walk that ends where nobody has been: the last step that was begun
+//! How well the beginning of an instruction fits a walk that ends at a viewpoint that was not visited: the last step begun
 //! there goes on.
 
 use crate::{
-    features::{Feature, Stretch, stretch, tables},
-    fit::{Fit, MOST_HOPS, log_sum},
+    features::{Feature, MOST_HOPS, Stretch, stretch, tables},
+    fit::{Fit, log_sum},
     guide::Trial,
     learn::{Descent, Plan, holds},
     tree::Tree,
@@ -29,18 +29,17 @@ pub(crate) const LEFT: usize = 8;
 /// Classes of hops to an option.
 pub(crate) const AWAY: usize = 8;
 
-static FITTED: LazyLock<Option<OnwardWeights>> =
-    LazyLock::new(|| OnwardWeights::parse(include_str!("fitted.json")).ok());
+static FITTED: LazyLock<OnwardWeights> =
+    LazyLock::new(|| OnwardWeights::parse(include_str!("fitted.json")).unwrap_or_else(|_| OnwardWeights::by_hand()));
 
 impl OnwardWeights {
     /// The weights that the program has: fitted to people's texts, as their file says.
     #[must_use]
     pub fn fitted() -> &'static Self {
-        static NONE: LazyLock<OnwardWeights> = LazyLock::new(OnwardWeights::by_hand);
-        FITTED.as_ref().unwrap_or(&NONE)
+        &FITTED
     }
 
-    /// Weights that nobody fitted.
+    /// Weights written by hand.
     #[must_use]
     pub fn by_hand() -> Self {
         Self { done: Weights::by_hand(), going: Weights::by_hand(), left: [0.0; LEFT], away: [[0.0; AWAY]; 2] }
@@ -98,7 +97,7 @@ impl OnwardLearner {
     }
 }
 
-/// How well the text fits going on to viewpoints where nobody has been.
+/// How well the text fits going on to viewpoints that were not visited.
 #[derive(Debug, Clone)]
 pub struct Onward {
     /// For each node: the log of the sum over steps and stretches.
@@ -108,7 +107,7 @@ pub struct Onward {
 }
 
 impl Onward {
-    /// Fits the text to going on to the nodes whose viewpoints nobody has been at.
+    /// Fits the text to going on to the nodes whose viewpoints were not visited.
     #[must_use]
     pub fn new(trial: &Trial<'_>, tree: &Tree, fit: &Fit, weights: &OnwardWeights) -> Self {
         let steps = trial.guide.len();

@@ -26,10 +26,6 @@ pub struct Reader<'a> {
     guide: &'a Guide,
     weights: &'a OnwardWeights,
     map: Map,
-    /// The viewpoints that it goes to one after another, the next one last; then it decides anew, or stops.
-    planned: Vec<usize>,
-    /// Whether it stops at the end of what is planned.
-    then_stops: bool,
     hops: usize,
 }
 
@@ -45,10 +41,10 @@ const CAUTION: f64 = 0.3;
 struct Options {
     /// The walks from the start.
     tree: Tree,
-    /// The ways from where the walker stands.
-    back: Tree,
-    /// For each walk, the class of hops from there to its end.
+    /// For each walk, the class of hops from where the walker stands to its end.
     away: Vec<usize>,
+    /// For each walk, the first viewpoint on the way from there to its end; the walker's own where it ends there.
+    next: Vec<usize>,
     fit: Fit,
     onward: Onward,
     /// For each walk, how good it is to stop there, and to go on to it.
@@ -60,20 +56,17 @@ impl<'a> Reader<'a> {
     /// A walker at the start of an instruction, looking ahead.
     #[must_use]
     pub fn new(guide: &'a Guide, weights: &'a OnwardWeights) -> Self {
-        Self { guide, weights, map: Map::new(), planned: Vec::new(), then_stops: false, hops: 0 }
+        Self { guide, weights, map: Map::new(), hops: 0 }
     }
 
     /// Looks around, and decides.
     pub fn decide(&mut self, seen: &Sighting) -> Decision {
         self.look(seen);
-        if self.planned.is_empty() {
-            if self.then_stops || self.hops >= MOST_STEPS || self.guide.is_empty() {
-                return Decision::Stop;
-            }
-            self.plan();
+        if self.hops >= MOST_STEPS || self.guide.is_empty() {
+            return Decision::Stop;
         }
-        let Some(to) = self.planned.pop() else { return Decision::Stop };
-        let hop = self.map.ways[self.map.here].iter().position(|way| *way == to);
+        let next = self.next();
+        let hop = self.map.ways[self.map.here].iter().position(|way| *way == next && next != self.map.here);
         hop.map_or(Decision::Stop, |hop| {
             self.take(hop);
             Decision::Go(hop)
@@ -93,57 +86,33 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether it is on its way to something that it decided on before.
-    #[must_use]
-    pub fn is_on_its_way(&self) -> bool {
-        !self.planned.is_empty()
-    }
-
-    /// Takes back a decision to stop.
-    pub fn go_on(&mut self) {
-        self.planned.clear();
-        self.then_stops = false;
-    }
-
-    /// Which way it looks, from the way it looked first, radians clockwise.
-    #[must_use]
-    pub fn heading_rad(&self) -> f64 {
-        self.map.heading_rad
-    }
-
-    /// Plans the next hop: the one behind which most of what the text may mean lies; or to stop here.
-    fn plan(&mut self) {
-        let trial = Trial::seen(self.guide, &self.map.building);
-        let options = self.options(&trial);
-        let cost = |at: usize| CAUTION * options.away[at % options.tree.len()] as f64;
-        let all = || options.stop.iter().chain(&options.go).enumerate().map(|(at, worth)| (at, worth - cost(at)));
-        let highest = all().map(|(_, worth)| worth).fold(f64::NEG_INFINITY, f64::max);
+    /// The viewpoint to go to next: the one behind which most of what the text may mean lies; the walker's own where it
+    /// should stop.
+    fn next(&self) -> usize {
+        let options = self.options(&Trial::seen(self.guide, &self.map.building));
+        let cost = |walk: usize| CAUTION * options.away[walk] as f64;
+        let both = options.stop.iter().enumerate().chain(options.go.iter().enumerate());
+        let all: Vec<(usize, f64)> = both.map(|(walk, worth)| (walk, worth - cost(walk))).collect();
+        let highest = all.iter().map(|(_, worth)| *worth).fold(f64::NEG_INFINITY, f64::max);
         let mut shares = vec![0.0; self.map.building.len()];
-        for (at, worth) in all().filter(|(_, worth)| worth.is_finite()) {
-            let end = options.tree.end(at % options.tree.len());
-            let node = (0..options.back.len()).find(|node| options.back.end(*node) == end).unwrap_or(0);
-            // The first hop on the way there; none where the walker would stop here.
-            let hop = options.back.back(node).take_while(|node| *node != 0).last().unwrap_or(0);
-            shares[options.back.end(hop)] += (worth - highest).exp();
+        for (walk, worth) in all.iter().filter(|(_, worth)| worth.is_finite()) {
+            shares[options.next[*walk]] += (worth - highest).exp();
         }
-        let best = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b])).unwrap_or(self.map.here);
-        self.then_stops = best == self.map.here;
-        if best != self.map.here {
-            self.planned.push(best);
-        }
+        (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b])).unwrap_or(self.map.here)
     }
 
     fn options(&self, trial: &Trial<'_>) -> Options {
         let building = &self.map.building;
         let tree = Tree::of(building, 0, 0.0, Prior::Shortest(MOST_HOPS));
         let back = Tree::shortest(building, self.map.here, 0.0, usize::MAX);
-        let mut away = vec![AWAY - 1; building.len()];
+        let (mut away, mut next) = (vec![AWAY - 1; building.len()], vec![self.map.here; building.len()]);
         for node in &back.nodes {
             away[node.viewpoint] = node.hops.min(AWAY - 1);
+            next[node.viewpoint] = if node.hops > 1 { next[back.end(node.before)] } else { node.viewpoint };
         }
         let fit = Fit::new(trial, &tree, &self.weights.done);
         let onward = Onward::new(trial, &tree, &fit, self.weights);
-        let away: Vec<usize> = (0..tree.len()).map(|node| away[tree.end(node)]).collect();
+        let [away, next] = [away, next].map(|of| (0..tree.len()).map(|walk| of[tree.end(walk)]).collect::<Vec<_>>());
         let is_known = |node: usize| building.viewpoints[tree.end(node)].is_known;
         let stop = |node: usize| match node > 0 && is_known(node) {
             true => fit.score(node) + self.weights.away[0][away[node]],
@@ -151,7 +120,7 @@ impl<'a> Reader<'a> {
         };
         let stop = (0..tree.len()).map(stop).collect();
         let go = (0..tree.len()).map(|node| onward.score(node) + self.weights.away[1][away[node]]).collect();
-        Options { tree, back, away, fit, onward, stop, go }
+        Options { tree, away, next, fit, onward, stop, go }
     }
 
     /// Adds to a slope what would have been right here: to go to the end of the shortest way to the goal that is known,

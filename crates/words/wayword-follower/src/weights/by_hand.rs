@@ -1,4 +1,4 @@
-//! Weights that nobody fitted. They are a start for a fit, and the measure of what a fit adds.
+//! Weights written by hand. They are a start for a fit, and the measure of what a fit adds.
 
 use super::Weights;
 use crate::{

@@ -21,7 +21,7 @@ impl Weights {
         &FITTED
     }
 
-    /// Weights that nobody fitted: what the words mean, in numbers written by hand.
+    /// Weights written by hand: what the words mean, in numbers.
     #[must_use]
     pub fn by_hand() -> Self {
         by_hand::weights()
