@@ -15,6 +15,9 @@ use wayword_recording::RecordingPlatform;
 
 pub use remembering::Remembering;
 
+/// Number of scenes whose surveys a command keeps in memory.
+pub(crate) const SCENES_KEPT: usize = 128;
+
 /// A platform, as `wayword platforms` lists it.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Listed {

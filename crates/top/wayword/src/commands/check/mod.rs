@@ -12,7 +12,7 @@ use crate::{
     error::{Error, Exit},
     output::Output,
     pipeline::panoramas,
-    platforms::{self, Remembering},
+    platforms::{self, Remembering, SCENES_KEPT},
     settings::{Asked, Settings},
 };
 use held::Held;
@@ -25,8 +25,8 @@ use walks::{Text, Walk, walks};
 use wayword_checks::{
     Checked, Evidence, Reach, Subject, Surroundings, Testimony, World, check, lift, objects_meant, open::Calibration,
 };
-use wayword_core::{Check, Finding, Platform, Verdict};
-use worlds::{Scenes, world_of};
+use wayword_core::{Check, Finding, Platform, Recent, SceneId, Verdict};
+use worlds::{KnownScene, world_of};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = checked(args, output)?;
@@ -143,7 +143,7 @@ pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &O
     let platform = platforms::open(settings)?;
     let held = Held::to(how.style, settings.seed)?;
     let walks = walks(file, platform.as_ref())?;
-    let scenes = Scenes::default();
+    let scenes = Recent::new(SCENES_KEPT);
     let bar = output.progress(walks.len(), "paths");
     let checked: Vec<_> = walks
         .par_iter()
@@ -181,14 +181,18 @@ fn check_walk(
     walk: &Walk,
     held: &Held,
     how: How<'_>,
-    scenes: &Scenes,
+    scenes: &Recent<SceneId, KnownScene>,
 ) -> Result<CheckedWalk, Error> {
     let world = Remembering::new(platform);
     let views = panoramas(&world, &walk.path)?;
     let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
     let world_of = |text: &Text| world_of(text, how.world, platform.name(), evidence.source);
     let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
-    let scene = if some_are_open || !how.without_route { Some(scenes.get(platform, &walk.path.scene)?) } else { None };
+    let scene = if some_are_open || !how.without_route {
+        Some(scenes.get_or_make(walk.path.scene.clone(), || KnownScene::of(platform, &walk.path.scene))?)
+    } else {
+        None
+    };
     let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
     let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
     let follows = !how.without_route;

@@ -4,19 +4,20 @@ use super::{
     agents::{Agent, RANDOM_WALKS},
     grounders::Grounders,
     sets::{Item, Purpose, Text},
-    surveys::Surveys,
 };
 use std::collections::BTreeMap;
-use wayword_core::{Platform, rng};
+use wayword_core::{Platform, PlatformError, Recent, SceneId, rng};
 use wayword_navigation::{
     AgentView, Things, WalkError,
     agents::{
-        MapReader, Walked, last_room_in, nearest_room, oracle, random, straight, walk_by_phrases, walk_by_reading,
+        MapReader, Surveyed, Walked, last_room_in, nearest_room, oracle, random, straight, walk_by_phrases,
+        walk_by_reading,
     },
     comparison::UNREAD,
     directions::{Directions, Splitter},
     walk::Walk,
 };
+use wayword_world::survey;
 
 /// What makes the walks.
 pub(super) struct Crew<'a> {
@@ -24,7 +25,7 @@ pub(super) struct Crew<'a> {
     pub(super) grounders: &'a Grounders,
     pub(super) splitter: &'a dyn Splitter,
     pub(super) agents: &'a [Agent],
-    pub(super) surveys: &'a Surveys,
+    pub(super) surveys: &'a Recent<SceneId, Surveyed>,
     pub(super) seed: u64,
 }
 
@@ -85,7 +86,9 @@ impl Crew<'_> {
                 }
                 Agent::ReaderMap(prior) => {
                     let graph = self.platform.graph(&item.start.scene)?;
-                    let known = self.surveys.of(self.platform, &item.start.scene)?;
+                    let scene = &item.start.scene;
+                    let survey = || Ok::<_, PlatformError>(Surveyed::of(&survey(self.platform, scene)?));
+                    let known = self.surveys.get_or_make(scene.clone(), survey)?;
                     let reader = MapReader::new(&graph, &known, &item.start, *prior)?;
                     agent.texts(item).for_each(|text| add(text, None, reader.walk(&text.text)));
                 }

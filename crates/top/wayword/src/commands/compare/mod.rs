@@ -8,7 +8,6 @@ mod outputs;
 mod page;
 mod score;
 mod sets;
-mod surveys;
 
 use crate::{
     calls::Calls,
@@ -22,6 +21,7 @@ use crate::{
     losses::Losses,
     output::Output,
     plan::Models,
+    platforms::SCENES_KEPT,
     run::{self, Journal},
     settings::RULES,
 };
@@ -32,8 +32,7 @@ use outputs::Gathered;
 use score::Judge;
 use sets::Item;
 use std::{fs, path::Path};
-use surveys::Surveys;
-use wayword_core::{Failure, ModelError};
+use wayword_core::{Failure, ModelError, Recent};
 use wayword_navigation::{
     WalkError,
     directions::{ByModel, ByRules, Splitter},
@@ -82,7 +81,7 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let calls = models.open(|| run::id_of(&args.out, "compare"), output)?;
     let splitter = splitter(&kept.split, calls.as_ref())?;
     let agents = Agent::all(&kept, args.prior.unwrap_or_default());
-    let surveys = Surveys::default();
+    let surveys = Recent::new(SCENES_KEPT);
     let crew = Crew {
         platform: platform.as_ref(),
         grounders: &grounders,
