@@ -96,14 +96,7 @@ pub(super) fn ordinal(word: &str) -> Option<Ordinal> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reading::{Place, What, read};
-    use std::collections::BTreeSet;
-
-    fn first(text: &str) -> Place {
-        let places = read(text, &BTreeSet::new()).events.into_iter();
-        let mut place = places.filter_map(|event| if let What::Place(place) = event.what { Some(place) } else { None });
-        place.next().unwrap_or_else(|| panic!("{text} names no place"))
-    }
+    use crate::reading::places::first;
 
     #[test]
     fn which_one_of_several_is_kept() {

@@ -226,3 +226,11 @@ fn begins_noun(tokens: Tokens<'_>, at: usize) -> bool {
         matches!(before, "where" | "when" | "until" | "till" | "while" | "as" | "if" | "that" | "which" | "and" | "so");
     !begins_clause && (v::BREAKERS.contains(&before) || v::WALKING.contains(&before))
 }
+
+/// The first place of a text, for tests.
+#[cfg(test)]
+pub(super) fn first(text: &str) -> Place {
+    let places = super::read(text, &BTreeSet::new()).events.into_iter();
+    let mut place = places.filter_map(|event| if let What::Place(place) = event.what { Some(place) } else { None });
+    place.next().unwrap_or_else(|| panic!("{text} names no place"))
+}

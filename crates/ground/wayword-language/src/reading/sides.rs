@@ -74,15 +74,8 @@ fn behind_side(tokens: Tokens<'_>, at: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use crate::reading::{Place, What, read};
-    use std::collections::BTreeSet;
+    use crate::reading::places::first;
     use wayword_core::Side;
-
-    fn first(text: &str) -> Place {
-        let places = read(text, &BTreeSet::new()).events.into_iter();
-        let mut place = places.filter_map(|event| if let What::Place(place) = event.what { Some(place) } else { None });
-        place.next().unwrap_or_else(|| panic!("{text} names no place"))
-    }
 
     #[test]
     fn a_side_is_told_before_or_behind_a_place() {
