@@ -31,6 +31,8 @@ pub(crate) struct Told {
 /// A room or an object that a step names.
 #[derive(Debug, Clone)]
 pub(crate) struct Mention {
+    /// The byte range of its name in the text; `None` where the step only says that it leads outdoors.
+    pub(crate) span: Option<[usize; 2]>,
     pub(crate) relation: Relation,
     pub(crate) side: Option<Side>,
     /// Whether a turn happens at it.
@@ -106,14 +108,19 @@ impl Guide {
                 if named.is_room {
                     rooms.push(named.name.clone());
                 }
-                let (relation, side, tells_turn) = (place.relation, named.side, named.tells_turn);
-                let meanings = meanings(&named.name, named.is_room, named.is_thing);
-                mentions.push(Mention { relation, side, tells_turn, meanings });
+                mentions.push(Mention {
+                    span: Some(reading.events[place.event].span),
+                    relation: place.relation,
+                    side: named.side,
+                    tells_turn: named.tells_turn,
+                    meanings: meanings(&named.name, named.is_room, named.is_thing),
+                });
             }
             if step.is_outdoors {
                 rooms.push("outdoor area".to_owned());
                 let meanings = meanings("outdoor area", true, false);
-                mentions.push(Mention { relation: Relation::Into, side: None, tells_turn: false, meanings });
+                let relation = Relation::Into;
+                mentions.push(Mention { span: None, relation, side: None, tells_turn: false, meanings });
             }
             Told { kind: Kind::of(&step), step, mentions }
         };

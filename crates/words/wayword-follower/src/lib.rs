@@ -16,6 +16,7 @@ mod near;
 pub mod online;
 mod posterior;
 pub mod route;
+pub mod swap;
 #[cfg(test)]
 mod tests;
 mod tree;

@@ -1,4 +1,4 @@
-//! An instruction against the walk that it was written for: which of its turns are wrong, and whether it leads elsewhere.
+//! An instruction against the walk that it was written for: which of its steps are wrong, and whether it leads elsewhere.
 
 use crate::{
     building::Building,
@@ -6,6 +6,7 @@ use crate::{
     fit::Fit,
     guide::{Guide, Trial},
     posterior::shares,
+    swap::{Swap, best_swap},
     tree::{Prior, Tree},
     weights::Weights,
 };
@@ -32,21 +33,23 @@ pub struct Thresholds {
     pub no_turn: f64,
     /// Of a climb the other way.
     pub climb: f64,
+    /// Of two places the other way round.
+    pub swap: f64,
     /// How much better another walk has to fit.
     pub route: f64,
 }
 
 impl Default for Thresholds {
     fn default() -> Self {
-        Self { turn: 2.2, no_turn: 3.5, climb: 1.0, route: 8.0 }
+        Self { turn: 2.2, no_turn: 3.5, climb: 1.0, swap: 3.0, route: 8.0 }
     }
 }
 
 /// What a follower says of an instruction and its walk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// What is wrong with its turns; empty where nothing is.
-    pub turns: Vec<Finding>,
+    /// What is wrong with its steps; empty where nothing is.
+    pub wrong: Vec<Finding>,
     /// Whether it leads elsewhere; `None` where no other walk is known.
     pub route: Option<Route>,
     /// What the best change of a turn gains, natural logs: the higher, the likelier the text has a wrong turn. `None` where
@@ -84,13 +87,15 @@ pub fn judge(
 ) -> Judged {
     let changes = changes(guide, known.building, known.walk, known.heading_rad, weights);
     let turn_gain = changes.iter().find(|change| change.kind == Kind::Turn).map(|change| change.gain);
-    let turns = wrong_turns(guide, &changes, thresholds);
+    let mut wrong = wrong_steps(guide, &changes, thresholds);
+    let swap = best_swap(guide, known.building, known.walk, known.heading_rad, weights);
+    wrong.extend(swap.filter(|swap| swap.gain > thresholds.swap).map(wrong_order));
     let route = prior.map(|prior| route(guide, known, prior, &changes, weights, thresholds));
-    Judged { turns, route, turn_gain }
+    Judged { wrong, route, turn_gain }
 }
 
 /// The steps that one change would make fit much better, each told once.
-fn wrong_turns(guide: &Guide, changes: &[Change], thresholds: Thresholds) -> Vec<Finding> {
+fn wrong_steps(guide: &Guide, changes: &[Change], thresholds: Thresholds) -> Vec<Finding> {
     let mut found: Vec<(usize, Finding)> = Vec::new();
     for change in changes {
         let step = &guide.steps[change.step].step;
@@ -114,6 +119,12 @@ fn wrong_turns(guide: &Guide, changes: &[Change], thresholds: Thresholds) -> Vec
     }
     found.sort_by_key(|(step, _)| *step);
     found.into_iter().map(|(_, finding)| finding).collect()
+}
+
+fn wrong_order(swap: Swap) -> Finding {
+    let Swap { names: [first, second], spans, .. } = swap;
+    let reason = format!("the path fits much better if {second:?} stands where the text says {first:?}, and the other way round");
+    Finding { check: Check::Order, verdict: Verdict::Fail, reason, span: Some(spans[0]) }
 }
 
 fn route(

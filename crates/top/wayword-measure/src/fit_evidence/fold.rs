@@ -18,39 +18,52 @@ const FOLDS: usize = 5;
 /// A ratio below which no claim fails.
 const LEAST_RATIO: f64 = 3.0;
 
-/// The share of people's texts that each kind of claim may fail.
-pub(crate) fn budget(case: Case) -> f64 {
-    match case {
-        Case::Thing => 0.004,
-        Case::ThingAtStop => 0.0015,
-        Case::Room => 0.005,
-        Case::RoomAtStop => 0.0015,
-        Case::RoomLacking => 0.0035,
-    }
+/// The kinds of claims that share a ratio: a text fails where any of them reaches it.
+pub(crate) struct Group {
+    /// Its name.
+    pub(crate) name: &'static str,
+    /// The kinds of claims.
+    pub(crate) cases: &'static [Case],
+    /// The share of people's texts that may fail by it.
+    pub(crate) budget: f64,
 }
 
-/// The table of a case: weights from all claims, and the ratio that the budget allows on buildings that are left out in
+/// All groups.
+pub(crate) const GROUPS: [Group; 2] = [
+    Group { name: "objects", cases: &[Case::Thing, Case::ThingAtStop], budget: 0.009 },
+    Group { name: "rooms", cases: &[Case::Room, Case::RoomAtStop, Case::RoomLacking], budget: 0.0075 },
+];
+
+/// The tables of a group: weights from all claims, and the ratio that the budget allows on buildings that are left out in
 /// turn. `building` is the number of a walk's building.
-pub(crate) fn table(held: &[Held], case: Case, building: &dyn Fn(usize) -> usize, texts: usize) -> Table {
-    let of_case: Vec<&Held> = of(held, case);
-    let weights = fitted(&of_case, case);
+pub(crate) fn tables(
+    held: &[Held],
+    group: &Group,
+    building: &dyn Fn(usize) -> usize,
+    texts: usize,
+) -> Vec<(Case, Table)> {
     // The highest ratio of each true text, over the folds.
     let mut highest: BTreeMap<(usize, usize), f64> = BTreeMap::new();
-    for fold in 0..FOLDS {
-        let (out, rest): (Vec<&Held>, Vec<&Held>) =
-            of_case.iter().partition(|held| building(held.walk) % FOLDS == fold);
-        let weights = alone(case, fitted(&rest, case));
-        for held in out.iter().filter(|held| !held.wrong) {
-            let Some(ratio) = missed(held, case).and_then(|missed| weights.log_ratio(missed)) else { continue };
-            let most = highest.entry((held.walk, held.text)).or_insert(f64::NEG_INFINITY);
-            *most = most.max(ratio);
+    for case in group.cases {
+        let of_case: Vec<&Held> = of(held, *case);
+        for fold in 0..FOLDS {
+            let (out, rest): (Vec<&Held>, Vec<&Held>) =
+                of_case.iter().partition(|held| building(held.walk) % FOLDS == fold);
+            let weights = alone(*case, fitted(&rest, *case));
+            for held in out.iter().filter(|held| !held.wrong) {
+                let Some(ratio) = missed(held, *case).and_then(|missed| weights.log_ratio(missed)) else { continue };
+                let most = highest.entry((held.walk, held.text)).or_insert(f64::NEG_INFINITY);
+                *most = most.max(ratio);
+            }
         }
     }
     let mut ratios: Vec<f64> = highest.into_values().collect();
     ratios.sort_by(|a, b| b.total_cmp(a));
-    let allowed = (budget(case) * texts as f64) as usize;
+    let allowed = (group.budget * texts as f64) as usize;
     let fails_at = ratios.get(allowed).map_or(LEAST_RATIO, |ratio| ratio.exp()).max(LEAST_RATIO);
-    Table { fails_at: (fails_at * 10.0).ceil() / 10.0, weights }
+    let fails_at = (fails_at * 10.0).ceil() / 10.0;
+    let table = |case: &Case| (*case, Table { fails_at, weights: fitted(&of(held, *case), *case) });
+    group.cases.iter().map(table).collect()
 }
 
 /// The claims that belong to a case.

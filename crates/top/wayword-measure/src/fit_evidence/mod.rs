@@ -7,7 +7,7 @@ mod fold;
 mod homes;
 mod logistic;
 
-use fold::{budget, buildings, missed, of, table};
+use fold::{GROUPS, buildings, missed, of, tables};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
@@ -53,9 +53,9 @@ pub(super) fn measure(data: &Path, episodes: &Path, out: Option<&Path>, output: 
         Weights { room_groups: room_groups(), homes: homes::homes(surveys.values()), cases: BTreeMap::new() };
     let samples = held(&fitted, &labels, &weights, 0);
     let numbers = buildings(fitted.iter().map(|walk| walk.path.scene.as_str()));
-    for case in Case::ALL {
-        let table = table(&samples, case, &|walk| numbers[walk], texts(&fitted));
-        weights.cases.insert(case.name().to_owned(), table);
+    for group in &GROUPS {
+        let tables = tables(&samples, group, &|walk| numbers[walk], texts(&fitted));
+        weights.cases.extend(tables.into_iter().map(|(case, table)| (case.name().to_owned(), table)));
     }
     let apart_samples = held(&apart, &all_labels, &weights, 1);
     let names = out_scenes.iter().map(SceneId::as_str).collect::<Vec<_>>().join(" ");
@@ -120,7 +120,7 @@ fn report(parts: &[(&str, &Vec<&Walk>, &Vec<Held>)], weights: &Weights) -> Strin
 /// The file that ships.
 fn file(weights: &Weights, episodes: &Path) -> String {
     let episodes = episodes.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let budgets = Case::ALL.map(|case| format!("{} {:.2} %", case.name(), 100.0 * budget(case))).join(", ");
+    let budgets = GROUPS.map(|group| format!("{} {:.2} %", group.name, 100.0 * group.budget)).join(", ");
     let head = format!(
         "# How much the silence of labels says about a claim, by class of object and group of rooms.
 # Fitted by `wayword-measure fit-evidence --data DIR --episodes {episodes} --out weights.toml` on people's texts and

@@ -136,7 +136,7 @@ impl<'a> Followed<'a> {
             },
             None => Told::unknown("no viewpoint graph is known on which it lies, so no other walk is"),
         };
-        told.findings.extend(judged.turns);
+        told.findings.extend(judged.wrong);
         told.turn_gain = judged.turn_gain;
         told
     }

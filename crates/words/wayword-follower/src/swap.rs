@@ -1,0 +1,86 @@
+//! Two places of an instruction that fit the walk that it was written for better the other way round: "past the sofa to
+//! the sink" where the sink comes first.
+
+use crate::{
+    building::Building,
+    fit::Fit,
+    guide::{Guide, Mention, Trial},
+    tree::Tree,
+    weights::Weights,
+};
+
+/// Two places of a text, and what it gains to name each where the other is named.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Swap {
+    /// Their names, in the order of the text.
+    pub names: [String; 2],
+    /// Their byte ranges in the text.
+    pub spans: [[usize; 2]; 2],
+    /// How much better the text fits the walk then, in natural logs; negative where it fits worse.
+    pub gain: f64,
+}
+
+/// Places of a text that are looked at. The work grows with their square.
+const MOST_PLACES: usize = 14;
+
+/// The two places that gain most; `None` where the building has fewer than two of those that the text names.
+///
+/// `walk` has the viewpoints of the walk, and `heading_rad` says which way it begins (radians from +y, clockwise).
+#[must_use]
+pub fn best_swap(
+    guide: &Guide,
+    building: &Building,
+    walk: &[usize],
+    heading_rad: f64,
+    weights: &Weights,
+) -> Option<Swap> {
+    let tree = Tree::single(building, walk, heading_rad);
+    let fits = |guide: &Guide| Fit::new(&Trial::new(guide, building), &tree, weights).score(tree.len() - 1);
+    let places = places(guide, building);
+    let as_told = fits(guide);
+    let mut best: Option<Swap> = None;
+    for (number, a) in places.iter().enumerate() {
+        for b in &places[number + 1..] {
+            let (first, second) = (a.mention(guide), b.mention(guide));
+            if first.meanings == second.meanings {
+                continue;
+            }
+            let mut changed = guide.clone();
+            changed.steps[a.step].mentions[a.place].meanings = second.meanings.clone();
+            changed.steps[b.step].mentions[b.place].meanings = first.meanings.clone();
+            let gain = fits(&changed) - as_told;
+            if gain.is_finite() && best.as_ref().is_none_or(|best| gain > best.gain) {
+                let name = |mention: &Mention| mention.meanings.first().map(|what| what.name.clone()).unwrap_or_default();
+                best = Some(Swap { names: [name(first), name(second)], spans: [a.span, b.span], gain });
+            }
+        }
+    }
+    best
+}
+
+/// Where a guide names a place.
+struct Named {
+    step: usize,
+    place: usize,
+    span: [usize; 2],
+}
+
+impl Named {
+    fn mention<'a>(&self, guide: &'a Guide) -> &'a Mention {
+        &guide.steps[self.step].mentions[self.place]
+    }
+}
+
+/// The first places that a text names and the building has. Swapping what it lacks says nothing.
+fn places(guide: &Guide, building: &Building) -> Vec<Named> {
+    let trial = Trial::new(guide, building);
+    let mut places = Vec::new();
+    for (step, told) in guide.steps.iter().enumerate() {
+        for (place, mention) in told.mentions.iter().enumerate() {
+            let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
+            places.extend(mention.span.filter(|_| is_found).map(|span| Named { step, place, span }));
+        }
+    }
+    places.truncate(MOST_PLACES);
+    places
+}
