@@ -123,7 +123,9 @@ fn wrong_steps(guide: &Guide, changes: &[Change], thresholds: Thresholds) -> Vec
 
 fn wrong_order(swap: Swap) -> Finding {
     let Swap { names: [first, second], spans, .. } = swap;
-    let reason = format!("the path fits much better if {second:?} stands where the text says {first:?}, and the other way round");
+    let reason = format!(
+        "the path fits much better if {second:?} stands where the text says {first:?}, and the other way round"
+    );
     Finding { check: Check::Order, verdict: Verdict::Fail, reason, span: Some(spans[0]) }
 }
 

@@ -50,7 +50,8 @@ pub fn best_swap(
             changed.steps[b.step].mentions[b.place].meanings = first.meanings.clone();
             let gain = fits(&changed) - as_told;
             if gain.is_finite() && best.as_ref().is_none_or(|best| gain > best.gain) {
-                let name = |mention: &Mention| mention.meanings.first().map(|what| what.name.clone()).unwrap_or_default();
+                let name =
+                    |mention: &Mention| mention.meanings.first().map(|what| what.name.clone()).unwrap_or_default();
                 best = Some(Swap { names: [name(first), name(second)], spans: [a.span, b.span], gain });
             }
         }

@@ -6,6 +6,7 @@ use crate::{
     online::{Decision, Hop, OnwardWeights, Reader, Sighting},
     route::{Known, Thresholds, judge},
     shares,
+    swap::best_swap,
 };
 use wayword_core::{
     Check, DVec3, Heading, Label, ObjectId, Survey, ViewpointGraph, ViewpointId, graph::GraphError, survey,
@@ -53,6 +54,7 @@ fn surveyed() -> Survey {
     let known = |name: &ViewpointId, eye: DVec3| {
         let at = (0..PLACES.len()).find(|at| id(*at) == *name).unwrap();
         let things = match at {
+            1 => vec![label("plant", 0.8, 2.5, eye)],
             4 => vec![label("bed", -5.5, 5.5, eye)],
             6 => vec![label("oven", 5.5, 5.5, eye)],
             _ => Vec::new(),
@@ -108,6 +110,28 @@ fn one_wrong_turn_is_what_changing_it_gains() {
     let (gained, words) = gain(&wrong);
     assert!(right < 0.0 && gained > 2.0, "{right} {gained}");
     assert!("turn left".ends_with(&words), "{words:?}");
+}
+
+#[test]
+fn places_the_wrong_way_round_are_what_swapping_them_gains() {
+    let building = Building::of(&surveyed());
+    let walk = [0, 1, 2, 5, 6];
+    let known = Known { building: &building, walk: &walk, heading_rad: 0.0 };
+    let orders = |text: &str| {
+        let guide = Guide::read(text);
+        let swap = best_swap(&guide, &building, &walk, 0.0, Weights::fitted()).unwrap();
+        let judged = judge(&guide, known, None, Weights::fitted(), Thresholds::default());
+        (swap, judged.wrong.into_iter().filter(|finding| finding.check == Check::Order).count())
+    };
+    let (right, fails) = orders("Walk past the plant, turn right and stop at the oven.");
+    assert!(right.gain < 0.0 && fails == 0, "{right:?}");
+    let text = "Walk past the oven, turn right and stop at the plant.";
+    let (wrong, fails) = orders(text);
+    assert_eq!(wrong.names, ["oven", "plant"]);
+    assert_eq!(wrong.spans.map(|[from, to]| &text[from..to]), ["oven", "plant"]);
+    assert_eq!(fails, 1, "{wrong:?}");
+    let lacking = Guide::read("Walk past the piano and stop at the oven.");
+    assert_eq!(best_swap(&lacking, &building, &walk, 0.0, Weights::fitted()), None, "the building has no piano");
 }
 
 #[test]
