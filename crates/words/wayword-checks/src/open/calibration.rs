@@ -1,6 +1,6 @@
 //! What a dataset that the user has says of single names of objects and rooms.
 
-use super::{claims::Claim, features::Missed, weights::Weights};
+use super::{claims::Claim, sight::Missed, weights::Weights};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_language::lexicon::{kinds, room_name};

@@ -1,88 +1,13 @@
 //! What the evidence shows about a claimed place, as numbers that weights are fitted to.
 
-use super::{claims::Claim, relation::Relation, weights::Weights};
+use super::{
+    claims::Claim,
+    relation::Relation,
+    sight::{Case, Missed, Sight, class_name},
+    weights::Weights,
+};
 use crate::evidence::{Distance, Evidence, NEAR_M, Surroundings};
 use wayword_language::lexicon::{Class, room_name, thing};
-
-/// What the evidence says about a claimed place.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Sight {
-    /// It is there.
-    Shown,
-    /// Nothing can be said.
-    Unknown,
-    /// It is not listed within reach. How much that says is weighed.
-    Missed(Missed),
-}
-
-/// A claimed place that is not listed within reach.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Missed {
-    /// Which table of weights it is held against.
-    pub case: Case,
-    /// Features by name.
-    pub features: Vec<(String, f64)>,
-    /// How far the nearest one is that is listed.
-    pub nearest_m: f64,
-}
-
-/// The kinds of claims that have a table of weights each.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Case {
-    /// An object along the path.
-    Thing,
-    /// An object at which the walker stops.
-    ThingAtStop,
-    /// A room along the path, which the building has elsewhere.
-    Room,
-    /// A room in which or at which the walker stops, which the building has elsewhere.
-    RoomAtStop,
-    /// A room that the building lacks.
-    RoomLacking,
-}
-
-impl Case {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::Thing, Self::ThingAtStop, Self::Room, Self::RoomAtStop, Self::RoomLacking];
-
-    /// Its name in the file of weights.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Thing => "thing",
-            Self::ThingAtStop => "thing_at_stop",
-            Self::Room => "room",
-            Self::RoomAtStop => "room_at_stop",
-            Self::RoomLacking => "room_lacking",
-        }
-    }
-}
-
-/// An object that is listed no farther off than this may be seen from the path, metres.
-const SEEN_M: f64 = 8.0;
-
-impl Missed {
-    /// Whether the claim can fail at all. People name objects that they see across a room or through a door.
-    #[must_use]
-    pub fn can_fail(&self) -> bool {
-        self.case != Case::Thing || self.nearest_m >= SEEN_M
-    }
-
-    /// Adds what the evidence says of the other places that the text claims: where the labels have those, they are
-    /// good enough to miss this one too.
-    pub fn keep_company<'a>(&mut self, others: impl Iterator<Item = &'a Sight>) {
-        let (mut shown, mut missed) = (0.0, 0.0);
-        for other in others {
-            match other {
-                Sight::Shown => shown += 1.0,
-                Sight::Unknown => {}
-                Sight::Missed(_) => missed += 1.0,
-            }
-        }
-        self.features.push(("others shown".into(), f64::ln_1p(shown)));
-        self.features.push(("others missed".into(), f64::ln_1p(missed)));
-    }
-}
 
 /// What the evidence says about a claimed place.
 #[must_use]
@@ -265,10 +190,4 @@ fn room(claim: &Claim, distance: Distance, around: &Surroundings, weights: &Weig
         (true, false) => Case::Room,
     };
     Missed { case, features, nearest_m }
-}
-
-/// A class's name in the file of weights.
-#[must_use]
-pub fn class_name(class: Class) -> String {
-    format!("{class:?}").to_lowercase()
 }

@@ -14,6 +14,7 @@ mod places;
 mod relation;
 mod repeats;
 mod sides;
+mod sight;
 mod stretches;
 #[cfg(test)]
 mod tests;
@@ -26,8 +27,9 @@ use wayword_language::reading::{Reading, What};
 pub use calibration::{Calibration, Observed, Offsets};
 pub use claims::{Claim, claims};
 pub use expected::is_expected;
-pub use features::{Case, Missed, Sight, class_name, sight};
+pub use features::sight;
 pub use relation::Relation;
+pub use sight::{Case, Missed, Sight, class_name};
 pub use weights::{Table, Weights};
 
 /// What is wrong with the places, the order, the turns and the storeys of somebody else's text.

@@ -3,9 +3,10 @@
 use super::{
     Calibration,
     claims::{Claim, claims},
-    features::{Missed, Sight, sight},
+    features::sight,
     relation::Relation,
     sides,
+    sight::{Missed, Sight},
     weights::{Table, Weights},
 };
 use crate::{Subject, evidence::Source, finding};

@@ -1,6 +1,6 @@
 //! The weights that ship: how much the silence of labels says.
 
-use super::features::{Case, Missed, class_name};
+use super::sight::{Case, Missed, class_name};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::{BTreeMap, BTreeSet},
