@@ -21,6 +21,7 @@ struct Node {
     id: ViewpointId,
     position: DVec3,
     level: Option<u32>,
+    floor_m: Option<f64>,
 }
 
 /// A shortest path over the graph.
@@ -61,8 +62,18 @@ impl ViewpointGraph {
         if self.index.contains_key(&id) {
             return Err(GraphError::Twice(id));
         }
-        let node = self.graph.add_node(Node { id: id.clone(), position, level });
+        let node = self.graph.add_node(Node { id: id.clone(), position, level, floor_m: None });
         self.index.insert(id, node);
+        Ok(())
+    }
+
+    /// Says how high the floor under a node is, metres, world frame. What is not finite says nothing.
+    ///
+    /// # Errors
+    /// When the node is not in the graph.
+    pub fn set_floor(&mut self, id: &ViewpointId, floor_m: f64) -> Result<(), GraphError> {
+        let node = self.node(id)?;
+        self.graph[node].floor_m = Some(floor_m).filter(|floor_m| floor_m.is_finite());
         Ok(())
     }
 
@@ -123,6 +134,12 @@ impl ViewpointGraph {
     #[must_use]
     pub fn level(&self, id: &ViewpointId) -> Option<u32> {
         self.index.get(id).and_then(|node| self.graph[*node].level)
+    }
+
+    /// How high the floor under a node is, metres, world frame, where the platform knows it.
+    #[must_use]
+    pub fn floor_m(&self, id: &ViewpointId) -> Option<f64> {
+        self.index.get(id).and_then(|node| self.graph[*node].floor_m)
     }
 
     /// The neighbours of a node, by name.

@@ -29,6 +29,8 @@ pub struct Surveyed {
     pub id: ViewpointId,
     /// The eye's position, metres, world frame.
     pub position: DVec3,
+    /// How high the floor is there, metres, world frame, where the platform knows it.
+    pub floor_m: Option<f64>,
     /// The storey, the lowest being 1.
     pub level: Option<u32>,
     /// Places of its neighbours in the survey.
@@ -61,7 +63,14 @@ impl Survey {
             let position = graph.position(id).ok_or_else(|| GraphError::Unknown((*id).clone()))?;
             let neighbours = graph.neighbours(id).into_iter().filter_map(|to| index.get(to).copied()).collect();
             let known = known(id, position)?;
-            Ok(Surveyed { id: (*id).clone(), position, level: graph.level(id), neighbours, known })
+            Ok(Surveyed {
+                id: (*id).clone(),
+                position,
+                level: graph.level(id),
+                floor_m: graph.floor_m(id),
+                neighbours,
+                known,
+            })
         };
         let viewpoints = ids.iter().map(surveyed).collect::<Result<_, E>>()?;
         Ok(Self { viewpoints, index, objects: Vec::new() })

@@ -24,6 +24,7 @@ pub struct Building {
 #[derive(Debug, Clone)]
 pub(super) struct Viewpoint {
     pub(super) position: DVec3,
+    pub(super) floor_m: Option<f64>,
     pub(super) room: Option<String>,
     pub(super) neighbours: Vec<usize>,
 }
@@ -76,6 +77,7 @@ impl Building {
         let lists = |viewpoint: &&Surveyed| viewpoint.known.things.as_ref().is_some_and(|things| !things.is_empty());
         let viewpoint = |viewpoint: &Surveyed| Viewpoint {
             position: viewpoint.position,
+            floor_m: viewpoint.floor_m,
             room: viewpoint.known.room.clone(),
             neighbours: viewpoint.neighbours.clone(),
         };

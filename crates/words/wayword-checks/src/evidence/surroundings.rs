@@ -21,6 +21,8 @@ pub struct Surroundings {
     building: Arc<Building>,
     /// The eyes along the path.
     eyes: Vec<DVec3>,
+    /// The heights of the floor along the path, metres; empty where one of them is not known.
+    floors_m: Vec<f64>,
     /// For each name of the building, how far its objects are.
     distances: Vec<Distance>,
     /// The rooms of the building, and how far they are.
@@ -74,6 +76,8 @@ impl Surroundings {
         }
         let eyes: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position).collect();
         let starts: Vec<usize> = path.frames.iter().filter_map(|frame| place(building, frame)).collect();
+        let floor_m = |frame: &Frame| building.viewpoints[*building.places.get(frame.viewpoint.as_ref()?)?].floor_m;
+        let floors_m = path.frames.iter().map(floor_m).collect::<Option<_>>().unwrap_or_default();
         let path_hops = hops(building, &starts);
         let end_hops = hops(building, starts.last().map_or(&[], std::slice::from_ref));
         let to_spot = |spot: &Spot| {
@@ -102,7 +106,7 @@ impl Surroundings {
         let near_objects = spots().filter(|distance| distance.path_m <= NEAR_M).count();
         let end_objects = spots().filter(|distance| distance.end_m <= NEAR_M).count();
         let building = Arc::clone(building);
-        Some(Self { building, eyes, distances, rooms, near_rooms, has_gap, near_objects, end_objects })
+        Some(Self { building, eyes, floors_m, distances, rooms, near_rooms, has_gap, near_objects, end_objects })
     }
 
     /// How far the nearest thing is that a name may mean.
@@ -142,6 +146,12 @@ impl Surroundings {
     #[must_use]
     pub fn eyes(&self) -> &[DVec3] {
         &self.eyes
+    }
+
+    /// The heights of the floor along the path, metres; empty where they are not known.
+    #[must_use]
+    pub fn floors_m(&self) -> &[f64] {
+        &self.floors_m
     }
 
     /// Whether the path comes near a room of a kind that lists such a thing somewhere in this building.

@@ -79,6 +79,7 @@ fn graph(read: &Connectivity, house: Option<&House>) -> Result<ViewpointGraph, G
     for (viewpoint, by_height) in read.viewpoints.iter().zip(by_height) {
         let level = house.and_then(|house| house.level(&viewpoint.id)).unwrap_or(by_height);
         graph.add(viewpoint.id.clone(), viewpoint.position, Some(level))?;
+        graph.set_floor(&viewpoint.id, viewpoint.floor_m())?;
     }
     for (from, to) in &read.edges {
         graph.join(&read.viewpoints[*from].id, &read.viewpoints[*to].id)?;
