@@ -116,12 +116,16 @@ impl<'a> Text<'a> {
         (goes && climbs && self.leads_on(at).is_none()).then_some(climb)
     }
 
-    /// "The stairs leading up to the bedroom", "the stairs going up": the agent need not climb them.
+    /// "The stairs leading up to the bedroom", "the stairs going up", "the stairs that go up", "the stairs ascending to
+    /// the attic": the agent need not climb them.
     fn describes_stairs(&self, at: usize) -> bool {
         let Some(before) = self.before_climb(at) else { return false };
+        let of_stairs =
+            |before: usize| is_stairs(self.before(before)) || matches!(self.before(before), "that" | "which");
         match self.word(before) {
             "leading" | "leads" | "lead" => true,
-            "going" | "goes" => is_stairs(self.before(before)) || self.before(before) == "that",
+            "going" | "goes" | "go" | "headed" => of_stairs(before),
+            "stairs" | "staircase" | "steps" => matches!(self.word(at), "ascending" | "descending"),
             _ => false,
         }
     }
@@ -138,7 +142,7 @@ impl<'a> Text<'a> {
             let (word, name) = (self.word(*at), normal_word(self.word(*at)));
             let joins =
                 word != "of" || matches!(self.before(*at), "flight" | "flights" | "set" | "sets" | "rest" | "couple");
-            let is_end = is_stairs(word) || is_floor(word);
+            let is_end = is_stairs(word) || (is_floor(word) && !self.is_underfoot(*at));
             let is_noun = (is_thing(&name) || is_room(&name)) && !v::ADJECTIVES.contains(&word);
             let breaks = v::BREAKERS.contains(&word) && !v::DETERMINERS.contains(&word) && word != "of";
             self.tokens.is_word(*at)
@@ -147,13 +151,25 @@ impl<'a> Text<'a> {
         };
         let phrase: Vec<&str> = (at + 1 + to..at + 7).take_while(in_phrase).map(|at| self.word(at)).collect();
         let end = phrase.iter().position(|word| is_floor(word) || (to == 0 && is_stairs(word)))?;
+        if is_floor(phrase[end]) && self.is_underfoot(at + 1 + to + end) {
+            return None;
+        }
         // A storey's height is many steps, and so is a flight.
         let few = phrase[..end].iter().any(|word| v::FEW.contains(word)) && matches!(phrase[end], "steps" | "stairs");
         Some(if few { Way::Steps } else { Way::Flight })
     }
 
-    /// "Take the stairs up".
+    /// "Down the tiled floor", "down the wood floor hallway": what one walks on, and no storey.
+    fn is_underfoot(&self, floor: usize) -> bool {
+        let next = normal_word(self.word(floor + 1));
+        v::FLOORINGS.contains(&self.before(floor)) || is_room(&next) || matches!(next.as_str(), "path" | "walkway")
+    }
+
+    /// "Take the stairs up", but not "take a few steps down the hallway".
     fn behind_stairs(&self, at: usize) -> Option<Way> {
+        if v::DETERMINERS.contains(&self.word(at + 1)) && self.before(at) == "steps" {
+            return None;
+        }
         let mut words = (at.saturating_sub(4)..at).rev().map(|at| self.word(at));
         let taken = words.next().is_some_and(is_stairs)
             && words.any(|word| matches!(word, "take" | "taking" | "follow" | "use"));
@@ -265,6 +281,11 @@ mod tests {
             "Pick the towel up and go to the sofa.",
             "Go down to the end of the hall.",
             "Climb into the tub.",
+            "Walk past the stairs that go down.",
+            "Stop at the foot of the stairs ascending to the attic.",
+            "Walk down the tiled floor past the sofa.",
+            "Walk down the wood floor hallway.",
+            "Take a few steps down the hallway.",
         ] {
             assert_eq!(told(text), [], "{text}");
         }

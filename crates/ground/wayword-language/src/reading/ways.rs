@@ -97,6 +97,10 @@ impl<'a> Text<'a> {
     /// What a preposition says.
     fn preposition(&self, at: usize) -> Option<Going> {
         let before = self.before(at);
+        if matches!(before, "leads" | "leading" | "lead") {
+            // "The door that leads into the kitchen": what it leads to.
+            return None;
+        }
         let goes = || v::GOING.contains(&before) || v::CLIMBING.contains(&before);
         let behind_noun = || self.is_noun(before);
         match self.word(at) {
@@ -116,11 +120,16 @@ impl<'a> Text<'a> {
             "down" | "along" | "up" => (!behind_noun() || self.is_way(before)).then_some(Going::Along),
             "past" | "after" => Some(Going::Past),
             "beyond" => goes().then_some(Going::Past),
-            "by" => (goes() || matches!(before, "pass" | "passing" | "right")).then_some(Going::Past),
+            "by" => (goes() || matches!(before, "pass" | "passing") || self.goes_right_by(at)).then_some(Going::Past),
             "around" => (!behind_noun()).then_some(Going::Around),
             "until" | "till" => Some(Going::Until),
             _ => None,
         }
+    }
+
+    /// "Walk right by the sofa", but not "turn right by the sofa".
+    fn goes_right_by(&self, by: usize) -> bool {
+        self.before(by) == "right" && by > 1 && v::GOING.contains(&self.before(by - 1))
     }
 
     /// "From the kitchen", "away from the sofa", but not "across from", "two feet from" or "far from".
@@ -226,6 +235,8 @@ mod tests {
             "remove the lamp from the table",
             "wipe down the counter",
             "until you get to the two chairs in front of a sofa",
+            "turn right by the sofa",
+            "go to the door that leads into the kitchen",
         ] {
             assert_eq!(last(text), None, "{text}");
         }
