@@ -13,7 +13,7 @@ use wayword_core::{Climb, Side};
 
 crate::data::lists! {
     "words/steps.txt";
-    words: MARKING, CONDITIONS, SLIGHT, STRAIGHT, DOOR_WORDS, STAIR_WORDS, OUTDOORS, TOPS, BOTTOMS, LEAVING_WORDS;
+    words: MARKING, CONDITIONS, SLIGHT, STRAIGHT, DOOR_WORDS, STAIR_WORDS, OUTDOORS, TOPS, BOTTOMS, LEAVING_WORDS, TURN_VERBS;
     phrases:;
 }
 
@@ -106,17 +106,28 @@ pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
     steps
 }
 
+/// How far behind its verb the side of a turn may stand, words.
+const TURN_REACH: usize = 5;
+
 /// Cuts the tokens at clauses, before a condition, and before a second turn.
 fn pieces(tokens: &[Token], clauses: &[usize], events: &[(usize, &Event)]) -> Vec<Range<usize>> {
     let mut turns =
         events.iter().filter(|(_, event)| matches!(event.what, What::Turn(_))).map(|(at, _)| *at).peekable();
     let mut cuts = vec![0];
     let (mut has_word, mut has_turn) = (false, false);
+    let ends_at = |at: usize| events.partition_point(|(event, _)| *event < at);
     for (at, token) in tokens.iter().enumerate() {
         let is_turn = std::iter::from_fn(|| turns.next_if(|turn| *turn <= at)).last() == Some(at);
         let new_clause = at > 0 && clauses[at] != clauses[at - 1];
         let is_condition = CONDITIONS.contains(&token.word.as_str());
-        if new_clause || (has_word && is_condition) || (is_turn && has_turn) {
+        // "Walk down the hallway turn left": a turn without an "and".
+        let begins_turn = TURN_VERBS.contains(&token.word.as_str())
+            && clauses.get(at + 1).is_some_and(|clause| *clause == clauses[at])
+            && ends_at(*cuts.last().unwrap_or(&0)) < ends_at(at)
+            && events[ends_at(at)..].first().is_some_and(|(turn, event)| {
+                *turn <= at + TURN_REACH && clauses[*turn] == clauses[at] && matches!(event.what, What::Turn(_))
+            });
+        if new_clause || (has_word && is_condition) || (is_turn && has_turn) || (has_word && begins_turn) {
             cuts.push(at);
             (has_word, has_turn) = (false, false);
         }
@@ -249,6 +260,11 @@ mod tests {
 
     #[test]
     fn a_step_has_at_most_one_turn() {
+        let joined = told("Walk down the hallway turn left and stop.");
+        assert_eq!(
+            joined.iter().map(|(words, _)| &**words).collect::<Vec<_>>(),
+            ["Walk down the hallway", "turn left", "and stop"]
+        );
         let text = "Leave the attic and turn left. Take a right and a left, then walk on until you reach the globe.";
         let steps = told(text);
         let words: Vec<&str> = steps.iter().map(|(words, _)| words.as_str()).collect();
