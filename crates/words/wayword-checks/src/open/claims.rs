@@ -26,6 +26,12 @@ pub struct Claim {
 }
 
 impl Claim {
+    /// The number of its clause.
+    #[must_use]
+    pub fn clause(&self, reading: &Reading) -> usize {
+        reading.events[self.event].clause
+    }
+
     /// Whether it claims a room and nothing else.
     #[must_use]
     pub fn is_only_room(&self) -> bool {

@@ -1,6 +1,7 @@
 //! Stairs and storeys in an open world: they are held against floor heights along the path.
 
-use crate::{evidence::Evidence, finding, floors};
+use super::phrase::phrase;
+use crate::{Subject, finding, floors};
 use wayword_core::{Check, Climb, Finding, Motion, Verdict};
 use wayword_language::{
     reading::{Reading, What},
@@ -17,19 +18,20 @@ const SHARE_OF_BOTH: f64 = 0.15;
 const SHARE_OF_ONE: f64 = 0.45;
 
 /// What is wrong with the climbs and storeys of a text.
-pub(super) fn climbs(text: &str, reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
+pub(super) fn climbs(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let tokens = tokens(text);
-    let share = if tells_both_ways(reading) { SHARE_OF_BOTH } else { SHARE_OF_ONE };
+    let heights = Heights::of(subject, if tells_both_ways(reading) { SHARE_OF_BOTH } else { SHARE_OF_ONE });
     let mut found = Vec::new();
     for event in &reading.events {
         let told = told(&tokens, event.span);
         let (verdict, climb) = match event.what {
-            What::Climb(climb) | What::Steps(climb) => (climbed(climb, evidence, share), climb),
-            What::Storey(climb) => (storey(climb, evidence), climb),
+            What::Climb(climb) => (heights.climbed(climb), climb),
+            What::Steps(climb) => (heights.stepped(climb), climb),
+            What::Storey(climb) => (heights.storey(climb), climb),
             _ => continue,
         };
-        // "Stop before you go up the stairs": the path may be level, but not go down instead.
-        let may_be = told == Told::Moment && !goes_other_way(climb, evidence, share);
+        // "Once you are up the stairs": the path may be level, but not go down instead.
+        let may_be = told == Told::Moment && !heights.goes_other_way(climb);
         if told == Told::Described || may_be {
             continue;
         }
@@ -39,10 +41,10 @@ pub(super) fn climbs(text: &str, reading: &Reading, evidence: &Evidence) -> Vec<
             Verdict::Fail => format!("the path nowhere goes {way}"),
             Verdict::Unverified => "the program cannot check whether the path goes up or down".to_owned(),
         };
-        found.push(finding(Check::Floors, verdict, reason, Some(event.span)));
+        found.push(finding(Check::Floors, verdict, reason, Some(phrase(&tokens, event.span, is_stairs))));
     }
     // People count storeys from the street or from the cellar, so a number alone refutes nothing.
-    let numbers = floors::wrong_floors(reading, evidence).map(|finding| Finding {
+    let numbers = floors::wrong_floors(reading, subject.evidence).map(|finding| Finding {
         verdict: Verdict::Unverified,
         reason: "the program does not know from where the text counts storeys".into(),
         ..finding
@@ -56,15 +58,29 @@ pub(super) fn climbs(text: &str, reading: &Reading, evidence: &Evidence) -> Vec<
 enum Told {
     /// As a command.
     Command,
-    /// As a moment, before which the path may end or after which it may begin: "before you go up the stairs". Also
-    /// without stairs, where "down" may be along a hallway: "walk all the way down".
+    /// As a moment, before which the path may end or after which it may begin: "once you are up the stairs", "begin to
+    /// climb the stairs". Also without stairs, where "down" may be along a hallway: "walk all the way down".
     Moment,
-    /// As what stairs do: "the stairs going down".
+    /// As what stairs do, or what the walker does not do any more: "the stairs going down", "stop before you go up".
     Described,
 }
 
 /// Words that make a climb a moment.
-const MOMENT: &[&str] = &["before", "after", "until", "till", "when", "once", "if"];
+const MOMENT: &[&str] = &[
+    "after",
+    "until",
+    "till",
+    "when",
+    "once",
+    "if",
+    "begin",
+    "beginning",
+    "start",
+    "starting",
+    "prepare",
+    "about",
+    "ready",
+];
 /// Words that make a climb what stairs do.
 const DESCRIBING: &[&str] = &["heading", "headed", "going", "goes", "that", "lead", "leads", "leading"];
 
@@ -76,7 +92,7 @@ fn told(tokens: &[Token], span: [usize; 2]) -> Told {
     let is_adjective = tokens.get(at).is_some_and(|token| token.word.ends_with("ing"))
         && before().next().is_some_and(|token| matches!(token.word.as_str(), "the" | "a"));
     match () {
-        () if is_adjective || (has(DESCRIBING) && !has(MOMENT)) => Told::Described,
+        () if is_adjective || has(&["before"]) || (has(DESCRIBING) && !has(MOMENT)) => Told::Described,
         () if has(MOMENT) || !names_stairs(tokens, at) => Told::Moment,
         () => Told::Command,
     }
@@ -93,50 +109,88 @@ fn tells_both_ways(reading: &Reading) -> bool {
     tells(Climb::Up) && tells(Climb::Down)
 }
 
+fn is_stairs(word: &str) -> bool {
+    word.ends_with("stairs") || word.starts_with("stair") || word.starts_with("step") || word.starts_with("flight")
+}
+
 /// Whether stairs or storeys are named beside a climb.
 fn names_stairs(tokens: &[Token], at: usize) -> bool {
     let near = tokens.iter().take(at + 8).skip(at.saturating_sub(5));
-    let is_stairs = |word: &str| {
-        word.ends_with("stairs") || word.starts_with("stair") || word.starts_with("step") || word.starts_with("flight")
-    };
     let is_storey =
         |word: &str| matches!(word, "floor" | "floors" | "level" | "levels" | "storey" | "story" | "landing");
     let is_climb = |word: &str| ["climb", "ascend", "descend"].iter().any(|verb| word.starts_with(verb));
     near.map(|token| token.word.as_str()).any(|word| is_stairs(word) || is_storey(word) || is_climb(word))
 }
 
-/// Whether the path takes stairs the other way, and next to none this way.
-fn goes_other_way(climb: Climb, evidence: &Evidence, share: f64) -> bool {
-    let other = if climb == Climb::Up { Climb::Down } else { Climb::Up };
-    let away_m = rise_m(other, evidence);
-    away_m >= FLIGHT_M && rise_m(climb, evidence) < share * away_m
+/// How a path goes up and down.
+struct Heights {
+    is_known: bool,
+    /// What it gains and loses, metres: the most height between any two of its frames.
+    up_m: f64,
+    down_m: f64,
+    /// Beside stairs the other way, what it gains is no climb if it is less than this share of them.
+    share: f64,
 }
 
-fn climbed(climb: Climb, evidence: &Evidence, share: f64) -> Verdict {
-    match evidence.motion {
-        Motion::Unknown => Verdict::Unverified,
-        Motion::Known if rise_m(climb, evidence) >= STEP_M && !goes_other_way(climb, evidence, share) => Verdict::Pass,
-        Motion::Known => Verdict::Fail,
+impl Heights {
+    fn of(subject: Subject<'_>, share: f64) -> Self {
+        let moves = &subject.evidence.moves;
+        let eyes: Vec<f64> = moves.iter().map(|step| step.rise_m).collect();
+        // A camera may stand lower over a step than elsewhere over the floor, and be moved up and down on one floor.
+        let floors_m = subject.reach.surroundings.map_or(&[][..], |around| around.floors_m());
+        let floors: Vec<f64> = floors_m.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let rises = if floors.len() == eyes.len() { floors } else { eyes };
+        let most = |way: f64| most(&rises, way);
+        Self { is_known: subject.evidence.motion == Motion::Known, up_m: most(1.0), down_m: most(-1.0), share }
+    }
+
+    fn gains_m(&self, climb: Climb) -> f64 {
+        if climb == Climb::Down { self.down_m } else { self.up_m }
+    }
+
+    fn loses_m(&self, climb: Climb) -> f64 {
+        if climb == Climb::Down { self.up_m } else { self.down_m }
+    }
+
+    /// Whether the path takes stairs the other way, and next to none this way.
+    fn goes_other_way(&self, climb: Climb) -> bool {
+        let away_m = self.loses_m(climb);
+        away_m >= FLIGHT_M && self.gains_m(climb) < self.share * away_m
+    }
+
+    fn climbed(&self, climb: Climb) -> Verdict {
+        match self.is_known {
+            false => Verdict::Unverified,
+            true if self.gains_m(climb) >= STEP_M && !self.goes_other_way(climb) => Verdict::Pass,
+            true => Verdict::Fail,
+        }
+    }
+
+    /// A few steps count however many stairs there are the other way.
+    fn stepped(&self, climb: Climb) -> Verdict {
+        match self.is_known {
+            false => Verdict::Unverified,
+            true if self.gains_m(climb) >= STEP_M => Verdict::Pass,
+            true => Verdict::Fail,
+        }
+    }
+
+    /// "The bedroom upstairs" may lie on the storey on which the walker is already. It is wrong only if the path goes a
+    /// storey the other way.
+    fn storey(&self, climb: Climb) -> Verdict {
+        match self.is_known {
+            true if self.gains_m(climb) >= STEP_M => Verdict::Pass,
+            true if self.loses_m(climb) >= STEP_M => Verdict::Fail,
+            _ => Verdict::Unverified,
+        }
     }
 }
 
-/// "The bedroom upstairs" may lie on the storey on which the walker is already. It is wrong only if the path goes a
-/// storey the other way.
-fn storey(climb: Climb, evidence: &Evidence) -> Verdict {
-    let other = if climb == Climb::Up { Climb::Down } else { Climb::Up };
-    match evidence.motion {
-        Motion::Known if rise_m(climb, evidence) >= STEP_M => Verdict::Pass,
-        Motion::Known if rise_m(other, evidence) >= STEP_M => Verdict::Fail,
-        _ => Verdict::Unverified,
-    }
-}
-
-/// The most height that the path gains, or loses, between any two of its frames, metres.
-pub(super) fn rise_m(climb: Climb, evidence: &Evidence) -> f64 {
-    let way = if climb == Climb::Down { -1.0 } else { 1.0 };
+/// The most that these rises gain between any two points, in the direction of the sign, metres.
+fn most(rises: &[f64], way: f64) -> f64 {
     let (mut lowest, mut height, mut most) = (0.0_f64, 0.0, 0.0_f64);
-    for step in &evidence.moves {
-        height += step.rise_m * way;
+    for rise_m in rises {
+        height += rise_m * way;
         most = most.max(height - lowest);
         lowest = lowest.min(height);
     }

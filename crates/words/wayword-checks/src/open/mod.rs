@@ -10,6 +10,8 @@ mod climbs;
 mod distances;
 mod expected;
 mod features;
+mod motions;
+mod phrase;
 mod places;
 mod relation;
 mod repeats;
@@ -36,7 +38,7 @@ pub use weights::{Table, Weights};
 pub(super) fn open(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let evidence = subject.evidence;
     let mut findings = places::places(reading, subject);
-    findings.extend(climbs::climbs(text, reading, evidence));
+    findings.extend(climbs::climbs(text, reading, subject));
     findings.extend(repeats::repeats(text, reading, subject));
     findings.extend(distances::distances(reading, evidence));
     findings.extend(turns(reading, evidence));

@@ -39,6 +39,7 @@ impl Relation {
 
 /// The relation of each event of a reading, where it is a place.
 pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
+    let goes_on = last_motion(reading);
     // The clause, and whether the next place in it is where the walker stops.
     let (mut clause, mut stops, mut named) = (usize::MAX, false, false);
     let relation = |event: &wayword_language::reading::Event| {
@@ -47,7 +48,7 @@ pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
         }
         let place = match &event.what {
             What::Stop => {
-                (stops, named) = (true, false);
+                (stops, named) = (event.clause >= goes_on, false);
                 return None;
             }
             What::Face { .. } => {
@@ -72,4 +73,18 @@ pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
         Some(relation)
     };
     reading.events.iter().map(relation).collect()
+}
+
+/// The clause of the last motion by a place or over stairs. A stop before it is not where the walk ends: "stop at the
+/// top of the stairs. Turn right and walk into the kitchen".
+fn last_motion(reading: &Reading) -> usize {
+    let is_motion = |what: &What| match what {
+        What::Climb(_) => true,
+        What::Place(place) => matches!(
+            place.going,
+            Some(Going::Leaving | Going::Entering | Going::Through | Going::Past | Going::Along | Going::Towards)
+        ),
+        _ => false,
+    };
+    reading.events.iter().filter(|event| is_motion(&event.what)).map(|event| event.clause).max().unwrap_or(0)
 }

@@ -49,6 +49,9 @@ impl<'a> Stretches<'a> {
             }
             _ => {}
         }
+        if room_name(&claim.name) == Some("entryway") {
+            return self.thresholds().max(self.stays(&claim.name));
+        }
         if claim.is_room {
             return self.stays(&claim.name);
         }

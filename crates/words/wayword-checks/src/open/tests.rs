@@ -35,9 +35,17 @@ fn object(at: usize, name: &str) -> ObjectId {
 }
 
 fn survey() -> Survey {
+    survey_with(None)
+}
+
+/// The building, where a floor may be known that is as high everywhere.
+fn survey_with(floor_m: Option<f64>) -> Survey {
     let mut graph = ViewpointGraph::default();
     for at in 0..BUILDING.len() {
         graph.add(id(at), position(at), Some(1)).unwrap();
+        if let Some(floor_m) = floor_m {
+            graph.set_floor(&id(at), floor_m).unwrap();
+        }
     }
     for at in 1..BUILDING.len() {
         graph.join(&id(at - 1), &id(at)).unwrap();
@@ -137,6 +145,13 @@ fn stairs_are_held_against_floor_heights() {
     for text in ["Walk past the stairs leading down.", "Stop before you go up the stairs."] {
         assert_ne!(told(text, 0, 3).1, [Check::Floors], "{text}");
     }
+    // The eye is higher at the end, but the floor is not.
+    let (path, evidence, _) = path(7, 9);
+    let around = Surroundings::of(&Arc::new(Building::of(&survey_with(Some(0.0)))), &path).unwrap();
+    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let checked = check("Walk up the stairs.", Subject::open(&evidence, &any(), reach));
+    let finding = checked.findings.iter().find(|finding| finding.check == Check::Floors).unwrap();
+    assert_eq!((finding.verdict, finding.span), (Verdict::Fail, Some([0, 18])));
     // People count storeys as they like.
     assert_eq!(told("Walk down the hallway on the third floor.", 0, 3), (Verdict::Unverified, vec![Check::Floors]));
 }
@@ -153,10 +168,37 @@ fn what_is_said_twice_needs_two_stretches_of_the_path() {
     for text in [
         "Walk past the piano. Once past the piano, stop.",
         "Walk down the hallway. In the hallway, walk to the chair.",
+        "Leave the bedroom and turn left out of the bedroom.",
+        "Walk past the sofa. The rug is just past the sofa.",
+        "Walk past the long rug. Turn left and walk past the round rug.",
+        "Walk around the sofa. Turn left and walk around the sofa.",
         "Leave the bedroom. Stop in the hallway.",
     ] {
         assert_eq!(told(text, 0, 3), PASSES, "{text}");
     }
+}
+
+#[test]
+fn a_finding_about_a_motion_covers_its_verb() {
+    let (_, evidence, around) = path(0, 3);
+    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let wrong = |text: &str| {
+        let checked = check(text, Subject::open(&evidence, &any(), reach));
+        let span = checked.findings.iter().find(|finding| finding.verdict == Verdict::Fail).and_then(|fail| fail.span);
+        span.map(|[from, to]| text[from..to].to_owned())
+    };
+    let text = "Walk past the piano and turn left. Walk past the piano and wait.";
+    assert_eq!(wrong(text).as_deref(), Some("Walk past the piano"));
+    let text = "Leave the bedroom. Walk past the sofa and stop in front of the sofa.";
+    assert_eq!(wrong(text).as_deref(), Some("Walk past"));
+    assert_eq!(wrong("Leave the bedroom. Walk past the sofa and stop between the sofa and the chair."), None);
+    assert_eq!(wrong("Leave the bedroom. Walk to the sofa and stop in front of the sofa."), None);
+}
+
+#[test]
+fn only_the_last_stop_is_where_the_walk_ends() {
+    assert_eq!(told("Stop at the bed. Then walk into the hallway and stop at the chair.", 0, 3), PASSES);
+    assert_ne!(told("Walk into the hallway and stop at the bed.", 0, 3), PASSES);
 }
 
 #[test]

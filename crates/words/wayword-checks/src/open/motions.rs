@@ -1,0 +1,233 @@
+//! The motions by places that a text tells: which of them it tells a second time, and which do not agree with its stop.
+
+use super::{
+    claims::{Claim, claims},
+    phrase::phrase,
+    relation::Relation,
+    stretches::Stretches,
+};
+use wayword_language::{
+    lexicon::{is_room, is_thing, kinds, normal_word, room_name},
+    reading::{Going, Place, Reading, What},
+    text::Token,
+};
+
+/// How far before a place the words may stand that say which one it is.
+const WORDS_BEFORE: usize = 3;
+
+/// A motion by a place: it goes into it, out of it, through it or past it.
+struct Motion<'a> {
+    /// The place among the claims of the text.
+    at: usize,
+    relation: Relation,
+    name: String,
+    /// The words that say which one it is: those right before the place, and those of its name.
+    which: Vec<&'a str>,
+    clause: usize,
+    is_room: bool,
+    /// Whether the same place may be meant again: "walk around the table".
+    may_go_on: bool,
+    span: [usize; 2],
+}
+
+/// The byte ranges of motions that are told a second time, where the path has one stretch of them.
+pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> Vec<[usize; 2]> {
+    let claims = claims(reading);
+    let motions = motions(tokens, reading, &claims);
+    let again = |(at, motion): (usize, &Motion<'_>)| {
+        let same = |before: &&Motion<'_>| before.relation == motion.relation && before.name == motion.name;
+        let before = motions[..at].iter().rposition(|before| same(&before))?;
+        let is_other = motions[before].clause == motion.clause
+            || motion.may_go_on
+            || motion.which.iter().any(|word| !motions[before].which.contains(word))
+            || takes_up(tokens, &claims[motion.at])
+            || is_restated(reading, &motions[before], motion)
+            || leaves_between(&motions[before..=at]);
+        // A thing of which the labels list none is passed no more than once, either.
+        let passes_thing = motion.relation == Relation::Past && !motion.is_room;
+        let is_once = match stretches.places(&claims[motion.at]) {
+            0 => passes_thing,
+            count => count == 1,
+        };
+        (!is_other && is_once).then_some(motion.span)
+    };
+    motions.iter().enumerate().filter_map(again).collect()
+}
+
+/// The byte range of a motion past the place at which the text stops next: "walk past the sofa and stop by the sofa".
+pub(super) fn past_the_stop(tokens: &[Token], reading: &Reading) -> Option<[usize; 2]> {
+    let claims = claims(reading);
+    let stop = claims.iter().rposition(|claim| claim.relation == Relation::Stop)?;
+    let before = stop.checked_sub(1).filter(|at| claims[*at].relation == Relation::Past)?;
+    let place = |at: usize| match &reading.events[claims[at].event].what {
+        What::Place(place) => Some(place),
+        _ => None,
+    };
+    let (passed, stopped) = (place(before)?, place(stop)?);
+    let (from, to) = (claims[before].event, claims[stop].event);
+    let goes_on = reading.events[from..to].iter().any(|event| moves(&event.what));
+    // "Walk past the closet and stop in the closet doorway".
+    let is_same =
+        || kinds(&passed.name)[0] == kinds(&stopped.name)[0] || stopped.name.starts_with(&format!("{} ", passed.name));
+    let words = || which(tokens, &claims[before]);
+    let same_words = || which(tokens, &claims[stop]).starts_with(&words());
+    let (first, last) = (claims[before].span, claims[stop].span);
+    let between = || tokens.iter().filter(|token| first[1] <= token.span[0] && token.span[1] <= last[0]);
+    let is_part = || between().any(|token| matches!(token.word.as_str(), "between" | "end" | "past" | "behind"));
+    let is_one = !goes_on && !tells_which(passed) && !tells_which(stopped) && is_same() && same_words() && !is_part();
+    // The place itself is there.
+    let way = tokens.iter().rev().find(|token| token.span[1] <= first[0] && !is_article(&token.word))?;
+    let is_apart = claims[before].clause(reading) != claims[stop].clause(reading);
+    (is_one && is_apart).then(|| phrase(tokens, way.span, |_| false))
+}
+
+/// Whether the text says which one of several a place is, or that it is several.
+fn tells_which(place: &Place) -> bool {
+    place.ordinal.is_some() || place.several || place.side.is_some()
+}
+
+/// Whether an event is a turn or a climb.
+fn moves(what: &What) -> bool {
+    matches!(what, What::Turn(_) | What::Climb(_) | What::Steps(_))
+}
+
+fn motions<'a>(tokens: &'a [Token], reading: &Reading, claims: &[Claim]) -> Vec<Motion<'a>> {
+    let place = |claim: &Claim| match &reading.events[claim.event].what {
+        What::Place(place) => Some((place.ordinal.is_some() || place.several, place.going)),
+        _ => None,
+    };
+    // "Into the next hallway": there are several.
+    let told_apart = |claim: &&Claim| place(claim).is_some_and(|(is_one_of_several, _)| is_one_of_several);
+    let several: Vec<String> = claims.iter().filter(told_apart).map(name).collect();
+    let motion = |(at, claim): (usize, &Claim)| {
+        let moves = matches!(claim.relation, Relation::Enter | Relation::Exit | Relation::Through | Relation::Past);
+        let (_, going) = place(claim)?;
+        let name = name(claim);
+        let is_motion =
+            moves && !several.contains(&name) && !says_where(tokens, claim) && !stops_before(reading, claim);
+        let motion = Motion {
+            at,
+            relation: claim.relation,
+            name,
+            which: which(tokens, claim),
+            clause: claim.clause(reading),
+            is_room: claim.is_room,
+            may_go_on: going == Some(Going::Around),
+            span: phrase(tokens, claim.span, |_| false),
+        };
+        is_motion.then_some(motion)
+    };
+    claims.iter().enumerate().filter_map(motion).collect()
+}
+
+/// The name by which a place is compared.
+fn name(claim: &Claim) -> String {
+    // People call one room by several names, but not in one text.
+    match room_name(&claim.name).filter(|_| claim.is_room) {
+        Some(room @ ("hallway" | "stairs")) => room.to_owned(),
+        Some(_) => claim.name.clone(),
+        None => kinds(&claim.name).swap_remove(0),
+    }
+}
+
+/// The words that say which place is meant: those before it, back to its article, and those of its name.
+fn which<'a>(tokens: &'a [Token], claim: &Claim) -> Vec<&'a str> {
+    let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
+    let end = tokens.partition_point(|token| token.span[1] <= claim.span[1]);
+    let before = || tokens[..at].iter().rev().take(WORDS_BEFORE);
+    let article = before().position(|token| is_article(&token.word)).unwrap_or(0);
+    before().take(article).chain(&tokens[at..end]).map(|token| token.word.as_str()).collect()
+}
+
+fn is_article(word: &str) -> bool {
+    matches!(word, "the" | "a" | "an" | "your")
+}
+
+/// Whether the words before a place only say where something is: "the door just past the sofa", "the hallway that is
+/// past the stairs", "halfway down the stairs".
+fn says_where(tokens: &[Token], claim: &Claim) -> bool {
+    let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
+    let is_way = |word: &str| matches!(word, "past" | "passed" | "by" | "through" | "down" | "up" | "into" | "out");
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
+    let of = at.saturating_sub(1 + usize::from(at > 0 && is_article(word(at - 1))));
+    if word(of) == "of" && of > 0 && word(of - 1) != "out" {
+        // "Past the foot of the bed".
+        return true;
+    }
+    let Some(way) = (at.saturating_sub(WORDS_BEFORE + 1)..at).rev().find(|at| is_way(word(*at))) else { return false };
+    let before = way.checked_sub(1).map_or("", word);
+    let is_side = || matches!(before, "left" | "right") && way > 1 && is_ordinal(word(way - 2));
+    let name = normal_word(before);
+    is_thing(&name)
+        || is_room(&name)
+        || matches!(before, "is" | "are" | "just" | "halfway" | "feet" | "steps")
+        || is_side()
+}
+
+fn is_ordinal(word: &str) -> bool {
+    matches!(word, "first" | "second" | "third" | "next" | "last" | "the" | "1st" | "2nd" | "3rd")
+}
+
+/// "Stop just past the sofa", "wait halfway down the stairs": no motion.
+fn stops_before(reading: &Reading, claim: &Claim) -> bool {
+    let clause = claim.clause(reading);
+    reading.events[..claim.event].iter().any(|event| event.what == What::Stop && event.clause == clause)
+}
+
+/// Whether a motion into, out of or along a place is told again at once, in other words: "exit the room and turn right
+/// out of the room", "down the hallway. Go down the hallway until ...".
+fn is_restated(reading: &Reading, before: &Motion<'_>, again: &Motion<'_>) -> bool {
+    let is_between = |clause: usize| before.clause < clause && clause < again.clause;
+    let goes_on = |event: &wayword_language::reading::Event| match &event.what {
+        What::Place(place) => matches!(
+            place.going,
+            Some(Going::Leaving | Going::Entering | Going::Through | Going::Along | Going::Past | Going::Towards)
+        ),
+        what => moves(what),
+    };
+    let moved = reading.events.iter().filter(|event| is_between(event.clause)).any(goes_on);
+    again.relation != Relation::Past && !moved
+}
+
+/// Whether the walk gets elsewhere between two motions by places of one name: people call two rooms by one name.
+fn leaves_between(motions: &[Motion<'_>]) -> bool {
+    let (Some(first), Some(last)) = (motions.first(), motions.last()) else { return false };
+    let elsewhere = |between: &Motion<'_>| match last.relation {
+        Relation::Exit => between.name == first.name && between.relation == Relation::Enter,
+        _ => between.name != first.name || between.relation == Relation::Exit,
+    };
+    let between = &motions[1..motions.len() - 1];
+    last.is_room && between.iter().any(|motion| motion.relation != Relation::Past && elsewhere(motion))
+}
+
+/// Words before a place that take up again what was said, or that name another one.
+const TAKING_UP: &[&str] = &[
+    "once",
+    "after",
+    "when",
+    "as",
+    "if",
+    "until",
+    "till",
+    "in",
+    "while",
+    "from",
+    "another",
+    "other",
+    "next",
+    "second",
+    "third",
+    "last",
+    "again",
+    "continue",
+    "keep",
+    "back",
+    "immediately",
+];
+
+/// Whether the sentence before a place takes up what was said: "once past the sofa", "another door".
+fn takes_up(tokens: &[Token], claim: &Claim) -> bool {
+    let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
+    let clause = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(9);
+    clause.into_iter().any(|token| TAKING_UP.contains(&token.word.as_str()))
+}
