@@ -66,19 +66,19 @@ pub(super) fn past_the_stop(tokens: &[Token], reading: &Reading) -> Option<[usiz
     let (passed, stopped) = (place(before)?, place(stop)?);
     let (from, to) = (claims[before].event, claims[stop].event);
     let goes_on = reading.events[from..to].iter().any(|event| moves(&event.what));
-    // "Walk past the closet and stop in the closet doorway".
-    let is_same =
-        || kinds(&passed.name)[0] == kinds(&stopped.name)[0] || stopped.name.starts_with(&format!("{} ", passed.name));
-    let words = || which(tokens, &claims[before]);
-    let same_words = || which(tokens, &claims[stop]).starts_with(&words());
     let (first, last) = (claims[before].span, claims[stop].span);
+    let (words, at_stop) = (which(tokens, &claims[before]), which(tokens, &claims[stop]));
+    // "Walk past the closet and stop in the closet doorway".
+    let is_its_door = || at_stop.last().is_some_and(|word| matches!(*word, "door" | "doorway" | "entrance"));
+    let is_same =
+        at_stop == words || (at_stop.starts_with(&words) && at_stop.len() == words.len() + 1 && is_its_door());
     let between = || tokens.iter().filter(|token| first[1] <= token.span[0] && token.span[1] <= last[0]);
     let is_part = || between().any(|token| matches!(token.word.as_str(), "between" | "end" | "past" | "behind"));
-    let is_one = !goes_on && !tells_which(passed) && !tells_which(stopped) && is_same() && same_words() && !is_part();
-    // The place itself is there.
-    let way = tokens.iter().rev().find(|token| token.span[1] <= first[0] && !is_article(&token.word))?;
     let is_apart = claims[before].clause(reading) != claims[stop].clause(reading);
-    (is_one && is_apart).then(|| phrase(tokens, way.span, |_| false))
+    let is_wrong = is_same && is_apart && !goes_on && !tells_which(passed) && !tells_which(stopped) && !is_part();
+    // The place itself is there.
+    let way = tokens.iter().rev().filter(|token| token.span[1] <= first[0]).find(|token| is_way(&token.word))?;
+    is_wrong.then(|| phrase(tokens, way.span, |_| false))
 }
 
 /// Whether the text says which one of several a place is, or that it is several.
@@ -139,6 +139,11 @@ fn which<'a>(tokens: &'a [Token], claim: &Claim) -> Vec<&'a str> {
     before().take(article).chain(&tokens[at..end]).map(|token| token.word.as_str()).collect()
 }
 
+/// Whether a word says how a motion goes by a place.
+fn is_way(word: &str) -> bool {
+    matches!(word, "past" | "pass" | "passed" | "passing" | "by" | "through" | "down" | "up" | "into" | "out")
+}
+
 fn is_article(word: &str) -> bool {
     matches!(word, "the" | "a" | "an" | "your")
 }
@@ -147,7 +152,6 @@ fn is_article(word: &str) -> bool {
 /// past the stairs", "halfway down the stairs".
 fn says_where(tokens: &[Token], claim: &Claim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
-    let is_way = |word: &str| matches!(word, "past" | "passed" | "by" | "through" | "down" | "up" | "into" | "out");
     let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
     let of = at.saturating_sub(1 + usize::from(at > 0 && is_article(word(at - 1))));
     if word(of) == "of" && of > 0 && word(of - 1) != "out" {

@@ -191,6 +191,8 @@ fn a_finding_about_a_motion_covers_its_verb() {
     assert_eq!(wrong(text).as_deref(), Some("Walk past the piano"));
     let text = "Leave the bedroom. Walk past the sofa and stop in front of the sofa.";
     assert_eq!(wrong(text).as_deref(), Some("Walk past"));
+    let text = "Leave the bedroom. Walk past the closet and stop in the closet doorway.";
+    assert_eq!(wrong(text).as_deref(), Some("Walk past"));
     assert_eq!(wrong("Leave the bedroom. Walk past the sofa and stop between the sofa and the chair."), None);
     assert_eq!(wrong("Leave the bedroom. Walk to the sofa and stop in front of the sofa."), None);
 }
