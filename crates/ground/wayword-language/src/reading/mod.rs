@@ -200,6 +200,7 @@ mod tests {
         assert_eq!(told("go to the corner bathroom"), ["bathroom"]);
         assert_eq!(told("go to the corner meeting room"), ["meeting room"]);
         assert_eq!(told("go to the level 2 bathroom door"), ["floor 2", "door"]);
+        assert_eq!(told("stop once you step into the bathroom"), ["bathroom"]);
     }
 
     #[test]

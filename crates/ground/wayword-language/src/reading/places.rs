@@ -163,11 +163,15 @@ fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
     let before_noun = is_thing(&normal_word(word(at + 1)))
         || is_room(&normal_word(word(at + 1)))
         || v::ADJECTIVES.contains(&word(at + 1));
+    // "Once you step into the hall", "a slight step to the right".
+    let paces = word(at) == "step"
+        && matches!(word(at + 1), "to" | "into" | "in" | "inside" | "onto" | "out" | "outside" | "through" | "forward");
     let shade = word(at) == "light" && v::COLOURS.contains(&word(at + 1));
     // "There is no sign of a lamp".
     let of_something = matches!((word(at), word(at + 1)), ("sign", "of") | ("counter", "clockwise"));
     (verb_like && !after_determiner)
         || of_something
+        || paces
         || (word(at) == "light" && before_noun && !after_determiner)
         || shade
         || storey
