@@ -9,7 +9,7 @@ pub use building::Building;
 pub use surroundings::{Distance, NEAR_M, Surroundings};
 
 use wayword_core::{Climb, Motion, Move, ObjectId, Path, motion};
-use wayword_language::lexicon::{Class, agree, room_name, same_room, thing};
+use wayword_language::lexicon::{Class, agree, is_fabric, room_name, same_room, thing};
 
 /// What is known of a path, frame by frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,7 +107,7 @@ impl Evidence {
     /// none at all, that denies none.
     fn could_name(&self, name: &str) -> bool {
         let class = thing(name).map(|thing| thing.class);
-        let left_out = matches!(class, Some(Class::Fabric | Class::Door));
+        let left_out = is_fabric(name) || class == Some(Class::Door);
         let mut things = self.frames.iter().flat_map(|frame| &frame.things);
         self.source != Source::Nothing
             && (!left_out || things.any(|seen| thing(&seen.name).map(|thing| thing.class) == class))
