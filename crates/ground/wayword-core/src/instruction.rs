@@ -1,6 +1,6 @@
 //! An instruction, with links to its evidence.
 
-use crate::{Finding, Verdict};
+use crate::{Ambiguity, Finding, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// Longest text of an instruction, bytes, whether it comes from a dataset or from a model. An instruction is a few
@@ -20,6 +20,9 @@ pub struct Instruction {
     pub verdict: Verdict,
     /// Each check's outcome.
     pub findings: Vec<Finding>,
+    /// What the text may mean; `None` where nobody looked, as in older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ambiguity: Option<Ambiguity>,
     /// How it came about.
     pub provenance: Provenance,
 }

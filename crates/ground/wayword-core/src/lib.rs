@@ -7,6 +7,7 @@
 //! Architecture invariant: nothing here reads a file, a clock or a network, or depends on a particular model or
 //! platform.
 
+pub mod ambiguity;
 pub mod caption;
 pub mod contain;
 pub mod encoder;
@@ -32,6 +33,7 @@ pub mod survey;
 pub mod verdict;
 pub mod view;
 
+pub use ambiguity::Ambiguity;
 pub use caption::{Answer, Answerer, Ask, Caption, Exchange, Sighting, Trouble, Where, Witness};
 pub use contain::contained;
 pub use encoder::{Grounder, TextEncoder};

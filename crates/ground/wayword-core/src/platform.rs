@@ -109,6 +109,12 @@ pub trait Platform: Send + Sync {
         Ok(Vec::new())
     }
 
+    /// Whether the labels of its views list everything that is seen there. Where they do not, what they do not list may
+    /// be there all the same.
+    fn lists_everything(&self) -> bool {
+        true
+    }
+
     /// The file that a scene is read from, where Habitat reads the same file; `None` elsewhere.
     ///
     /// # Errors
@@ -178,6 +184,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
         (**self).listed_objects(scene)
+    }
+
+    fn lists_everything(&self) -> bool {
+        (**self).lists_everything()
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {

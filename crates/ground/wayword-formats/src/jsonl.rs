@@ -1,7 +1,7 @@
 //! Wayword's own format for paths of any platform: JSON Lines, one instruction each.
 //!
 //! A line has `format` ("wayword/1"), `platform`, `split`, `path` (a core path with its frames) and the fields of a
-//! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`. `path_id` names the path in its
+//! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`, and `ambiguity` where it is known. `path_id` names the path in its
 //! dataset, where several items may share it. Unknown fields are kept.
 
 use crate::{Episode, FormatError, Item, input, item, limits, output, tally::Tally};
@@ -177,6 +177,7 @@ fn take_instruction(item: &mut Item<'_>, frames: usize) -> Result<Instruction, F
         mentions: take_parsed(item, "mentions")?,
         verdict: take_parsed(item, "verdict")?,
         findings: take_parsed(item, "findings")?,
+        ambiguity: item.take_optional("ambiguity").map(|value| item.parsed("ambiguity", value)).transpose()?,
         provenance: take_parsed(item, "provenance")?,
     };
     let fits = |span: [usize; 2]| instruction.text.get(span[0]..span[1]).is_some();

@@ -23,6 +23,7 @@ pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKin
         mentions: mentions.collect(),
         verdict: Verdict::Pass,
         findings: Vec::new(),
+        ambiguity: None,
         provenance: Provenance {
             wayword: by("test"),
             asker: by("rules"),

@@ -7,6 +7,7 @@ use tempfile::TempDir;
 use wayword::{
     calls::Spent,
     error::Error,
+    follow::KnownScenes,
     output::Output,
     pipeline::{Made, RunPlatform, make},
     plan::Plan,
@@ -112,9 +113,9 @@ impl Stage {
     pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
         let plan = Plan::writing(job, &self.world)?;
         let calls = plan.models.open(|| Ok(fresh_id("measure")), &Output::new(false, true))?;
-        let team = Team::new(&job.settings, calls.as_ref())?;
+        let team = Team::new(&job.settings, calls.as_ref(), &self.world)?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
-        let world = RunPlatform { platform: &self.world, data: None };
+        let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };
         let one = |item| make(item, &job.settings, world, &team, &plan.styles);
         let work = || plan.items.par_iter().map(one).collect();
         let made = match threads {

@@ -12,6 +12,7 @@ mod download_bar;
 pub mod encoder;
 pub mod episodes;
 pub mod error;
+pub mod follow;
 mod in_order;
 pub mod interrupt;
 pub mod item;

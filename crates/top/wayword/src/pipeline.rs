@@ -2,6 +2,7 @@
 
 use crate::{
     error::Error,
+    follow::{Followed, GOES_UNKNOWN, KnownScenes, Told, rejection},
     item::Item,
     pictures::{self, Picture},
     platforms::Remembering,
@@ -10,12 +11,12 @@ use crate::{
     styles::Measured,
     team::Team,
 };
-use wayword_checks::Evidence;
-use wayword_core::{Frame, Gaze, Motion, Path, Platform, PlatformError, SceneId, View};
+use wayword_checks::{Checked, Evidence, Source};
+use wayword_core::{Ambiguity, Frame, Gaze, Motion, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
     observe::observe,
     offline::distinguish,
-    repair::{Order, Outcome, write_and_repair},
+    repair::{Follow, Order, Outcome, write_and_repair},
     walk::Walk,
 };
 
@@ -37,6 +38,8 @@ pub struct RunPlatform<'a> {
     pub platform: &'a dyn Platform,
     /// The state that the files of its scenes must have; `None` if no run is continued.
     pub data: Option<&'a WorldData>,
+    /// What is known around its paths.
+    pub scenes: &'a KnownScenes,
 }
 
 /// Makes an item's instructions.
@@ -51,7 +54,7 @@ pub fn make(
     team: &Team,
     styles: &[Measured],
 ) -> Result<Made, Error> {
-    let RunPlatform { platform, data } = world;
+    let RunPlatform { platform, data, scenes } = world;
     let world = Remembering::new(platform);
     let path = path(item, settings, &world)?;
     if let Some(data) = data {
@@ -60,14 +63,52 @@ pub fn make(
     let observations = observe(&world, &path, settings.frames, team.observers())?;
     let walk = Walk::new(path, observations);
     let evidence = evidence(&walk, &world, settings.evidence)?;
+    let scene = match settings.no_route || evidence.source != Source::Labels {
+        true => None,
+        false => Some(scenes.get(platform, &walk.path.scene)?),
+    };
+    let follower = Follower {
+        followed: scene.as_deref().and_then(|scene| Followed::new(Some(scene), &walk.path, &evidence)),
+        evidence: &evidence,
+        rejects_ambiguous: settings.reject_ambiguous,
+    };
     let outcomes = styles.iter().map(|Measured { style, profile }| {
-        let order =
-            Order { walk: &walk, evidence: &evidence, style, profile, seed: settings.seed, repairs: settings.repairs };
+        let order = Order {
+            walk: &walk,
+            evidence: &evidence,
+            style,
+            profile,
+            seed: settings.seed,
+            repairs: settings.repairs,
+            follower: (!settings.no_route).then_some(&follower),
+        };
         write_and_repair(team.writers(), team.observers(), order)
     });
     let outcomes = outcomes.collect::<Result<_, _>>()?;
     let pictures = pictures::encode(&ahead(&world, &walk.path)?)?;
     Ok(Made { walk, outcomes, pictures })
+}
+
+/// Follows the texts of one path.
+struct Follower<'a> {
+    /// `None` where the path cannot be followed.
+    followed: Option<Followed<'a>>,
+    evidence: &'a Evidence,
+    rejects_ambiguous: bool,
+}
+
+impl Follow for Follower<'_> {
+    fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity {
+        let why = match (self.evidence.source, self.evidence.motion) {
+            (_, Motion::Unknown) | (Source::Labels, _) => GOES_UNKNOWN,
+            _ => "the texts are not checked against labels",
+        };
+        let told = self.followed.as_ref().map_or_else(|| Told::unknown(why), |followed| followed.follow(text));
+        told.add_to(checked);
+        let ambiguity = told.ambiguity(text, self.evidence);
+        checked.add(rejection(&ambiguity).filter(|_| self.rejects_ambiguous));
+        ambiguity
+    }
 }
 
 /// The path of an item. Its target is removed if the settings leave the choice to the writer.

@@ -2,12 +2,14 @@
 
 use crate::{
     calls::Calls,
+    commands::calibrate,
     error::Error,
-    settings::{Finish, Settings, is_model},
+    settings::{Finish, LABELS, Settings, is_model},
     text_file,
 };
 use std::{fs, path::Path, sync::Arc};
-use wayword_core::{Answerer, LanguageModel};
+use wayword_checks::open::Calibration;
+use wayword_core::{Answerer, LanguageModel, Platform};
 use wayword_synthesis::{
     dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
     models::{ModelAnswerer, ModelAsker, ModelSummariser, ModelWriter},
@@ -33,8 +35,10 @@ impl Team {
     /// The roles that the settings name. `calls` is needed if a model plays one.
     ///
     /// # Errors
-    /// When a model cannot be reached by its name, or a prompt cannot be used.
-    pub fn new(settings: &Settings, calls: Option<&Calls>) -> Result<Self, Error> {
+    /// When a model cannot be reached by its name, a prompt cannot be used, or a calibration has no effect.
+    pub fn new(settings: &Settings, calls: Option<&Calls>, platform: &dyn Platform) -> Result<Self, Error> {
+        let labels =
+            Labels { list_everything: platform.lists_everything(), calibration: calibration(settings, platform)? };
         let prompts = Arc::new(prompts(settings)?);
         let roles = &settings.roles;
         let model = |name: &str| -> Result<Option<Arc<dyn LanguageModel>>, Error> {
@@ -66,7 +70,7 @@ impl Team {
                     let manner = calls.map_or(Ok(Manner::Chat), |calls| calls.manner(&roles.see))?;
                     Box::new(ModelAnswerer::new(model, prompts(), manner))
                 }
-                None => Box::new(Labels),
+                None => Box::new(labels),
             },
             writer: match writes {
                 Some(model) => Box::new(ModelWriter::new(model, prompts())),
@@ -96,6 +100,23 @@ impl Team {
         let finisher = self.finisher.as_ref().map(|finisher| finisher as &dyn Writer);
         Writers { writer: self.writer.as_ref(), finisher }
     }
+}
+
+/// The calibration that the settings name. Only the role `labels` reads it, so it is refused where that role does not, or
+/// where labels list everything.
+fn calibration(settings: &Settings, platform: &dyn Platform) -> Result<Option<Arc<Calibration>>, Error> {
+    let Some(file) = &settings.calibration else { return Ok(None) };
+    let calibration = calibrate::read(file)?;
+    let lack = match () {
+        () if settings.roles.see != LABELS => {
+            "only the answers of labels depend on it, and a model answers here".to_owned()
+        }
+        () if platform.lists_everything() => format!("the labels of platform {} list everything", platform.name()),
+        () if !settings.has_dialogue() => "without a dialogue, labels are not asked for single things".to_owned(),
+        () if calibration.platform != platform.name() => format!("it was made for platform {}", calibration.platform),
+        () => return Ok(Some(Arc::new(calibration))),
+    };
+    Err(Error::usage(format!("--calibration {} has no effect: {lack}", file.display()), "leave it out"))
 }
 
 /// The prompts, replaced by those of the user's folder.

@@ -77,10 +77,16 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// The verdict of all checks together.
+    /// The verdict of all checks together. Where the world is closed, a text is at no loss because nobody could follow it:
+    /// the other checks know all that it may say.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        Verdict::of(&self.findings)
+        let is_left_out = |finding: &&Finding| {
+            let is_unfollowed = finding.check == Check::Route && finding.verdict == Verdict::Unverified;
+            self.world == World::Closed && is_unfollowed
+        };
+        let counted = self.findings.iter().filter(|finding| !is_left_out(finding));
+        counted.map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
     }
 }
 

@@ -40,6 +40,10 @@ impl<P: Platform> Platform for Pictured<P> {
         self.platform.sample_path(scene, request, seed)
     }
 
+    fn lists_everything(&self) -> bool {
+        self.platform.lists_everything()
+    }
+
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let view = self.platform.look(scene, from, gaze)?;
         let truth = view.ground_truth().cloned();

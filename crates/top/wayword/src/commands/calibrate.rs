@@ -57,7 +57,7 @@ fn written(calibration: &Calibration) -> String {
 ///
 /// # Errors
 /// When it cannot be read, or is none.
-pub(super) fn read(file: &Path) -> Result<Calibration, Error> {
+pub(crate) fn read(file: &Path) -> Result<Calibration, Error> {
     let text = text_file::read(file, "read the calibration")?;
     Calibration::read(&text).map_err(|error| {
         let hint = "make it with: wayword calibrate --platform matterport --data DIR --from R2R_train.json --out FILE";

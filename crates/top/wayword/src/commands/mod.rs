@@ -1,6 +1,6 @@
 //! One file per command.
 
-mod calibrate;
+pub(crate) mod calibrate;
 mod check;
 pub(crate) mod compare;
 mod completions;
@@ -26,7 +26,7 @@ use crate::{
     output::Output,
 };
 
-pub use check::{Ambiguity, CheckReport, CheckedText, Counts, How, Shares, check_file, checked};
+pub use check::{CheckReport, CheckedText, Counts, How, check_file, checked};
 pub use generate::{Summary, generate_into};
 pub use perceive::{Extent, Measured, Row, perceive};
 

@@ -18,6 +18,9 @@ pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, 
     if let Some(file) = &job.settings.episodes {
         inputs.insert("episodes".into(), hash_of_file(file)?);
     }
+    if let Some(file) = &job.settings.calibration {
+        inputs.insert("calibration".into(), hash_of_file(file)?);
+    }
     let prompts = prompts(&job.settings)?;
     if !job.settings.roles.models().is_empty() {
         inputs.insert("prompts".into(), prompts.hash().to_owned());

@@ -97,6 +97,10 @@ impl Platform for Remembering<'_> {
         self.platform.listed_objects(scene)
     }
 
+    fn lists_everything(&self) -> bool {
+        self.platform.lists_everything()
+    }
+
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
         self.platform.scene_file(scene)
     }

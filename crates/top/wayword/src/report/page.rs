@@ -19,6 +19,8 @@ pub(super) struct PageView {
     /// Items that failed, shown or not.
     failed: usize,
     failed_left_out: usize,
+    /// Whether a text of the run may mean several places or objects.
+    is_ambiguous: bool,
 }
 
 /// Who asked, answered, wrote and checked: lines of a name and what it did.
@@ -33,6 +35,7 @@ struct StyleView {
     passed: usize,
     unverified: usize,
     rejected: usize,
+    ambiguous: usize,
 }
 
 impl PageView {
@@ -42,6 +45,7 @@ impl PageView {
             passed: counts.passed,
             unverified: counts.unverified,
             rejected: counts.rejected,
+            ambiguous: counts.ambiguous,
         };
         Self {
             settings: settings(&records.settings),
@@ -50,6 +54,7 @@ impl PageView {
             left_out: records.left_out,
             failed: records.failed.len() + records.failed_left_out,
             failed_left_out: records.failed_left_out,
+            is_ambiguous: records.counts.values().any(|counts| counts.ambiguous > 0),
         }
     }
 }
@@ -116,6 +121,7 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         Against::Labels => "labels if there are any, else captions",
         Against::Captions => "captions only",
     };
+    let calibration = settings.calibration.as_deref().map(|path| ("Calibration of labels", file(path)));
     let mut told = vec![
         ("Paths", paths),
         ("Styles", settings.style.iter().map(style).collect::<Vec<_>>().join(", ")),
@@ -126,6 +132,8 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         ("Repairs", format!("at most {}", settings.repairs)),
         ("Seed", settings.seed.to_string()),
     ];
+    told.extend(calibration);
+    told.extend(settings.reject_ambiguous.then(|| ("Ambiguous texts", "rejected".to_owned())));
     if !settings.scan.is_empty() {
         told.insert(1, ("Scenes", settings.scan.join(", ")));
     }

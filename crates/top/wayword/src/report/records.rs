@@ -21,7 +21,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
-use wayword_core::{Failure, Instruction, Provenance, Verdict};
+use wayword_core::{Ambiguity, Failure, Instruction, Provenance, Verdict};
 
 /// Most bytes of lines that are held, whatever the number of items asked for.
 const MOST_BYTES: usize = 128 << 20;
@@ -61,6 +61,8 @@ pub(super) struct Counts {
     pub(super) passed: usize,
     pub(super) unverified: usize,
     pub(super) rejected: usize,
+    /// Accepted texts that may mean several places or objects.
+    pub(super) ambiguous: usize,
 }
 
 /// Who asked, answered, wrote and checked.
@@ -82,6 +84,8 @@ struct Named {
     style: String,
     verdict: Verdict,
     provenance: Provenance,
+    #[serde(default)]
+    ambiguity: Option<Ambiguity>,
 }
 
 #[derive(Deserialize)]
@@ -124,6 +128,7 @@ impl Records {
                 Verdict::Unverified => &mut counts.unverified,
                 Verdict::Fail => &mut counts.rejected,
             } += 1;
+            counts.ambiguous += usize::from(named.ambiguity.is_some_and(|ambiguity| ambiguity.is_ambiguous()));
         }
         if self.roles.len() < MOST_ROLES {
             self.roles.insert(named.provenance.into());

@@ -77,6 +77,7 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<F
         mentions: words.iter().map(mention).collect(),
         verdict: Verdict::of(&findings),
         findings,
+        ambiguity: None,
         provenance: Provenance {
             wayword: "0.0.0".into(),
             asker: "rules".into(),

@@ -22,6 +22,8 @@ pub(super) struct TextView {
     /// Empty if nothing could be written.
     parts: Vec<PartView>,
     findings: Vec<FindingView>,
+    /// What the text may mean, where that is more than one thing.
+    ambiguity: Option<String>,
     provenance: Option<String>,
 }
 
@@ -89,6 +91,7 @@ pub(super) fn texts(record: &ItemRecord, places: Places<'_>) -> Vec<TextView> {
         reason: None,
         parts: parts(instruction, places),
         findings: findings(instruction),
+        ambiguity: ambiguity(instruction),
         provenance: Some(provenance(&instruction.provenance)),
     });
     let rejected = record.rejected.iter().map(|rejected| TextView {
@@ -97,6 +100,7 @@ pub(super) fn texts(record: &ItemRecord, places: Places<'_>) -> Vec<TextView> {
         reason: Some(rejected.reason.clone()),
         parts: rejected.last.as_ref().map(|last| parts(last, places)).unwrap_or_default(),
         findings: rejected.last.as_ref().map(findings).unwrap_or_default(),
+        ambiguity: rejected.last.as_ref().and_then(ambiguity),
         provenance: rejected.last.as_ref().map(|last| provenance(&last.provenance)),
     });
     let mut texts: Vec<TextView> = accepted.chain(rejected).collect();
@@ -165,6 +169,16 @@ fn findings(instruction: &Instruction) -> Vec<FindingView> {
         words: finding.span.and_then(|span| instruction.text.get(span[0]..span[1])).map(str::to_owned),
     };
     instruction.findings.iter().take(MOST_FINDINGS).map(view).collect()
+}
+
+/// What an instruction may mean, where that is more than one thing, and what tells its end from the others.
+fn ambiguity(instruction: &Instruction) -> Option<String> {
+    let ambiguity = instruction.ambiguity.as_ref()?;
+    let told = ambiguity.told()?;
+    Some(match &ambiguity.told_apart_by {
+        Some(by) => format!("{told}; only at its own end there is: {by}"),
+        None => told,
+    })
 }
 
 fn provenance(provenance: &Provenance) -> String {

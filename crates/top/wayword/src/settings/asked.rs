@@ -151,6 +151,18 @@ writing:
         /// Check texts against the platform's labels if it has any, or only against the captions. [default: labels]
         #[arg(long)]
         pub evidence: Option<Against>,
+        /// Shares by the names of objects that `wayword calibrate` made. The texts are held against a closed world, where absence
+        /// counts in full, so it changes only what labels answer in a dialogue about things that they do not list: "No" or "I am not
+        /// sure".
+        #[arg(long, value_name = "FILE")]
+        pub calibration: Option<PathBuf>,
+        /// Treat a text that may mean several places, or several objects at its end, like one that failed a check: it is written
+        /// again, and rejected at last. Without it such texts are kept and counted.
+        #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+        pub reject_ambiguous: Option<bool>,
+        /// Do not follow the texts: their records say neither whether they lead elsewhere nor what they may mean.
+        #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+        pub no_route: Option<bool>,
     }
 
 draw:

@@ -69,12 +69,26 @@ pub struct Settings {
     /// What texts are checked against.
     #[serde(default)]
     pub evidence: Against,
+    /// What the user's own data says of single names of objects, for the answers of labels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<PathBuf>,
+    /// Whether a text that may mean several places or objects fails.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub reject_ambiguous: bool,
+    /// Whether no text is followed.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub no_route: bool,
     /// Who asks, sees, summarises and writes.
     #[serde(default)]
     pub roles: Roles,
     /// Hashes of the files and styles that the run began with, by name. A run is not continued with others.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_false(flag: &bool) -> bool {
+    !*flag
 }
 
 /// How views are described.
@@ -145,9 +159,12 @@ impl Asked {
         let service = std::mem::take(&mut self.service).checked()?;
         let providers = std::mem::take(&mut self.providers);
         let settings = self.resolve()?;
-        for (flag, path) in
-            [("--data", &settings.data), ("--episodes", &settings.episodes), ("--prompts", &settings.roles.prompts)]
-        {
+        for (flag, path) in [
+            ("--data", &settings.data),
+            ("--episodes", &settings.episodes),
+            ("--calibration", &settings.calibration),
+            ("--prompts", &settings.roles.prompts),
+        ] {
             nameable(flag, path.as_deref())?;
         }
         Ok(Job { settings, service, providers })
@@ -173,6 +190,12 @@ impl Asked {
             return Err(Error::usage(
                 format!("--paths {paths} is more than {MOST_PATHS}"),
                 "make several runs, each with its own --seed",
+            ));
+        }
+        if writing.reject_ambiguous == Some(true) && writing.no_route == Some(true) {
+            return Err(Error::usage(
+                "--reject-ambiguous and --no-route cannot be combined: a text that nobody follows is not known to be ambiguous",
+                "give one of them",
             ));
         }
         if writing.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
@@ -210,6 +233,9 @@ impl Asked {
             seed: draw.seed.unwrap_or(0),
             limit: draw.limit,
             evidence: writing.evidence.unwrap_or_default(),
+            calibration: writing.calibration,
+            reject_ambiguous: writing.reject_ambiguous.unwrap_or(false),
+            no_route: writing.no_route.unwrap_or(false),
             roles,
             inputs: BTreeMap::new(),
         })

@@ -52,6 +52,8 @@ const MOST: f64 = 3.0;
 /// As how many claims the general weights count against a name's own. It keeps rare names close to them.
 const RIDGE: f64 = 4.0;
 const STEPS: usize = 30;
+/// From which offset on a name decides by itself: the odds double.
+const TELLING: f64 = std::f64::consts::LN_2;
 
 impl Calibration {
     /// Reads a calibration.
@@ -68,6 +70,14 @@ impl Calibration {
         let offsets = self.names.get(&name(claim));
         let offset = offsets.map_or(0.0, |offsets| offsets.of(missed));
         if offset.is_finite() { offset.clamp(-MOST, MOST) } else { 0.0 }
+    }
+
+    /// Whether labels leave it open that there is a thing of this name where they list none nearby: people are often right
+    /// about it there. `None` where the calibration knows the name too little.
+    #[must_use]
+    pub fn leaves_open(&self, name: &str) -> Option<bool> {
+        let close = kinds(name).into_iter().find_map(|kind| self.names.get(&kind))?.close;
+        (close.is_finite() && close.abs() >= TELLING).then_some(close < 0.0)
     }
 
     /// Fits what single names add to the general weights. Each name stands for itself.

@@ -1,15 +1,22 @@
 //! Answers from ground truth. It is called `labels` wherever it takes part, because it perceives nothing.
 //!
-//! Labels may reach no farther than two metres. Of a big thing that such a room has, they do not say that it is not there.
+//! Labels may reach no farther than two metres. Of a big thing that such a room has, they do not say that it is not there,
+//! unless their platform lists everything, or a calibration says otherwise.
 
 use crate::dialogue::{Asked, Wanted, asked};
-use wayword_checks::open::is_expected;
+use std::sync::Arc;
+use wayword_checks::open::{Calibration, is_expected};
 use wayword_core::{Answer, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
 use wayword_language::lexicon::{agree, counted, normal, plural, same_room, with_article};
 
 /// The answerer that reads a view's labels.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Labels;
+#[derive(Debug, Clone, Default)]
+pub struct Labels {
+    /// Whether labels list everything that is seen in a view: then what they do not list is not there.
+    pub list_everything: bool,
+    /// What the user's own data says of single names.
+    pub calibration: Option<Arc<Calibration>>,
+}
 
 /// Most kinds of objects that a description names, the nearest first.
 const MOST_NAMED: usize = 12;
@@ -20,27 +27,80 @@ impl Answerer for Labels {
     }
 
     fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
-        asks.iter().map(|ask| answer(ask.view, ask.question)).collect()
+        asks.iter().map(|ask| self.of(ask.view, ask.question)).collect()
     }
 }
 
-fn answer(view: &View, question: &str) -> Result<Answer, ModelError> {
-    let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
-        name: "--see labels".into(),
-        needs: "labels",
-        hint: "name a model that sees pictures, as in --see ollama/llava (docs/MODELS.md), or use a platform with labels",
-    })?;
-    Ok(match asked(question) {
-        Asked::Room => truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room))),
-        Asked::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
-        Asked::Presence { wanted, or } => presence(view, truth, &wanted, or),
-        Asked::Colour { name, .. } => colour(truth, &name),
-        Asked::Number(wanted) => number(truth, &wanted),
-        Asked::Place(wanted) => presence(view, truth, &[wanted], false),
-        Asked::Other(Some(side)) => describe(view, truth, Some(side)),
-        Asked::Other(None) if wants_all(question) => describe(view, truth, None),
-        Asked::Other(None) => not_sure(),
-    })
+impl Labels {
+    fn of(&self, view: &View, question: &str) -> Result<Answer, ModelError> {
+        let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
+            name: "--see labels".into(),
+            needs: "labels",
+            hint: "name a model that sees pictures, as in --see ollama/llava (docs/MODELS.md), or use a platform with labels",
+        })?;
+        Ok(match asked(question) {
+            Asked::Room => truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room))),
+            Asked::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
+            Asked::Presence { wanted, or } => self.presence(view, truth, &wanted, or),
+            Asked::Colour { name, .. } => colour(truth, &name),
+            Asked::Number(wanted) => self.number(truth, &wanted),
+            Asked::Place(wanted) => self.presence(view, truth, &[wanted], false),
+            Asked::Other(Some(side)) => describe(view, truth, Some(side)),
+            Asked::Other(None) if wants_all(question) => describe(view, truth, None),
+            Asked::Other(None) => not_sure(),
+        })
+    }
+
+    /// "Yes, on the left.", "No, there is no lamp."; of several that are asked for, which are there.
+    fn presence(&self, view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> Answer {
+        let found: Vec<(&Wanted, Option<&Label>)> =
+            wanted.iter().map(|wanted| (wanted, find(view, truth, wanted))).collect();
+        if let [(wanted, label)] = found.as_slice() {
+            return match label {
+                Some(label) => format!("Yes, {}.", phrase(third(view, label))),
+                None if self.is_open(truth, wanted) => not_sure(),
+                None => no(&wanted.said, wanted.several),
+            };
+        }
+        let there: Vec<String> = found
+            .iter()
+            .filter_map(|(wanted, label)| {
+                Some(format!("{} {}", with_article(&wanted.name), phrase(third(view, (*label)?))))
+            })
+            .collect();
+        let absent = found.iter().filter(|(_, label)| label.is_none());
+        let (open, missing): (Vec<_>, Vec<_>) = absent.partition(|(wanted, _)| self.is_open(truth, wanted));
+        let missing: Vec<&str> = missing.iter().map(|(wanted, _)| wanted.said.as_str()).collect();
+        match (there.as_slice(), missing.as_slice()) {
+            ([], []) if !open.is_empty() => not_sure(),
+            ([], missing) => no(&missing.join(" or "), false),
+            (there, []) => format!("Yes, there is {}.", there.join(" and ")),
+            (there, missing) => {
+                let begin = if or { "Yes" } else { "No" };
+                format!("{begin}, there is {}. There is no {}.", there.join(" and "), missing.join(" or "))
+            }
+        }
+    }
+
+    /// Whether labels leave open that there is such a thing. They do not where they list one of another colour or in another
+    /// part of the view.
+    fn is_open(&self, truth: &GroundTruth, wanted: &Wanted) -> bool {
+        let is_listed = truth.labels.iter().any(|label| agree(&label.name, &wanted.name));
+        if self.list_everything || is_listed {
+            return false;
+        }
+        let calibrated = self.calibration.as_ref().and_then(|calibration| calibration.leaves_open(&wanted.name));
+        let is_expected = || truth.room.as_deref().is_some_and(|room| is_expected(&wanted.name, room));
+        calibrated.unwrap_or_else(is_expected)
+    }
+
+    fn number(&self, truth: &GroundTruth, wanted: &Wanted) -> Answer {
+        match truth.labels.iter().filter(|label| agree(&label.name, &wanted.name)).count() {
+            0 if self.is_open(truth, wanted) => not_sure(),
+            0 => format!("There are no {}.", plural(&wanted.name)),
+            count => format!("There {} {}.", if count > 1 { "are" } else { "is" }, counted(count, &wanted.name)),
+        }
+    }
 }
 
 /// Whether a question asks for everything in the view.
@@ -94,46 +154,8 @@ fn describe(view: &View, truth: &GroundTruth, only: Option<Where>) -> Answer {
     }
 }
 
-/// "Yes, on the left.", "No, there is no lamp."; of several that are asked for, which are there.
-fn presence(view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> Answer {
-    let found: Vec<(&Wanted, Option<&Label>)> =
-        wanted.iter().map(|wanted| (wanted, find(view, truth, wanted))).collect();
-    if let [(wanted, label)] = found.as_slice() {
-        return match label {
-            Some(label) => format!("Yes, {}.", phrase(third(view, label))),
-            None if is_open(truth, wanted) => not_sure(),
-            None => no(&wanted.said, wanted.several),
-        };
-    }
-    let there: Vec<String> = found
-        .iter()
-        .filter_map(|(wanted, label)| {
-            Some(format!("{} {}", with_article(&wanted.name), phrase(third(view, (*label)?))))
-        })
-        .collect();
-    let absent = found.iter().filter(|(_, label)| label.is_none());
-    let (open, missing): (Vec<_>, Vec<_>) = absent.partition(|(wanted, _)| is_open(truth, wanted));
-    let missing: Vec<&str> = missing.iter().map(|(wanted, _)| wanted.said.as_str()).collect();
-    match (there.as_slice(), missing.as_slice()) {
-        ([], []) if !open.is_empty() => not_sure(),
-        ([], missing) => no(&missing.join(" or "), false),
-        (there, []) => format!("Yes, there is {}.", there.join(" and ")),
-        (there, missing) => {
-            let begin = if or { "Yes" } else { "No" };
-            format!("{begin}, there is {}. There is no {}.", there.join(" and "), missing.join(" or "))
-        }
-    }
-}
-
 fn no(said: &str, several: bool) -> Answer {
     format!("No, there {} no {said}.", if several { "are" } else { "is" })
-}
-
-/// Whether labels leave open that there is such a thing. They do not where they list one of another colour or in another
-/// part of the view.
-fn is_open(truth: &GroundTruth, wanted: &Wanted) -> bool {
-    let is_listed = truth.labels.iter().any(|label| agree(&label.name, &wanted.name));
-    !is_listed && truth.room.as_deref().is_some_and(|room| is_expected(&wanted.name, room))
 }
 
 /// The label that a question asks for, of the colour and in the part of the view that it names.
@@ -141,14 +163,6 @@ fn find<'a>(view: &View, truth: &'a GroundTruth, wanted: &Wanted) -> Option<&'a 
     let has_colour = |label: &Label| wanted.colour.is_none() || label.colour == wanted.colour;
     let is_there = |label: &Label| wanted.place.is_none_or(|place| place == third(view, label));
     truth.labels.iter().find(|label| agree(&label.name, &wanted.name) && has_colour(label) && is_there(label))
-}
-
-fn number(truth: &GroundTruth, wanted: &Wanted) -> Answer {
-    match truth.labels.iter().filter(|label| agree(&label.name, &wanted.name)).count() {
-        0 if is_open(truth, wanted) => not_sure(),
-        0 => format!("There are no {}.", plural(&wanted.name)),
-        count => format!("There {} {}.", if count > 1 { "are" } else { "is" }, counted(count, &wanted.name)),
-    }
 }
 
 fn is_room(room: &str, name: &str) -> Answer {
@@ -188,7 +202,7 @@ mod tests {
 
     fn ask(question: &str) -> String {
         let view = view();
-        Labels.answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap()
+        Labels::default().answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap()
     }
 
     #[test]
@@ -232,7 +246,9 @@ mod tests {
         let mut truth = known.ground_truth().unwrap().clone();
         truth.room = Some("dining room".into());
         let view = View::new(known.pose, known.horizontal_fov_rad, None, Some(truth));
-        let ask = |question: &str| Labels.answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap();
+        let ask = |question: &str| {
+            Labels::default().answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap()
+        };
         assert_eq!(ask("Is there a dining table?"), "I am not sure.");
         assert_eq!(ask("How many dining tables are there?"), "I am not sure.");
         assert_eq!(ask("Is there a dining table or a lamp?"), "Yes, there is a lamp on the left.");
@@ -241,9 +257,30 @@ mod tests {
     }
 
     #[test]
+    fn where_labels_list_everything_nothing_else_is_there() {
+        let known = view();
+        let mut truth = known.ground_truth().unwrap().clone();
+        truth.room = Some("dining room".into());
+        let view = View::new(known.pose, known.horizontal_fov_rad, None, Some(truth));
+        let question = "Is there a dining table?";
+        let answer = |labels: Labels| labels.answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap();
+        assert_eq!(answer(Labels { list_everything: true, ..Labels::default() }), "No, there is no dining table.");
+        let calibrated = |close: &str| {
+            let head = "platform = \"matterport\"\nfrom = \"a.json\"\ntexts = 1\n[names.\"dining table\"]\n";
+            let calibration = Calibration::read(&format!("{head}close = {close}\nfar = 0.0\nnowhere = 0.0")).unwrap();
+            answer(Labels { calibration: Some(Arc::new(calibration)), ..Labels::default() })
+        };
+        assert_eq!(calibrated("2.0"), "No, there is no dining table.");
+        assert_eq!(calibrated("0.1"), "I am not sure.", "a small offset decides nothing");
+        let offices = ["-2.0", "0.0"].map(calibrated);
+        assert_eq!(offices, ["I am not sure.", "I am not sure."]);
+    }
+
+    #[test]
     fn without_labels_it_says_so() {
         let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
-        let error = Labels.answer(&[Ask { view: &blind, question: "Which room is this?", history: &[] }]).remove(0);
+        let error =
+            Labels::default().answer(&[Ask { view: &blind, question: "Which room is this?", history: &[] }]).remove(0);
         let message = error.unwrap_err().to_string();
         assert!(message.starts_with("--see labels needs labels, but this view has none: name a model"));
     }

@@ -7,8 +7,8 @@ use crate::{
     walk::Walk,
     writer::{Brief, Complaint, RulesWriter, WriteError, Writer},
 };
-use wayword_checks::{Evidence, Subject, check_own};
-use wayword_core::{Check, Finding, Instruction, ModelError, Provenance, Style, Verdict};
+use wayword_checks::{Checked, Evidence, Subject, check_own};
+use wayword_core::{Ambiguity, Check, Finding, Instruction, ModelError, Provenance, Style, Verdict};
 
 /// Everything that one instruction is made from.
 #[derive(Clone, Copy)]
@@ -25,6 +25,14 @@ pub struct Order<'a> {
     pub seed: u64,
     /// How often a text that failed is written again, at most.
     pub repairs: u32,
+    /// Who follows each text that passed its checks; nobody where `None`.
+    pub follower: Option<&'a dyn Follow>,
+}
+
+/// Follows texts over what is known around their path.
+pub trait Follow {
+    /// Adds to a checked text whether it leads elsewhere, and returns what it may mean.
+    fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity;
 }
 
 /// Who writes.
@@ -120,12 +128,16 @@ fn unusable(text: String, reason: String) -> Complaint {
 
 fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
-    let checked = check_own(&text, Subject::closed(order.evidence, order.style, target));
+    let mut checked = check_own(&text, Subject::closed(order.evidence, order.style, target));
+    // A text that failed is written again, wherever it leads.
+    let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);
+    let ambiguity = follower.map(|follower| follower.follow(&text, &mut checked));
     Instruction {
         style: order.style.name.clone(),
         verdict: checked.verdict(),
         mentions: checked.mentions,
         findings: checked.findings,
+        ambiguity,
         provenance,
         text,
     }

@@ -86,10 +86,15 @@ fn outcome_against(
 ) -> (Result<Outcome, ModelError>, Vec<usize>) {
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let order = Order { walk, evidence, style: &style, profile: &profile, seed: 0, repairs };
+    let order = Order { walk, evidence, style: &style, profile: &profile, seed: 0, repairs, follower: None };
     let asker = RulesAsker::default();
-    let observers =
-        Observers { asker: &asker, answerer: &Labels, summariser: &RulesSummariser, mode, prompts_hash: Some("hash") };
+    let observers = Observers {
+        asker: &asker,
+        answerer: &Labels::default(),
+        summariser: &RulesSummariser,
+        mode,
+        prompts_hash: Some("hash"),
+    };
     let writer = Scripted::new(texts);
     let finisher = finisher.then_some(&RulesWriter as &dyn Writer);
     let outcome = write_and_repair(Writers { writer: &writer, finisher }, observers, order);
@@ -176,7 +181,7 @@ fn who_condensed_the_looks_around_is_told_even_without_a_dialogue() {
 fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
     let observers = Observers {
         asker: &RulesAsker::default(),
-        answerer: &Labels,
+        answerer: &Labels::default(),
         summariser: &RulesSummariser,
         mode: Mode::Fixed,
         prompts_hash: None,
@@ -188,8 +193,15 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
             for seed in 0..40 {
-                let order =
-                    Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 0 };
+                let order = Order {
+                    walk: &walk,
+                    evidence: &evidence,
+                    style: &style,
+                    profile: &profile,
+                    seed,
+                    repairs: 0,
+                    follower: None,
+                };
                 let writers = Writers { writer: &RulesWriter, finisher: None };
                 let outcome = write_and_repair(writers, observers, order).unwrap();
                 let Outcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
@@ -251,11 +263,11 @@ proptest! {
         }
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let asker = RulesAsker::default();
-        let (answerer, summariser) = (&Labels, &RulesSummariser);
+        let (answerer, summariser) = (&Labels::default(), &RulesSummariser);
         let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
-            let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8 };
+            let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, follower: None };
             let writers = Writers { writer: &RulesWriter, finisher: None };
             let text = match write_and_repair(writers, observers, order).unwrap() {
                 Outcome::Accepted(instruction) => instruction.text,

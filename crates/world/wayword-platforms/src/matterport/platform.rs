@@ -227,6 +227,11 @@ impl Platform for Matterport {
         Ok(Some(scene.viewpoints.iter().filter(sees).map(|(name, _)| name.clone()).collect()))
     }
 
+    /// Its labels reach about 2 m.
+    fn lists_everything(&self) -> bool {
+        false
+    }
+
     fn files(&self, id: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         Ok(self.layout.files(id, self.scene(id)?.viewpoints.keys()))
     }

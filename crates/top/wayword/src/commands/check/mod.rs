@@ -1,7 +1,6 @@
 //! `wayword check`.
 
 mod held;
-mod route;
 mod walks;
 mod worlds;
 
@@ -10,23 +9,22 @@ use crate::{
     commands::calibrate as calibration,
     count::count,
     error::{Error, Exit},
+    follow::{Followed, GOES_UNKNOWN, KnownScenes, Shares, Told, rejection},
     output::Output,
     pipeline::panoramas,
-    platforms::{self, Remembering, SCENES_KEPT},
+    platforms::{self, Remembering},
     settings::{Asked, Settings},
 };
 use held::Held;
 use rayon::prelude::*;
-pub use route::{Ambiguity, Shares};
-use route::{Followed, Told};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path as FilePath};
 use walks::{Text, Walk, walks};
 use wayword_checks::{
-    Checked, Evidence, Reach, Subject, Surroundings, Testimony, World, check, lift, objects_meant, open::Calibration,
+    Checked, Evidence, Reach, Subject, Surroundings, Testimony, World, check, lift, open::Calibration,
 };
-use wayword_core::{Check, Finding, Platform, Recent, SceneId, Verdict};
-use worlds::{KnownScene, world_of};
+use wayword_core::{Ambiguity, Check, Finding, Platform, Verdict};
+use worlds::world_of;
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = checked(args, output)?;
@@ -143,7 +141,7 @@ pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &O
     let platform = platforms::open(settings)?;
     let held = Held::to(how.style, settings.seed)?;
     let walks = walks(file, platform.as_ref())?;
-    let scenes = Recent::new(SCENES_KEPT);
+    let scenes = KnownScenes::new();
     let bar = output.progress(walks.len(), "paths");
     let checked: Vec<_> = walks
         .par_iter()
@@ -181,18 +179,14 @@ fn check_walk(
     walk: &Walk,
     held: &Held,
     how: How<'_>,
-    scenes: &Recent<SceneId, KnownScene>,
+    scenes: &KnownScenes,
 ) -> Result<CheckedWalk, Error> {
     let world = Remembering::new(platform);
     let views = panoramas(&world, &walk.path)?;
     let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
     let world_of = |text: &Text| world_of(text, how.world, platform.name(), evidence.source);
     let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
-    let scene = if some_are_open || !how.without_route {
-        Some(scenes.get_or_make(walk.path.scene.clone(), || KnownScene::of(platform, &walk.path.scene))?)
-    } else {
-        None
-    };
+    let scene = if some_are_open || !how.without_route { Some(scenes.get(platform, &walk.path.scene)?) } else { None };
     let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
     let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
     let follows = !how.without_route;
@@ -210,18 +204,18 @@ fn check_walk(
         let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), ..subject });
         let told = (!how.without_route).then(|| match &followed {
             Some(followed) => followed.follow(&text.words),
-            None => Told::unknown("it is not known how its path goes"),
+            None => Told::unknown(GOES_UNKNOWN),
         });
-        if checked.world == World::Open {
-            checked.add(told.iter().flat_map(|told| told.findings.clone()));
+        if let Some(told) = &told {
+            told.add_to(&mut checked);
         }
         if let Some(own) = testimonies[at].as_ref().filter(|_| checked.world == World::Open) {
             let others = walk.texts.iter().zip(&testimonies).filter(|(other, _)| other.words != text.words);
             let others: Vec<&Testimony> = others.filter_map(|(_, testimony)| testimony.as_ref()).collect();
             lift(&mut checked, own, &others);
         }
-        let ambiguity = told.as_ref().map(|told| told.ambiguity(objects_meant(&text.words, &evidence)));
-        checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(Ambiguity::rejection));
+        let ambiguity = told.as_ref().map(|told| told.ambiguity(&text.words, &evidence));
+        checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(rejection));
         let mut shown = CheckedText::of(text, &checked);
         shown.ambiguity = ambiguity;
         if let Some(told) = told {

@@ -1,31 +1,8 @@
 //! The world that each text is held against.
 
 use super::walks::Text;
-use crate::{cli::AskedWorld, error::Error};
-use std::sync::Arc;
-use wayword_checks::{Building, Source, World};
-use wayword_core::{Platform, SceneId, Survey};
-use wayword_world::survey;
-
-/// A scene that was surveyed.
-pub(super) struct KnownScene {
-    /// Its viewpoints.
-    pub(super) survey: Survey,
-    /// What is listed in it, for the checks.
-    pub(super) listed: Arc<Building>,
-    /// The same for the follower.
-    pub(super) followed: wayword_follower::Building,
-}
-
-impl KnownScene {
-    /// Surveys a scene. It has no viewpoints where the platform has no graph.
-    pub(super) fn of(platform: &dyn Platform, scene: &SceneId) -> Result<Self, Error> {
-        let survey = survey(platform, scene)?;
-        let listed = Arc::new(Building::of(&survey));
-        let followed = wayword_follower::Building::of(&survey);
-        Ok(Self { survey, listed, followed })
-    }
-}
+use crate::cli::AskedWorld;
+use wayword_checks::{Source, World};
 
 /// The world of a text: the one that was asked for, or else closed for a record whose provenance and evidence match
 /// what is at hand, and open for everything else.

@@ -10,6 +10,7 @@ use crate::{
     commands::config,
     count::count,
     error::{Error, Exit},
+    follow::KnownScenes,
     in_order::{cores, in_order},
     interrupt,
     item::Item,
@@ -107,7 +108,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let mut run = RunFolder::open(folder, settings)?;
     let data = WorldData::of(folder)?;
     let calls = plan.models.open(|| run.id(), output)?;
-    let team = Team::new(settings, calls.as_ref())?;
+    let team = Team::new(settings, calls.as_ref(), platform.as_ref())?;
     let Plan { items, styles, .. } = &plan;
 
     let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
@@ -120,7 +121,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let _graceful = interrupt::finish_first(calls.as_ref());
     let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
-    let world = RunPlatform { platform: platform.as_ref(), data: Some(&data) };
+    let world = RunPlatform { platform: platform.as_ref(), data: Some(&data), scenes: &KnownScenes::new() };
     let making = |item: &&Item| {
         interrupt::check()?;
         make(item, settings, world, &team, styles)
@@ -135,5 +136,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     if let Some(calls) = &calls {
         calls.record()?;
     }
-    summary::summary(folder, &run, items.len(), calls.as_ref().map(Calls::spent), stopped)
+    let mut summary = summary::summary(folder, &run, items.len(), calls.as_ref().map(Calls::spent), stopped)?;
+    summary.calibration = settings.calibration.as_ref().map(|file| file.display().to_string());
+    Ok(summary)
 }

@@ -10,7 +10,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{fmt, path::Path};
-use wayword_core::{Provenance, Verdict};
+use wayword_core::{Ambiguity, Provenance, Verdict};
 
 /// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,6 +25,13 @@ pub struct Summary {
     pub unverified: usize,
     /// Instructions among these that rules wrote, because every text of the model failed.
     pub finished_by_rules: usize,
+    /// Instructions that may mean several places, or several objects. None is rejected for that without --reject-ambiguous.
+    pub ambiguous: usize,
+    /// Instructions that could not be followed.
+    pub unfollowed: usize,
+    /// Why the first of them could not be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_unfollowed: Option<String>,
     /// Instructions, or whole items, that were rejected.
     pub rejected: usize,
     /// Items that failed: something is missing or broken, or the platform or a service was lost. The same command tries
@@ -35,6 +42,9 @@ pub struct Summary {
     pub first_loss: Option<String>,
     /// Who asked, answered, summarised and wrote.
     pub roles: String,
+    /// The file of `--calibration`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
     /// Calls, tokens and money of this command, if models took part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spent: Option<Spent>,
@@ -54,12 +64,18 @@ pub(super) fn summary(
     stopped: Option<Stop>,
 ) -> Result<Summary, Error> {
     let (mut passed, mut unverified, mut finished, mut roles) = (0, 0, 0, None);
+    let (mut ambiguous, mut unfollowed, mut why_unfollowed) = (0, 0, None);
     lines::each(&folder.join(file::INSTRUCTIONS), |line| {
-        let Told { verdict, provenance } = line.parse()?;
+        let Told { verdict, provenance, ambiguity } = line.parse()?;
         passed += usize::from(verdict == Verdict::Pass);
         unverified += usize::from(verdict == Verdict::Unverified);
         finished += usize::from(provenance.finished_for.is_some());
         roles.get_or_insert_with(|| told(&provenance));
+        if let Some(ambiguity) = ambiguity {
+            ambiguous += usize::from(ambiguity.is_ambiguous());
+            unfollowed += usize::from(ambiguity.ends.is_none());
+            why_unfollowed = why_unfollowed.take().or(ambiguity.unverified);
+        }
         Ok(())
     })?;
     let exit = match (&stopped, run.rejected.len() + run.errors.len()) {
@@ -73,6 +89,9 @@ pub(super) fn summary(
         passed,
         unverified,
         finished_by_rules: finished,
+        ambiguous,
+        unfollowed,
+        why_unfollowed,
         rejected: run.rejected.len(),
         errors: run.errors.len(),
         first_loss: match first_failure(&folder.join(file::ERRORS))? {
@@ -80,6 +99,7 @@ pub(super) fn summary(
             failed => failed,
         },
         roles: roles.unwrap_or_default(),
+        calibration: None,
         spent,
         stopped: stopped.map(|stop| stop.reason),
         exit,
@@ -112,6 +132,8 @@ fn first_line<T: DeserializeOwned>(file: &Path) -> Result<Option<T>, Error> {
 struct Told {
     verdict: Verdict,
     provenance: Provenance,
+    #[serde(default)]
+    ambiguity: Option<Ambiguity>,
 }
 
 fn told(provenance: &Provenance) -> String {
@@ -152,6 +174,15 @@ impl fmt::Display for Summary {
         if self.finished_by_rules > 0 {
             let finished = count(self.finished_by_rules, "instruction");
             writeln!(f, "{finished} written by rules, because every text of the model failed a check")?;
+        }
+        if self.ambiguous > 0 {
+            writeln!(f, "ambiguous: {} may mean several places or objects", count(self.ambiguous, "instruction"))?;
+        }
+        if let (Some(why), 1..) = (&self.why_unfollowed, self.unfollowed) {
+            writeln!(f, "not followed: {}; {}", count(self.unfollowed, "instruction"), tame(why))?;
+        }
+        if let Some(file) = &self.calibration {
+            writeln!(f, "calibration: {file}")?;
         }
         if let Some(spent) = &self.spent {
             writeln!(f, "models: {spent}")?;

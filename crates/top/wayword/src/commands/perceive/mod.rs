@@ -110,7 +110,7 @@ pub fn perceive(
     };
     for &perception in ways {
         let settings = Settings { perception, ..job.settings.clone() };
-        let (captions, row) = measure(&settings, calls.as_ref(), &views, output)?;
+        let (captions, row) = measure(platform, &settings, calls.as_ref(), &views, output)?;
         measured.rows.push(row);
         let shown = captions.iter().zip(&views).filter_map(|(captioned, view)| {
             let Captioned { caption, score } = captioned.as_ref()?;
@@ -138,12 +138,13 @@ fn roles(settings: &Settings) -> String {
 
 /// Captions every view in one way.
 fn measure(
+    platform: &dyn Platform,
     settings: &Settings,
     calls: Option<&Calls>,
     views: &[Labelled],
     output: &Output,
 ) -> Result<(Vec<Option<Captioned>>, Row), Error> {
-    let team = Team::new(settings, calls)?;
+    let team = Team::new(settings, calls, platform)?;
     let asked = || calls.map_or(0, |calls| calls.spent().answered + calls.spent().from_ledger);
     let before = asked();
     let bar = output.progress(views.len(), "views");

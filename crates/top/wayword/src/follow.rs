@@ -1,16 +1,55 @@
 //! What a follower says of a text: turns that are wrong, whether it leads elsewhere, and how many places it may mean.
 
-use super::worlds::KnownScene;
+use crate::{error::Error, platforms::SCENES_KEPT};
 use serde::Serialize;
-use wayword_checks::{Evidence, FrameEvidence};
-use wayword_core::{Check, Finding, Frame, Path, Verdict};
+use std::sync::Arc;
+use wayword_checks::{Checked, Evidence, FrameEvidence, World, objects_meant};
+use wayword_core::{Ambiguity, Check, Finding, Frame, Path, Platform, Recent, SceneId, Survey, Verdict};
 use wayword_follower::{
     Building, Guide, Place, Prior, Weights,
     route::{Known, Route, Thresholds, judge},
 };
+use wayword_world::survey;
+
+/// A scene that was surveyed.
+pub(crate) struct KnownScene {
+    /// Its viewpoints.
+    survey: Survey,
+    /// What is listed in it, for the checks.
+    pub(crate) listed: Arc<wayword_checks::Building>,
+    /// The same for the follower.
+    followed: Building,
+}
+
+/// The scenes that were surveyed last.
+pub struct KnownScenes(Recent<SceneId, KnownScene>);
+
+impl KnownScenes {
+    /// None yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self(Recent::new(SCENES_KEPT))
+    }
+
+    /// A scene, surveyed if it is not known. It has no viewpoints where the platform has no graph.
+    pub(crate) fn get(&self, platform: &dyn Platform, scene: &SceneId) -> Result<Arc<KnownScene>, Error> {
+        self.0.get_or_make(scene.clone(), || {
+            let survey = survey(platform, scene)?;
+            let listed = Arc::new(wayword_checks::Building::of(&survey));
+            let followed = Building::of(&survey);
+            Ok(KnownScene { survey, listed, followed })
+        })
+    }
+}
+
+impl Default for KnownScenes {
+    fn default() -> Self {
+        Self::new()
+    }
+}
 
 /// A path as the follower knows it.
-pub(super) struct Followed<'a> {
+pub(crate) struct Followed<'a> {
     place: Surrounded<'a>,
     walk: Vec<usize>,
     heading_rad: f64,
@@ -25,12 +64,12 @@ enum Surrounded<'a> {
 }
 
 /// What was found of a text.
-pub(super) struct Told {
-    pub(super) findings: Vec<Finding>,
-    pub(super) route: Option<Shares>,
+pub(crate) struct Told {
+    pub(crate) findings: Vec<Finding>,
+    pub(crate) route: Option<Shares>,
     /// What turning the most doubtful turn around would gain, natural logs.
-    pub(super) turn_gain: Option<f64>,
-    pub(super) ends: Option<Ends>,
+    pub(crate) turn_gain: Option<f64>,
+    pub(crate) ends: Option<Ends>,
 }
 
 /// How likely it is that a text means a walk, among the walks that the follower thinks of.
@@ -42,40 +81,10 @@ pub struct Shares {
     pub other: f64,
 }
 
-/// What a text may mean.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct Ambiguity {
-    /// Places, 3 m apart or more, at which walks end that fit the text about as well as the annotated one, which counts too.
-    /// `None` where no other walk is known.
-    pub ends: Option<usize>,
-    /// Objects at the end of the path that its task may mean; 0 where it names none that is known.
-    pub objects: usize,
-    /// What is only at the annotated end, where there are several.
-    pub told_apart_by: Option<String>,
-}
-
-impl Ambiguity {
-    /// Whether the text may mean several places, or several objects.
-    pub(super) fn is_ambiguous(&self) -> bool {
-        self.ends.is_some_and(|ends| ends > 1) || self.objects > 1
-    }
-
-    /// What is wrong with an ambiguous text, for a user who wants none.
-    pub(super) fn rejection(&self) -> Option<Finding> {
-        let ends = self.ends.unwrap_or(1);
-        let reason = match (ends > 1, self.objects > 1) {
-            (true, _) => format!("the text is ambiguous: it may end at {ends} places"),
-            (_, true) => format!("the text is ambiguous: its task may mean {} objects", self.objects),
-            _ => return None,
-        };
-        Some(Finding { check: Check::Route, verdict: Verdict::Fail, reason, span: None })
-    }
-}
-
 /// The ends that a text may mean.
-pub(super) struct Ends {
-    pub(super) count: usize,
-    pub(super) told_apart_by: Option<String>,
+pub(crate) struct Ends {
+    pub(crate) count: usize,
+    pub(crate) told_apart_by: Option<String>,
 }
 
 /// The walks that are thought of: the shortest path to each viewpoint up to this number of hops.
@@ -84,7 +93,7 @@ const PRIOR: Prior = Prior::Shortest(8);
 impl<'a> Followed<'a> {
     /// A path in its scene; `None` where its motion is unknown, or it goes nowhere. A path that does not go along the viewpoints
     /// of a graph is followed by what its own frames show.
-    pub(super) fn new(scene: Option<&'a KnownScene>, path: &Path, evidence: &Evidence) -> Option<Self> {
+    pub(crate) fn new(scene: Option<&'a KnownScene>, path: &Path, evidence: &Evidence) -> Option<Self> {
         let heading_rad = path.frames.first()?.pose.heading.rad();
         if !path.motion.is_known() || path.frames.len() < 2 {
             return None;
@@ -111,7 +120,7 @@ impl<'a> Followed<'a> {
     }
 
     /// Follows a text.
-    pub(super) fn follow(&self, text: &str) -> Told {
+    pub(crate) fn follow(&self, text: &str) -> Told {
         let (building, prior) = match &self.place {
             Surrounded::By(scene) => (&scene.followed, Some(PRIOR)),
             Surrounded::Nothing(building) => (building, None),
@@ -142,18 +151,12 @@ impl<'a> Followed<'a> {
     }
 }
 
-impl Told {
-    /// What the text may mean, where its task may mean this number of objects.
-    pub(super) fn ambiguity(&self, objects: usize) -> Ambiguity {
-        Ambiguity {
-            ends: self.ends.as_ref().map(|ends| ends.count),
-            objects,
-            told_apart_by: self.ends.as_ref().and_then(|ends| ends.told_apart_by.clone()),
-        }
-    }
+/// Why a path is not followed that [`Followed::new`] does not take.
+pub(crate) const GOES_UNKNOWN: &str = "it is not known how its path goes";
 
+impl Told {
     /// What is said of a text whose path cannot be followed.
-    pub(super) fn unknown(why: &str) -> Self {
+    pub(crate) fn unknown(why: &str) -> Self {
         let finding = Finding {
             check: Check::Route,
             verdict: Verdict::Unverified,
@@ -162,4 +165,28 @@ impl Told {
         };
         Self { findings: vec![finding], route: None, turn_gain: None, ends: None }
     }
+
+    /// What the text may mean.
+    pub(crate) fn ambiguity(&self, text: &str, evidence: &Evidence) -> Ambiguity {
+        let unfollowed = self.findings.iter().find(|finding| finding.check == Check::Route && self.ends.is_none());
+        Ambiguity {
+            ends: self.ends.as_ref().map(|ends| ends.count),
+            objects: objects_meant(text, evidence),
+            told_apart_by: self.ends.as_ref().and_then(|ends| ends.told_apart_by.clone()),
+            unverified: unfollowed.map(|finding| finding.reason.clone()),
+        }
+    }
+
+    /// Adds to a checked text what the follower says of it. A closed world knows every turn, so only the route is added there.
+    pub(crate) fn add_to(&self, checked: &mut Checked) {
+        let is_route = |finding: &&Finding| finding.check == Check::Route;
+        let all = checked.world == World::Open;
+        checked.add(self.findings.iter().filter(|finding| all || is_route(finding)).cloned());
+    }
+}
+
+/// What is wrong with an ambiguous text, for a user who wants none.
+pub(crate) fn rejection(ambiguity: &Ambiguity) -> Option<Finding> {
+    let reason = ambiguity.told()?;
+    Some(Finding { check: Check::Route, verdict: Verdict::Fail, reason, span: None })
 }

@@ -1,0 +1,50 @@
+//! What a text may mean beside what it was written for.
+
+use serde::{Deserialize, Serialize};
+
+/// What an instruction may mean. It is no verdict: an ambiguous text can be true of its path.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Ambiguity {
+    /// Places, 3 m apart or more, at which walks end that fit the text about as well as the annotated one, which counts too.
+    /// `None` where no other walk is known.
+    pub ends: Option<usize>,
+    /// Objects at the end of the path that its task may mean; 0 where it names none that is known.
+    pub objects: usize,
+    /// What is only at the annotated end, where there are several.
+    pub told_apart_by: Option<String>,
+    /// Why the ends are not known, where they are not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unverified: Option<String>,
+}
+
+impl Ambiguity {
+    /// Whether the text may mean several places, or several objects.
+    #[must_use]
+    pub fn is_ambiguous(&self) -> bool {
+        self.ends.is_some_and(|ends| ends > 1) || self.objects > 1
+    }
+
+    /// What is ambiguous, in a sentence; `None` where nothing is.
+    #[must_use]
+    pub fn told(&self) -> Option<String> {
+        match (self.ends, self.objects) {
+            (Some(ends), _) if ends > 1 => Some(format!("the text is ambiguous: it may end at {ends} places")),
+            (_, objects) if objects > 1 => Some(format!("the text is ambiguous: its task may mean {objects} objects")),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_is_ambiguous_by_its_ends_or_by_its_objects() {
+        let told = |ends, objects| Ambiguity { ends, objects, ..Ambiguity::default() }.told();
+        assert!(told(Some(3), 1).unwrap().contains("3 places"));
+        assert!(told(Some(1), 2).unwrap().contains("2 objects"));
+        assert!(told(None, 2).is_some());
+        assert_eq!((told(Some(1), 1), told(None, 0)), (None, None));
+    }
+}
