@@ -16,6 +16,7 @@ mod key;
 mod made_up;
 mod people;
 mod provider;
+mod reader_figures;
 mod resources;
 mod reuse;
 mod sample;
@@ -176,6 +177,8 @@ enum What {
     #[command(mut_arg("show", |show| show.help("Show at most this many corruptions that were not found")))]
     #[command(after_long_help = "")]
     Found(found::Flags),
+    /// Measure how far the follower can be believed: its calibration, wrong turns, other paths' texts, ambiguity.
+    ReaderFigures(reader_figures::Flags),
     /// Try out the settings of agents on a train split.
     Sweep(sweep::Flags),
 }
@@ -216,6 +219,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::People(flags) => people::measure(flags, output),
         What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
         What::Found(flags) => found::measure(flags, output),
+        What::ReaderFigures(flags) => reader_figures::measure(&flags, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }

@@ -20,7 +20,10 @@ use crate::{
 use building::{Building, nearest_m};
 use clap::{Args, builder::PossibleValuesParser};
 use kind::Kind;
-use rand::seq::SliceRandom;
+use rand::{
+    Rng,
+    seq::{IteratorRandom, SliceRandom},
+};
 use rayon::prelude::*;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -67,6 +70,13 @@ pub(crate) struct Flags {
     /// File for the corrupted texts. What was changed in each goes into FILE.key.json beside it.
     #[arg(long)]
     out: PathBuf,
+}
+
+/// A text with one of its turns flipped; `None` where it commands none.
+pub(crate) fn turned(text: &str, rng: &mut impl Rng) -> Option<String> {
+    let edits = turns::turns(text, &words(text));
+    let edit = edits.into_iter().choose(rng)?;
+    Some(edited(text, vec![edit])?.0)
 }
 
 pub(super) fn write(flags: &Flags, output: &Output) -> Result<(), Error> {

@@ -1,7 +1,7 @@
 //! Fits the weights of the follower to people's texts of known walks, and prints how they do on buildings that were left
 //! out.
 
-mod texts;
+pub(crate) mod texts;
 mod walker;
 
 use clap::Args;

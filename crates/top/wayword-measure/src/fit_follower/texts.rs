@@ -12,28 +12,30 @@ use wayword_core::{SceneId, Survey, Surveyed};
 use wayword_follower::{Building, Guide};
 
 /// A building.
-pub(super) struct Scene {
-    pub(super) name: SceneId,
+pub(crate) struct Scene {
+    pub(crate) name: SceneId,
     pub(super) survey: Survey,
-    pub(super) building: Building,
+    pub(crate) building: Building,
 }
 
 /// A text with its walk.
-pub(super) struct Text {
+pub(crate) struct Text {
     /// Its building's place in the list.
-    pub(super) scene: usize,
-    pub(super) guide: Guide,
-    pub(super) walk: Vec<usize>,
-    pub(super) heading_rad: f64,
+    pub(crate) scene: usize,
+    /// Its words.
+    pub(crate) words: String,
+    pub(crate) guide: Guide,
+    pub(crate) walk: Vec<usize>,
+    pub(crate) heading_rad: f64,
     /// For each viewpoint, its distance over the graph from the goal, metres.
-    pub(super) to_goal_m: Vec<f64>,
+    pub(crate) to_goal_m: Vec<f64>,
 }
 
 /// A walk that ends nearer than this to the goal succeeds, metres (R2R's evaluator).
 const SUCCESS_M: f64 = 3.0;
 
 /// Reads the texts of a file, and surveys their buildings.
-pub(super) fn texts(data: &Path, episodes: &Path) -> Result<(Vec<Scene>, Vec<Text>), Error> {
+pub(crate) fn texts(data: &Path, episodes: &Path) -> Result<(Vec<Scene>, Vec<Text>), Error> {
     let matterport =
         AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
     let platform = platforms::open(&Asked::from(matterport).resolve()?)?;
@@ -55,6 +57,7 @@ pub(super) fn texts(data: &Path, episodes: &Path) -> Result<(Vec<Scene>, Vec<Tex
         let heading_rad = walk.path.frames[0].pose.heading.rad();
         let text = |text: &wayword::people::Text| Text {
             scene,
+            words: text.words.clone(),
             guide: Guide::read(&text.words),
             walk: known.clone(),
             heading_rad,
