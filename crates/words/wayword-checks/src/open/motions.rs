@@ -7,7 +7,7 @@ use super::{
     stretches::Stretches,
 };
 use wayword_language::{
-    lexicon::{is_room, is_thing, kinds, normal_word, room_name},
+    lexicon::{Class, is_room, is_thing, kinds, normal_word, room_name},
     reading::{Going, Place, Reading, What},
     text::Token,
 };
@@ -44,7 +44,8 @@ pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretc
             || is_restated(reading, &motions[before], motion)
             || leaves_between(&motions[before..=at]);
         // A thing of which the labels list none is passed no more than once, either.
-        let passes_thing = motion.relation == Relation::Past && !motion.is_room;
+        let passes_thing =
+            motion.relation == Relation::Past && !motion.is_room && claims[motion.at].class != Class::Fabric;
         let is_once = match stretches.places(&claims[motion.at]) {
             0 => passes_thing,
             count => count == 1,

@@ -172,6 +172,7 @@ fn what_is_said_twice_needs_two_stretches_of_the_path() {
         "Walk past the sofa. The rug is just past the sofa.",
         "Walk past the long rug. Turn left and walk past the round rug.",
         "Walk around the sofa. Turn left and walk around the sofa.",
+        "Walk past the wall. Turn left and walk past the wall.",
         "Leave the bedroom. Stop in the hallway.",
     ] {
         assert_eq!(told(text, 0, 3), PASSES, "{text}");
