@@ -2,7 +2,7 @@
 
 mod relation;
 
-use super::{Event, Ordinal, Reading, What, clauses};
+use super::{Event, Floor, Ordinal, Reading, What, clauses};
 use crate::{
     lexicon::room_name,
     text::{self, Token},
@@ -30,6 +30,10 @@ pub struct Step {
     pub is_slight: bool,
     /// Its climb: a flight of stairs, or a few steps.
     pub climb: Option<Climb>,
+    /// The storey on which it says that something is: "the kitchen on level 2".
+    pub floor: Option<Floor>,
+    /// Whether something lies up or down the stairs: "the bedroom upstairs".
+    pub storey: Option<Climb>,
     /// Whether it says to stop or to wait.
     pub stops: bool,
     /// Whether it says to go straight on.
@@ -157,6 +161,8 @@ impl Builder<'_> {
             turn_span: None,
             is_slight: self.has(&SLIGHT),
             climb: None,
+            floor: None,
+            storey: None,
             stops: false,
             is_straight: self.has(&STRAIGHT),
             is_condition: CONDITIONS.contains(&self.tokens[first].word.as_str()),
@@ -190,6 +196,8 @@ impl Builder<'_> {
                     step.turn_span = step.turn_span.or(Some(event.span));
                 }
                 What::Climb(climb) | What::Steps(climb) => step.climb = step.climb.or(Some(*climb)),
+                What::Floor(floor) if !floor.leaves && !floor.aside => step.floor = Some(*floor),
+                What::Storey(climb) => step.storey = Some(*climb),
                 What::Stop => step.stops = true,
                 What::Place(place) => {
                     let relation = Relation::of(place, &self.tokens[self.range.start..*at], before);
@@ -295,6 +303,9 @@ mod tests {
         assert_eq!(step("Stop at the top of the staircase.").stairs, Stairs::Top);
         assert!(step("Wait outside.").is_outdoors && step("Wait outside.").stops);
         assert_eq!(step("Stop right before the sofa.").side, None);
+        assert_eq!(step("Go to the attic on level 3.").floor.and_then(|floor| floor.number), Some(3));
+        assert_eq!(step("Go down from level 3.").floor, None);
+        assert_eq!(step("Go to the bedroom upstairs.").storey, Some(Climb::Up));
     }
 
     #[test]
