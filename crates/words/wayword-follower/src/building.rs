@@ -14,6 +14,8 @@ use wayword_language::lexicon::{normal, thing};
 pub struct Building {
     pub(crate) viewpoints: Vec<Viewpoint>,
     pub(crate) things: Vec<Thing>,
+    /// Number of storeys, where the platform knows them; else 0.
+    pub(crate) levels: u32,
     near: Mutex<BTreeMap<Nearness, Arc<Near>>>,
 }
 
@@ -23,6 +25,8 @@ pub(crate) struct Viewpoint {
     pub(crate) position: DVec3,
     pub(crate) neighbours: Vec<usize>,
     pub(crate) room: Option<String>,
+    /// Its storey, the lowest being 1, where the platform knows it.
+    pub(crate) level: Option<u32>,
     /// Whether its room, its things and all its neighbours are known.
     pub(crate) is_known: bool,
     /// Whether a way up begins here, and a way down.
@@ -51,6 +55,8 @@ pub struct Place {
 
 /// How far away an object is taken to be that is seen from a path, metres.
 const NEARBY_M: f64 = 1.5;
+/// Hops that are shorter lead nowhere, metres: some graphs have two viewpoints at a place.
+const SHORT_M: f64 = 0.3;
 /// The least slope of a hop that is stairs.
 const STAIRS_SLOPE: f64 = 0.25;
 
@@ -65,6 +71,7 @@ impl Building {
                 position: viewpoint.position,
                 neighbours,
                 room,
+                level: viewpoint.level,
                 is_known: true,
                 climbs: [false; 2],
             });
@@ -83,6 +90,7 @@ impl Building {
             }
         }
         building.things = things.into_values().collect();
+        building.levels = survey.viewpoints().iter().filter_map(|viewpoint| viewpoint.level).max().unwrap_or(0);
         building.find_stairs();
         building
     }
@@ -102,7 +110,8 @@ impl Building {
                 building.things.push(Thing { name, position, seen_from: vec![at] });
             }
             let (position, room) = (place.position, place.room);
-            building.viewpoints.push(Viewpoint { position, neighbours, room, is_known: true, climbs: [false; 2] });
+            let viewpoint = Viewpoint { position, neighbours, room, level: None, is_known: true, climbs: [false; 2] };
+            building.viewpoints.push(viewpoint);
         }
         building.find_stairs();
         building
@@ -182,6 +191,16 @@ impl Building {
         let alike = self.viewpoints.iter().filter(|other| other.room == *room).count();
         let share = alike as f64 / self.len().max(1) as f64;
         usize::from(share >= 0.05) + usize::from(share >= 0.15)
+    }
+
+    /// The turns to the neighbours of a viewpoint for a walker that looks along `heading_rad`, radians, positive right.
+    /// Neighbours at the same place are left out.
+    pub(crate) fn turns(&self, viewpoint: usize, heading_rad: f64) -> Vec<f64> {
+        let turn = |to: &usize| {
+            let (bearing_rad, length_m) = self.hop(viewpoint, *to);
+            bearing_rad.filter(|_| length_m > SHORT_M).map(|rad| wrapped(rad - heading_rad))
+        };
+        self.viewpoints[viewpoint].neighbours.iter().filter_map(turn).collect()
     }
 
     /// The direction of a hop, radians from +y clockwise, and its length over ground and in space, metres.

@@ -18,6 +18,8 @@ pub struct Guide {
     pub(crate) steps: Vec<Told>,
     /// The rooms that it names.
     rooms: Vec<String>,
+    /// Whether it tells no way, but only a place to go to: "Go to the attic and dust the globe".
+    pub(crate) is_goal: bool,
 }
 
 /// A step, and what it names.
@@ -56,11 +58,15 @@ pub(crate) enum Kind {
     /// To, past or along something.
     Go,
     Other,
+    /// The first step of a text that tells no way, but only a place to go to.
+    Goal,
+    /// A later step of such a text.
+    Task,
 }
 
 impl Kind {
     /// Number of kinds.
-    pub(crate) const COUNT: usize = 10;
+    pub(crate) const COUNT: usize = 12;
 
     fn of(step: &Step) -> Self {
         let crosses = |relation| matches!(relation, Relation::OutOf | Relation::Into | Relation::Through);
@@ -80,6 +86,15 @@ impl Kind {
 }
 
 impl Told {
+    /// Whether it tells anything of the way: a turn, stairs, where to stop, what to pass.
+    fn tells_way(&self) -> bool {
+        let is_way = |mention: &Mention| {
+            matches!(mention.relation, Relation::OutOf | Relation::Through | Relation::Past | Relation::Along)
+        };
+        let Step { turn, climb, stops, is_straight, is_condition, .. } = &self.step;
+        turn.is_some() || climb.is_some() || *stops || *is_straight || *is_condition || self.mentions.iter().any(is_way)
+    }
+
     /// Makes it tell no turn.
     pub(crate) fn leave_out_turn(&mut self) {
         self.step.turn = None;
@@ -124,8 +139,13 @@ impl Guide {
             }
             Told { kind: Kind::of(&step), step, mentions }
         };
-        let steps = steps(text, &reading).into_iter().map(told).collect();
-        Self { steps, rooms }
+        let mut steps: Vec<Told> = steps(text, &reading).into_iter().map(told).collect();
+        let is_goal = !steps.is_empty() && !steps.iter().any(|told| told.tells_way());
+        if is_goal {
+            steps.iter_mut().for_each(|told| told.kind = Kind::Task);
+            steps[0].kind = Kind::Goal;
+        }
+        Self { steps, rooms, is_goal }
     }
 
     /// Number of steps.

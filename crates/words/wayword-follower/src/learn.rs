@@ -56,6 +56,13 @@ impl Slope {
         self.texts += 1;
     }
 
+    /// Adds an empty text of a walk. It counts among no texts: what it teaches is what a reader does that is told nothing.
+    pub fn add_floor(&mut self, nothing: &Trial<'_>, tree: &Tree, goal: usize, weights: &Weights) {
+        let mut floor = Self::default();
+        floor.add(nothing, tree, goal, weights);
+        self.values.iter_mut().zip(&floor.values).for_each(|(a, b)| *a += b);
+    }
+
     /// Adds a text of a walk against the same text with one change that makes it wrong: the text as it is should fit better.
     /// `walk` is a tree of that walk alone.
     pub fn add_contrast(

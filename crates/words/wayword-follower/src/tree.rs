@@ -23,6 +23,21 @@ pub(crate) struct Node {
     pub(crate) turn_rad: f64,
     /// The length of that hop, metres.
     pub(crate) length_m: f64,
+    /// What other ways there were before that hop, and are here.
+    pub(crate) ways: Ways,
+}
+
+/// The ways out of a viewpoint, as a walker sees them that came there and goes on.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Ways {
+    /// Whether one could go straight on from here.
+    pub(crate) onward: bool,
+    /// Whether a way leads off here to the left, and to the right.
+    pub(crate) aside: [bool; 2],
+    /// How many ways before the hop here lay nearer to straight ahead than the one taken.
+    pub(crate) straighter: usize,
+    /// How many ways before the hop here lay on the side of the one taken and nearer to a right angle.
+    pub(crate) squarer: usize,
 }
 
 /// Which walks are thought of.
@@ -34,8 +49,32 @@ pub enum Prior {
     TwoPieces(usize),
 }
 
+/// How far a way onward may lie from straight ahead, radians.
+const ONWARD_RAD: f64 = 0.6;
+/// How far from straight ahead a way lies that leads off to a side, radians.
+const ASIDE_RAD: std::ops::Range<f64> = 0.8..2.4;
+/// By how much a way has to lie better than another that it counts as better, radians.
+const BETTER_RAD: f64 = 0.2;
+
 /// Most nodes of a tree. In a large building walks of two pieces are many; the shortest paths come first.
 const MOST_NODES: usize = 20_000;
+
+impl Ways {
+    /// Notes the ways out of a viewpoint, by their turns (radians, positive right).
+    fn look(&mut self, turns: &[f64]) {
+        self.onward = turns.iter().any(|rad| rad.abs() < ONWARD_RAD);
+        self.aside = [-1.0, 1.0].map(|sign| turns.iter().any(|rad| ASIDE_RAD.contains(&(sign * rad))));
+    }
+
+    /// Compares a turn with the others that were possible.
+    fn compare(&mut self, turns: &[f64], taken_rad: f64) {
+        let off = |rad: f64| (rad.abs() - std::f64::consts::FRAC_PI_2).abs();
+        let is_straighter = |rad: &&f64| rad.abs() + BETTER_RAD < taken_rad.abs();
+        let is_squarer = |rad: &&f64| *rad * taken_rad > 0.0 && off(**rad) + BETTER_RAD < off(taken_rad);
+        self.straighter = turns.iter().filter(is_straighter).count();
+        self.squarer = turns.iter().filter(is_squarer).count();
+    }
+}
 
 impl Tree {
     /// The walks from a start that looks along `heading_rad` (radians from +y, clockwise).
@@ -50,15 +89,19 @@ impl Tree {
     /// One walk alone, and its beginnings.
     #[must_use]
     pub fn single(building: &Building, walk: &[usize], heading_rad: f64) -> Self {
-        let mut tree = Self::begin(walk.first().copied().unwrap_or_default(), heading_rad);
+        let mut tree = Self::begin(building, walk.first().copied().unwrap_or_default(), heading_rad);
         for (at, viewpoint) in walk.iter().skip(1).enumerate() {
             tree.grow(building, at, *viewpoint);
         }
         tree
     }
 
-    fn begin(viewpoint: usize, heading_rad: f64) -> Self {
-        Self { nodes: vec![Node { viewpoint, before: 0, hops: 0, heading_rad, turn_rad: 0.0, length_m: 0.0 }] }
+    fn begin(building: &Building, viewpoint: usize, heading_rad: f64) -> Self {
+        let mut ways = Ways::default();
+        if viewpoint < building.len() {
+            ways.look(&building.turns(viewpoint, heading_rad));
+        }
+        Self { nodes: vec![Node { viewpoint, before: 0, hops: 0, heading_rad, turn_rad: 0.0, length_m: 0.0, ways }] }
     }
 
     /// Adds a walk that is one hop longer than another; returns its node.
@@ -67,7 +110,10 @@ impl Tree {
         let (bearing_rad, length_m) = building.hop(from.viewpoint, viewpoint);
         let heading_rad = bearing_rad.unwrap_or(from.heading_rad);
         let turn_rad = wrapped(heading_rad - from.heading_rad);
-        self.nodes.push(Node { viewpoint, before, hops: from.hops + 1, heading_rad, turn_rad, length_m });
+        let mut ways = Ways::default();
+        ways.compare(&building.turns(from.viewpoint, from.heading_rad), turn_rad);
+        ways.look(&building.turns(viewpoint, heading_rad));
+        self.nodes.push(Node { viewpoint, before, hops: from.hops + 1, heading_rad, turn_rad, length_m, ways });
         self.nodes.len() - 1
     }
 
@@ -78,7 +124,7 @@ impl Tree {
         // For each viewpoint, the node of the viewpoint before it on its shortest path.
         let mut before: Vec<Option<usize>> = vec![None; count];
         let mut is_done = vec![false; count];
-        let mut tree = Self::begin(start, heading_rad);
+        let mut tree = Self::begin(building, start, heading_rad);
         far_m[start] = 0.0;
         loop {
             let open = (0..count).filter(|at| !is_done[*at] && far_m[*at].is_finite());

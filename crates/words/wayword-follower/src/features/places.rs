@@ -3,8 +3,8 @@
 use super::{
     Feature, Stretch, class,
     tables::{
-        GROUP_ROOM, GROUP_THING, GROUPS, RELATIONS, ROOM, ROOM_AT_END, ROOM_MOVE, SIDE_OF_PLACE, THING, THING_AT_END,
-        TOWARDS, TURN_AT, group,
+        AHEAD, GROUP_ROOM, GROUP_THING, GROUPS, NEAREST, RELATIONS, ROOM, ROOM_AT_END, ROOM_MOVE, SIDE_OF_PLACE, THING,
+        THING_AT_END, TOWARDS, TURN_AT, group,
     },
     twelfth,
 };
@@ -24,6 +24,8 @@ pub(super) fn places(trial: &Trial<'_>, step: usize, stretch: &Stretch<'_>, foun
         near(place, stretch, is_last, found);
         towards(trial, place, stretch, found);
         side(trial, place, stretch, found);
+        ahead(trial, place, stretch, found);
+        nearest(trial, place, stretch, is_last, found);
     }
 }
 
@@ -88,4 +90,34 @@ fn side(trial: &Trial<'_>, place: &Found<'_>, stretch: &Stretch<'_>, found: &mut
     if let Some(off_rad) = place.near.nearest[node.viewpoint].and_then(off) {
         found.push(SIDE_OF_PLACE.at([(twelfth(wrapped(off_rad - node.heading_rad) * sign), 12)]));
     }
+}
+
+/// Whether the place lies ahead of the walker where the stretch ends, or behind.
+fn ahead(trial: &Trial<'_>, place: &Found<'_>, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
+    let node = &stretch.tree.nodes[stretch.last()];
+    let Some(there) = place.near.nearest[node.viewpoint] else { return };
+    let off = there - trial.building.viewpoints[node.viewpoint].position;
+    let near = match place.near.class[node.viewpoint] {
+        0 | 1 => 0,
+        2 => 1,
+        3 | 4 => 2,
+        _ => return,
+    };
+    if let (true, Some(off_rad)) = (libm::hypot(off.x, off.y) > 0.3, bearing(off)) {
+        let angle = class(wrapped(off_rad - node.heading_rad).abs().to_degrees(), &[45.0, 90.0, 135.0]);
+        let relation = (place.mention.relation as usize, RELATIONS);
+        found.push(AHEAD.at([relation, (usize::from(place.is_room), 2), (near, 3), (angle, 4)]));
+    }
+}
+
+/// Whether the stretch ends where the place is nearest: one could go nearer from there, or has been nearer.
+fn nearest(trial: &Trial<'_>, place: &Found<'_>, stretch: &Stretch<'_>, is_last: bool, found: &mut Vec<Feature>) {
+    let class = |viewpoint: usize| place.near.class[viewpoint];
+    let of_node = |node: &usize| stretch.tree.nodes[*node].viewpoint;
+    let (end, here) = (of_node(&stretch.last()), class(of_node(&stretch.last())));
+    let was_nearer = stretch.nodes().iter().any(|node| class(of_node(node)) < here);
+    let comes_nearer = trial.building.viewpoints[end].neighbours.iter().any(|to| class(*to) < here);
+    let group = (group(place.mention.relation), GROUPS);
+    let which = usize::from(was_nearer) * 2 + usize::from(comes_nearer);
+    found.push(NEAREST.at([group, (usize::from(place.is_room), 2), (usize::from(is_last), 2), (which, 4)]));
 }

@@ -3,9 +3,10 @@
 use super::{
     Feature, angle, class, places,
     tables::{
-        ANGLES, BORDER, CONDITION, CROSSINGS, FIRST_TURN, HOPS, HOPS_CLASSES, LATER_TURNS, LENGTH, MARK_CROSSINGS,
-        MARK_HOPS, MARK_TURN, MARKS, ONWARD, OPENING_TURN, RISE, SAME_ROOM, SIDE_OF_TURN, STAIRS_AT, STOPS,
-        TURN_AFTER_OPENING, WHOLE_TURN, WIDEST_TURN,
+        ANGLES, BORDER, CONDITION, CROSSING_ENDS, CROSSINGS, FIRST_TURN, HOPS, HOPS_CLASSES, HOPS_OF_MENTIONS,
+        HOPS_OF_STEPS, LATER_TURNS, LENGTH, LEVEL, LEVEL_RISE, LEVELS, MARK_CROSSINGS, MARK_HOPS, MARK_TURN, MARKS,
+        NEXT_STEP, ONWARD, OPENING_TURN, RISE, SAME_ROOM, SIDE_OF_TURN, SKIPPED, SQUARER, STAIRS_AT, STOPS, STRAIGHTER,
+        TURN_AFTER_OPENING, TURN_BEFORE, WHOLE_TURN, WIDEST_TURN,
     },
     twelfth,
 };
@@ -21,8 +22,6 @@ use wayword_language::reading::steps::{Relation, Stairs};
 pub(crate) const MOST_HOPS: usize = 6;
 /// A turn that is no bend of a corridor, radians.
 const CLEAR_TURN_RAD: f64 = 0.7;
-/// How far a way onward may lie from straight ahead, radians.
-const ONWARD_RAD: f64 = 0.6;
 
 /// The nodes of a walk that a step takes: from where it begins to where it ends.
 #[derive(Debug, Clone, Copy)]
@@ -80,15 +79,32 @@ pub(crate) fn stretch(trial: &Trial<'_>, step: usize, stretch: &Stretch<'_>, fou
     let told = &trial.guide.steps[step];
     let is_last = step + 1 == trial.guide.len();
     length(told, is_last, stretch, found);
+    around(trial, step, stretch, found);
     turns(told, stretch, found);
     let viewpoint = |node: usize| &trial.building.viewpoints[stretch.tree.nodes[node].viewpoint];
     let (first, last) = (viewpoint(stretch.first()), viewpoint(stretch.last()));
     rise(told, last.position.z - first.position.z, found);
     stairs(told, [first, last], found);
+    level(trial, told, [viewpoint(0), last], found);
     let crossings =
         stretch.nodes().windows(2).filter(|pair| viewpoint(pair[0]).room != viewpoint(pair[1]).room).count();
+    if stretch.hops > 0 {
+        let crosses = |at: usize| {
+            let pair = [stretch.nodes()[at], stretch.nodes()[at + 1]].map(viewpoint);
+            (usize::from(pair[0].room != pair[1].room), 2)
+        };
+        let ends = [crosses(0), crosses(stretch.hops - 1)];
+        let is_long = (usize::from(stretch.hops > 1), 2);
+        found.push(CROSSING_ENDS.at([
+            (told.step.door as usize, 4),
+            (usize::from(is_last), 2),
+            is_long,
+            ends[0],
+            ends[1],
+        ]));
+    }
     rooms(trial, told, is_last, [first, last], crossings, found);
-    onward(trial, told, stretch, last, found);
+    onward(told, stretch, found);
     let bend = class(stretch.bend_rad().abs().to_degrees(), &[20.0, 50.0, 100.0]);
     for mark in &told.step.marks {
         found.push(MARK_HOPS.at([(*mark, MARKS), (stretch.hops.min(4), 5)]));
@@ -113,6 +129,70 @@ fn length(told: &Told, is_last: bool, stretch: &Stretch<'_>, found: &mut Vec<Fea
     }
     let length_m: f64 = stretch.nodes()[1..].iter().map(|at| stretch.tree.nodes[*at].length_m).sum();
     found.push(LENGTH.at([kind, (class(length_m, &[0.1, 1.5, 3.0, 5.0, 7.0, 10.0, 14.0]), 8)]));
+}
+
+/// The step among the others of its text, and the ways that it does not take.
+fn around(trial: &Trial<'_>, step: usize, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
+    let steps = &trial.guide.steps;
+    let kind = (steps[step].kind as usize, Kind::COUNT);
+    let next = steps.get(step + 1);
+    let is_last = (usize::from(next.is_none()), 2);
+    let of_steps = (class(steps.len() as f64, &[3.0, 5.0]), 3);
+    found.push(HOPS_OF_STEPS.at([of_steps, kind, is_last, (stretch.hops.min(HOPS_CLASSES - 1), HOPS_CLASSES)]));
+    if let Some(next) = next {
+        found.push(NEXT_STEP.at([kind, (next.kind as usize, Kind::COUNT), (stretch.hops.min(4), 5)]));
+    }
+    let mentions = (trial.guide.steps[step].mentions.len().min(3), 4);
+    found.push(HOPS_OF_MENTIONS.at([kind, is_last, mentions, (stretch.hops.min(4), 5)]));
+    // "Turn left and walk on": the hop that turns may be the next step's.
+    let before = step.checked_sub(1).map(|before| &steps[before]).filter(|before| told_turn(before));
+    if let (Some(before), Some(turn_rad)) = (before, stretch.turns().next()) {
+        let sign = if before.step.turn == Some(Side::Left) { -1.0 } else { 1.0 };
+        let opens = (usize::from(stretch.opens()), 2);
+        found.push(TURN_BEFORE.at([((before.kind as usize).min(2), 3), opens, (angle(turn_rad * sign), ANGLES)]));
+    }
+    let ways = |node: &usize| stretch.tree.nodes[*node].ways;
+    if stretch.hops > 0 && !stretch.opens() {
+        found.push(SQUARER.at([kind, (ways(&stretch.nodes()[1]).squarer.min(2), 3)]));
+    }
+    let skip = if told_turn(&steps[step]) || stretch.opens() { 2 } else { 1 };
+    if stretch.hops >= skip {
+        let straighter = stretch.nodes()[skip..].iter().filter(|node| ways(node).straighter > 0).count();
+        found.push(STRAIGHTER.at([kind, (straighter.min(2), 3)]));
+    }
+    // "Walk on and turn left": ways to the left on the way there were not meant.
+    let side = match next.and_then(|next| next.step.turn) {
+        Some(Side::Left) => Some(0),
+        Some(Side::Right) => Some(1),
+        _ => None,
+    };
+    if let Some(side) = side {
+        let passed = stretch.nodes().iter().take(stretch.hops).skip(1).filter(|node| ways(node).aside[side]).count();
+        let is_here = usize::from(ways(&stretch.last()).aside[side]);
+        let here = if stretch.hops == 0 { 2 } else { is_here };
+        found.push(SKIPPED.at([kind, (passed.min(2), 3), (here, 3)]));
+    }
+}
+
+fn told_turn(told: &Told) -> bool {
+    told.step.turn.is_some()
+}
+
+/// The storey where it ends, where the text tells one.
+fn level(trial: &Trial<'_>, told: &Told, [start, last]: [&Viewpoint; 2], found: &mut Vec<Feature>) {
+    let which = match (told.step.floor, told.step.storey) {
+        (Some(floor), _) => floor.number.map_or(3, |number| (number as usize).clamp(1, 4) - 1),
+        (None, Some(Climb::Up)) => 4,
+        (None, Some(Climb::Down)) => 5,
+        _ => return,
+    };
+    let which = (which, LEVELS);
+    if let Some(level) = last.level {
+        let most = trial.building.levels.clamp(1, 3) as usize - 1;
+        found.push(LEVEL.at([which, (level.clamp(1, 4) as usize - 1, 4), (most, 3)]));
+    }
+    let rise = class(last.position.z - start.position.z, &[-4.0, -1.8, -0.6, 0.6, 1.8, 4.0]);
+    found.push(LEVEL_RISE.at([which, (rise, 7)]));
 }
 
 fn turns(told: &Told, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
@@ -196,13 +276,8 @@ fn rooms(
 }
 
 /// Whether one could go straight on from the end.
-fn onward(trial: &Trial<'_>, told: &Told, stretch: &Stretch<'_>, last: &Viewpoint, found: &mut Vec<Feature>) {
-    let node = &stretch.tree.nodes[stretch.last()];
-    let is_ahead = |to: &usize| {
-        let (bearing_rad, length_m) = trial.building.hop(node.viewpoint, *to);
-        length_m > 0.3 && bearing_rad.is_some_and(|rad| wrapped(rad - node.heading_rad).abs() < ONWARD_RAD)
-    };
-    let goes_on = usize::from(last.neighbours.iter().any(is_ahead));
+fn onward(told: &Told, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
+    let goes_on = usize::from(stretch.tree.nodes[stretch.last()].ways.onward);
     let kind = (told.kind as usize, Kind::COUNT);
     found.push(ONWARD.at([kind, (usize::from(told.step.at_end), 2), (goes_on, 2)]));
 }

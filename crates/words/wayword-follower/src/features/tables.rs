@@ -56,6 +56,10 @@ pub(crate) const GROUPS: usize = 6;
 pub(crate) const HOPS_CLASSES: usize = 8;
 /// Classes of angles.
 pub(crate) const ANGLES: usize = 24;
+/// Classes of storeys that a text tells: 1, 2, 3, any above or the top one, upstairs, downstairs.
+pub(crate) const LEVELS: usize = 6;
+/// Classes of hops of a whole walk.
+pub(crate) const WALK_HOPS: usize = 12;
 /// Number of marking words; a test holds it against the list.
 pub(crate) const MARKS: usize = 90;
 
@@ -73,6 +77,16 @@ tables! {
     RISE coarse 2 * 11;
     LENGTH coarse KINDS * 8;
     ONWARD coarse KINDS * 2 * 2;
+    HOPS_OF_STEPS fine 3 * KINDS * 2 * HOPS_CLASSES;
+    NEXT_STEP fine KINDS * KINDS * 5;
+    HOPS_OF_MENTIONS fine KINDS * 2 * 4 * 5;
+    TURN_BEFORE coarse 3 * 2 * ANGLES;
+    CROSSING_ENDS fine 4 * 2 * 2 * 2 * 2;
+    STRAIGHTER coarse KINDS * 3;
+    SQUARER coarse KINDS * 3;
+    SKIPPED coarse KINDS * 3 * 3;
+    LEVEL coarse LEVELS * 4 * 3;
+    LEVEL_RISE coarse LEVELS * 7;
     // Doors, stairs, rooms that it passes.
     CROSSINGS coarse 4 * 4;
     SAME_ROOM coarse KINDS * 2;
@@ -90,18 +104,23 @@ tables! {
     TURN_AT coarse 2 * CLASSES;
     TOWARDS fine RELATIONS * 2 * 4;
     SIDE_OF_PLACE coarse 12;
+    AHEAD fine RELATIONS * 2 * 3 * 4;
+    NEAREST fine GROUPS * 2 * 2 * 4;
     // Its words.
     MARK_HOPS fine MARKS * 5;
     MARK_TURN fine MARKS * 4;
     MARK_CROSSINGS fine MARKS * 3;
     // The walk that ends.
-    LAST_ROOM coarse GROUPS * CLASSES;
-    LAST_THING coarse GROUPS * CLASSES;
-    NAMED_ROOM coarse CLASSES;
-    NAMED_THING coarse 3 * CLASSES;
-    UNNAMED_PASSED coarse 5;
-    UNNAMED_END coarse 2 * 3;
-    TURNS_TOLD coarse 6 * 7;
+    LAST_ROOM coarse 2 * GROUPS * CLASSES;
+    LAST_THING coarse 2 * GROUPS * CLASSES;
+    NAMED_ROOM coarse 2 * CLASSES;
+    NAMED_THING coarse 2 * 3 * CLASSES;
+    UNNAMED_PASSED coarse 2 * 5;
+    UNNAMED_END coarse 2 * 2 * 3;
+    TURNS_TOLD coarse 7 * 7;
+    // The walk of a text that tells nothing.
+    UNTOLD_HOPS coarse WALK_HOPS;
+    UNTOLD_LENGTH coarse 8;
 }
 
 /// The group of a relation.

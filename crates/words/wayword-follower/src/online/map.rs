@@ -124,8 +124,14 @@ impl Map {
     }
 
     fn add(&mut self, position: DVec3) -> usize {
-        let viewpoint = Viewpoint { position, neighbours: Vec::new(), room: None, is_known: false, climbs: [false; 2] };
-        self.building.viewpoints.push(viewpoint);
+        self.building.viewpoints.push(Viewpoint {
+            position,
+            neighbours: Vec::new(),
+            room: None,
+            level: None,
+            is_known: false,
+            climbs: [false; 2],
+        });
         self.ways.push(Vec::new());
         self.building.viewpoints.len() - 1
     }

@@ -1,37 +1,40 @@
-//! Weights written by hand. They are a start for a fit, and the measure of what a fit adds.
+//! Weights written by hand: what the words mean, as smooth rules. They are the measure of what a fit adds.
+
+mod places;
 
 use super::Weights;
 use crate::{
     features::tables::{
-        ANGLES, CROSSINGS, GROUPS, HOPS, HOPS_CLASSES, LAST_ROOM, LAST_THING, NAMED_ROOM, NAMED_THING, OPENING_TURN,
-        RELATIONS, RISE, ROOM, SIDE_OF_PLACE, SIDE_OF_TURN, THING, TURN_AFTER_OPENING, TURN_AT, Table, WHOLE_TURN,
-        WIDEST_TURN,
+        ANGLES, BORDER, CONDITION, CROSSINGS, FIRST_TURN, HOPS, HOPS_CLASSES, HOPS_OF_STEPS, LATER_TURNS, LENGTH,
+        LEVEL, LEVEL_RISE, LEVELS, ONWARD, OPENING_TURN, RISE, SAME_ROOM, SIDE_OF_TURN, SKIPPED, SQUARER, STAIRS_AT,
+        STOPS, TURN_AFTER_OPENING, TURN_BEFORE, TURNS_TOLD, Table, UNTOLD_HOPS, WALK_HOPS, WHOLE_TURN, WIDEST_TURN,
     },
     guide::Kind,
-    near::CLASSES,
 };
-use wayword_language::reading::steps::Relation;
 
-/// How a step of each kind goes with 0, 1, 2 ... hops.
-const OF_HOPS: [[f64; HOPS_CLASSES]; Kind::COUNT] = [
-    [-2.4, 0.0, -1.6, -3.5, -5.6, -8.0, -9.6, -11.2],
-    [-1.6, 0.0, -1.6, -3.5, -5.6, -8.0, -9.6, -11.2],
-    [-1.1, 0.0, -2.4, -4.8, -6.4, -8.0, -9.6, -11.2],
-    [-6.4, -0.8, 0.0, 0.0, -0.5, -1.6, -3.2, -4.8],
-    [0.0, -1.1, -4.0, -6.4, -8.0, -9.6, -11.2, -12.8],
-    [0.0, -0.5, -1.9, -4.0, -5.6, -7.2, -8.8, -10.4],
-    [-1.6, 0.0, -0.3, -1.3, -2.6, -4.0, -5.6, -7.2],
-    [-1.9, 0.0, -0.3, -1.6, -3.2, -4.8, -6.4, -8.0],
-    [-1.6, 0.0, -0.3, -0.8, -1.9, -3.2, -4.8, -6.4],
-    [0.0, -1.3, -2.9, -4.5, -6.1, -8.0, -9.6, -11.2],
+/// Sets a weight of a table, by its places in each dimension.
+type Set<'a> = dyn FnMut(&Table, &[(usize, usize)], f64) + 'a;
+
+/// Hops of a step of each kind: how a step without any goes, how many hops it takes at most without loss, and what each
+/// hop more loses.
+const OF_HOPS: [(f64, usize, f64); Kind::COUNT] = [
+    (-2.5, 1, 1.0),
+    (-2.0, 1, 1.0),
+    (-1.0, 1, 1.2),
+    (-2.5, 3, 0.5),
+    (0.0, 1, 1.2),
+    (-0.5, 1, 0.9),
+    (-1.5, 2, 0.6),
+    (-1.5, 2, 0.7),
+    (-1.0, 2, 0.6),
+    (0.0, 1, 0.8),
+    (-2.0, 6, 0.0),
+    (0.0, 0, 0.7),
 ];
 /// How a climb goes with what the stretch gains, from 3 m against it to 3 m along it.
 const OF_RISE: [f64; 11] = [-4.0, -4.0, -4.0, -3.5, -3.0, -2.0, 0.5, 1.5, 2.0, 2.5, 2.5];
 /// How any other step goes with a rise or fall.
-const OF_FLAT: [f64; 11] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.2, -0.7, -1.2, -1.5, -2.0];
-/// How a mention goes with an object that is so near, and with a room.
-const OF_THING: [f64; CLASSES] = [1.0, 0.8, 0.3, -0.4, -1.0, -1.5, 0.0];
-const OF_ROOM: [f64; CLASSES] = [1.5, 1.0, 0.2, -0.7, -1.5, -2.0, 0.0];
+const OF_FLAT: [f64; 11] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.3, -0.8, -1.2, -1.5, -2.0];
 
 pub(super) fn weights() -> Weights {
     let mut weights = Weights::none();
@@ -39,86 +42,170 @@ pub(super) fn weights() -> Weights {
         let place = places.iter().fold(0, |place, (at, size)| place * size + at);
         weights.0[table.from + place] = value;
     };
-    for (kind, row) in OF_HOPS.iter().enumerate() {
-        for (hops, value) in row.iter().enumerate() {
+    length(&mut set);
+    turns(&mut set);
+    ways(&mut set);
+    storeys(&mut set);
+    places::places(&mut set);
+    weights
+}
+
+fn length(set: &mut Set<'_>) {
+    for (kind, (none, free, loss)) in OF_HOPS.into_iter().enumerate() {
+        for hops in 0..HOPS_CLASSES {
+            let goes = if hops == 0 { none } else { -loss * hops.saturating_sub(free) as f64 };
             for is_last in 0..2 {
-                set(&HOPS, &[(kind, Kind::COUNT), (is_last, 2), (hops, HOPS_CLASSES)], *value);
+                set(&HOPS, &[(kind, Kind::COUNT), (is_last, 2), (hops, HOPS_CLASSES)], goes);
             }
         }
     }
+    for hops in 0..HOPS_CLASSES {
+        // Where a step says to stop, most of the way is gone.
+        let far = -0.2 * hops as f64;
+        for (is_last, turns) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            set(&STOPS, &[(is_last, 2), (turns, 2), (hops, HOPS_CLASSES)], far);
+        }
+        set(&CONDITION, &[(0, 2), (hops, HOPS_CLASSES)], far);
+    }
+    for (kind, hops) in (0..Kind::COUNT).flat_map(|kind| (0..HOPS_CLASSES).map(move |hops| (kind, hops))) {
+        // The fewer steps a text has, the farther each of them leads.
+        for (steps, each) in [1.0, 0.0, -0.6].into_iter().enumerate() {
+            for is_last in 0..2 {
+                let place = [(steps, 3), (kind, Kind::COUNT), (is_last, 2), (hops, HOPS_CLASSES)];
+                set(&HOPS_OF_STEPS, &place, each * hops as f64);
+            }
+        }
+    }
+    for (kind, class) in (0..Kind::COUNT).flat_map(|kind| (0..8).map(move |class| (kind, class))) {
+        let length_m = [0.0, 1.0, 2.3, 4.0, 6.0, 8.5, 12.0, 16.0f64][class];
+        let free_m = if kind == Kind::Goal as usize { 16.0 } else { 4.0 };
+        set(&LENGTH, &[(kind, Kind::COUNT), (class, 8)], -0.2 * (length_m - free_m).max(0.0));
+    }
+    for hops in 0..WALK_HOPS {
+        // Instructions are for walks of some length: of a text that tells nothing, the middle of what there is.
+        set(&UNTOLD_HOPS, &[(hops, WALK_HOPS)], -0.3 * (hops as f64 - 5.0).abs());
+    }
+}
+
+/// How likely it is that a step of a kind makes such a turn, degrees; positive is the side that the text tells.
+fn of_turn(kind: usize, deg: f64) -> f64 {
+    let near = |middle: f64, width: f64, else_so: f64| {
+        let off = (deg - middle).abs();
+        let off = off.min(360.0 - off);
+        (else_so + (-(off / width).powi(2)).exp()).ln()
+    };
+    match kind {
+        0 => near(85.0, 50.0, 0.03) + 1.5,
+        1 => near(45.0, 40.0, 0.05) + 1.2,
+        2 => near(180.0, 70.0, 0.05) + 1.2,
+        6 => near(0.0, 45.0, 0.08),
+        // A text that tells no way may mean any.
+        10 => 0.0,
+        _ => near(0.0, 55.0, 0.2),
+    }
+}
+
+fn turns(set: &mut Set<'_>) {
+    for (kind, at) in (0..Kind::COUNT).flat_map(|kind| (0..ANGLES).map(move |at| (kind, at))) {
+        let goes = of_turn(kind, middle_deg(at, ANGLES));
+        let place = [(kind, Kind::COUNT), (at, ANGLES)];
+        let tells_turn = kind <= 2;
+        // Nobody tells which way the walker looks first; a turn told there may be that turn or the next.
+        set(&OPENING_TURN, &place, if tells_turn { 0.6 * goes } else { 0.1 * goes });
+        set(&TURN_AFTER_OPENING, &place, if tells_turn { 0.3 * goes } else { 0.7 * goes });
+        set(&FIRST_TURN, &place, 0.3 * goes);
+        set(&WHOLE_TURN, &place, 0.7 * goes);
+        set(&WIDEST_TURN, &place, 0.1 * goes);
+    }
+    for (kind, at) in (0..3).flat_map(|kind| (0..ANGLES).map(move |at| (kind, at))) {
+        // The hop that turns belongs to the step before, or to this one.
+        let deg = middle_deg(at, ANGLES);
+        let goes = (of_turn(kind, deg).exp() + 2.0 * of_turn(6, deg).exp()).ln() - 1.0;
+        for opens in 0..2 {
+            set(&TURN_BEFORE, &[(kind, 3), (opens, 2), (at, ANGLES)], goes);
+        }
+    }
+    for kind in 0..Kind::COUNT {
+        for later in 1..3 {
+            let loss = if kind == Kind::Goal as usize { 0.0 } else { 0.2 };
+            set(&LATER_TURNS, &[(kind, Kind::COUNT), (later, 3)], -loss * later as f64);
+        }
+    }
+    for (told, real) in (0..6).flat_map(|told| (0..7).map(move |real| (told, real))) {
+        let untold = real as f64 - told as f64;
+        set(&TURNS_TOLD, &[(told, 7), (real, 7)], if untold > 0.0 { -0.2 * untold } else { 0.2 * untold });
+    }
+    for at in 0..12 {
+        // The way bends to the side that the text tells.
+        let goes = libm::sin(middle_deg(at, 12).to_radians());
+        for (group, strength) in [0.8, 0.4, 0.0, 0.3].into_iter().enumerate() {
+            set(&SIDE_OF_TURN, &[(group, 4), (at, 12)], strength * goes);
+        }
+    }
+}
+
+/// The middle of a class of angles, degrees.
+fn middle_deg(at: usize, classes: usize) -> f64 {
+    360.0 * (at as f64 + 0.5) / classes as f64 - 180.0
+}
+
+/// What the ways that a walk does not take say: a plain way is taken unless the text tells another.
+fn ways(set: &mut Set<'_>) {
+    for kind in 0..Kind::COUNT {
+        let tells_turn = kind <= 2;
+        for count in 1..3 {
+            if tells_turn {
+                set(&SQUARER, &[(kind, Kind::COUNT), (count, 3)], -0.3 * count as f64);
+            }
+            // Ways to the side of the next turn that it passes were not meant.
+            for here in 0..3 {
+                set(&SKIPPED, &[(kind, Kind::COUNT), (count, 3), (here, 3)], -0.4 * count as f64);
+            }
+        }
+        set(&SKIPPED, &[(kind, Kind::COUNT), (0, 3), (1, 3)], 0.2);
+        // "To the end of the hallway": from there one cannot go straight on.
+        set(&ONWARD, &[(kind, Kind::COUNT), (1, 2), (0, 2)], 0.5);
+    }
+    // From room to room, for steps that have nothing to do with doors, lead from one room to another, name a door, and
+    // lead through it.
+    let of_door = [[0.1, -0.2, -0.5, -0.8], [-0.4, 0.3, 0.0, -0.3], [0.0, 0.0, -0.2, -0.4], [-0.4, 0.3, 0.1, -0.2]];
+    for (door, row) in of_door.into_iter().enumerate() {
+        for (crossings, goes) in row.into_iter().enumerate() {
+            set(&CROSSINGS, &[(door, 4), (crossings, 4)], goes);
+        }
+        // Who stops at a door, or behind one, has another room beside him.
+        let beside = if door == 0 { -0.1 } else { 0.2 };
+        for (border, sign) in [-1.0, 1.0, 1.0].into_iter().enumerate() {
+            set(&BORDER, &[(door, 4), (1, 2), (border, 3)], sign * beside);
+        }
+    }
+    set(&SAME_ROOM, &[(Kind::Stop as usize, Kind::COUNT), (1, 2)], 0.3);
+    set(&SAME_ROOM, &[(Kind::Cross as usize, Kind::COUNT), (0, 2)], 0.3);
+}
+
+fn storeys(set: &mut Set<'_>) {
     for (class, (told, flat)) in OF_RISE.iter().zip(OF_FLAT).enumerate() {
         set(&RISE, &[(0, 2), (class, 11)], *told);
         set(&RISE, &[(1, 2), (class, 11)], flat);
     }
-    for (kind, at) in (0..Kind::COUNT).flat_map(|kind| (0..ANGLES).map(move |at| (kind, at))) {
-        let deg = -180.0 + 15.0 * at as f64 + 7.5;
-        let place = [(kind, Kind::COUNT), (at, ANGLES)];
-        let goes = of_turn(kind, deg);
-        let (opening, after) = if kind <= 2 { (0.6 * goes, 0.4 * goes) } else { (0.0, goes) };
-        set(&WHOLE_TURN, &place, goes);
-        set(&OPENING_TURN, &place, opening);
-        set(&TURN_AFTER_OPENING, &place, after);
-        if kind <= 1 {
-            set(&WIDEST_TURN, &place, 0.3 * goes);
+    // Where a step ends at the top of stairs, ways down begin there, and not up.
+    for (part, climbs) in [(1, 0), (1, 1), (2, 0), (2, 1)] {
+        for ways in 0..4 {
+            let (up, down) = (ways & 2 != 0, ways & 1 != 0);
+            let (wanted, other) = if part == 1 { (down, up) } else { (up, down) };
+            let goes = if wanted { 0.8 } else { -0.8 } - if other { 0.4 } else { 0.0 };
+            set(&STAIRS_AT, &[(part, 3), (climbs, 2), (1, 2), (ways, 4)], goes);
         }
     }
-    for at in 0..12 {
-        let goes = libm::sin((-180.0 + 30.0 * at as f64 + 15.0f64).to_radians());
-        // The place lies on a side of the walker: positive right, and mirrored so that right is told.
-        set(&SIDE_OF_PLACE, &[(at, 12)], 0.5 * goes);
-        set(&SIDE_OF_TURN, &[(0, 4), (at, 12)], 0.5 * goes);
+    for (told, level, most) in
+        (0..4).flat_map(|told| (0..4).flat_map(move |level| (0..3).map(move |m| (told, level, m))))
+    {
+        let is_it = if told == 3 { level >= most } else { level == told };
+        set(&LEVEL, &[(told, LEVELS), (level, 4), (most, 3)], if is_it { 1.0 } else { -1.0 });
     }
-    for relation in Relation::ALL {
-        places(relation, &mut set);
-    }
-    for class in 0..CLASSES {
-        set(&TURN_AT, &[(0, 2), (class, CLASSES)], 0.4 * OF_THING[class]);
-        set(&TURN_AT, &[(1, 2), (class, CLASSES)], 0.4 * OF_ROOM[class]);
-        set(&NAMED_ROOM, &[(class, CLASSES)], 0.5 * OF_ROOM[class]);
-        // The last room and the last thing that a step leads to, or that it is in or at, are where the walk ends.
-        for group in [1, 2] {
-            set(&LAST_ROOM, &[(group, GROUPS), (class, CLASSES)], 0.8 * OF_ROOM[class]);
-            set(&LAST_THING, &[(group, GROUPS), (class, CLASSES)], 0.6 * OF_THING[class]);
-        }
-        for commonness in 0..3 {
-            set(&NAMED_THING, &[(commonness, 3), (class, CLASSES)], 0.5 * OF_THING[class]);
-        }
-    }
-    for (crossings, value) in [-0.5, 0.3, 0.2, 0.0].into_iter().enumerate() {
-        set(&CROSSINGS, &[(1, 4), (crossings, 4)], value);
-        set(&CROSSINGS, &[(3, 4), (crossings, 4)], value);
-    }
-    weights
-}
-
-/// How a step of a kind goes with a turn of its stretch, degrees; positive is the side that the text tells.
-fn of_turn(kind: usize, deg: f64) -> f64 {
-    let around = |middle: f64, width: f64| 3.0 * (-((deg - middle) / width).powi(2)).exp() - 2.0;
-    match kind {
-        0 => around(85.0, 50.0),
-        1 => around(45.0, 45.0),
-        2 => around(180.0, 60.0),
-        _ => 0.3 - 0.5 * (deg.abs() / 60.0).min(2.0),
-    }
-}
-
-fn places(relation: Relation, set: &mut impl FnMut(&Table, &[(usize, usize)], f64)) {
-    // Where along the stretch the place has to be: where it begins (0), anywhere (1), where it ends (2).
-    let (at, of_room) = match relation {
-        Relation::OutOf => (0, 1.0),
-        Relation::Into | Relation::In => (2, 1.2),
-        Relation::Through => (1, 1.0),
-        Relation::Past | Relation::Between => (1, 0.5),
-        Relation::To | Relation::At | Relation::Near | Relation::Before => (2, 0.6),
-        Relation::Along => (1, 0.8),
-        Relation::Plain | Relation::With | Relation::Of => (1, 0.4),
-    };
-    let relation = (relation as usize, RELATIONS);
-    for class in 0..CLASSES {
-        set(&ROOM, &[relation, (at, 3), (class, CLASSES)], of_room * OF_ROOM[class]);
-        for (commonness, strength) in [0.8, 0.6, 0.3].into_iter().enumerate() {
-            let place = [relation, (commonness, 3), (at, 3), (class, CLASSES)];
-            set(&THING, &place, strength * OF_THING[class]);
-        }
+    for rise in 0..7 {
+        let up = (rise as f64 - 3.0) / 1.5;
+        set(&LEVEL_RISE, &[(4, LEVELS), (rise, 7)], up.clamp(-1.5, 1.5));
+        set(&LEVEL_RISE, &[(5, LEVELS), (rise, 7)], (-up).clamp(-1.5, 1.5));
     }
 }

@@ -1,0 +1,112 @@
+//! What rooms and objects say that a step names.
+
+use super::{Set, middle_deg};
+use crate::{
+    features::tables::{
+        AHEAD, GROUPS, LAST_ROOM, LAST_THING, NAMED_ROOM, NAMED_THING, NEAREST, RELATIONS, ROOM, ROOM_MOVE,
+        SIDE_OF_PLACE, THING, TOWARDS, TURN_AT, UNNAMED_END, UNNAMED_PASSED,
+    },
+    near::CLASSES,
+};
+use wayword_language::reading::steps::Relation;
+
+/// How a mention goes with an object that is so near, and with a room.
+const OF_THING: [f64; CLASSES] = [1.0, 0.8, 0.3, -0.4, -1.0, -1.5, 0.0];
+const OF_ROOM: [f64; CLASSES] = [1.5, 1.0, 0.2, -0.7, -1.5, -2.0, 0.0];
+
+pub(super) fn places(set: &mut Set<'_>) {
+    for relation in Relation::ALL {
+        near(relation, set);
+        direction(relation, set);
+    }
+    for class in 0..CLASSES {
+        set(&TURN_AT, &[(0, 2), (class, CLASSES)], 0.4 * OF_THING[class]);
+        set(&TURN_AT, &[(1, 2), (class, CLASSES)], 0.4 * OF_ROOM[class]);
+        for is_goal in 0..2 {
+            of_walk(class, is_goal, set);
+        }
+    }
+    for at in 0..12 {
+        // The place lies on a side of the walker: positive right, and mirrored so that right is told.
+        set(&SIDE_OF_PLACE, &[(at, 12)], 0.6 * libm::sin(middle_deg(at, 12).to_radians()));
+    }
+    for passed in 0..5 {
+        set(&UNNAMED_PASSED, &[(0, 2), (passed, 5)], -0.1 * passed as f64);
+    }
+    for (is_goal, commonness) in (0..2).flat_map(|is_goal| (0..3).map(move |commonness| (is_goal, commonness))) {
+        set(&UNNAMED_END, &[(is_goal, 2), (1, 2), (commonness, 3)], 0.5);
+    }
+    // A step that leads to a place, or is at it, ends where the place is nearest.
+    for (group, is_room, is_last) in [(1, 0, 0), (1, 0, 1), (2, 0, 0), (2, 0, 1)] {
+        for which in 0..4 {
+            let (was_nearer, comes_nearer) = (which & 2 != 0, which & 1 != 0);
+            let goes = if was_nearer { -0.6 } else { 0.0 } - if comes_nearer { 0.5 } else { 0.0 };
+            set(&NEAREST, &[(group, GROUPS), (is_room, 2), (is_last, 2), (which, 4)], goes);
+        }
+    }
+}
+
+/// What the whole walk has to do with what is named.
+fn of_walk(class: usize, is_goal: usize, set: &mut Set<'_>) {
+    let (is_goal, class) = ((is_goal, 2), (class, CLASSES));
+    set(&NAMED_ROOM, &[is_goal, class], 0.5 * OF_ROOM[class.0]);
+    for commonness in 0..3 {
+        set(&NAMED_THING, &[is_goal, (commonness, 3), class], 0.5 * OF_THING[class.0]);
+    }
+    // The last room and the last thing that a step leads to, or that it is in or at, are where the walk ends.
+    for group in [1, 2] {
+        set(&LAST_ROOM, &[is_goal, (group, GROUPS), class], 0.8 * OF_ROOM[class.0]);
+        set(&LAST_THING, &[is_goal, (group, GROUPS), class], 0.6 * OF_THING[class.0]);
+    }
+}
+
+fn near(relation: Relation, set: &mut Set<'_>) {
+    // Where along the stretch the place has to be: where it begins (0), anywhere (1), where it ends (2).
+    let (at, of_room) = match relation {
+        Relation::OutOf => (0, 1.0),
+        Relation::Into | Relation::In => (2, 1.2),
+        Relation::Through => (1, 1.0),
+        Relation::Past | Relation::Between => (1, 0.5),
+        Relation::To | Relation::At | Relation::Near | Relation::Before => (2, 0.6),
+        Relation::Along => (1, 0.8),
+        Relation::Plain | Relation::With | Relation::Of => (1, 0.4),
+    };
+    let number = (relation as usize, RELATIONS);
+    for class in 0..CLASSES {
+        set(&ROOM, &[number, (at, 3), (class, CLASSES)], of_room * OF_ROOM[class]);
+        for (commonness, strength) in [0.8, 0.6, 0.3].into_iter().enumerate() {
+            let place = [number, (commonness, 3), (at, 3), (class, CLASSES)];
+            set(&THING, &place, strength * OF_THING[class]);
+        }
+    }
+    // By whether the stretch begins in the room (2) and ends in it (1).
+    let moves = match relation {
+        Relation::OutOf => [-0.5, -1.0, 1.0, -0.5],
+        Relation::Into => [-0.5, 1.0, -1.0, 0.0],
+        _ => return,
+    };
+    for (which, goes) in moves.into_iter().enumerate() {
+        set(&ROOM_MOVE, &[number, (which, 4)], goes);
+    }
+}
+
+/// Whether the stretch leads to the place, and past it.
+fn direction(relation: Relation, set: &mut Set<'_>) {
+    let number = (relation as usize, RELATIONS);
+    let towards = match relation {
+        Relation::To | Relation::Into | Relation::Past | Relation::Through => [0.5, 0.2, -0.3, -0.8],
+        Relation::OutOf => [-0.3, 0.0, 0.1, 0.2],
+        _ => [0.2, 0.1, -0.1, -0.3],
+    };
+    let ahead = match relation {
+        Relation::Past | Relation::OutOf => [-0.6, -0.2, 0.3, 0.5],
+        Relation::To | Relation::Before => [0.4, 0.1, -0.3, -0.5],
+        _ => [0.0; 4],
+    };
+    for (is_room, angle) in (0..2).flat_map(|is_room| (0..4).map(move |angle| (is_room, angle))) {
+        set(&TOWARDS, &[number, (is_room, 2), (angle, 4)], towards[angle]);
+        for near in 0..3 {
+            set(&AHEAD, &[number, (is_room, 2), (near, 3), (angle, 4)], ahead[angle]);
+        }
+    }
+}
