@@ -60,7 +60,8 @@ struct Said {
 }
 
 pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let (scenes, mut all) = texts(&flags.data, &flags.file)?;
+    let (scenes, files) = texts(&flags.data, std::slice::from_ref(&flags.file))?;
+    let mut all: Vec<Text> = files.into_iter().flatten().collect();
     let is_in = |text: &Text, scans: &[String]| scans.iter().any(|one| one == scenes[text.scene].name.as_str());
     all.retain(|text| (flags.scans.is_empty() || is_in(text, &flags.scans)) && !is_in(text, &flags.except));
     let every = all.len().div_ceil(flags.limit.clamp(1, all.len().max(1)));

@@ -7,12 +7,15 @@ mod walker;
 use clap::Args;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
-use std::{collections::BTreeSet, path::PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 use texts::{Scene, Text, texts};
 use wayword::{error::Error, output::Output, people::left_out};
 use wayword_core::{SceneId, rng};
 use wayword_follower::{
-    Fit, Prior, Tree, Trial, Weights, best,
+    Fit, Guide, Prior, Tree, Trial, Weights, best,
     change::flipped,
     learn::{Learner, Plan, Slope},
     online::{OnwardLearner, OnwardSlope, OnwardWeights},
@@ -30,15 +33,18 @@ pub(super) struct Flags {
     /// Folder of Matterport3D's and REVERIE's data.
     #[arg(long)]
     data: PathBuf,
-    /// File with the texts, as R2R_train.json. Its last ten buildings by name are left out.
-    #[arg(long)]
-    episodes: PathBuf,
+    /// File with texts, as R2R_train.json. It can be given several times. The last ten buildings by name are left out.
+    #[arg(long, required = true)]
+    episodes: Vec<PathBuf>,
     /// Seed of the order of texts.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Rounds over all texts.
-    #[arg(long, default_value_t = 8)]
+    /// Rounds over all texts, for the follower that knows the map.
+    #[arg(long, default_value_t = 7)]
     rounds: usize,
+    /// Rounds over all texts, for the follower that walks.
+    #[arg(long, default_value_t = 4)]
+    walker_rounds: usize,
     /// Fit on at most this many texts.
     #[arg(long, default_value_t = usize::MAX)]
     texts: usize,
@@ -48,28 +54,40 @@ pub(super) struct Flags {
 }
 
 pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let (scenes, all) = texts(&flags.data, &flags.episodes)?;
+    let (scenes, files) = texts(&flags.data, &flags.episodes)?;
     let names: BTreeSet<SceneId> = scenes.iter().map(|scene| scene.name.clone()).collect();
     let left_out = left_out(&names);
-    let (apart, mut fitted): (Vec<Text>, Vec<Text>) =
-        all.into_iter().partition(|text| left_out.contains(&scenes[text.scene].name));
+    // Those of the buildings that are left out, file by file, and all others together.
+    let (mut apart, mut fitted) = (Vec::new(), Vec::new());
+    for (file, texts) in flags.episodes.iter().zip(files) {
+        let (out, kept): (Vec<Text>, Vec<Text>) =
+            texts.into_iter().partition(|text| left_out.contains(&scenes[text.scene].name));
+        apart.push((name(file), out));
+        fitted.extend(kept);
+    }
     fitted.shuffle(&mut rng(flags.seed, &["fit-follower"]));
     fitted.truncate(flags.texts);
     let names = left_out.iter().map(SceneId::as_str).collect::<Vec<_>>().join(" ");
     output.say(format!("{} texts; left out: {names}", fitted.len()));
-    let by_hand = Weights::by_hand();
-    output.say(format!("by hand, on the buildings left out: {}", with_map(&scenes, &apart, &by_hand)));
+    let say = |what: &str, score: &dyn Fn(&[Text]) -> String| {
+        for (file, texts) in &apart {
+            output.say(format!("{what}, on the buildings left out of {file}: {}", score(texts)));
+        }
+    };
+    say("by hand", &|texts| with_map(&scenes, texts, &Weights::by_hand()));
     let map = fit_map(flags, &scenes, &fitted, output);
-    output.say(format!("with the map, on the buildings left out: {}", with_map(&scenes, &apart, &map)));
+    say("with the map", &|texts| with_map(&scenes, texts, &map));
     let start = OnwardWeights { done: map.clone(), going: map.clone(), ..OnwardWeights::by_hand() };
     let walking = fit_walker(flags, &scenes, &fitted, &start, output);
-    output.say(format!("walking, on the buildings left out: {}", walker::score(&scenes, &apart, &walking)));
+    say("walking", &|texts| walker::score(&scenes, texts, &walking));
     if let Some(out) = &flags.out {
-        let episodes = flags.episodes.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-        let origin = format!("people's texts of {episodes}, without its last ten buildings by name");
-        let (seed, rounds) = (flags.seed, flags.rounds);
+        let files: Vec<String> = flags.episodes.iter().map(|file| name(file)).collect();
+        let origin = format!("people's texts of {}, without the last ten buildings by name", files.join(" and "));
+        let given: String = files.iter().map(|file| format!(" --episodes {file}")).collect();
+        let Flags { seed, rounds, walker_rounds, .. } = flags;
         let command = format!(
-            "wayword-measure fit-follower --data DATA --episodes {episodes} --seed {seed} --rounds {rounds} --out DIR"
+            "wayword-measure fit-follower --data DATA{given} --seed {seed} --rounds {rounds} --walker-rounds \
+             {walker_rounds} --out DIR"
         );
         std::fs::create_dir_all(out).map_err(Error::io(out, "make"))?;
         for (name, text) in
@@ -81,11 +99,16 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     Ok(())
 }
 
+/// The name of a file, without its folder.
+fn name(file: &Path) -> String {
+    file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
 fn fit_map(flags: &Flags, scenes: &[Scene], texts: &[Text], output: &Output) -> Weights {
-    let plan = Plan { rounds: flags.rounds, rate: 0.04, batch: 48, hold: 2e-4, hold_fine: 5.0 };
+    let plan = Plan { rounds: flags.rounds, rate: 0.04, batch: 48, hold: 2e-4, hold_fine: 3.0 };
     let trees: Vec<Tree> = texts.par_iter().map(|text| tree(scenes, text)).collect();
     let items: Vec<(&Text, &Tree)> = texts.iter().zip(&trees).collect();
-    let mut learner = Learner::new(plan, &Weights::by_hand());
+    let mut learner = Learner::new(plan, &Weights::none());
     for round in 0..plan.rounds {
         let mut loss = 0.0;
         for batch in items.chunks(plan.batch) {
@@ -110,6 +133,9 @@ fn add(slope: &mut Slope, scenes: &[Scene], text: &Text, tree: &Tree, weights: &
     let right = Trial::new(&text.guide, building);
     if let Some(goal) = tree.find(&text.walk) {
         slope.add(&right, tree, goal, weights);
+        // The same walk by an empty text, so that what reads nothing knows at least how far people's walks lead.
+        let nothing = Guide::read("");
+        slope.add_floor(&Trial::new(&nothing, building), tree, goal, weights);
     }
     let walk = Tree::single(building, &text.walk, text.heading_rad);
     for wrong in flipped(&text.guide) {
@@ -124,7 +150,7 @@ fn fit_walker(
     start: &OnwardWeights,
     output: &Output,
 ) -> OnwardWeights {
-    let plan = Plan { rounds: flags.rounds, rate: 0.03, batch: 32, hold: 1e-4, hold_fine: 5.0 };
+    let plan = Plan { rounds: flags.walker_rounds, rate: 0.03, batch: 32, hold: 1e-4, hold_fine: 5.0 };
     let mut learner = OnwardLearner::new(plan, start);
     for round in 0..plan.rounds {
         let (mut loss, mut decisions) = (0.0, 0);

@@ -1,21 +1,27 @@
 //! People's texts with their walks.
 
 use rayon::prelude::*;
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 use wayword::{
     error::Error,
-    people::walks,
     platforms,
     settings::{Asked, AskedPlatform},
 };
-use wayword_core::{SceneId, Survey, Surveyed};
+use wayword_core::{ObjectId, SceneId, Survey, Surveyed, ViewpointGraph};
 use wayword_follower::{Building, Guide};
+use wayword_formats::Episode;
+use wayword_world::{path_of, survey};
 
 /// A building.
 pub(crate) struct Scene {
     pub(crate) name: SceneId,
     pub(super) survey: Survey,
     pub(crate) building: Building,
+    graph: Arc<ViewpointGraph>,
 }
 
 /// A text with its walk.
@@ -29,51 +35,88 @@ pub(crate) struct Text {
     pub(crate) heading_rad: f64,
     /// For each viewpoint, its distance over the graph from the goal, metres.
     pub(crate) to_goal_m: Vec<f64>,
+    /// Where a walk succeeds that ends there: where the object of the task is seen (REVERIE's evaluator), or near the goal
+    /// (R2R's).
+    succeeds: Vec<bool>,
 }
 
-/// A walk that ends nearer than this to the goal succeeds, metres (R2R's evaluator).
+/// A walk that ends nearer than this to the goal succeeds where there is no object, metres.
 const SUCCESS_M: f64 = 3.0;
 
-/// Reads the texts of a file, and surveys their buildings.
-pub(crate) fn texts(data: &Path, episodes: &Path) -> Result<(Vec<Scene>, Vec<Text>), Error> {
+/// Reads the texts of files, one list for each, and surveys their buildings. Paths of buildings that the platform lacks are
+/// skipped.
+pub(crate) fn texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<Scene>, Vec<Vec<Text>>), Error> {
     let matterport =
         AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
     let platform = platforms::open(&Asked::from(matterport).resolve()?)?;
-    let (walks, surveys) = walks(platform.as_ref(), episodes)?;
-    let numbers: BTreeMap<SceneId, usize> = surveys.keys().cloned().zip(0..).collect();
-    let scenes: Vec<Scene> =
-        surveys.into_iter().map(|(name, survey)| Scene { name, building: Building::of(&survey), survey }).collect();
-    let texts = walks.par_iter().map(|walk| {
-        let scene = numbers[&walk.path.scene];
-        let place = |frame: &wayword_core::Frame| scenes[scene].survey.place(frame.viewpoint.as_ref()?);
-        let Some(known) = walk.path.frames.iter().map(place).collect::<Option<Vec<usize>>>() else {
-            return Ok(Vec::new());
+    let platform = platform.as_ref();
+    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
+    let episodes = |file: &PathBuf| -> Result<Vec<Episode>, Error> {
+        let mut episodes = wayword_formats::read(file)?;
+        episodes.retain(|episode| there.contains(&episode.scene));
+        Ok(episodes)
+    };
+    let episodes = files.iter().map(episodes).collect::<Result<Vec<_>, Error>>()?;
+    let names: BTreeSet<&SceneId> = episodes.iter().flatten().map(|episode| &episode.scene).collect();
+    let scene = |name: &SceneId| {
+        let survey = survey(platform, name)?;
+        Ok(Scene { name: name.clone(), building: Building::of(&survey), survey, graph: platform.graph(name)? })
+    };
+    let scenes = names.into_par_iter().map(scene).collect::<Result<Vec<Scene>, Error>>()?;
+    let numbers: BTreeMap<&SceneId, usize> = scenes.iter().map(|scene| &scene.name).zip(0..).collect();
+    let of_episode = |episode: &Episode| {
+        let number = numbers[&episode.scene];
+        let object = episode.target_object.as_ref();
+        let heading = episode.start_heading;
+        let path = path_of(platform, &episode.id, &episode.scene, &episode.viewpoints, heading, None)?;
+        let heading_rad = path.frames.first().map_or(0.0, |frame| frame.pose.heading.rad());
+        Ok(scenes[number].texts(number, episode, heading_rad, object))
+    };
+    let of_file = |episodes: &Vec<Episode>| {
+        let texts = episodes.par_iter().map(of_episode).collect::<Result<Vec<Vec<Text>>, Error>>()?;
+        Ok(texts.into_iter().flatten().collect())
+    };
+    let texts = episodes.iter().map(of_file).collect::<Result<Vec<Vec<Text>>, Error>>()?;
+    drop(numbers);
+    Ok((scenes, texts))
+}
+
+impl Scene {
+    /// The texts of an episode; none where its walk has no hop.
+    fn texts(&self, number: usize, episode: &Episode, heading_rad: f64, object: Option<&ObjectId>) -> Vec<Text> {
+        let viewpoints = self.survey.viewpoints();
+        let walk = episode.viewpoints.iter().map(|id| self.survey.place(id)).collect::<Option<Vec<usize>>>();
+        let (Some(walk), Some(goal)) = (walk.filter(|walk| walk.len() > 1), episode.viewpoints.last()) else {
+            return Vec::new();
         };
-        let viewpoints = scenes[scene].survey.viewpoints();
-        let graph = platform.graph(&walk.path.scene)?;
-        let far_m = known.last().and_then(|goal| graph.distances_from(&viewpoints[*goal].id).ok()).unwrap_or_default();
+        let far_m = self.graph.distances_from(goal).unwrap_or_default();
         let far_m = |viewpoint: &Surveyed| far_m.get(&viewpoint.id).copied().unwrap_or(f64::INFINITY);
         let to_goal_m: Vec<f64> = viewpoints.iter().map(far_m).collect();
-        let heading_rad = walk.path.frames[0].pose.heading.rad();
-        let text = |text: &wayword::people::Text| Text {
-            scene,
-            words: text.words.clone(),
-            guide: Guide::read(&text.words),
-            walk: known.clone(),
+        let sees = |viewpoint: &Surveyed, object: &ObjectId| {
+            viewpoint.known.things.iter().flatten().any(|label| label.object == *object)
+        };
+        let succeeds: Vec<bool> = match object {
+            Some(object) => viewpoints.iter().map(|viewpoint| sees(viewpoint, object)).collect(),
+            None => to_goal_m.iter().map(|far_m| *far_m < SUCCESS_M).collect(),
+        };
+        let text = |words: &String| Text {
+            scene: number,
+            words: words.clone(),
+            guide: Guide::read(words),
+            walk: walk.clone(),
             heading_rad,
             to_goal_m: to_goal_m.clone(),
+            succeeds: succeeds.clone(),
         };
-        Ok(walk.texts.iter().map(text).collect())
-    });
-    let texts = texts.collect::<Result<Vec<Vec<Text>>, Error>>()?;
-    Ok((scenes, texts.into_iter().flatten().filter(|text| text.walk.len() > 1).collect()))
+        episode.instructions.iter().map(text).collect()
+    }
 }
 
 impl Text {
     /// Success, and success weighted by path length, of a walk.
     pub(super) fn score(&self, scene: &Scene, walked: &[usize]) -> [f64; 2] {
         let end = walked.last().copied().unwrap_or(self.walk[0]);
-        if self.to_goal_m[end] >= SUCCESS_M {
+        if !self.succeeds[end] {
             return [0.0; 2];
         }
         let length_m: f64 = walked.windows(2).map(|pair| scene.building.distance(pair[0], pair[1])).sum();
