@@ -135,14 +135,32 @@ pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
     checked
 }
 
-/// How many objects at the end of a path the task of a text may mean; 0 where it names none, or none is known there.
+/// How many objects at the end of a path the task of a text may mean; 0 where it names none, or none is known there. A
+/// side, a colour or a neighbour ("the lamp by the desk") tells them apart.
 #[must_use]
 pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     let reading = read(text, &names(evidence)).claims();
-    let object = reading.task.as_ref().and_then(|task| task.object);
-    let Some(What::Place(place)) = object.map(|at| &reading.events[at].what) else { return 0 };
-    evidence.final_things().iter().filter(|thing| agree(&thing.name, &place.name)).count()
+    let Some(at) = reading.task.as_ref().and_then(|task| task.object) else { return 0 };
+    let What::Place(place) = &reading.events[at].what else { return 0 };
+    let things = evidence.final_things();
+    let alike: Vec<_> = things.iter().filter(|thing| agree(&thing.name, &place.name)).collect();
+    let is_meant = |thing: &&&SeenThing| {
+        let is_on_side = |side| thing.turn_rad.is_none_or(|turn_rad| sides::lies_on(side, turn_rad));
+        let has_colour = |told| thing.colour.as_ref().is_none_or(|colour| colour == told);
+        place.side.is_none_or(is_on_side) && place.colour.as_ref().is_none_or(has_colour)
+    };
+    let meant = alike.iter().filter(is_meant).count();
+    let has_neighbour = reading.events.get(at + 1).is_some_and(|next| {
+        let between = text.get(reading.events[at].span[1]..next.span[0]);
+        let is_joined = between.is_some_and(|words| words.len() <= MOST_BETWEEN && !words.contains(['.', ',', ';']));
+        let is_there = |name: &str| things.iter().any(|thing| agree(&thing.name, name));
+        matches!(&next.what, What::Place(other) if is_joined && other.is_thing && is_there(&other.name))
+    });
+    if has_neighbour { meant.min(1) } else { meant.max(usize::from(!alike.is_empty())) }
 }
+
+/// Most bytes between an object and the neighbour that it is told by: " that is closest to the ".
+const MOST_BETWEEN: usize = 24;
 
 /// The names of all objects that are known along a path. The reader has to recognise them.
 fn names(evidence: &Evidence) -> BTreeSet<String> {

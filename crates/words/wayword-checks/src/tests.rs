@@ -1,6 +1,6 @@
 //! What the checks say about texts on made-up paths.
 
-use super::{Subject, check, check_own};
+use super::{Subject, check, check_own, objects_meant};
 use crate::evidence::{Evidence, FrameEvidence, SeenThing, Source};
 use wayword_core::{Check, Constraints, Motion, Move, Style, Verdict};
 
@@ -305,4 +305,28 @@ fn a_text_of_our_own_tells_nothing_of_an_unknown_motion() {
     let checked = check_own("Turn left to the bed.", Subject::closed(&video, &style(false), None));
     let turns = checked.findings.iter().filter(|finding| finding.check == Check::Turns);
     assert_eq!(turns.map(|finding| finding.verdict).collect::<Vec<_>>(), [Verdict::Fail]);
+}
+
+#[test]
+fn an_object_that_the_text_tells_apart_is_one() {
+    let mut evidence = to_the_bedroom();
+    let lamp = |colour: &str, turn_rad: f64| SeenThing {
+        name: "lamp".into(),
+        object: None,
+        colour: Some(colour.into()),
+        turn_rad: Some(turn_rad),
+    };
+    evidence.frames[2].things.extend([lamp("green", -1.0), lamp("white", 1.0)]);
+    evidence.frames[2].things.retain(|thing| thing.name != "lamp" || thing.turn_rad.is_some());
+    for (text, objects) in [
+        ("Go to the bedroom and dust the lamp", 2),
+        ("Go to the bedroom and dust the green lamp", 1),
+        ("Go to the bedroom and dust the lamp on your right", 1),
+        ("Go to the bedroom and dust the lamp next to the bed", 1),
+        ("Go to the bedroom and dust the purple lamp", 1),
+        ("Go to the bedroom and dust the piano", 0),
+        ("Go to the bedroom", 0),
+    ] {
+        assert_eq!(objects_meant(text, &evidence), objects, "{text}");
+    }
 }
