@@ -49,14 +49,25 @@ pub(super) struct Flags {
 
 /// What the follower says of a text.
 struct Said {
-    /// The share of the best walk, and whether it ends at the goal; `None` without a walk.
-    best: Option<(f64, bool)>,
+    /// The best walk; `None` without one.
+    best: Option<Best>,
     /// How much better another walk fits than the annotated one, natural logs.
     elsewhere: f64,
     /// The best gain of a turn changed, of the text and of the same with one turn flipped; `None` without a turn.
     turns: Option<[f64; 2]>,
     /// [`Self::elsewhere`] of another path's text; `None` where the building has none.
     other_path: Option<f64>,
+}
+
+/// The walk that fits best.
+struct Best {
+    share: f64,
+    /// The share of all walks that end near its end.
+    nearby: f64,
+    /// How well the best walk that ends elsewhere fits against it, natural logs.
+    runner_up: f64,
+    /// Whether it ends at the goal.
+    is_right: bool,
 }
 
 pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
@@ -82,7 +93,17 @@ fn said(scenes: &[Scene], all: &[Text], neighbours: &[usize], at: usize, seed: u
     let tree = Tree::of(building, text.walk[0], text.heading_rad, PRIOR);
     let fit = Fit::new(&Trial::new(&text.guide, building), &tree, weights);
     let shares = shares(&fit, &tree);
-    let best = best(&fit, &tree).map(|walk| (shares[walk], text.to_goal_m[tree.end(walk)] < SUCCESS_M));
+    let best = best(&fit, &tree).map(|walk| {
+        let is_near = |other: &usize| building.distance(tree.end(*other), tree.end(walk)) < SUCCESS_M;
+        let (near, far): (Vec<usize>, Vec<usize>) = (1..tree.len()).partition(is_near);
+        let runner_up = far.into_iter().map(|other| shares[other]).fold(0.0, f64::max);
+        Best {
+            share: shares[walk],
+            nearby: near.into_iter().map(|other| shares[other]).sum(),
+            runner_up: log_ratio(runner_up, shares[walk]),
+            is_right: text.to_goal_m[tree.end(walk)] < SUCCESS_M,
+        }
+    });
     let known = Known { building, walk: &text.walk, heading_rad: text.heading_rad };
     let elsewhere = |guide: &Guide| {
         let judged = judge(guide, known, Some(PRIOR), weights, Thresholds::default());
@@ -107,8 +128,11 @@ fn log_ratio(other: f64, own: f64) -> f64 {
 }
 
 fn lines(said: &[Said]) -> Vec<String> {
-    let best: Vec<(f64, bool)> = said.iter().filter_map(|said| said.best).collect();
-    let right = best.iter().filter(|(_, is_right)| *is_right).count();
+    let best: Vec<&Best> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+    let right = best.iter().filter(|best| best.is_right).count();
+    let error = |share: fn(&Best) -> f64| {
+        calibration_error(&best.iter().map(|best| (share(best), best.is_right)).collect::<Vec<_>>())
+    };
     let turns: Vec<[f64; 2]> = said.iter().filter_map(|said| said.turns).collect();
     let paths: Vec<[f64; 2]> = said.iter().filter_map(|said| Some([said.elsewhere, said.other_path?])).collect();
     let told = |name: &str, pairs: &[[f64; 2]]| match auc(pairs) {
@@ -117,22 +141,44 @@ fn lines(said: &[Said]) -> Vec<String> {
     };
     let mut lines = vec![
         format!("{} texts; the best walk ends at the goal for {right}", said.len()),
-        format!("calibration error of its share, {BINS} bins: {:.3}", calibration_error(&best)),
+        format!("calibration error, {BINS} bins: {:.3} of the share of that walk,", error(|best| best.share)),
+        format!(
+            "    {:.3} of the share of all walks that end within {SUCCESS_M} m of its end",
+            error(|best| best.nearby)
+        ),
         told("one turn flipped", &turns),
         told("another path's text", &paths),
     ];
-    let mut rows = vec![
-        ["another walk fits this well", "where the reader is wrong", "where it is right"].map(str::to_owned).to_vec(),
-    ];
-    let is_right = |said: &&Said| said.best.is_some_and(|(_, is_right)| is_right);
-    let share = |part: &[&Said], bound: f64| {
-        let ambiguous = part.iter().filter(|said| said.elsewhere >= bound.ln()).count();
-        format!("{:.1} %", 100.0 * ambiguous as f64 / part.len().max(1) as f64)
-    };
-    let (right, wrong): (Vec<&Said>, Vec<&Said>) = said.iter().partition(is_right);
-    rows.extend(BOUNDS.map(|bound| vec![format!("{bound:.2} of its own"), share(&wrong, bound), share(&right, bound)]));
-    lines.push(table(&rows));
+    lines.push(table(&ambiguous(said)));
     lines
+}
+
+/// How often texts are called ambiguous at several bounds.
+fn ambiguous(said: &[Said]) -> Vec<Vec<String>> {
+    let head = [
+        "another end fits",
+        "as well as the annotated one: all",
+        "as well as the best: reader wrong",
+        "reader right",
+        "reader is right of these",
+    ];
+    let percent = |count: usize, of: usize| format!("{:.1} %", 100.0 * count as f64 / of.max(1) as f64);
+    let best: Vec<&Best> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+    let all_right = best.iter().filter(|best| best.is_right).count();
+    let row = |bound: f64| {
+        let near_own = said.iter().filter(|said| said.elsewhere >= bound.ln()).count();
+        let near_best = best.iter().filter(|best| best.runner_up >= bound.ln());
+        let (right, wrong): (Vec<&Best>, Vec<&Best>) = near_best.copied().partition(|best| best.is_right);
+        vec![
+            format!("{bound:.2}"),
+            percent(near_own, said.len()),
+            percent(wrong.len(), best.len() - all_right),
+            percent(right.len(), all_right),
+            percent(right.len(), right.len() + wrong.len()),
+        ]
+    };
+    let head = head.map(str::to_owned).to_vec();
+    std::iter::once(head).chain(BOUNDS.map(row)).collect()
 }
 
 /// How far shares are from how often they are right, averaged over bins by their numbers of cases.
