@@ -8,6 +8,7 @@ mod common;
 use common::{Building, EPISODES, Ran};
 use serde_json::{Value, json};
 use std::path::Path;
+use wayword_core::{MentionKind, Side, Turn};
 use wayword_testkit::{SCAN, viewpoint_id};
 
 /// From the refrigerator through the kitchen and the hallway to the entryway, and right into the living room.
@@ -156,6 +157,33 @@ fn records_of_older_versions_are_read_without_it() {
     assert!(refused.refused().contains("ambiguity"));
 }
 
+/// Turns of 55 degrees or more are told in the order of the path. Slight ones may be told between them.
+#[test]
+fn every_real_turn_is_told_once_and_in_order() {
+    let building = Building::new();
+    building.generate("run", &["--paths", "40", "--style", "r2r"]);
+    let mut turns = 0;
+    for record in building.records("run") {
+        let text = &record.instruction.text;
+        let words = record.instruction.mentions.iter().filter(|mention| mention.kind == MentionKind::Turn);
+        let words: Vec<&str> = words.map(|mention| &text[mention.span[0]..mention.span[1]]).collect();
+        let told = words.iter().filter_map(|words| match words.to_lowercase() {
+            words if words.contains("left") => Some(Side::Left),
+            words if words.contains("right") => Some(Side::Right),
+            _ => None,
+        });
+        let bend = |turn: Turn| Some((turn.side()?, matches!(turn, Turn::Left | Turn::Right)));
+        let bends: Vec<(Side, bool)> = record.path.moves().iter().filter_map(|step| bend(step.turn())).collect();
+        let told: Vec<Side> = told.collect();
+        let mut left = told.iter();
+        let real: Vec<Side> = bends.iter().filter(|(_, is_real)| *is_real).map(|(side, _)| *side).collect();
+        assert!(real.iter().all(|side| left.any(|told| told == side)), "{text}: {bends:?}");
+        assert!(told.len() <= bends.len(), "{text}: {bends:?}");
+        turns += real.len();
+    }
+    assert!(turns > 20, "{turns}");
+}
+
 #[test]
 fn english_is_read_and_other_languages_are_named() {
     let building = Building::new();
@@ -198,4 +226,7 @@ fn a_calibration_is_named_where_it_is_read_and_refused_where_nothing_reads_it() 
     assert!(asked("run", "names.toml").refused().contains("calibration"), "a run is not continued with another one");
     let house = ["generate", "--paths", "1", "--out", "house", "--calibration", "names.toml"];
     assert!(building.wayword(&house).refused().contains("list everything"));
+    let compare = ["compare", "--platform", "matterport", "--data", "data", "--episodes", EPISODES, "--out", "walked"];
+    let ran = building.wayword(&[&compare[..], &["--calibration", "names.toml"]].concat());
+    assert!(ran.refused().contains("no agent") && !building.path("walked").exists());
 }

@@ -82,6 +82,10 @@ pub struct Compare {
     /// Thresholds of the agents as TOML: one table per agent, with the names in docs/AGENTS.md.
     #[arg(long, value_name = "FILE")]
     pub parameters: Option<PathBuf>,
+    /// Refused, with the reason: a calibration says how much the silence of labels counts against a claim, and no agent judges
+    /// claims. `check` and `generate` take it.
+    #[arg(long, value_name = "FILE")]
+    pub calibration: Option<PathBuf>,
     /// Use only the first N items.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,

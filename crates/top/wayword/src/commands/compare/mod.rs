@@ -61,6 +61,13 @@ const FRUITLESS: usize = 20;
 const FLUSH: usize = 16;
 
 pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
+    if let Some(file) = &args.calibration {
+        let problem = format!(
+            "--calibration {} has no effect: no agent judges claims by what labels do not list",
+            file.display()
+        );
+        return Err(Error::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
+    }
     let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
     Calls::ready(&job, output)?;
     let kept = Kept::of(args, &job.settings)?;
