@@ -1,6 +1,7 @@
 //! Fits the weights of the follower to people's texts of known walks, and prints how they do on buildings that were left
 //! out.
 
+mod gains;
 pub(crate) mod texts;
 mod walker;
 
@@ -59,11 +60,11 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let left_out = left_out(&names);
     // Those of the buildings that are left out, file by file, and all others together.
     let (mut apart, mut fitted) = (Vec::new(), Vec::new());
-    for (file, texts) in flags.episodes.iter().zip(files) {
+    for (number, (file, texts)) in flags.episodes.iter().zip(files).enumerate() {
         let (out, kept): (Vec<Text>, Vec<Text>) =
             texts.into_iter().partition(|text| left_out.contains(&scenes[text.scene].name));
         apart.push((name(file), out));
-        fitted.extend(kept);
+        fitted.extend(kept.into_iter().map(|text| Text { file: number, ..text }));
     }
     fitted.shuffle(&mut rng(flags.seed, &["fit-follower"]));
     fitted.truncate(flags.texts);
@@ -77,6 +78,11 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     say("by hand", &|texts| with_map(&scenes, texts, &Weights::by_hand()));
     let map = fit_map(flags, &scenes, &fitted, output);
     say("with the map", &|texts| with_map(&scenes, texts, &map));
+    for (number, file) in flags.episodes.iter().enumerate() {
+        let texts: Vec<&Text> = fitted.iter().filter(|text| text.file == number).collect();
+        output.say(format!("shares of the texts of {} that a change gains more for:", name(file)));
+        output.say(gains::gains(&scenes, &texts, &map));
+    }
     let start = OnwardWeights { done: map.clone(), going: map.clone(), ..OnwardWeights::by_hand() };
     let walking = fit_walker(flags, &scenes, &fitted, &start, output);
     say("walking", &|texts| walker::score(&scenes, texts, &walking));
@@ -105,10 +111,10 @@ fn name(file: &Path) -> String {
 }
 
 fn fit_map(flags: &Flags, scenes: &[Scene], texts: &[Text], output: &Output) -> Weights {
-    let plan = Plan { rounds: flags.rounds, rate: 0.04, batch: 48, hold: 2e-4, hold_fine: 3.0 };
+    let plan = Plan { rounds: flags.rounds, rate: 0.04, batch: 48, hold: 2e-4, hold_fine: 5.0 };
     let trees: Vec<Tree> = texts.par_iter().map(|text| tree(scenes, text)).collect();
     let items: Vec<(&Text, &Tree)> = texts.iter().zip(&trees).collect();
-    let mut learner = Learner::new(plan, &Weights::none());
+    let mut learner = Learner::new(plan, &Weights::by_hand());
     for round in 0..plan.rounds {
         let mut loss = 0.0;
         for batch in items.chunks(plan.batch) {

@@ -28,6 +28,8 @@ pub(crate) struct Scene {
 pub(crate) struct Text {
     /// Its building's place in the list.
     pub(crate) scene: usize,
+    /// Its file's place in the list.
+    pub(super) file: usize,
     /// Its words.
     pub(crate) words: String,
     pub(crate) guide: Guide,
@@ -37,7 +39,7 @@ pub(crate) struct Text {
     pub(crate) to_goal_m: Vec<f64>,
     /// Where a walk succeeds that ends there: where the object of the task is seen (REVERIE's evaluator), or near the goal
     /// (R2R's).
-    succeeds: Vec<bool>,
+    pub(super) succeeds: Vec<bool>,
 }
 
 /// A walk that ends nearer than this to the goal succeeds where there is no object, metres.
@@ -101,6 +103,7 @@ impl Scene {
         };
         let text = |words: &String| Text {
             scene: number,
+            file: 0,
             words: words.clone(),
             guide: Guide::read(words),
             walk: walk.clone(),

@@ -32,9 +32,9 @@ impl Weights {
         found.iter().map(|feature| self.0[*feature as usize]).sum()
     }
 
-    /// Weights of 0: where a fit begins.
+    /// Weights of 0.
     #[must_use]
-    pub fn none() -> Self {
+    pub(crate) fn none() -> Self {
         Self(vec![0.0; tables::COUNT])
     }
 

@@ -166,7 +166,8 @@ fn readers(comparison: &Comparison) -> Vec<String> {
         ));
     }
     if !notes.is_empty() {
-        notes.push("The weights of the agents that read were fitted to the train splits of R2R and REVERIE.".to_owned());
+        notes
+            .push("The weights of the agents that read were fitted to the train splits of R2R and REVERIE.".to_owned());
     }
     notes
 }
