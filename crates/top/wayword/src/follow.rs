@@ -135,15 +135,16 @@ impl<'a> Followed<'a> {
             Some((own, others)) if !others.is_empty() => building.told_apart_by(*own, others).map(str::to_owned),
             _ => None,
         };
-        let ends = judged.route.as_ref().map(|route| Ends { count: route.ends.len(), told_apart_by: apart(route) });
+        let ends =
+            judged.route.as_ref().ok().map(|route| Ends { count: route.ends.len(), told_apart_by: apart(route) });
         let mut told = match judged.route {
-            Some(route) => Told {
+            Ok(route) => Told {
                 findings: vec![route.finding],
                 route: Some(Shares { annotated: route.share, other: route.other }),
                 turn_gain: None,
                 ends,
             },
-            None => Told::unknown("no viewpoint graph is known on which it lies, so no other walk is"),
+            Err(why) => Told::unknown(&why.to_string()),
         };
         told.findings.extend(judged.wrong);
         told.turn_gain = judged.turn_gain;

@@ -50,12 +50,29 @@ impl Default for Thresholds {
 pub struct Judged {
     /// What is wrong with its steps; empty where nothing is.
     pub wrong: Vec<Finding>,
-    /// Whether it leads elsewhere; `None` where no other walk is known.
-    pub route: Option<Route>,
+    /// Whether it leads elsewhere.
+    pub route: Result<Route, Unfollowed>,
     /// What the best change of a turn gains, natural logs: the higher, the likelier the text has a wrong turn. `None` where
     /// it tells none.
     pub turn_gain: Option<f64>,
 }
+
+/// Why nothing is said of other walks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Unfollowed {
+    /// Only the walk itself is known.
+    #[error("no viewpoint graph is known on which it lies, so no other walk is")]
+    NoGraph,
+    /// The work grows with the square of the steps.
+    #[error("the text has more than {MOST_STEPS} steps")]
+    TooManySteps,
+    /// A step leads a few hops at most.
+    #[error("the path has more hops than the steps of the text can lead")]
+    TooFewSteps,
+}
+
+/// Most steps of a text that is followed. People's texts have 20 at most.
+const MOST_STEPS: usize = 60;
 
 /// An instruction against all walks from the same start.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,12 +104,16 @@ pub fn judge(
     weights: &Weights,
     thresholds: Thresholds,
 ) -> Judged {
+    if guide.len() > MOST_STEPS {
+        return Judged { wrong: Vec::new(), route: Err(Unfollowed::TooManySteps), turn_gain: None };
+    }
     let changes = changes(guide, known.building, known.walk, known.heading_rad, weights);
     let turn_gain = changes.iter().find(|change| change.kind == Kind::Turn).map(|change| change.gain);
     let mut wrong = wrong_steps(guide, &changes, thresholds);
     let swap = best_swap(guide, known.building, known.walk, known.heading_rad, weights);
     wrong.extend(swap.filter(|swap| swap.gain > thresholds.swap).map(wrong_order));
     let route = prior.map(|prior| route(guide, known, prior, &changes, weights, thresholds));
+    let route = route.unwrap_or(Err(Unfollowed::NoGraph));
     Judged { wrong, route, turn_gain }
 }
 
@@ -138,11 +159,14 @@ fn route(
     changes: &[Change],
     weights: &Weights,
     thresholds: Thresholds,
-) -> Route {
+) -> Result<Route, Unfollowed> {
     let start = known.walk.first().copied().unwrap_or_default();
     let mut tree = Tree::of(known.building, start, known.heading_rad, prior);
     let own = tree.with(known.building, known.walk);
     let fit = Fit::new(&Trial::new(guide, known.building), &tree, weights);
+    if !fit.score(own).is_finite() {
+        return Err(Unfollowed::TooFewSteps);
+    }
     let shares = shares(&fit, &tree);
     let position = |walk: usize| known.building.viewpoints[tree.end(walk)].position;
     let is_apart = |a: usize, b: usize| position(a).distance(position(b)) >= APART_M;
@@ -167,5 +191,6 @@ fn route(
         },
         span: changes.first().filter(|change| leads_elsewhere && change.gain > 0.0).map(|change| change.span),
     };
-    Route { finding, share: shares[own], other, ends: ends.into_iter().map(|walk| tree.end(walk)).collect() }
+    let ends = ends.into_iter().map(|walk| tree.end(walk)).collect();
+    Ok(Route { finding, share: shares[own], other, ends })
 }

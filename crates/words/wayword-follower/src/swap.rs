@@ -8,6 +8,7 @@ use crate::{
     tree::Tree,
     weights::Weights,
 };
+use wayword_language::reading::steps::Relation;
 
 /// Two places of a text, and what it gains to name each where the other is named.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +43,7 @@ pub fn best_swap(
     for (number, a) in places.iter().enumerate() {
         for b in &places[number + 1..] {
             let (first, second) = (a.mention(guide), b.mention(guide));
-            if first.meanings == second.meanings {
+            if a.step == b.step || first.meanings == second.meanings {
                 continue;
             }
             let mut changed = guide.clone();
@@ -72,14 +73,23 @@ impl Named {
     }
 }
 
-/// The first places that a text names and the building has. Swapping what it lacks says nothing.
+/// Whether a step that names a place so says that the walker comes to it. What only tells another place apart, as in "the
+/// table with the lamp", has no place in the order.
+fn is_met(relation: Relation) -> bool {
+    use Relation::{Along, At, In, Into, OutOf, Past, Through, To};
+    matches!(relation, OutOf | Into | In | Through | Past | To | Along | At)
+}
+
+/// The first places that a text names, that the walker comes to, and that the building has. Swapping what it lacks says
+/// nothing.
 fn places(guide: &Guide, building: &Building) -> Vec<Named> {
     let trial = Trial::new(guide, building);
     let mut places = Vec::new();
     for (step, told) in guide.steps.iter().enumerate() {
         for (place, mention) in told.mentions.iter().enumerate() {
             let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
-            places.extend(mention.span.filter(|_| is_found).map(|span| Named { step, place, span }));
+            let is_met = is_found && is_met(mention.relation);
+            places.extend(mention.span.filter(|_| is_met).map(|span| Named { step, place, span }));
         }
     }
     places.truncate(MOST_PLACES);

@@ -30,8 +30,8 @@ pub(crate) struct Group {
 
 /// All groups.
 pub(crate) const GROUPS: [Group; 2] = [
-    Group { name: "objects", cases: &[Case::Thing, Case::ThingAtStop], budget: 0.011 },
-    Group { name: "rooms", cases: &[Case::Room, Case::RoomAtStop, Case::RoomLacking], budget: 0.012 },
+    Group { name: "objects", cases: &[Case::Thing, Case::ThingAtStop], budget: 0.005 },
+    Group { name: "rooms", cases: &[Case::Room, Case::RoomAtStop, Case::RoomLacking], budget: 0.011 },
 ];
 
 /// The tables of a group: weights from all claims, and the ratio that the budget allows on buildings that are left out in

@@ -19,7 +19,7 @@ use wayword_core::{Climb, Side};
 use wayword_language::reading::steps::{Relation, Stairs};
 
 /// Most hops of a step.
-pub(crate) const MOST_HOPS: usize = 6;
+pub(crate) const MOST_HOPS: usize = 8;
 /// A turn that is no bend of a corridor, radians.
 const CLEAR_TURN_RAD: f64 = 0.7;
 
