@@ -41,7 +41,7 @@ pub struct Thresholds {
 
 impl Default for Thresholds {
     fn default() -> Self {
-        Self { turn: 2.0, no_turn: 4.5, climb: 1.0, swap: 3.0, route: 8.0 }
+        Self { turn: 2.4, no_turn: 4.5, climb: 1.0, swap: 3.0, route: 8.0 }
     }
 }
 
