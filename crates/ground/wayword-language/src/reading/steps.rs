@@ -2,7 +2,7 @@
 
 mod relation;
 
-use super::{Event, Floor, Ordinal, Reading, What, clauses};
+use super::{Event, Floor, Ordinal, Reading, What, clauses, denial::denied, tokens::Tokens};
 use crate::{
     lexicon::room_name,
     text::{self, Token},
@@ -98,6 +98,7 @@ pub enum Stairs {
 pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
     let tokens = text::tokens(text);
     let clauses = clauses(&tokens);
+    let denied = denied(Tokens::of(&tokens), &clauses);
     let first_token = |event: &Event| tokens.partition_point(|token| token.span[0] < event.span[0]);
     let events: Vec<(usize, &Event)> = reading.events.iter().map(|event| (first_token(event), event)).collect();
     let mut next = 0;
@@ -105,7 +106,7 @@ pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
     for range in pieces(&tokens, &clauses, &events) {
         let from = next;
         next += events[from..].partition_point(|(at, _)| *at < range.end);
-        steps.extend(Builder { tokens: &tokens, range, first_event: from }.step(&events[from..next]));
+        steps.extend(Builder { tokens: &tokens, denied: &denied, range, first_event: from }.step(&events[from..next]));
     }
     steps
 }
@@ -145,6 +146,8 @@ fn pieces(tokens: &[Token], clauses: &[usize], events: &[(usize, &Event)]) -> Ve
 /// Puts one step together.
 struct Builder<'a> {
     tokens: &'a [Token],
+    /// For each token, whether the text denies it.
+    denied: &'a [bool],
     range: Range<usize>,
     /// The number of the first of its events.
     first_event: usize,
@@ -219,8 +222,13 @@ impl Builder<'_> {
         names_room
     }
 
+    /// Its tokens that are not denied.
+    fn told(&self) -> impl Iterator<Item = usize> {
+        self.range.clone().filter(|at| !self.denied[*at])
+    }
+
     fn has(&self, list: &[&str]) -> bool {
-        self.tokens[self.range.clone()].iter().any(|token| list.contains(&token.word.as_str()))
+        self.told().any(|at| list.contains(&self.tokens[at].word.as_str()))
     }
 
     fn stairs(&self) -> Stairs {
@@ -236,9 +244,9 @@ impl Builder<'_> {
     fn side(&self) -> Option<Side> {
         let words = &self.tokens[self.range.clone()];
         let right_before = |at: usize| words.get(at + 1).is_some_and(|next| matches!(&*next.word, "before" | "after"));
-        words.iter().enumerate().find_map(|(at, token)| match token.word.as_str() {
+        self.told().find_map(|at| match self.tokens[at].word.as_str() {
             "left" => Some(Side::Left),
-            "right" if !right_before(at) => Some(Side::Right),
+            "right" if !right_before(at - self.range.start) => Some(Side::Right),
             _ => None,
         })
     }
@@ -310,6 +318,17 @@ mod tests {
 
     #[test]
     fn what_is_denied_is_no_part_of_a_step() {
-        assert_eq!(told("Do not turn left.").remove(0).1.turn, None);
+        let step = |text: &str| told(text).remove(0).1;
+        let denied = step("Do not turn left.");
+        assert_eq!((denied.turn, denied.side), (None, None));
+        assert_eq!(denied.marks, Vec::<usize>::new());
+        assert!(step("Wait.").marks.len() == 1 && step("Do not wait.").marks.is_empty());
+        assert_eq!(step("Never go down the stairs.").stairs, Stairs::None);
+        assert_eq!(step("Do not go straight on to the end of the stairs.").stairs, Stairs::None);
+        let denied = step("Don't go slightly forward to the end outside.");
+        assert!(!(denied.is_straight || denied.is_slight || denied.at_end || denied.is_outdoors));
+        assert_eq!(step("Do not leave the kitchen.").door, Door::None);
+        let both = step("Do not turn right but go down the stairs.");
+        assert_eq!((both.turn, both.stairs, both.climb), (None, Stairs::Named, Some(Climb::Down)));
     }
 }
