@@ -68,6 +68,7 @@ mod tests {
         assert!(same_room("observatory", "Observatories"));
         assert_eq!(room_name("corridor"), Some("hallway"));
         assert_eq!(room_name("sofa"), None);
+        assert_eq!(room_name("locker room"), Some("locker room"), "it is no locker");
     }
 
     #[test]
