@@ -73,16 +73,29 @@ fn numbers(tokens: Tokens<'_>, at: usize) -> Option<([f64; 2], usize)> {
         ("several" | "some", _) => Some(([3.0, 8.0], at + 1)),
         ("half", _) => exact(0.5, at + 1),
         _ => {
-            let low = number(word(at))?;
+            let (low, end) = hundreds(tokens, at)?;
             // "Two or three", "5-10".
-            let joint = usize::from(matches!(word(at + 1), "or" | "to"));
-            let high = number(word(at + 1 + joint)).filter(|high| *high > low && !matches!(word(at), "a" | "an"));
+            let joint = usize::from(matches!(word(end), "or" | "to"));
+            let high = hundreds(tokens, end + joint).filter(|(high, _)| *high > low && !matches!(word(at), "a" | "an"));
             match high {
-                Some(high) => Some(([low, high], at + 2 + joint)),
-                None => exact(low, at + 1),
+                Some((high, end)) => Some(([low, high], end)),
+                None => exact(low, end),
             }
         }
     }
+}
+
+/// "Five", "two hundred", "three hundred and fifty": a number, and the token behind it.
+fn hundreds(tokens: Tokens<'_>, at: usize) -> Option<(f64, usize)> {
+    let few = number(tokens.word(at))?;
+    let (many, end) = match tokens.word(at + 1) {
+        "hundred" => (few * 100.0, at + 2),
+        "thousand" => (few * 1000.0, at + 2),
+        _ => return Some((few, at + 1)),
+    };
+    let rest = end + usize::from(tokens.word(end) == "and");
+    let more = number(tokens.word(rest)).filter(|more| *more < 100.0);
+    Some(more.map_or((many, end), |more| (many + more, rest + 1)))
 }
 
 fn number(word: &str) -> Option<f64> {
@@ -94,6 +107,10 @@ fn number(word: &str) -> Option<f64> {
         "thirty" => 30.0,
         "forty" => 40.0,
         "fifty" => 50.0,
+        "sixty" => 60.0,
+        "seventy" => 70.0,
+        "eighty" => 80.0,
+        "ninety" => 90.0,
         "hundred" => 100.0,
         _ => {
             let parsed = word.starts_with(|c: char| c.is_ascii_digit()).then(|| word.parse::<f64>().ok()).flatten();
@@ -101,6 +118,12 @@ fn number(word: &str) -> Option<f64> {
         }
     };
     many.is_finite().then_some(many)
+}
+
+/// Whether the words from a token on are a unit behind a number: "100 yards". They name no place.
+pub(super) fn is_unit(tokens: Tokens<'_>, at: usize) -> bool {
+    let is_number = |word: &str| !matches!(word, "a" | "an") && number(word).is_some();
+    at > 0 && is_number(tokens.word(at - 1)) && unit_m(tokens.word(at)).is_some()
 }
 
 /// A unit in metres.
@@ -136,7 +159,9 @@ fn is_walked(tokens: Tokens<'_>, at: usize, told: &Told) -> bool {
             | "below"
             | "above"
             | "thick"
-    ) || matches!((next, tokens.word(told.end + 1)), ("in", "front") | ("to", "the" | "your"));
+    ) || matches!((next, tokens.word(told.end + 1)), ("in", "front"))
+        || (next == "to"
+            && (told.end + 2..told.end + 4).any(|at| matches!(tokens.word(at), "left" | "right" | "side")));
     // "Up three steps", "the two steps", "two steps up": stairs.
     let climbs = |word: &str| {
         matches!(word, "up" | "down" | "climb" | "climbing" | "ascend" | "descend" | "the" | "these" | "those" | "of")
@@ -184,6 +209,12 @@ mod tests {
             ("Move forward half a metre.", [0.5, 0.5]),
             ("Turn left and walk 2.5 metres.", [2.5, 2.5]),
             ("Two steps forward.", [0.8, 1.8]),
+            ("Walk 500 meters to the bathroom.", [500.0, 500.0]),
+            ("Walk two hundred meters.", [200.0, 200.0]),
+            ("Walk one hundred and fifty meters to your bed.", [150.0, 150.0]),
+            ("Walk two or three hundred meters.", [2.0, 300.0]),
+            ("Walk 100 yards to the sofa.", [91.44, 91.44]),
+            ("Go three miles to the sofa.", [4828.03, 4828.03]),
         ] {
             assert_eq!(told(text), [metres], "{text}");
         }
@@ -206,10 +237,25 @@ mod tests {
             "Wait 5 minutes.",
             "Walk 99999999999999999999999999 miles.",
             "Stop at the foot of the bed.",
+            "Stop two metres to the left of the sofa.",
+            "Go to the sofa two metres to your immediate right.",
             "Turn 90 degrees.",
         ] {
             assert_eq!(told(text), Vec::<[f64; 2]>::new(), "{text}");
         }
+    }
+
+    #[test]
+    fn a_unit_behind_a_number_is_no_place() {
+        let names = |text: &str| {
+            let events = read(text, &BTreeSet::new()).events.into_iter();
+            let name = |what| if let What::Place(place) = what { Some(place.name) } else { None };
+            events.filter_map(|event| name(event.what)).collect::<Vec<_>>()
+        };
+        assert_eq!(names("Walk 100 yards to the sofa."), ["sofa"]);
+        assert_eq!(names("Stop 20 yards from the sofa."), ["sofa"]);
+        assert_eq!(names("It is three miles behind the sofa."), ["sofa"]);
+        assert_eq!(names("Walk into the yard."), ["yard"]);
     }
 
     #[test]

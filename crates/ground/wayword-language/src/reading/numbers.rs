@@ -73,9 +73,9 @@ pub(super) fn cardinal(word: &str) -> Option<u32> {
 
 /// Whether a word is a number of any size: "500", "2.5", "twenty", "a".
 pub(super) fn is_number(word: &str) -> bool {
-    const OTHERS: [&str; 15] = [
-        "a", "one", "an", "eleven", "fifteen", "twenty", "thirty", "forty", "fifty", "sixty", "ninety", "eighty",
-        "hundred", "half", "several",
+    const OTHERS: [&str; 17] = [
+        "a", "one", "an", "eleven", "fifteen", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "ninety",
+        "eighty", "hundred", "thousand", "half", "several",
     ];
     cardinal(word).is_some() || OTHERS.contains(&word) || word.parse::<f64>().is_ok_and(f64::is_finite)
 }

@@ -1,8 +1,8 @@
 //! Landmarks and rooms.
 
 use super::{
-    Event, Place, What, colours::Colours, links::link, numbers::Numbers, sides, task, tokens::Tokens, vocabulary as v,
-    ways::going,
+    Event, Place, What, colours::Colours, distances::is_unit, links::link, numbers::Numbers, sides, task,
+    tokens::Tokens, vocabulary as v, ways::going,
 };
 use crate::lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, says_several, thing};
 use std::collections::BTreeSet;
@@ -116,7 +116,7 @@ fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
     if length > 1 {
         return false;
     }
-    if task::is_done(tokens, at) {
+    if task::is_done(tokens, at) || is_unit(tokens, at) {
         return true;
     }
     let after_determiner = at > 0 && (v::DETERMINERS.contains(&word(at - 1)) || v::ADJECTIVES.contains(&word(at - 1)));
@@ -204,6 +204,7 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
     let tells_nothing = v::ABSTRACT.contains(&normal_word(last).as_str())
         || v::ADJECTIVES.contains(&last)
         || last.ends_with("ly")
+        || is_unit(tokens, to - 1)
         || v::floor_number(last).is_some();
     if to == at + 1 || ends_in_name || tells_nothing {
         return None;
