@@ -169,6 +169,7 @@ mod tests {
             ("Enter the room with no windows or doors on the left.", &[], &["window", "door"]),
             ("If you reach the stairs you have gone too far.", &[], &["stair"]),
             ("Stop at the sofa. If you see the bed, you've gone too far.", &["sofa"], &["bed"]),
+            ("If you see the bed, you went too far.", &[], &["bed"]),
             ("You went too far if you see the bed.", &[], &["bed"]),
             ("If you pass the bed you went too far, go back to the sofa.", &["sofa"], &["bed"]),
             ("Ignore the sofa and go to the bed.", &["bed"], &["sofa"]),
@@ -183,6 +184,13 @@ mod tests {
             let found = told(text);
             let found: [Vec<&str>; 2] = [&found.0, &found.1].map(|names| names.iter().map(String::as_str).collect());
             assert_eq!(found, [claimed.to_vec(), denied.to_vec()], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_walk_too_far_is_understood_in_any_tense() {
+        for text in ["If you see the bed, you went too far.", "You have gone too far if you see the bed."] {
+            assert!(read(text, &BTreeSet::new()).clauses.iter().all(|clause| clause.understood), "{text}");
         }
     }
 

@@ -222,6 +222,8 @@ mod tests {
             "wait in the one that says so",
             "turn to your immediate left",
             "stop when on your left soon",
+            "at the bottom hang a right",
+            "at the top turn left",
         ] {
             let places: Vec<String> = told(text).into_iter().filter(|what| !what.starts_with("turn")).collect();
             assert_eq!(places, Vec::<String>::new(), "{text}");

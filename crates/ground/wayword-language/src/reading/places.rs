@@ -189,8 +189,12 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
         let first = word(end);
         let is_other = v::WALKING.contains(&first) || v::TURNING.contains(&first) || first.ends_with("ing");
         let is_verb = !is_article && end == at + 1 && (is_other || matches!(first, "left" | "right"));
+        // "At the bottom hang a right".
+        let is_turn = v::TURNING.contains(&first)
+            && matches!((word(end + 1), word(end + 2)), ("left" | "right", _) | ("a", "left" | "right"));
         tokens.get(end).is_none_or(|token| !token.is_word())
             || is_verb
+            || is_turn
             || v::BREAKERS.contains(&word(end))
             || named(tokens, end, known).is_some()
     };
