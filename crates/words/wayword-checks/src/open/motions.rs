@@ -6,6 +6,7 @@ use super::{
     relation::Relation,
     stretches::Stretches,
 };
+use wayword_core::Climb;
 use wayword_language::{
     lexicon::{Class, is_room, is_thing, kinds, normal_word, room_name},
     reading::{Going, Place, Reading, What},
@@ -23,6 +24,8 @@ struct Motion<'a> {
     name: String,
     /// The words that say which one it is: those right before the place, and those of its name.
     which: Vec<&'a str>,
+    /// Where it goes over stairs, which way.
+    climb: Option<Climb>,
     clause: usize,
     is_room: bool,
     /// Whether the same place may be meant again: "walk around the table".
@@ -35,7 +38,13 @@ pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretc
     let claims = claims(reading);
     let motions = motions(tokens, reading, &claims);
     let again = |(at, motion): (usize, &Motion<'_>)| {
-        let same = |before: &&Motion<'_>| before.relation == motion.relation && before.name == motion.name;
+        let climbs_alike = |before: &Motion<'_>| match (before.climb, motion.climb) {
+            (Some(before), Some(again)) => before == again,
+            _ => true,
+        };
+        let same = |before: &&Motion<'_>| {
+            before.relation == motion.relation && before.name == motion.name && climbs_alike(before)
+        };
         let before = motions[..at].iter().rposition(|before| same(&before))?;
         let is_other = motions[before].clause == motion.clause
             || motion.may_go_on
@@ -111,6 +120,7 @@ fn motions<'a>(tokens: &'a [Token], reading: &Reading, claims: &[Claim]) -> Vec<
             relation: claim.relation,
             name,
             which: which(tokens, claim),
+            climb: climb(reading, claim),
             clause: claim.clause(reading),
             is_room: claim.is_room,
             may_go_on: going == Some(Going::Around),
@@ -119,6 +129,17 @@ fn motions<'a>(tokens: &'a [Token], reading: &Reading, claims: &[Claim]) -> Vec<
         is_motion.then_some(motion)
     };
     claims.iter().enumerate().filter_map(motion).collect()
+}
+
+/// Which way the words before the stairs of a claim climb them.
+fn climb(reading: &Reading, claim: &Claim) -> Option<Climb> {
+    let is_stairs = claim.class == Class::Stairs || room_name(&claim.name) == Some("stairs");
+    let clause = claim.clause(reading);
+    let before = reading.events[..claim.event].iter().rev().take_while(|event| event.clause == clause);
+    before.filter(|_| is_stairs).find_map(|event| match event.what {
+        What::Climb(climb) | What::Steps(climb) => Some(climb),
+        _ => None,
+    })
 }
 
 /// The name by which a place is compared.

@@ -2,7 +2,7 @@
 
 use super::{claims::claims, motions, relation::Relation, stretches::Stretches};
 use crate::{Subject, finding};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{
     reading::{Reading, What},
@@ -34,7 +34,7 @@ pub(super) fn repeats(text: &str, reading: &Reading, subject: Subject<'_>) -> Ve
 
 /// Sentences that are said twice in the same words.
 fn sentences(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> Vec<Finding> {
-    let mut said: BTreeSet<Vec<&str>> = BTreeSet::new();
+    let mut said: BTreeMap<Vec<&str>, usize> = BTreeMap::new();
     let mut before: Vec<&str> = Vec::new();
     let mut found = Vec::new();
     let claims = claims(reading);
@@ -45,8 +45,9 @@ fn sentences(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> 
         let within = |of: [usize; 2]| span[0] <= of[0] && of[1] <= span[1];
         let spelt: Vec<&str> = words.iter().map(|token| token.word.as_str()).collect();
         let at_once = std::mem::replace(&mut before, spelt.clone()) == spelt;
-        let is_new = said.insert(spelt);
-        if is_new {
+        let times = said.entry(spelt).or_default();
+        *times += 1;
+        if *times == 1 {
             continue;
         }
         // "Turn left. Walk on. Turn left. Walk on.": such sentences may well be said twice.
@@ -55,13 +56,17 @@ fn sentences(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> 
             What::Climb(climb) | What::Steps(climb) => Some(stretches.climbs(*climb)),
             _ => None,
         };
-        let moves = reading.events.iter().filter(|event| within(event.span)).filter_map(|event| told(&event.what));
+        let events = || reading.events.iter().filter(|event| within(event.span));
+        let moves = events().filter_map(|event| told(&event.what));
         let places =
             claims.iter().filter(|claim| within(claim.span)).filter(|claim| claim.relation != Relation::Beside);
         let counts: Vec<usize> = moves.chain(places.map(|claim| stretches.places(claim))).collect();
-        let has_two = counts.iter().all(|count| *count >= 2);
-        if at_once || words.len() >= MANY_WORDS || !has_two {
-            let reason = "the text says this sentence a second time, and the path has one stretch of it";
+        let has_all = counts.iter().all(|count| *count >= *times);
+        // "Turn right. Turn right." is said of two turns, but whoever climbs twice at once says so in other words.
+        let turns = events().any(|event| matches!(event.what, What::Turn(_)))
+            && !events().any(|event| matches!(event.what, What::Climb(_) | What::Steps(_)));
+        if (at_once && !turns) || words.len() >= MANY_WORDS || !has_all {
+            let reason = "the text says this sentence again, and the path has fewer stretches of it";
             found.push(finding(Check::Order, Verdict::Fail, reason, Some(span)));
         }
     }

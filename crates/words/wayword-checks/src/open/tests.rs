@@ -179,6 +179,42 @@ fn what_is_said_twice_needs_two_stretches_of_the_path() {
     }
 }
 
+/// What is said of a text about a path through points two metres apart, each with its height; nothing else is known.
+fn told_of(text: &str, points: &[(f64, f64, f64)]) -> (Verdict, Vec<String>) {
+    let stop = |(x, y, z): &(f64, f64, f64)| Stop { position: DVec3::new(*x, *y, *z), viewpoint: None, level: Some(1) };
+    let frames = Path::frames_along(points.iter().map(stop).collect(), None);
+    let scene = SceneId::new("made-up").unwrap();
+    let path = Path { id: "1".into(), scene, frames, motion: Motion::Known, target: None };
+    let evidence = Evidence::of_path_alone(&path);
+    let checked = check(text, Subject::open(&evidence, &any(), Reach::default()));
+    let wrong = checked.findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
+    (checked.verdict(), wrong.map(|finding| finding.reason.clone()).collect())
+}
+
+#[test]
+fn a_turn_is_said_as_often_as_the_path_has_it() {
+    // A walk around a block: three turns to one side.
+    let around = [(0.0, 0.0, 1.5), (0.0, 2.0, 1.5), (2.0, 2.0, 1.5), (2.0, 0.0, 1.5), (0.0, 0.0, 1.5)];
+    let fails = |text: &str| told_of(text, &around).0 == Verdict::Fail;
+    assert!(!fails("Turn right. Turn right. Turn right. Stop."));
+    assert!(!fails("Walk on. Turn right. Turn right."));
+    assert!(fails("Turn right. Turn right. Turn right. Turn right."));
+    assert!(fails("Turn left. Turn left."));
+    assert!(fails("Walk straight on. Walk straight on."), "no turn tells these apart");
+}
+
+#[test]
+fn stairs_down_and_up_again_are_two_motions() {
+    let fails = |text: &str, heights: [f64; 4]| {
+        let points: Vec<(f64, f64, f64)> =
+            heights.iter().zip(0..).map(|(z, at)| (0.0, 2.0 * f64::from(at), *z)).collect();
+        told_of(text, &points).0 == Verdict::Fail
+    };
+    let (down_and_up, once_up) = ([3.0, 1.5, 1.69, 1.88], [1.5, 3.0, 3.0, 3.0]);
+    assert!(!fails("Go down steps, turn left and go up steps.", down_and_up));
+    assert!(fails("Go up steps, turn left and go up steps.", once_up));
+}
+
 #[test]
 fn a_finding_about_a_motion_covers_its_verb() {
     let (_, evidence, around) = path(0, 3);
