@@ -1,5 +1,8 @@
 //! Stairs and storeys.
 
+#[cfg(test)]
+mod tests;
+
 use super::{Event, Floor, Link, What, links::link, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
 use wayword_core::Climb;
@@ -84,6 +87,7 @@ impl<'a> Text<'a> {
         }
         let next = self.word(at + 1);
         match self.word(at) {
+            "upper" | "lower" | "floor" | "level" | "storey" | "story" => self.other_storey(at),
             "upstairs" => Some(told(Climb::Up, self.commands_upstairs(at))),
             "downstairs" => Some(told(Climb::Down, self.commands_upstairs(at))),
             "climb" | "climbing" | "ascend" | "ascending" if next != "down" => {
@@ -94,6 +98,27 @@ impl<'a> Text<'a> {
             "down" => Some(self.leads_on(at).or(self.behind_stairs(at))?.told(Climb::Down, self.commands(at))),
             _ => None,
         }
+    }
+
+    /// "Take the stairs to the upper floor", "go to the floor above", but not "start on the upper floor", and not "the
+    /// stairs to the upper floor".
+    fn other_storey(&self, at: usize) -> Option<What> {
+        let next = self.word(at + 1);
+        let is_joint = |word: &str| v::BREAKERS.contains(&word) && !v::DETERMINERS.contains(&word);
+        let ends = |at: usize| !self.tokens.is_word(at) || self.word(at) == "and" || is_joint(self.word(at));
+        let (climb, end) = match (self.word(at), next) {
+            ("upper", _) if is_floor(next) => (Climb::Up, at + 2),
+            ("lower", _) if is_floor(next) => (Climb::Down, at + 2),
+            ("upper" | "lower", _) => return None,
+            (_, "above") => (Climb::Up, at + 2),
+            (_, "below") => (Climb::Down, at + 2),
+            _ => return None,
+        };
+        let to = at.checked_sub(1 + usize::from(v::DETERMINERS.contains(&self.before(at))))?;
+        let before = self.before(to);
+        let verb = || (to.saturating_sub(4)..to).rev().map(|at| self.word(at)).find(|word| v::CLIMBING.contains(word));
+        let goes = self.word(to) == "to" && (v::CLIMBING.contains(&before) || verb().is_some());
+        (goes && ends(end)).then_some(What::Storey(climb))
     }
 
     /// "Go up.", "head down and turn left", "ascend": a climb that names no stairs.
@@ -165,14 +190,14 @@ impl<'a> Text<'a> {
         v::FLOORINGS.contains(&self.before(floor)) || is_room(&next) || matches!(next.as_str(), "path" | "walkway")
     }
 
-    /// "Take the stairs up", but not "take a few steps down the hallway".
+    /// "Take the stairs up", "take the elevator down", but not "take a few steps down the hallway".
     fn behind_stairs(&self, at: usize) -> Option<Way> {
         if v::DETERMINERS.contains(&self.word(at + 1)) && self.before(at) == "steps" {
             return None;
         }
         let mut words = (at.saturating_sub(4)..at).rev().map(|at| self.word(at));
-        let taken = words.next().is_some_and(is_stairs)
-            && words.any(|word| matches!(word, "take" | "taking" | "follow" | "use"));
+        let taken = words.next().is_some_and(|word| is_stairs(word) || v::CARRIERS.contains(&word))
+            && words.any(|word| matches!(word, "take" | "taking" | "follow" | "use" | "ride" | "riding"));
         taken.then_some(Way::Flight)
     }
 
@@ -181,8 +206,9 @@ impl<'a> Text<'a> {
         let Some(before) = self.before_climb(at) else { return true };
         let name = normal_word(self.word(before));
         let is_place = is_thing(&name) || is_room(&name);
+        let is_carrier = is_stairs(self.word(before)) || v::CARRIERS.contains(&self.word(before));
         // "To the bathroom up the stairs", but "past the sofa up the stairs".
-        !is_place || is_stairs(self.word(before)) || link(self.tokens, self.clauses, before) == Link::Along
+        !is_place || is_carrier || link(self.tokens, self.clauses, before) == Link::Along
     }
 
     /// The same for "upstairs" and "downstairs". Without a verb of going before them, they name a place.
@@ -218,93 +244,5 @@ impl<'a> Text<'a> {
         let aside =
             words.iter().any(|word| matches!(*word, "leading" | "leads" | "lead")) || words.windows(2).any(going);
         Some((Floor { number, leaves, aside }, last))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::reading::read;
-    use std::collections::BTreeSet;
-
-    fn told(text: &str) -> Vec<What> {
-        let events = read(text, &BTreeSet::new()).events.into_iter().map(|event| event.what);
-        events
-            .filter(|what| matches!(what, What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_)))
-            .collect()
-    }
-
-    #[test]
-    fn commands_to_climb_are_told_from_places_up_there() {
-        for text in [
-            "Go upstairs.",
-            "Walk back upstairs to the bedroom.",
-            "Exit the bedroom and upstairs.",
-            "Walk up the stairs.",
-            "Turn left up the stairs.",
-            "Walk past the sofa up the stairs.",
-            "Take the stairs up.",
-            "Climb the old wooden stairs.",
-            "Go up one floor.",
-            "Go up the first flight of stairs.",
-            "Turn around and go all the way up the stairs.",
-            "Go up.",
-            "Go up and turn left.",
-            "Keep going up until the sofa.",
-            "Ascend.",
-            "Ascend to the bedroom and wait.",
-        ] {
-            assert_eq!(told(text), [What::Climb(Climb::Up)], "{text}");
-        }
-        for text in
-            ["Go to the bathroom upstairs.", "Clean the upstairs bathroom.", "Go to the bathroom up the stairs."]
-        {
-            assert_eq!(told(text), [What::Storey(Climb::Up)], "{text}");
-        }
-        for text in ["Go down.", "Descend and turn left.", "Head back down.", "Descend the ramp."] {
-            assert_eq!(told(text), [What::Climb(Climb::Down)], "{text}");
-        }
-        for text in ["Walk down two steps.", "Go down the few steps to the sofa."] {
-            assert_eq!(told(text), [What::Steps(Climb::Down)], "{text}");
-        }
-        for text in [
-            "Stop at the top of the stairs leading down to another floor.",
-            "Wait by the stairs going up another flight.",
-            "Go down the hall passing the stairs.",
-            "Walk down the hallway to the stairs.",
-            "Walk up to the stairs.",
-            "Stop at the top of the stairs.",
-            "Go up to the table.",
-            "Walk down the hall.",
-            "Sit down.",
-            "Clean up.",
-            "Pick the towel up and go to the sofa.",
-            "Go down to the end of the hall.",
-            "Climb into the tub.",
-            "Walk past the stairs that go down.",
-            "Stop at the foot of the stairs ascending to the attic.",
-            "Walk down the tiled floor past the sofa.",
-            "Walk down the wood floor hallway.",
-            "Take a few steps down the hallway.",
-        ] {
-            assert_eq!(told(text), [], "{text}");
-        }
-    }
-
-    #[test]
-    fn floors_have_numbers_and_a_way_to_be_told() {
-        let floor = |text: &str| match told(text).pop() {
-            Some(What::Floor(floor)) => (floor.number, floor.leaves),
-            other => panic!("{text}: {other:?}"),
-        };
-        assert_eq!(floor("Go to the bedroom on the 7th floor"), (Some(7), false));
-        assert_eq!(floor("Go to the bedroom on floor 12"), (Some(12), false));
-        assert_eq!(floor("Go to the twelfth floor"), (Some(12), false));
-        assert_eq!(floor("Go to the bedroom on the top floor"), (None, false));
-        assert_eq!(floor("Walk down from the second floor"), (Some(2), true));
-        assert_eq!(floor("Start on the second floor"), (Some(2), true));
-        assert_eq!(told("Clean the rug on the floor"), []);
-        let aside = told("Wait by the stairs going up to the second level.");
-        assert_eq!(aside, [What::Floor(Floor { number: Some(2), leaves: false, aside: true })]);
     }
 }

@@ -216,6 +216,17 @@ fn stairs_down_and_up_again_are_two_motions() {
 }
 
 #[test]
+fn another_storey_is_held_against_floor_heights() {
+    let down = [(0.0, 0.0, 4.5), (0.0, 2.0, 3.0), (0.0, 4.0, 1.5)];
+    for text in ["Take the stairs to the upper floor.", "Go to the floor above.", "Take the elevator up."] {
+        assert_eq!(told_of(text, &down), (Verdict::Fail, vec!["the path nowhere goes up".to_owned()]), "{text}");
+    }
+    for text in ["Take the stairs to the lower floor.", "Take the elevator down.", "Start on the upper floor."] {
+        assert_ne!(told_of(text, &down).0, Verdict::Fail, "{text}");
+    }
+}
+
+#[test]
 fn a_finding_about_a_motion_covers_its_verb() {
     let (_, evidence, around) = path(0, 3);
     let reach = Reach { surroundings: Some(&around), calibration: None };
