@@ -93,7 +93,8 @@ impl Checked {
 /// Checks a text.
 #[must_use]
 pub fn check(text: &str, subject: Subject<'_>) -> Checked {
-    let reading = read(text, &names(subject.evidence)).claims();
+    let whole = read(text, &names(subject.evidence));
+    let reading = whole.clone().claims();
     let mut findings = form::form(text, &subject.style.constraints);
     let ends_in_task = subject.style.constraints.ends_in_task;
     if ends_in_task {
@@ -109,7 +110,7 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
             findings.extend(walk.findings);
             findings.extend(floors::floors(&reading, subject.evidence));
         }
-        World::Open => findings.extend(open::open(text, &reading, subject)),
+        World::Open => findings.extend(open::open(text, &whole, &reading, subject)),
     }
     findings.extend(coverage::coverage(&reading, reading.language.or_tagged(subject.tag)));
     findings.push(leak::leak(text, &subject.style.references));

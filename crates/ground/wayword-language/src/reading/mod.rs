@@ -33,6 +33,7 @@ use crate::{
     language::language,
     text::{self, Token},
 };
+pub use numbers::{cardinal, ordinal};
 pub use roles::{Clause, Role, Word};
 pub use said::{Compass, Event, Floor, Going, Link, Ordinal, Place, Reading, Task, What};
 use std::collections::BTreeSet;

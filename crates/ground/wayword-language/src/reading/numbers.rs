@@ -55,7 +55,8 @@ impl<'a> Numbers<'a> {
 }
 
 /// The number that a word counts, from 2 on: "one door" only means a door.
-pub(super) fn cardinal(word: &str) -> Option<u32> {
+#[must_use]
+pub fn cardinal(word: &str) -> Option<u32> {
     match word {
         "both" | "two" => Some(2),
         "three" => Some(3),
@@ -81,7 +82,8 @@ pub(super) fn is_number(word: &str) -> bool {
 }
 
 /// Which one of several a word means.
-pub(super) fn ordinal(word: &str) -> Option<Ordinal> {
+#[must_use]
+pub fn ordinal(word: &str) -> Option<Ordinal> {
     match word {
         "last" | "final" => Some(Ordinal::Last),
         "next" => Some(Ordinal::Next),

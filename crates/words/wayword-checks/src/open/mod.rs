@@ -20,6 +20,7 @@ mod sight;
 mod stretches;
 #[cfg(test)]
 mod tests;
+mod unjudged;
 mod weights;
 
 use crate::{Subject, evidence::Evidence};
@@ -34,14 +35,16 @@ pub use relation::Relation;
 pub use sight::{Case, Missed, Sight, class_name};
 pub use weights::{Table, Weights};
 
-/// What is wrong with the places, the order, the turns and the storeys of somebody else's text.
-pub(super) fn open(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
+/// What is wrong with the places, the order, the turns and the storeys of somebody else's text. `whole` is the reading
+/// with what the text denies, and `reading` the one without.
+pub(super) fn open(text: &str, whole: &Reading, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let evidence = subject.evidence;
     let mut findings = places::places(reading, subject);
     findings.extend(climbs::climbs(text, reading, subject));
     findings.extend(repeats::repeats(text, reading, subject));
     findings.extend(distances::distances(reading, evidence));
     findings.extend(turns(reading, evidence));
+    findings.extend(unjudged::unjudged(text, whole, subject));
     for check in [Check::Landmarks, Check::Order, Check::Turns, Check::Floors] {
         if findings.iter().all(|finding| finding.check != check) {
             findings.push(crate::pass(check));

@@ -227,6 +227,31 @@ fn another_storey_is_held_against_floor_heights() {
 }
 
 #[test]
+fn what_no_rule_judges_is_unverified() {
+    for (text, check) in [
+        ("Walk down the hallway. Never go down the stairs.", Check::Floors),
+        ("Walk down the hallway. There is no toilet.", Check::Landmarks),
+        ("Walk down the hallway. Do not turn right.", Check::Turns),
+        ("Walk down the hallway and take the third left.", Check::Turns),
+        ("Walk down the hallway and stop at the fourth door on the right.", Check::Landmarks),
+        ("Walk past three sofas.", Check::Landmarks),
+        ("Walk down the hallway and stop. Do it three times.", Check::Order),
+        ("Head west down the hallway.", Check::Turns),
+        ("Walk down the hallway. Face north.", Check::Turns),
+    ] {
+        assert_eq!(told(text, 0, 3), (Verdict::Unverified, vec![check]), "{text}");
+    }
+    for text in [
+        "Walk down the hallway. If you see the stove, you have gone too far.",
+        "Walk no further than the sofa.",
+        "Walk past the first door.",
+    ] {
+        assert_eq!(told(text, 0, 3), PASSES, "{text}");
+    }
+    assert_eq!(told("Walk down the hallway. Turn right five times.", 0, 3), (Verdict::Fail, vec![Check::Turns]));
+}
+
+#[test]
 fn a_finding_about_a_motion_covers_its_verb() {
     let (_, evidence, around) = path(0, 3);
     let reach = Reach { surroundings: Some(&around), calibration: None };
