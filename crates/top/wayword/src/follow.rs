@@ -2,13 +2,14 @@
 
 use crate::{error::Error, platforms::SCENES_KEPT};
 use serde::Serialize;
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 use wayword_checks::{Checked, Evidence, FrameEvidence, World, objects_meant};
 use wayword_core::{Ambiguity, Check, Finding, Frame, Path, Platform, Recent, SceneId, Survey, Verdict};
 use wayword_follower::{
     Building, Guide, Place, Prior, Weights,
     route::{Known, Route, Thresholds, judge},
 };
+use wayword_language::{Language, reading::read};
 use wayword_world::survey;
 
 /// A scene that was surveyed.
@@ -119,13 +120,16 @@ impl<'a> Followed<'a> {
         Some(Self { place: Surrounded::Nothing(building), walk, heading_rad })
     }
 
-    /// Follows a text.
-    pub(crate) fn follow(&self, text: &str) -> Told {
+    /// Follows a text. `tag` is that of its language, where its file gives one.
+    pub(crate) fn follow(&self, text: &str, tag: Option<&str>) -> Told {
         let (building, prior) = match &self.place {
             Surrounded::By(scene) => (&scene.followed, Some(PRIOR)),
             Surrounded::Nothing(building) => (building, None),
         };
         let known = Known { building, walk: &self.walk, heading_rad: self.heading_rad };
+        if !is_understood(text, tag) {
+            return Told::unknown("the program does not understand it");
+        }
         let guide = Guide::read(text);
         if guide.is_empty() {
             return Told::unknown("the text tells no step");
@@ -150,6 +154,13 @@ impl<'a> Followed<'a> {
         told.turn_gain = judged.turn_gain;
         told
     }
+}
+
+/// Whether the reader understands anything of a text: a text in another language may hold words that look like English.
+fn is_understood(text: &str, tag: Option<&str>) -> bool {
+    let reading = read(text, &BTreeSet::new());
+    let is_foreign = matches!(reading.language.or_tagged(tag), Language::Other(_));
+    !is_foreign && reading.clauses.iter().any(|clause| clause.understood)
 }
 
 /// Why a path is not followed that [`Followed::new`] does not take.

@@ -103,7 +103,7 @@ impl Follow for Follower<'_> {
             (_, Motion::Unknown) | (Source::Labels, _) => GOES_UNKNOWN,
             _ => "the texts are not checked against labels",
         };
-        let told = self.followed.as_ref().map_or_else(|| Told::unknown(why), |followed| followed.follow(text));
+        let told = self.followed.as_ref().map_or_else(|| Told::unknown(why), |followed| followed.follow(text, None));
         told.add_to(checked);
         let ambiguity = told.ambiguity(text, self.evidence);
         checked.add(rejection(&ambiguity).filter(|_| self.rejects_ambiguous));

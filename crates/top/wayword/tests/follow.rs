@@ -78,6 +78,20 @@ fn a_text_that_leads_elsewhere_fails_the_route_unless_nobody_follows_it() {
 }
 
 #[test]
+fn a_text_that_is_not_understood_is_not_followed() {
+    let building = Building::new();
+    for text in
+        ["Gehe ins Bad.", "Gehen Sie durch die Küche und dann links ins Bad.", "Xyzzy plugh bathroom frobnicate."]
+    {
+        let report = check(&building, &[text], &["--world", "open"]);
+        assert_eq!((&report["failed"], &report["unverified"]), (&json!(0), &json!(1)), "{text}: {report}");
+        let route = of_check(&report, "route");
+        let is_said = |[verdict, reason, _]: &[String; 3]| verdict == "unverified" && reason.contains("not understand");
+        assert!(route.iter().all(is_said) && !route.is_empty(), "{text}: {report}");
+    }
+}
+
+#[test]
 fn where_only_the_path_is_known_the_route_is_unverified_with_the_reason() {
     let building = Building::new();
     let house = ["--paths", "1", "--scan", "house-3", "--seed", "3", "--style", "r2r"];

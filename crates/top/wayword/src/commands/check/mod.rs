@@ -203,7 +203,7 @@ fn check_walk(
         };
         let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), ..subject });
         let told = (!how.without_route).then(|| match &followed {
-            Some(followed) => followed.follow(&text.words),
+            Some(followed) => followed.follow(&text.words, text.tag.as_deref()),
             None => Told::unknown(GOES_UNKNOWN),
         });
         if let Some(told) = &told {
