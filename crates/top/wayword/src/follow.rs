@@ -3,11 +3,11 @@
 use crate::{error::Error, platforms::SCENES_KEPT};
 use serde::Serialize;
 use std::{collections::BTreeSet, sync::Arc};
-use wayword_checks::{Checked, Evidence, FrameEvidence, World, objects_meant};
+use wayword_checks::{Checked, Evidence, FrameEvidence, Turns, World, objects_meant};
 use wayword_core::{Ambiguity, Check, Finding, Frame, Path, Platform, Recent, SceneId, Survey, Verdict};
 use wayword_follower::{
     Building, Guide, Place, Prior, Weights,
-    route::{Known, Route, Thresholds, judge},
+    route::{Known, Route, Thresholds, Unfollowed, judge},
 };
 use wayword_language::{Language, reading::read};
 use wayword_world::survey;
@@ -71,6 +71,8 @@ pub(crate) struct Told {
     /// What turning the most doubtful turn around would gain, natural logs.
     pub(crate) turn_gain: Option<f64>,
     pub(crate) ends: Option<Ends>,
+    /// Whether its turns were judged.
+    pub(crate) turns: Turns,
 }
 
 /// How likely it is that a text means a walk, among the walks that the follower thinks of.
@@ -92,19 +94,23 @@ pub(crate) struct Ends {
 const PRIOR: Prior = Prior::Shortest(8);
 
 impl<'a> Followed<'a> {
-    /// A path in its scene; `None` where its motion is unknown, or it goes nowhere. A path that does not go along the viewpoints
-    /// of a graph is followed by what its own frames show.
-    pub(crate) fn new(scene: Option<&'a KnownScene>, path: &Path, evidence: &Evidence) -> Option<Self> {
-        let heading_rad = path.frames.first()?.pose.heading.rad();
-        if !path.motion.is_known() || path.frames.len() < 2 {
-            return None;
+    /// A path in its scene. A path that does not go along the viewpoints of a graph is followed by what its own frames
+    /// show.
+    ///
+    /// # Errors
+    /// With the reason, where its motion is unknown, or it goes nowhere.
+    pub(crate) fn new(scene: Option<&'a KnownScene>, path: &Path, evidence: &Evidence) -> Result<Self, &'static str> {
+        if !path.motion.is_known() {
+            return Err(GOES_UNKNOWN);
         }
+        let [first, _, ..] = &path.frames[..] else { return Err("its path is one place, so it goes nowhere") };
+        let heading_rad = first.pose.heading.rad();
         let on_graph = |scene: &KnownScene| {
             let place = |frame: &Frame| scene.survey.place(frame.viewpoint.as_ref()?);
             path.frames.iter().map(place).collect::<Option<Vec<usize>>>()
         };
         if let Some((scene, walk)) = scene.and_then(|scene| Some((scene, on_graph(scene)?))) {
-            return Some(Self { place: Surrounded::By(scene), walk, heading_rad });
+            return Ok(Self { place: Surrounded::By(scene), walk, heading_rad });
         }
         let place = |(frame, seen): (&Frame, &FrameEvidence)| Place {
             position: frame.pose.position,
@@ -117,7 +123,7 @@ impl<'a> Followed<'a> {
         };
         let building = Building::along(path.frames.iter().zip(&evidence.frames).map(place).collect());
         let walk = (0..path.frames.len()).collect();
-        Some(Self { place: Surrounded::Nothing(building), walk, heading_rad })
+        Ok(Self { place: Surrounded::Nothing(building), walk, heading_rad })
     }
 
     /// Follows a text. `tag` is that of its language, where its file gives one.
@@ -139,20 +145,15 @@ impl<'a> Followed<'a> {
             Some((own, others)) if !others.is_empty() => building.told_apart_by(*own, others).map(str::to_owned),
             _ => None,
         };
-        let ends =
-            judged.route.as_ref().ok().map(|route| Ends { count: route.ends.len(), told_apart_by: apart(route) });
-        let mut told = match judged.route {
-            Ok(route) => Told {
-                findings: vec![route.finding],
-                route: Some(Shares { annotated: route.share, other: route.other }),
-                turn_gain: None,
-                ends,
-            },
-            Err(why) => Told::unknown(&why.to_string()),
-        };
-        told.findings.extend(judged.wrong);
-        told.turn_gain = judged.turn_gain;
-        told
+        if let Err(why @ (Unfollowed::TooManySteps | Unfollowed::TooFewSteps)) = judged.route {
+            return Told::unknown(why.why());
+        }
+        let seen = judged.route.as_ref().ok();
+        let ends = seen.map(|route| Ends { count: route.ends.len(), told_apart_by: apart(route) });
+        let route = seen.map(|route| Shares { annotated: route.share, other: route.other });
+        let finding = judged.route.map_or_else(|why| unknown_route(why.why()), |route| route.finding);
+        let findings = std::iter::once(finding).chain(judged.wrong).collect();
+        Told { findings, route, turn_gain: judged.turn_gain, ends, turns: Turns::JudgedElsewhere }
     }
 }
 
@@ -163,19 +164,19 @@ fn is_understood(text: &str, tag: Option<&str>) -> bool {
     !is_foreign && reading.clauses.iter().any(|clause| clause.understood)
 }
 
-/// Why a path is not followed that [`Followed::new`] does not take.
+/// Why a path without poses is not followed.
 pub(crate) const GOES_UNKNOWN: &str = "it is not known how its path goes";
 
+fn unknown_route(why: &str) -> Finding {
+    let reason = format!("the program cannot check whether the text leads elsewhere: {why}");
+    Finding { check: Check::Route, verdict: Verdict::Unverified, reason, span: None }
+}
+
 impl Told {
-    /// What is said of a text whose path cannot be followed.
-    pub(crate) fn unknown(why: &str) -> Self {
-        let finding = Finding {
-            check: Check::Route,
-            verdict: Verdict::Unverified,
-            reason: format!("the program cannot check whether the text leads elsewhere: {why}"),
-            span: None,
-        };
-        Self { findings: vec![finding], route: None, turn_gain: None, ends: None }
+    /// What is said of a text that cannot be followed.
+    pub(crate) fn unknown(why: &'static str) -> Self {
+        let findings = vec![unknown_route(why)];
+        Self { findings, route: None, turn_gain: None, ends: None, turns: Turns::NotJudged(why) }
     }
 
     /// What the text may mean.

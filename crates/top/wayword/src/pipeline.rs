@@ -67,11 +67,12 @@ pub fn make(
         true => None,
         false => Some(scenes.get(platform, &walk.path.scene)?),
     };
-    let follower = Follower {
-        followed: scene.as_deref().and_then(|scene| Followed::new(Some(scene), &walk.path, &evidence)),
-        evidence: &evidence,
-        rejects_ambiguous: settings.reject_ambiguous,
+    let followed = match scene.as_deref() {
+        None if evidence.motion.is_known() => Err("the texts are not checked against labels"),
+        None => Err(GOES_UNKNOWN),
+        scene => Followed::new(scene, &walk.path, &evidence),
     };
+    let follower = Follower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
     let outcomes = styles.iter().map(|Measured { style, profile }| {
         let order = Order {
             walk: &walk,
@@ -91,19 +92,18 @@ pub fn make(
 
 /// Follows the texts of one path.
 struct Follower<'a> {
-    /// `None` where the path cannot be followed.
-    followed: Option<Followed<'a>>,
+    /// The path, or why it cannot be followed.
+    followed: Result<Followed<'a>, &'static str>,
     evidence: &'a Evidence,
     rejects_ambiguous: bool,
 }
 
 impl Follow for Follower<'_> {
     fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity {
-        let why = match (self.evidence.source, self.evidence.motion) {
-            (_, Motion::Unknown) | (Source::Labels, _) => GOES_UNKNOWN,
-            _ => "the texts are not checked against labels",
+        let told = match &self.followed {
+            Ok(followed) => followed.follow(text, None),
+            Err(why) => Told::unknown(why),
         };
-        let told = self.followed.as_ref().map_or_else(|| Told::unknown(why), |followed| followed.follow(text, None));
         told.add_to(checked);
         let ambiguity = told.ambiguity(text, self.evidence);
         checked.add(rejection(&ambiguity).filter(|_| self.rejects_ambiguous));

@@ -64,6 +64,27 @@ fn a_wrong_turn_fails_at_its_word() {
 }
 
 #[test]
+fn turns_that_nobody_judges_are_unverified_with_the_reason() {
+    let building = Building::new();
+    let wrong = GOOD.replace("right", "left");
+    let report = check(&building, &[&wrong], &["--world", "open", "--no-route"]);
+    let turns = of_check(&report, "turns");
+    assert!(
+        matches!(&turns[..], [[verdict, reason, about]]
+            if verdict == "unverified" && reason.contains("not followed") && about.contains("left")),
+        "{report}"
+    );
+    let standing = json!([{ "path_id": 1, "scan": SCAN, "path": [viewpoint_id(5)], "heading": SOUTH, "distance": 0.0,
+        "instructions": ["Turn left, then turn right twice."] }]);
+    building.write("standing.json", standing.to_string());
+    let report = check_file(&building, "standing.json", &[]).json();
+    assert_eq!(report["by_check"]["turns"], json!({ "passed": 0, "unverified": 1, "failed": 0 }), "{report}");
+    for finding in of_check(&report, "turns").iter().chain(&of_check(&report, "route")) {
+        assert!(finding[1].contains("one place"), "{finding:?}");
+    }
+}
+
+#[test]
 fn a_text_that_leads_elsewhere_fails_the_route_unless_nobody_follows_it() {
     let building = Building::new();
     let report = check(&building, &[ELSEWHERE], &["--world", "open"]);

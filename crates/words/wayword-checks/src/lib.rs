@@ -32,7 +32,7 @@ use wayword_language::{
 pub use evidence::{Building, Distance, Evidence, FrameEvidence, NEAR_M, SeenThing, Source, Surroundings};
 pub use leak::{SHARED_RUN, shared_run};
 pub use witnesses::{Testimony, lift};
-pub use world::{Reach, World};
+pub use world::{Reach, Turns, World};
 
 /// What a text is checked against.
 #[derive(Debug, Clone, Copy)]
@@ -47,6 +47,8 @@ pub struct Subject<'a> {
     pub world: World,
     /// What an open world knows beyond the frames.
     pub reach: Reach<'a>,
+    /// Who judges the turns in an open world.
+    pub turns: Turns,
     /// The language that the text's file names for it, as a tag: "en-IN".
     pub tag: Option<&'a str>,
 }
@@ -55,13 +57,14 @@ impl<'a> Subject<'a> {
     /// A text that was written from this evidence.
     #[must_use]
     pub fn closed(evidence: &'a Evidence, style: &'a Style, target: Option<&'a Target>) -> Self {
-        Self { evidence, style, target, world: World::Closed, reach: Reach::default(), tag: None }
+        let reach = Reach::default();
+        Self { evidence, style, target, world: World::Closed, reach, turns: Turns::default(), tag: None }
     }
 
     /// A text that somebody else wrote.
     #[must_use]
     pub fn open(evidence: &'a Evidence, style: &'a Style, reach: Reach<'a>) -> Self {
-        Self { evidence, style, target: None, world: World::Open, reach, tag: None }
+        Self { evidence, style, target: None, world: World::Open, reach, turns: Turns::default(), tag: None }
     }
 }
 

@@ -43,3 +43,18 @@ pub struct Reach<'a> {
     /// Shares by the names of objects and rooms, made from a file that the user has.
     pub calibration: Option<&'a Calibration>,
 }
+
+/// Who judges the turns of a text in an open world: they fit a path or not only together with all that the text tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Turns {
+    /// Whoever compares whole walks, and adds what was found ([`crate::Checked::add`]).
+    JudgedElsewhere,
+    /// Nobody, for this reason: they are unverified.
+    NotJudged(&'static str),
+}
+
+impl Default for Turns {
+    fn default() -> Self {
+        Self::NotJudged("no walks are compared")
+    }
+}

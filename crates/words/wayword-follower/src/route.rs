@@ -58,17 +58,26 @@ pub struct Judged {
 }
 
 /// Why nothing is said of other walks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unfollowed {
-    /// Only the walk itself is known.
-    #[error("no viewpoint graph is known on which it lies, so no other walk is")]
+    /// Only the walk itself is known. Its turns are judged all the same.
     NoGraph,
     /// The work grows with the square of the steps.
-    #[error("the text has more than {MOST_STEPS} steps")]
     TooManySteps,
     /// A step leads a few hops at most.
-    #[error("the path has more hops than the steps of the text can lead")]
     TooFewSteps,
+}
+
+impl Unfollowed {
+    /// The reason, in words.
+    #[must_use]
+    pub fn why(self) -> &'static str {
+        match self {
+            Self::NoGraph => "no viewpoint graph is known on which it lies, so no other walk is",
+            Self::TooManySteps => "the text has too many steps",
+            Self::TooFewSteps => "the path has more hops than the steps of the text can lead",
+        }
+    }
 }
 
 /// Most steps of a text that is followed. People's texts have 20 at most.

@@ -23,7 +23,7 @@ mod tests;
 mod unjudged;
 mod weights;
 
-use crate::{Subject, evidence::Evidence};
+use crate::{Subject, Turns};
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::reading::{Reading, What};
 
@@ -38,12 +38,11 @@ pub use weights::{Table, Weights};
 /// What is wrong with the places, the order, the turns and the storeys of somebody else's text. `whole` is the reading
 /// with what the text denies, and `reading` the one without.
 pub(super) fn open(text: &str, whole: &Reading, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
-    let evidence = subject.evidence;
     let mut findings = places::places(reading, subject);
     findings.extend(climbs::climbs(text, reading, subject));
     findings.extend(repeats::repeats(text, reading, subject));
-    findings.extend(distances::distances(reading, evidence));
-    findings.extend(turns(reading, evidence));
+    findings.extend(distances::distances(reading, subject.evidence));
+    findings.extend(turns(reading, subject));
     findings.extend(unjudged::unjudged(text, whole, subject));
     for check in [Check::Landmarks, Check::Order, Check::Turns, Check::Floors] {
         if findings.iter().all(|finding| finding.check != check) {
@@ -53,9 +52,13 @@ pub(super) fn open(text: &str, whole: &Reading, reading: &Reading, subject: Subj
     findings
 }
 
-/// Turns are judged where whole walks are compared, and not here. Where the motion is unknown, nobody can judge them.
-fn turns(reading: &Reading, evidence: &Evidence) -> Option<Finding> {
-    let told = reading.events.iter().find(|event| matches!(event.what, What::Turn(_)))?;
-    let reason = "the program cannot check how the path turns";
-    (!evidence.motion.is_known()).then(|| crate::finding(Check::Turns, Verdict::Unverified, reason, Some(told.span)))
+/// Turns are judged where whole walks are compared, and not here. Where nobody does that, each is unverified.
+fn turns(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
+    let reason = match subject.turns {
+        _ if !subject.evidence.motion.is_known() => "the program cannot check how the path turns".to_owned(),
+        Turns::NotJudged(why) => format!("the program cannot check how the path turns: {why}"),
+        Turns::JudgedElsewhere => return Vec::new(),
+    };
+    let told = reading.events.iter().filter(|event| matches!(event.what, What::Turn(_)));
+    told.map(|event| crate::finding(Check::Turns, Verdict::Unverified, reason.clone(), Some(event.span))).collect()
 }

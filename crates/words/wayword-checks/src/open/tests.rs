@@ -1,6 +1,6 @@
 //! What the open world says about texts on a made-up building.
 
-use crate::{Building, Evidence, Reach, Subject, Surroundings, Testimony, check, lift};
+use crate::{Building, Evidence, Reach, Subject, Surroundings, Testimony, Turns, check, lift};
 use std::sync::Arc;
 use wayword_core::{
     Check, Constraints, DVec3, Frame, Heading, Label, Motion, ObjectId, Path, Placed, SceneId, Style, Survey, Verdict,
@@ -93,7 +93,8 @@ fn any() -> Style {
 fn told(text: &str, from: usize, to: usize) -> (Verdict, Vec<Check>) {
     let (_, evidence, around) = path(from, to);
     let reach = Reach { surroundings: Some(&around), calibration: None };
-    let checked = check(text, Subject::open(&evidence, &any(), reach));
+    let subject = Subject { turns: Turns::JudgedElsewhere, ..Subject::open(&evidence, &any(), reach) };
+    let checked = check(text, subject);
     let verdict = checked.verdict();
     let of = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
     let mut checks: Vec<Check> = of.map(|finding| finding.check).collect();
@@ -286,6 +287,18 @@ fn a_distance_is_held_against_the_length_of_the_path() {
 fn turns_are_left_to_whoever_compares_walks() {
     assert_eq!(told("Turn left and walk down the hallway.", 0, 3), PASSES);
     assert_eq!(told("Turn around and walk down the hallway.", 0, 3), PASSES);
+    let (_, evidence, _) = path(0, 3);
+    let style = any();
+    let turns = |turns: Turns| {
+        let subject = Subject { turns, ..Subject::open(&evidence, &style, Reach::default()) };
+        let checked = check("Turn left. Turn right.", subject);
+        let of_turns = checked.findings.into_iter().filter(|finding| finding.check == Check::Turns);
+        of_turns.map(|finding| (finding.verdict, finding.reason)).collect::<Vec<_>>()
+    };
+    assert_eq!(turns(Turns::JudgedElsewhere), [(Verdict::Pass, String::new())]);
+    let unjudged = turns(Turns::NotJudged("nobody looks"));
+    assert_eq!(unjudged.len(), 2, "each turn is unverified: {unjudged:?}");
+    assert!(unjudged.iter().all(|(verdict, why)| *verdict == Verdict::Unverified && why.ends_with("nobody looks")));
 }
 
 #[test]

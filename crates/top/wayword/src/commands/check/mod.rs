@@ -9,7 +9,7 @@ use crate::{
     commands::calibrate as calibration,
     count::count,
     error::{Error, Exit},
-    follow::{Followed, GOES_UNKNOWN, KnownScenes, Shares, Told, rejection},
+    follow::{Followed, KnownScenes, Shares, Told, rejection},
     output::Output,
     pipeline::panoramas,
     platforms::{self, Remembering},
@@ -21,7 +21,7 @@ use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path as FilePath};
 use walks::{Text, Walk, walks};
 use wayword_checks::{
-    Checked, Evidence, Reach, Subject, Surroundings, Testimony, World, check, lift, open::Calibration,
+    Checked, Evidence, Reach, Subject, Surroundings, Testimony, Turns, World, check, lift, open::Calibration,
 };
 use wayword_core::{Ambiguity, Check, Finding, Platform, Verdict};
 use worlds::world_of;
@@ -189,23 +189,23 @@ fn check_walk(
     let scene = if some_are_open || !how.without_route { Some(scenes.get(platform, &walk.path.scene)?) } else { None };
     let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
     let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
-    let follows = !how.without_route;
-    let followed = follows.then(|| Followed::new(scene.as_deref(), &walk.path, &evidence)).flatten();
+    let followed = (!how.without_route).then(|| Followed::new(scene.as_deref(), &walk.path, &evidence));
     let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
     let testimony = |text: &Text| hears.then(|| Testimony::of(&text.words, &evidence));
     let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
     let checked = walk.texts.iter().enumerate().map(|(at, text)| {
         let style = held.style_of(text);
+        let told = followed.as_ref().map(|followed| match followed {
+            Ok(followed) => followed.follow(&text.words, text.tag.as_deref()),
+            Err(why) => Told::unknown(why),
+        });
         // People name a target as they like, so any object of the final viewpoint is accepted.
         let subject = match world_of(text) {
             World::Closed => Subject::closed(&evidence, style, None),
             World::Open => Subject::open(&evidence, style, reach),
         };
-        let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), ..subject });
-        let told = (!how.without_route).then(|| match &followed {
-            Some(followed) => followed.follow(&text.words, text.tag.as_deref()),
-            None => Told::unknown(GOES_UNKNOWN),
-        });
+        let turns = told.as_ref().map_or(Turns::NotJudged("the text is not followed"), |told| told.turns);
+        let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), turns, ..subject });
         if let Some(told) = &told {
             told.add_to(&mut checked);
         }
