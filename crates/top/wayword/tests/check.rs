@@ -281,8 +281,24 @@ fn another_text_about_the_path_is_a_witness() {
     let file = episodes(&building, &[climbs, "Go up the stairs to the lamp. Stop there."], None);
     let failed = |more: &[&str]| check(&building, &file, &[&["--json"], more].concat()).json()["failed"].clone();
     assert_eq!((failed(&[]), failed(&["--no-witnesses"])), (0.into(), 2.into()));
-    let alone = episodes(&building, &[climbs, climbs], None);
+    let alone = episodes(&building, &[climbs, &climbs.replace('.', "!")], None);
     assert_eq!(check(&building, &alone, &["--json"]).json()["failed"], 2, "a copy is no witness");
+}
+
+#[test]
+fn records_are_no_witnesses_for_each_other() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let line = building.lines("run/instructions.jsonl").remove(0);
+    let told = ["Climb the stairs. Stop there.", "Go up the stairs and stop."].map(|text| {
+        let mut line = line.clone();
+        line["text"] = text.into();
+        (line["mentions"], line["findings"]) = (json!([]), json!([]));
+        format!("{line}\n")
+    });
+    building.write("told.jsonl", told.concat());
+    let report = check(&building, "told.jsonl", &["--world", "open", "--no-route", "--json"]).json();
+    assert_eq!(report["failed"], 2, "{report}");
 }
 
 #[test]

@@ -5,19 +5,22 @@ use wayword_core::{Check, Climb, Finding, Side, Verdict};
 use wayword_language::{
     lexicon::{agree, same_room},
     reading::{Event, Place, What, read},
+    text::words,
 };
 
 /// What a text says, for the texts beside it.
 #[derive(Debug, Clone)]
 pub struct Testimony {
     events: Vec<Event>,
+    /// The words, without case, marks and spaces.
+    words: Vec<String>,
 }
 
 impl Testimony {
     /// What a text says of a path.
     #[must_use]
     pub fn of(text: &str, evidence: &Evidence) -> Self {
-        Self { events: read(text, &names(evidence)).claims().events }
+        Self { events: read(text, &names(evidence)).claims().events, words: words(text) }
     }
 
     /// The sides of its turns, in their order.
@@ -62,8 +65,10 @@ fn climbs(event: &Event) -> Option<Climb> {
 }
 
 /// Lifts to "unverified" what fails, where another writer's text of the same path says the same: a room, an object, a
-/// climb, or a turn at the same place among the turns. What a text says twice is its own fault.
+/// climb, or a turn at the same place among the turns. What a text says twice is its own fault, and a copy of the text, with
+/// other marks or spaces, says nothing of it.
 pub fn lift(checked: &mut Checked, own: &Testimony, others: &[&Testimony]) {
+    let others: Vec<&&Testimony> = others.iter().filter(|other| other.words != own.words).collect();
     for finding in &mut checked.findings {
         let is_lifted = finding.verdict == Verdict::Fail
             && about(finding, own).any(|event| others.iter().any(|other| other.confirms(event, own)));

@@ -322,6 +322,9 @@ fn another_text_that_says_the_same_lifts_a_failure() {
     };
     assert_eq!(verdict("Walk through the kitchen.", "Go to the kitchen and stop."), Verdict::Unverified);
     assert_eq!(verdict("Walk through the kitchen.", "Go to the chair and stop."), Verdict::Fail);
+    for copy in ["Go up the stairs.", "Go up the stairs. ", "go up  the stairs!"] {
+        assert_eq!(verdict("Go up the stairs.", copy), Verdict::Fail, "a copy is no witness: {copy:?}");
+    }
     assert_eq!(verdict("Go up the stairs.", "Climb the stairs."), Verdict::Unverified);
     assert_eq!(verdict("Go up the stairs.", "Go down the stairs."), Verdict::Fail);
     let twice = "Enter the hallway. Enter the hallway.";

@@ -191,7 +191,8 @@ fn check_walk(
     let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
     let followed = (!how.without_route).then(|| Followed::new(scene.as_deref(), &walk.path, &evidence));
     let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
-    let testimony = |text: &Text| hears.then(|| Testimony::of(&text.words, &evidence));
+    // Records of this format have one writer, whose mistakes are in all its texts.
+    let testimony = |text: &Text| (hears && text.made.is_none()).then(|| Testimony::of(&text.words, &evidence));
     let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
     let checked = walk.texts.iter().enumerate().map(|(at, text)| {
         let style = held.style_of(text);
@@ -210,8 +211,7 @@ fn check_walk(
             told.add_to(&mut checked);
         }
         if let Some(own) = testimonies[at].as_ref().filter(|_| checked.world == World::Open) {
-            let others = walk.texts.iter().zip(&testimonies).filter(|(other, _)| other.words != text.words);
-            let others: Vec<&Testimony> = others.filter_map(|(_, testimony)| testimony.as_ref()).collect();
+            let others: Vec<&Testimony> = testimonies.iter().flatten().collect();
             lift(&mut checked, own, &others);
         }
         let ambiguity = told.as_ref().map(|told| told.ambiguity(&text.words, &evidence));
