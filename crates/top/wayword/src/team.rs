@@ -106,15 +106,13 @@ impl Team {
 /// where labels list everything.
 fn calibration(settings: &Settings, platform: &dyn Platform) -> Result<Option<Arc<Calibration>>, Error> {
     let Some(file) = &settings.calibration else { return Ok(None) };
-    let calibration = calibrate::read(file)?;
     let lack = match () {
         () if settings.roles.see != LABELS => {
             "only the answers of labels depend on it, and a model answers here".to_owned()
         }
         () if platform.lists_everything() => format!("the labels of platform {} list everything", platform.name()),
         () if !settings.has_dialogue() => "without a dialogue, labels are not asked for single things".to_owned(),
-        () if calibration.platform != platform.name() => format!("it was made for platform {}", calibration.platform),
-        () => return Ok(Some(Arc::new(calibration))),
+        () => return Ok(Some(Arc::new(calibrate::read(file, platform.name())?))),
     };
     Err(Error::usage(format!("--calibration {} has no effect: {lack}", file.display()), "leave it out"))
 }

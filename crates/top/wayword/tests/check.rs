@@ -321,8 +321,15 @@ fn a_calibration_is_made_of_a_file_and_named_where_it_is_used() {
     assert!(written.contains("from = \"texts.json\"") && !written.contains("Walk past"), "{written}");
     let ran = check(&building, &file, &["--calibration", "calibration.toml"]);
     assert!(ran.out.contains("calibration: calibration.toml"), "{ran:?}");
-    building.write("calibration.toml", "words = 3");
-    assert_eq!(check(&building, &file, &["--calibration", "calibration.toml"]).code, Some(1));
+    let refused = |text: &str| {
+        building.write("calibration.toml", text);
+        check(&building, &file, &["--calibration", "calibration.toml"]).refused().to_owned()
+    };
+    assert!(refused("words = 3").contains("is no calibration"));
+    assert!(refused(&written.replace("\"matterport\"", "\"house\"")).contains("was made for platform house"));
+    let infinite = "[names.piano]\nclose = inf\nfar = 0.0\nnowhere = 0.0\n";
+    let head = &written[..written.find("[names").unwrap()];
+    assert!(refused(&format!("{head}{infinite}")).contains("not finite"));
 }
 
 /// Leaves the building its connectivity graph and nothing else.

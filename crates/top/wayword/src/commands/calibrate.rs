@@ -53,14 +53,19 @@ fn written(calibration: &Calibration) -> String {
     head.to_owned() + &toml::to_string(calibration).unwrap_or_default()
 }
 
-/// Reads a file of calibrations.
+/// Reads a file of calibrations for a platform.
 ///
 /// # Errors
-/// When it cannot be read, or is none.
-pub(crate) fn read(file: &Path) -> Result<Calibration, Error> {
+/// When it cannot be read, is none, or was made for another platform.
+pub(crate) fn read(file: &Path, platform: &str) -> Result<Calibration, Error> {
     let text = text_file::read(file, "read the calibration")?;
-    Calibration::read(&text).map_err(|error| {
-        let hint = "make it with: wayword calibrate --platform matterport --data DIR --from R2R_train.json --out FILE";
-        Error::usage(format!("{} is no calibration: {}", file.display(), error.message()), hint)
-    })
+    let hint = "make it with: wayword calibrate --platform matterport --data DIR --from R2R_train.json --out FILE";
+    let calibration = Calibration::read(&text)
+        .map_err(|error| Error::usage(format!("{} is no calibration: {}", file.display(), error.message()), hint))?;
+    if calibration.platform != platform {
+        let made_for = &calibration.platform;
+        let problem = format!("{} was made for platform {made_for}, and not for {platform}", file.display());
+        return Err(Error::usage(problem, hint));
+    }
+    Ok(calibration)
 }

@@ -1,7 +1,7 @@
 //! What a dataset that the user has says of single names of objects and rooms.
 
 use super::{claims::Claim, sight::Missed, weights::Weights};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::Error};
 use std::collections::BTreeMap;
 use wayword_language::lexicon::{kinds, room_name};
 
@@ -59,17 +59,22 @@ impl Calibration {
     /// Reads a calibration.
     ///
     /// # Errors
-    /// When it is no such file.
+    /// When it is no such file, or holds a number that is not finite.
     pub fn read(file: &str) -> Result<Self, toml::de::Error> {
-        toml::from_str(file)
+        let calibration: Self = toml::from_str(file)?;
+        let is_finite =
+            |offsets: &Offsets| [offsets.close, offsets.far, offsets.nowhere].iter().all(|it| it.is_finite());
+        match calibration.names.iter().find(|(_, offsets)| !is_finite(offsets)) {
+            Some((name, _)) => Err(toml::de::Error::custom(format!("{name:?} has a number that is not finite"))),
+            None => Ok(calibration),
+        }
     }
 
     /// What it adds to the logarithm of a claim's likelihood ratio.
     #[must_use]
     pub fn offset(&self, claim: &Claim, missed: &Missed) -> f64 {
         let offsets = self.names.get(&name(claim));
-        let offset = offsets.map_or(0.0, |offsets| offsets.of(missed));
-        if offset.is_finite() { offset.clamp(-MOST, MOST) } else { 0.0 }
+        offsets.map_or(0.0, |offsets| offsets.of(missed)).clamp(-MOST, MOST)
     }
 
     /// Whether labels leave it open that there is a thing of this name where they list none nearby: people are often right
@@ -77,7 +82,7 @@ impl Calibration {
     #[must_use]
     pub fn leaves_open(&self, name: &str) -> Option<bool> {
         let close = kinds(name).into_iter().find_map(|kind| self.names.get(&kind))?.close;
-        (close.is_finite() && close.abs() >= TELLING).then_some(close < 0.0)
+        (close.abs() >= TELLING).then_some(close < 0.0)
     }
 
     /// Fits what single names add to the general weights. Each name stands for itself.
@@ -158,10 +163,14 @@ mod tests {
     }
 
     #[test]
-    fn a_file_can_neither_add_without_bound_nor_hold_unknown_keys() {
+    fn a_file_holds_finite_numbers_and_no_unknown_keys() {
         let head = "platform = \"matterport\"\nfrom = \"a.json\"\ntexts = 1\n";
-        let read = Calibration::read(&format!("{head}[names.sofa]\nclose = 99.0\nfar = nan\nnowhere = 0.0"));
+        let read = Calibration::read(&format!("{head}[names.sofa]\nclose = 99.0\nfar = 1.0\nnowhere = 0.0"));
         assert_eq!(read.unwrap().names["sofa"].close, 99.0);
+        for number in ["nan", "inf", "-inf"] {
+            let read = Calibration::read(&format!("{head}[names.sofa]\nclose = 1.0\nfar = {number}\nnowhere = 0.0"));
+            assert!(read.unwrap_err().message().contains("sofa"), "{number}");
+        }
         assert!(Calibration::read(&format!("{head}words = 1")).is_err());
     }
 }

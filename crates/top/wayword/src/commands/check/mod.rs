@@ -6,7 +6,7 @@ mod worlds;
 
 use crate::{
     cli::{AskedWorld, Check as Args},
-    commands::calibrate as calibration,
+    commands::calibrate,
     count::count,
     error::{Error, Exit},
     follow::{Followed, KnownScenes, Shares, Told, rejection},
@@ -37,18 +37,15 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
 /// # Errors
 /// As [`check_file`]; also when the flags do not fit together.
 pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
-    let calibration = args.calibration.as_deref().map(calibration::read).transpose()?;
     let how = How {
         style: args.style.as_deref(),
         world: args.world,
         without_witnesses: args.no_witnesses,
         without_route: args.no_route,
         reject_ambiguous: args.reject_ambiguous,
-        calibration: calibration.as_ref(),
+        calibration: args.calibration.as_deref(),
     };
-    let mut report = check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, how, output)?;
-    report.calibration = args.calibration.as_ref().map(|file| file.display().to_string());
-    Ok(report)
+    check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, how, output)
 }
 
 /// How the texts of a file are checked.
@@ -64,8 +61,8 @@ pub struct How<'a> {
     pub without_route: bool,
     /// Whether a text that may mean several places or objects fails.
     pub reject_ambiguous: bool,
-    /// What the user's own data says of single names.
-    pub calibration: Option<&'a Calibration>,
+    /// A file of what the user's own data says of single names.
+    pub calibration: Option<&'a FilePath>,
 }
 
 /// What was found in a file.
@@ -135,24 +132,32 @@ pub struct CheckedText {
 /// Checks every instruction of a file.
 ///
 /// # Errors
-/// When the file, the platform's data or the style cannot be read. A path that does not fit the data is an error too,
+/// When the file, the platform's data, the style or the calibration cannot be read. A path that does not fit the data is an error too,
 /// because nothing about it could be checked.
 pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &Output) -> Result<CheckReport, Error> {
     let platform = platforms::open(settings)?;
+    let calibration = how.calibration.map(|file| calibrate::read(file, platform.name())).transpose()?;
     let held = Held::to(how.style, settings.seed)?;
     let walks = walks(file, platform.as_ref())?;
-    let scenes = KnownScenes::new();
+    let checking = Checking {
+        platform: platform.as_ref(),
+        held: &held,
+        how,
+        calibration: calibration.as_ref(),
+        scenes: KnownScenes::new(),
+    };
     let bar = output.progress(walks.len(), "paths");
     let checked: Vec<_> = walks
         .par_iter()
         .map(|walk| {
-            let checked = check_walk(platform.as_ref(), walk, &held, how, &scenes);
+            let checked = checking.check(walk);
             bar.inc(1);
             checked
         })
         .collect::<Result<_, _>>()?;
     bar.finish_and_clear();
-    let mut report = CheckReport::default();
+    let calibration = how.calibration.map(|file| file.display().to_string());
+    let mut report = CheckReport { calibration, ..CheckReport::default() };
     let mut texts = Vec::new();
     for (source, of_walk) in checked {
         if !report.checked_against.iter().any(|other| other == source) {
@@ -171,59 +176,66 @@ pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &O
     Ok(report)
 }
 
-/// What texts were checked against, and each text with its place in the file and everything that was found.
+/// What the texts of a path were checked against, and each text with its place in the file and everything that was found.
 type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<Finding>)>);
 
-fn check_walk(
-    platform: &dyn Platform,
-    walk: &Walk,
-    held: &Held,
-    how: How<'_>,
-    scenes: &KnownScenes,
-) -> Result<CheckedWalk, Error> {
-    let world = Remembering::new(platform);
-    let views = panoramas(&world, &walk.path)?;
-    let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
-    let world_of = |text: &Text| world_of(text, how.world, platform.name(), evidence.source);
-    let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
-    let scene = if some_are_open || !how.without_route { Some(scenes.get(platform, &walk.path.scene)?) } else { None };
-    let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
-    let reach = Reach { surroundings: around.as_ref(), calibration: how.calibration };
-    let followed = (!how.without_route).then(|| Followed::new(scene.as_deref(), &walk.path, &evidence));
-    let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
-    // Records of this format have one writer, whose mistakes are in all its texts.
-    let testimony = |text: &Text| (hears && text.made.is_none()).then(|| Testimony::of(&text.words, &evidence));
-    let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
-    let checked = walk.texts.iter().enumerate().map(|(at, text)| {
-        let style = held.style_of(text);
-        let told = followed.as_ref().map(|followed| match followed {
-            Ok(followed) => followed.follow(&text.words, text.tag.as_deref()),
-            Err(why) => Told::unknown(why),
+/// What the texts of all paths are checked with.
+struct Checking<'a> {
+    platform: &'a dyn Platform,
+    held: &'a Held,
+    how: How<'a>,
+    calibration: Option<&'a Calibration>,
+    scenes: KnownScenes,
+}
+
+impl Checking<'_> {
+    fn check(&self, walk: &Walk) -> Result<CheckedWalk, Error> {
+        let Self { platform, how, .. } = *self;
+        let world = Remembering::new(platform);
+        let views = panoramas(&world, &walk.path)?;
+        let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let world_of = |text: &Text| world_of(text, how.world, platform.name(), evidence.source);
+        let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
+        let is_surveyed = some_are_open || !how.without_route;
+        let scene = is_surveyed.then(|| self.scenes.get(platform, &walk.path.scene)).transpose()?;
+        let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
+        let reach = Reach { surroundings: around.as_ref(), calibration: self.calibration };
+        let followed = (!how.without_route).then(|| Followed::new(scene.as_deref(), &walk.path, &evidence));
+        let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
+        // Records of this format have one writer, whose mistakes are in all its texts.
+        let testimony = |text: &Text| (hears && text.made.is_none()).then(|| Testimony::of(&text.words, &evidence));
+        let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
+        let checked = walk.texts.iter().zip(&testimonies).map(|(text, own)| {
+            let style = self.held.style_of(text);
+            let told = followed.as_ref().map(|followed| match followed {
+                Ok(followed) => followed.follow(&text.words, text.tag.as_deref()),
+                Err(why) => Told::unknown(why),
+            });
+            // People name a target as they like, so any object of the final viewpoint is accepted.
+            let subject = match world_of(text) {
+                World::Closed => Subject::closed(&evidence, style, None),
+                World::Open => Subject::open(&evidence, style, reach),
+            };
+            let turns = told.as_ref().map_or(Turns::NotJudged("the text is not followed"), |told| told.turns);
+            let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), turns, ..subject });
+            if let Some(told) = &told {
+                told.add_to(&mut checked);
+            }
+            if let Some(own) = own.as_ref().filter(|_| checked.world == World::Open) {
+                let others: Vec<&Testimony> = testimonies.iter().flatten().collect();
+                lift(&mut checked, own, &others);
+            }
+            let ambiguity = told.as_ref().map(|told| told.ambiguity(&text.words, &evidence));
+            checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(rejection));
+            let mut shown = CheckedText::of(text, &checked);
+            shown.ambiguity = ambiguity;
+            if let Some(told) = told {
+                (shown.route, shown.turn_gain) = (told.route, told.turn_gain);
+            }
+            (text.at, shown, checked.findings)
         });
-        // People name a target as they like, so any object of the final viewpoint is accepted.
-        let subject = match world_of(text) {
-            World::Closed => Subject::closed(&evidence, style, None),
-            World::Open => Subject::open(&evidence, style, reach),
-        };
-        let turns = told.as_ref().map_or(Turns::NotJudged("the text is not followed"), |told| told.turns);
-        let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), turns, ..subject });
-        if let Some(told) = &told {
-            told.add_to(&mut checked);
-        }
-        if let Some(own) = testimonies[at].as_ref().filter(|_| checked.world == World::Open) {
-            let others: Vec<&Testimony> = testimonies.iter().flatten().collect();
-            lift(&mut checked, own, &others);
-        }
-        let ambiguity = told.as_ref().map(|told| told.ambiguity(&text.words, &evidence));
-        checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(rejection));
-        let mut shown = CheckedText::of(text, &checked);
-        shown.ambiguity = ambiguity;
-        if let Some(told) = told {
-            (shown.route, shown.turn_gain) = (told.route, told.turn_gain);
-        }
-        (text.at, shown, checked.findings)
-    });
-    Ok((evidence.source.name(), checked.collect()))
+        Ok((evidence.source.name(), checked.collect()))
+    }
 }
 
 impl CheckedText {
