@@ -76,7 +76,10 @@ fn sorted(report: &CheckReport, texts: usize) -> Result<Judged, Error> {
         Ok(Value::Object(rest)) => rest,
         _ => Map::new(),
     };
-    rest.shift_remove("not_passed");
+    // They name the texts by the numbers that they have here.
+    for list in ["not_passed", "ambiguous_texts"] {
+        rest.shift_remove(list);
+    }
     Ok(Judged { findings, report: rest })
 }
 

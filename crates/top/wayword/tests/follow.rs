@@ -145,6 +145,13 @@ fn records_carry_what_check_finds_of_their_ambiguity() {
     let number = records.iter().filter(ambiguous).count();
     assert!(number > 0 && number < records.len(), "{number}");
     assert_eq!(checked["ambiguous"], number);
+    let listed: Vec<&str> =
+        checked["ambiguous_texts"].as_array().unwrap().iter().map(|text| text["text"].as_str().unwrap()).collect();
+    let told = records.iter().filter(ambiguous).map(|record| record.instruction.text.as_str());
+    assert_eq!(listed, told.collect::<Vec<_>>(), "each is listed, also where it passed");
+    assert!(
+        checked["ambiguous_texts"][0]["path"].is_string() && checked["ambiguous_texts"][0]["ambiguity"].is_object()
+    );
     assert!(records.iter().all(|record| record.instruction.ambiguity.as_ref().unwrap().ends.is_some()));
 
     let summary = building.generate("run", &["--episodes", EPISODES, "--style", "reverie", "--style", "r2r", "--json"]);

@@ -26,7 +26,7 @@ use crate::{
     output::Output,
 };
 
-pub use check::{CheckReport, CheckedText, Counts, How, check_file, checked};
+pub use check::{AmbiguousText, CheckReport, CheckedText, Counts, How, check_file, checked};
 pub use generate::{Summary, generate_into};
 pub use perceive::{Extent, Measured, Row, perceive};
 

@@ -1,15 +1,15 @@
 //! `wayword check`.
 
 mod held;
+mod report;
 mod walks;
 mod worlds;
 
 use crate::{
     cli::{AskedWorld, Check as Args},
     commands::calibrate,
-    count::count,
     error::{Error, Exit},
-    follow::{Followed, KnownScenes, Shares, Told, rejection},
+    follow::{Followed, KnownScenes, Told, rejection},
     output::Output,
     pipeline::panoramas,
     platforms::{self, Remembering},
@@ -17,14 +17,14 @@ use crate::{
 };
 use held::Held;
 use rayon::prelude::*;
-use serde::Serialize;
-use std::{collections::BTreeMap, fmt, path::Path as FilePath};
+use report::Shown;
+use std::path::Path as FilePath;
 use walks::{Text, Walk, walks};
-use wayword_checks::{
-    Checked, Evidence, Reach, Subject, Surroundings, Testimony, Turns, World, check, lift, open::Calibration,
-};
-use wayword_core::{Ambiguity, Check, Finding, Platform, Verdict};
+use wayword_checks::{Evidence, Reach, Subject, Surroundings, Testimony, Turns, World, check, lift, open::Calibration};
+use wayword_core::{Finding, Platform};
 use worlds::world_of;
+
+pub use report::{AmbiguousText, CheckReport, CheckedText, Counts};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = checked(args, output)?;
@@ -63,70 +63,6 @@ pub struct How<'a> {
     pub reject_ambiguous: bool,
     /// A file of what the user's own data says of single names.
     pub calibration: Option<&'a FilePath>,
-}
-
-/// What was found in a file.
-#[derive(Debug, Default, Serialize)]
-pub struct CheckReport {
-    /// Texts that passed every check.
-    pub passed: usize,
-    /// Texts of which something could not be checked, and nothing was wrong.
-    pub unverified: usize,
-    /// Texts that failed a check.
-    pub failed: usize,
-    /// What the texts were checked against.
-    pub checked_against: Vec<String>,
-    /// The worlds that texts were held against, with the number of texts.
-    pub worlds: BTreeMap<&'static str, usize>,
-    /// The file of `--calibration`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub calibration: Option<String>,
-    /// The styles that texts were checked against, with the number of texts; empty for a dataset without `--style`.
-    pub styles: BTreeMap<String, usize>,
-    /// Styles that texts name, but that differ from the built-in style of that name; those texts were checked against
-    /// none.
-    pub unknown_styles: BTreeMap<String, usize>,
-    /// Per check, the texts that passed, were unverified, or failed it.
-    pub by_check: BTreeMap<&'static str, Counts>,
-    /// Texts that may mean several places, or several objects at the end of the path. None of them fails for that.
-    pub ambiguous: usize,
-    /// Every text that did not pass, with its findings.
-    pub not_passed: Vec<CheckedText>,
-}
-
-/// Texts by verdict.
-#[derive(Debug, Default, Clone, Copy, Serialize)]
-pub struct Counts {
-    /// Passed.
-    pub passed: usize,
-    /// Nothing to check against.
-    pub unverified: usize,
-    /// Failed.
-    pub failed: usize,
-}
-
-/// A text with what was found.
-#[derive(Debug, Clone, Serialize)]
-pub struct CheckedText {
-    /// Its path.
-    pub path: String,
-    /// Its words.
-    pub text: String,
-    /// All checks together.
-    pub verdict: Verdict,
-    /// The world that it was held against: open or closed.
-    pub world: &'static str,
-    /// What was found, without what passed.
-    pub findings: Vec<Finding>,
-    /// How likely it is that the text means its path.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub route: Option<Shares>,
-    /// What turning its most doubtful turn around would gain, natural logs.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub turn_gain: Option<f64>,
-    /// What the text may mean. It makes no text fail.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ambiguity: Option<Ambiguity>,
 }
 
 /// Checks every instruction of a file.
@@ -235,92 +171,5 @@ impl Checking<'_> {
             (text.at, shown, checked.findings)
         });
         Ok((evidence.source.name(), checked.collect()))
-    }
-}
-
-impl CheckedText {
-    fn of(text: &Text, checked: &Checked) -> Self {
-        let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
-        let (path, words) = (text.path.clone(), text.words.clone());
-        let (verdict, world) = (checked.verdict(), checked.world.name());
-        Self { path, text: words, verdict, world, findings, route: None, turn_gain: None, ambiguity: None }
-    }
-}
-
-impl CheckReport {
-    fn add(&mut self, text: CheckedText, findings: &[Finding]) {
-        for check in Check::ALL {
-            let of_check: Vec<Finding> = findings.iter().filter(|finding| finding.check == check).cloned().collect();
-            if !of_check.is_empty() {
-                self.by_check.entry(check.name()).or_default().count(Verdict::of(&of_check));
-            }
-        }
-        *self.worlds.entry(text.world).or_default() += 1;
-        self.ambiguous += usize::from(text.ambiguity.as_ref().is_some_and(Ambiguity::is_ambiguous));
-        match text.verdict {
-            Verdict::Pass => self.passed += 1,
-            Verdict::Unverified => self.unverified += 1,
-            Verdict::Fail => self.failed += 1,
-        }
-        if text.verdict != Verdict::Pass {
-            self.not_passed.push(text);
-        }
-    }
-}
-
-impl Counts {
-    fn count(&mut self, verdict: Verdict) {
-        match verdict {
-            Verdict::Pass => self.passed += 1,
-            Verdict::Unverified => self.unverified += 1,
-            Verdict::Fail => self.failed += 1,
-        }
-    }
-}
-
-/// The report as people read it.
-struct Shown<'a> {
-    report: &'a CheckReport,
-    most: usize,
-}
-
-impl fmt::Display for Shown<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { report, most } = self;
-        for text in report.not_passed.iter().take(*most) {
-            writeln!(f, "{} {:?}: {}", text.path, text.verdict, text.text)?;
-            for finding in &text.findings {
-                let words = finding.span.and_then(|[from, to]| text.text.get(from..to));
-                let words = words.map_or(String::new(), |words| format!(" \"{words}\""));
-                writeln!(f, "    {} ({:?}){words}: {}", finding.check.name(), finding.verdict, finding.reason)?;
-            }
-        }
-        writeln!(f, "{:<10} {:>7} {:>11} {:>7}", "check", "passed", "unverified", "failed")?;
-        let all = Counts { passed: report.passed, unverified: report.unverified, failed: report.failed };
-        for (name, counts) in report.by_check.iter().chain(std::iter::once((&"all", &all))) {
-            writeln!(f, "{name:<10} {:>7} {:>11} {:>7}", counts.passed, counts.unverified, counts.failed)?;
-        }
-        let worlds = report.worlds.iter().map(|(name, texts)| format!("{name} ({texts})"));
-        let worlds = worlds.collect::<Vec<_>>().join(", ");
-        write!(f, "checked against: {}\nworld: {worlds}", report.checked_against.join(", "))?;
-        if report.ambiguous > 0 {
-            write!(f, "\nambiguous: {} may mean several places or objects", count(report.ambiguous, "text"))?;
-        }
-        if let Some(file) = &report.calibration {
-            write!(f, "\ncalibration: {file}")?;
-        }
-        if !report.styles.is_empty() {
-            let styles = report.styles.iter().map(|(name, texts)| format!("{name} ({texts})"));
-            write!(f, "\nstyles: {}", styles.collect::<Vec<_>>().join(", "))?;
-        }
-        for (name, texts) in &report.unknown_styles {
-            write!(
-                f,
-                "\nstyle {name} in this file differs from the built-in one (it is your own, or of another version), so \
-                 the form of {} was not checked: name the style with --style",
-                count(*texts, "text")
-            )?;
-        }
-        Ok(())
     }
 }
