@@ -80,8 +80,8 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// The verdict of all checks together. Where the world is closed, a text is at no loss because nobody could follow it:
-    /// the other checks know all that it may say.
+    /// The verdict of all checks together: the worst of them. Where the world is closed, an unverified route is left out, so
+    /// a text can pass beside such a finding: the other checks know all that it may say.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let is_left_out = |finding: &&Finding| {
