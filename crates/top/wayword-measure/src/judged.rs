@@ -88,13 +88,34 @@ pub(crate) fn said_of(report: &Map<String, Value>) -> Vec<String> {
     let words = |value: &Value| match value {
         Value::String(word) => Some(word.clone()),
         Value::Array(list) => list.iter().map(Value::as_str).collect::<Option<Vec<_>>>().map(|list| list.join(", ")),
+        // Names with numbers of texts, as the worlds.
+        Value::Object(counts) => {
+            let counts = counts.iter().map(|(name, texts)| Some(format!("{name} ({})", texts.as_u64()?)));
+            counts.collect::<Option<Vec<_>>>().map(|counts| counts.join(", "))
+        }
         _ => None,
     };
-    let lines = report.iter().filter_map(|(key, value)| Some(format!("{}: {}", key.replace('_', " "), words(value)?)));
-    lines.collect()
+    let told = report.iter().filter_map(|(key, value)| Some((key, words(value).filter(|words| !words.is_empty())?)));
+    told.map(|(key, words)| format!("{}: {words}", key.replace('_', " "))).collect()
 }
 
 /// Whether a finding is about words of this byte range.
 pub(crate) fn is_about(finding: &Finding, [from, to]: [usize; 2]) -> bool {
     finding.span.is_some_and(|[start, end]| start < to && from < end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn the_evidence_and_the_worlds_are_said_and_what_is_empty_is_not() {
+        let report = json!({
+            "passed": 2, "checked_against": ["labels"], "worlds": { "open": 40 }, "styles": {},
+            "by_check": { "route": { "passed": 2, "unverified": 0, "failed": 0 } },
+        });
+        let Value::Object(report) = report else { unreachable!() };
+        assert_eq!(said_of(&report), ["checked against: labels", "worlds: open (40)"]);
+    }
 }

@@ -64,7 +64,7 @@ fn missing(claim: &Claim, missed: &Missed, weights: &Weights, calibration: Optio
     match (fails, missed.nearest_m.is_finite()) {
         (false, _) => (Verdict::Unverified, format!("the labels list no {name:?} {place}, which says little")),
         (true, true) => {
-            (Verdict::Fail, format!("no {name:?} is {place}: the nearest is {:.0} m off", missed.nearest_m))
+            (Verdict::Fail, format!("no {name:?} is {place}: the nearest is {:.1} m off", missed.nearest_m))
         }
         (true, false) => (Verdict::Fail, format!("no {name:?} is {place}: the building lists none")),
     }

@@ -302,6 +302,15 @@ fn turns_are_left_to_whoever_compares_walks() {
 }
 
 #[test]
+fn how_far_off_the_nearest_one_is_is_told_to_a_decimal() {
+    let (_, evidence, around) = path(0, 3);
+    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let checked = check("Walk through the kitchen.", Subject::open(&evidence, &any(), reach));
+    let reason = &checked.findings.iter().find(|finding| finding.verdict == Verdict::Fail).unwrap().reason;
+    assert!(reason.contains("the nearest is 8.0 m off"), "{reason}");
+}
+
+#[test]
 fn without_surroundings_absence_says_nothing() {
     let (_, evidence, _) = path(0, 3);
     let verdict = |text: &str| check(text, Subject::open(&evidence, &any(), Reach::default())).verdict();
