@@ -40,8 +40,8 @@ pub(super) struct Flags {
     #[arg(long, value_delimiter = ',')]
     except: Vec<String>,
     /// Use at most this many texts, spread over the file.
-    #[arg(long, default_value_t = usize::MAX)]
-    limit: usize,
+    #[arg(long)]
+    limit: Option<usize>,
     /// Seed of the turns that are flipped, and of the other paths.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -75,7 +75,7 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let mut all: Vec<Text> = files.into_iter().flatten().collect();
     let is_in = |text: &Text, scans: &[String]| scans.iter().any(|one| one == scenes[text.scene].name.as_str());
     all.retain(|text| (flags.scans.is_empty() || is_in(text, &flags.scans)) && !is_in(text, &flags.except));
-    let every = all.len().div_ceil(flags.limit.clamp(1, all.len().max(1)));
+    let every = flags.limit.map_or(1, |limit| all.len().div_ceil(limit.max(1)));
     let mut by_scene: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (at, text) in all.iter().enumerate() {
         by_scene.entry(text.scene).or_default().push(at);

@@ -47,8 +47,8 @@ pub(super) struct Flags {
     #[arg(long, default_value_t = 4)]
     walker_rounds: usize,
     /// Fit on at most this many texts.
-    #[arg(long, default_value_t = usize::MAX)]
-    texts: usize,
+    #[arg(long)]
+    texts: Option<usize>,
     /// Write the weights into this folder: `map.json` for a follower that knows the map, `walker.json` for one that walks.
     #[arg(long)]
     out: Option<PathBuf>,
@@ -67,7 +67,7 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
         fitted.extend(kept.into_iter().map(|text| Text { file: number, ..text }));
     }
     fitted.shuffle(&mut rng(flags.seed, &["fit-follower"]));
-    fitted.truncate(flags.texts);
+    fitted.truncate(flags.texts.unwrap_or(usize::MAX));
     let names = left_out.iter().map(SceneId::as_str).collect::<Vec<_>>().join(" ");
     output.say(format!("{} texts; left out: {names}", fitted.len()));
     let say = |what: &str, score: &dyn Fn(&[Text]) -> String| {
