@@ -93,7 +93,8 @@ fn any() -> Style {
 fn told(text: &str, from: usize, to: usize) -> (Verdict, Vec<Check>) {
     let (_, evidence, around) = path(from, to);
     let reach = Reach { surroundings: Some(&around), calibration: None };
-    let subject = Subject { turns: Turns::JudgedElsewhere, ..Subject::open(&evidence, &any(), reach) };
+    let style = any();
+    let subject = Subject { turns: Turns::JudgedElsewhere, ..Subject::open(&evidence, &style, reach) };
     let checked = check(text, subject);
     let verdict = checked.verdict();
     let of = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
