@@ -13,6 +13,7 @@ mod distances;
 #[cfg(test)]
 mod growth;
 mod links;
+pub mod motion_words;
 mod numbers;
 mod onward;
 mod places;

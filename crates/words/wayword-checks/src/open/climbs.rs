@@ -4,7 +4,10 @@ use super::phrase::phrase;
 use crate::{Subject, finding, floors};
 use wayword_core::{Check, Climb, Finding, Motion, Verdict};
 use wayword_language::{
-    reading::{Reading, What},
+    reading::{
+        Reading, What,
+        motion_words::{DESCRIBING, MOMENT},
+    },
     text::{Token, tokens},
 };
 
@@ -65,25 +68,6 @@ enum Told {
     Described,
 }
 
-/// Words that make a climb a moment.
-const MOMENT: &[&str] = &[
-    "after",
-    "until",
-    "till",
-    "when",
-    "once",
-    "if",
-    "begin",
-    "beginning",
-    "start",
-    "starting",
-    "prepare",
-    "about",
-    "ready",
-];
-/// Words that make a climb what stairs do.
-const DESCRIBING: &[&str] = &["heading", "headed", "going", "goes", "that", "lead", "leads", "leading"];
-
 fn told(tokens: &[Token], span: [usize; 2]) -> Told {
     let at = tokens.partition_point(|token| token.span[0] < span[0]);
     let before = || tokens[..at].iter().rev().take_while(|token| token.is_word()).take(5);
@@ -92,8 +76,8 @@ fn told(tokens: &[Token], span: [usize; 2]) -> Told {
     let is_adjective = tokens.get(at).is_some_and(|token| token.word.ends_with("ing"))
         && before().next().is_some_and(|token| matches!(token.word.as_str(), "the" | "a"));
     match () {
-        () if is_adjective || has(&["before"]) || (has(DESCRIBING) && !has(MOMENT)) => Told::Described,
-        () if has(MOMENT) || !names_stairs(tokens, at) => Told::Moment,
+        () if is_adjective || has(&["before"]) || (has(&DESCRIBING) && !has(&MOMENT)) => Told::Described,
+        () if has(&MOMENT) || !names_stairs(tokens, at) => Told::Moment,
         () => Told::Command,
     }
 }

@@ -9,7 +9,7 @@ use super::{
 use wayword_core::Climb;
 use wayword_language::{
     lexicon::{Class, is_room, is_thing, kinds, normal_word, room_name},
-    reading::{Going, Place, Reading, What},
+    reading::{Going, Place, Reading, What, motion_words::TAKING_UP},
     text::Token,
 };
 
@@ -225,31 +225,6 @@ fn leaves_between(motions: &[Motion<'_>]) -> bool {
     let between = &motions[1..motions.len() - 1];
     last.is_room && between.iter().any(|motion| motion.relation != Relation::Past && elsewhere(motion))
 }
-
-/// Words before a place that take up again what was said, or that name another one.
-const TAKING_UP: &[&str] = &[
-    "once",
-    "after",
-    "when",
-    "as",
-    "if",
-    "until",
-    "till",
-    "in",
-    "while",
-    "from",
-    "another",
-    "other",
-    "next",
-    "second",
-    "third",
-    "last",
-    "again",
-    "continue",
-    "keep",
-    "back",
-    "immediately",
-];
 
 /// Whether the sentence before a place takes up what was said: "once past the sofa", "another door".
 fn takes_up(tokens: &[Token], claim: &Claim) -> bool {

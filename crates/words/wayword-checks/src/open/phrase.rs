@@ -1,45 +1,11 @@
 //! The words of a motion: its verb, and what it goes along or past.
 
-use wayword_language::text::Token;
+use wayword_language::{reading::motion_words::MOTION_VERBS, text::Token};
 
 /// How far before what is moved by its verb may stand, words.
 const BACK: usize = 5;
 /// How far behind a verb its noun may stand, words.
 const AHEAD: usize = 5;
-
-/// Verbs that begin the words of a motion.
-const VERBS: &[&str] = &[
-    "walk",
-    "walking",
-    "go",
-    "going",
-    "head",
-    "heading",
-    "move",
-    "moving",
-    "continue",
-    "continuing",
-    "proceed",
-    "step",
-    "pass",
-    "passing",
-    "exit",
-    "exiting",
-    "leave",
-    "leaving",
-    "enter",
-    "entering",
-    "follow",
-    "following",
-    "take",
-    "taking",
-    "climb",
-    "cross",
-    "run",
-    "travel",
-    "come",
-    "get",
-];
 
 /// The byte range from a motion's verb to the end of what is named, or to its noun behind: "walk past the sofa", "walk up
 /// the stairs". `noun` says which words are that noun.
@@ -47,7 +13,7 @@ pub(super) fn phrase(tokens: &[Token], span: [usize; 2], noun: impl Fn(&str) -> 
     let first = tokens.partition_point(|token| token.span[0] < span[0]);
     let goes_on = |token: &&Token| token.is_word() && !matches!(token.word.as_str(), "and" | "then" | "or" | "until");
     let before = tokens[..first].iter().rev().take_while(goes_on).take(BACK);
-    let verb = before.into_iter().find(|token| VERBS.contains(&token.word.as_str()));
+    let verb = before.into_iter().find(|token| MOTION_VERBS.contains(&token.word.as_str()));
     let behind = tokens[first..].iter().take_while(goes_on).take(AHEAD);
     let named = behind.into_iter().find(|token| noun(&token.word));
     let begin = verb.map_or(span[0], |token| token.span[0]);

@@ -1,0 +1,7 @@
+//! Closed word lists by which the checks tell how a motion is meant.
+
+crate::data::lists! {
+    "words/motions.txt";
+    words: MOMENT, DESCRIBING, TAKING_UP, MOTION_VERBS;
+    phrases:;
+}
