@@ -36,7 +36,7 @@ impl<'a> Text<'a> {
             // "The wait", but "make a stop".
             word if v::STOPPING.contains(&word) => !matches!(self.before(at), "the" | "non" | "t" | "rest"),
             "end" | "finish" | "rest" | "stand" => self.is_commanded(at) && here(),
-            "stay" | "remain" => self.is_commanded(at) && here(),
+            "stay" | "remain" => self.is_commanded(at) && (here() || self.names_this_spot(at + 1)),
             "standing" => matches!(self.before(at), "be" | "are" | "re"),
             "done" | "finished" | "arrived" => {
                 matches!(self.before(at), "are" | "you're" | "you’re" | "be" | "have" | "you've" | "you’ve")
@@ -46,6 +46,11 @@ impl<'a> Text<'a> {
             "destination" => matches!(self.before(at), "your" | "the") && !self.tells_when(at),
             _ => false,
         }
+    }
+
+    /// "Stay where you are".
+    fn names_this_spot(&self, at: usize) -> bool {
+        matches!((self.word(at), self.word(at + 1), self.word(at + 2)), ("where", "you", "are"))
     }
 
     /// Whether a verb begins its clause, or follows words of command.
@@ -119,6 +124,7 @@ mod tests {
             "You should be standing by the sofa.",
             "Wait.",
             "You have arrived.",
+            "Stay where you are.",
             "The sofa is your destination.",
         ] {
             assert_eq!(told(text), [What::Stop], "{text}");

@@ -1,6 +1,9 @@
 //! What the walker does about a place.
 
-use wayword_language::reading::{Going, Link, Reading, What};
+use wayword_language::{
+    lexicon::room_name,
+    reading::{Going, Link, Reading, What},
+};
 
 /// What the walker does about a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,10 +44,10 @@ impl Relation {
 pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
     let goes_on = last_motion(reading);
     // The clause, and whether the next place in it is where the walker stops.
-    let (mut clause, mut stops, mut named) = (usize::MAX, false, false);
+    let (mut clause, mut stops, mut named, mut at_stairs) = (usize::MAX, false, false, false);
     let relation = |event: &wayword_language::reading::Event| {
         if event.clause != clause {
-            (clause, stops, named) = (event.clause, false, false);
+            (clause, stops, named, at_stairs) = (event.clause, false, false, false);
         }
         let place = match &event.what {
             What::Stop => {
@@ -60,15 +63,20 @@ pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
         };
         let relation = match place.going {
             Some(Going::Leaving) => Relation::Exit,
+            // "Stop when you are back in the kitchen".
+            Some(Going::Entering) if stops && !named => Relation::Stop,
             Some(Going::Entering) => Relation::Enter,
             Some(Going::Through | Going::Along | Going::Around) => Relation::Through,
             Some(Going::Past) => Relation::Past,
             Some(Going::Towards | Going::Until) if stops && !named => Relation::Stop,
             Some(Going::Towards | Going::Until) => Relation::Towards,
-            // "Stop by the sofa next to the window": the window only says which sofa.
+            // "Stop by the sofa next to the window": the window only says which sofa. Stairs are long: what is next to them
+            // is where the walk stops.
+            None if stops && at_stairs && place.link == Link::Beside => Relation::Stop,
             None if stops && !(named && place.link == Link::Beside) => Relation::Stop,
             None => Relation::Beside,
         };
+        at_stairs = !named && relation == Relation::Stop && room_name(&place.name) == Some("stairs");
         named = true;
         Some(relation)
     };

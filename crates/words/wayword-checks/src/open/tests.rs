@@ -229,6 +229,23 @@ fn another_storey_is_held_against_floor_heights() {
 }
 
 #[test]
+fn a_stop_is_held_against_the_end_of_the_path() {
+    for text in [
+        "Walk down the hallway and stop when you are back in the bedroom.",
+        "Walk down the hallway. Stop when you are in the bedroom.",
+    ] {
+        assert_ne!(told(text, 0, 5), PASSES, "{text}");
+    }
+    let by_stairs = |thing: &str| told(&format!("Stop at the foot of the stairs next to the {thing}."), 6, 9);
+    assert_eq!(by_stairs("toilet"), PASSES);
+    assert_ne!(by_stairs("chandelier"), PASSES);
+    for text in ["Stay where you are.", "Wait here."] {
+        assert_eq!(told(text, 1, 5), (Verdict::Unverified, vec![Check::Order]), "{text}");
+    }
+    assert_eq!(told("Stay where you are and walk to the sofa.", 1, 5), PASSES);
+}
+
+#[test]
 fn what_no_rule_judges_is_unverified() {
     for (text, check) in [
         ("Walk down the hallway. Never go down the stairs.", Check::Floors),

@@ -21,6 +21,7 @@ pub(super) fn unjudged(text: &str, reading: &Reading, subject: Subject<'_>) -> V
     let tokens = tokens(text);
     let unverified = |check, reason: &str, span| finding(check, Verdict::Unverified, reason, Some(span));
     let mut found = turned_often(reading, subject);
+    found.extend(stays(reading, subject));
     let (mut clauses, mut turns) = (BTreeSet::new(), BTreeSet::new());
     for event in &reading.events {
         if event.denied {
@@ -58,6 +59,16 @@ fn check_of(what: &What) -> Option<Check> {
         What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => Some(Check::Floors),
         What::Onward | What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => None,
     }
+}
+
+/// "Stay where you are." on a path that moves.
+fn stays(reading: &Reading, subject: Subject<'_>) -> Option<Finding> {
+    let moves_m: f64 = subject.evidence.moves.iter().map(|step| step.distance_m).sum();
+    let stop = reading.events.iter().find(|event| event.what == What::Stop && !event.denied)?;
+    let only_stops = reading.events.iter().all(|event| event.denied || event.what == What::Stop);
+    let is_wrong = only_stops && subject.evidence.motion.is_known() && moves_m > NEAR_M;
+    let reason = "the text only says to stop, and the path goes on";
+    is_wrong.then(|| finding(Check::Order, Verdict::Unverified, reason, Some(stop.span)))
 }
 
 /// "If you see the bed, you have gone too far": that is no part of the walk.
