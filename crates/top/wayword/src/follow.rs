@@ -161,7 +161,8 @@ impl<'a> Followed<'a> {
 fn is_understood(text: &str, tag: Option<&str>) -> bool {
     let reading = read(text, &BTreeSet::new());
     let is_foreign = matches!(reading.language.or_tagged(tag), Language::Other(_));
-    !is_foreign && reading.clauses.iter().any(|clause| clause.understood)
+    let mut clauses = reading.clauses.iter().filter(|clause| clause.span[0] < clause.span[1]).peekable();
+    !is_foreign && (clauses.peek().is_none() || clauses.any(|clause| clause.understood))
 }
 
 /// Why a path without poses is not followed.

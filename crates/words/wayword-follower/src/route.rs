@@ -23,8 +23,9 @@ pub struct Known<'a> {
     pub heading_rad: f64,
 }
 
-/// From which gain on a change of a step is taken for what the text should say, natural logs. They were set by hand, so
-/// that few of people's texts in R2R's train split fail.
+/// From which gain on a change of a step is taken for what the text should say, natural logs. `wayword-measure
+/// fit-follower` prints which share of people's texts gains more: 1.8 % by a turn to the other side, and .1 to .3 % by
+/// each of the others. In other buildings, it is about a third more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// Of a turn to the other side.
@@ -41,7 +42,7 @@ pub struct Thresholds {
 
 impl Default for Thresholds {
     fn default() -> Self {
-        Self { turn: 2.4, no_turn: 4.5, climb: 1.0, swap: 3.0, route: 8.0 }
+        Self { turn: 2.4, no_turn: 4.1, climb: 0.2, swap: 3.0, route: 8.0 }
     }
 }
 

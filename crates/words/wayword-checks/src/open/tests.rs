@@ -325,7 +325,7 @@ fn how_far_off_the_nearest_one_is_is_told_to_a_decimal() {
     let reach = Reach { surroundings: Some(&around), calibration: None };
     let checked = check("Walk through the kitchen.", Subject::open(&evidence, &any(), reach));
     let reason = &checked.findings.iter().find(|finding| finding.verdict == Verdict::Fail).unwrap().reason;
-    assert!(reason.contains("the nearest is 8.0 m off"), "{reason}");
+    assert!(reason.contains("the nearest is 6.0 m off"), "{reason}");
 }
 
 #[test]
