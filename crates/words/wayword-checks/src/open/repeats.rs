@@ -62,10 +62,9 @@ fn sentences(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> 
             claims.iter().filter(|claim| within(claim.span)).filter(|claim| claim.relation != Relation::Beside);
         let counts: Vec<usize> = moves.chain(places.map(|claim| stretches.places(claim))).collect();
         let has_all = counts.iter().all(|count| *count >= *times);
-        // "Turn right. Turn right." is said of two turns, but whoever climbs twice at once says so in other words.
-        let turns = events().any(|event| matches!(event.what, What::Turn(_)))
-            && !events().any(|event| matches!(event.what, What::Climb(_) | What::Steps(_)));
-        if (at_once && !turns) || words.len() >= MANY_WORDS || !has_all {
+        // "Turn right. Turn right." is said of two turns, but nobody says so where the sentence tells anything else.
+        let only_turns = events().next().is_some() && events().all(|event| matches!(event.what, What::Turn(_)));
+        if (at_once && !only_turns) || words.len() >= MANY_WORDS || !has_all {
             let reason = "the text says this sentence again, and the path has fewer stretches of it";
             found.push(finding(Check::Order, Verdict::Fail, reason, Some(span)));
         }
