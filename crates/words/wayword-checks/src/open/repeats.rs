@@ -62,10 +62,11 @@ fn sentences(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> 
             claims.iter().filter(|claim| within(claim.span)).filter(|claim| claim.relation != Relation::Beside);
         let counts: Vec<usize> = moves.chain(places.map(|claim| stretches.places(claim))).collect();
         let has_all = counts.iter().all(|count| *count >= *times);
-        // "Turn right. Turn right." is said of two turns, but nobody says so where the sentence tells anything else.
-        let only_turns = events().next().is_some() && events().all(|event| matches!(event.what, What::Turn(_)));
-        if (at_once && !only_turns) || words.len() >= MANY_WORDS || !has_all {
-            let reason = "the text says this sentence again, and the path has fewer stretches of it";
+        if at_once || words.len() >= MANY_WORDS || !has_all {
+            let reason = match at_once {
+                true => "the text says this sentence twice in a row",
+                false => "the text says this sentence again, and the path has fewer stretches of it",
+            };
             found.push(finding(Check::Order, Verdict::Fail, reason, Some(span)));
         }
     }

@@ -198,11 +198,11 @@ fn a_turn_is_said_as_often_as_the_path_has_it() {
     // A walk around a block: three turns to one side.
     let around = [(0.0, 0.0, 1.5), (0.0, 2.0, 1.5), (2.0, 2.0, 1.5), (2.0, 0.0, 1.5), (0.0, 0.0, 1.5)];
     let fails = |text: &str| told_of(text, &around).0 == Verdict::Fail;
-    assert!(!fails("Turn right. Turn right. Turn right. Stop."));
-    assert!(!fails("Walk on. Turn right. Turn right."));
-    assert!(fails("Turn right. Turn right. Turn right. Turn right."));
-    assert!(fails("Turn left. Turn left."));
-    assert!(fails("Walk straight on. Walk straight on."), "no turn tells these apart");
+    assert!(!fails("Turn right. Walk on. Turn right. Walk along. Turn right. Stop."));
+    assert!(fails("Turn right. Walk on. Turn right. Walk along. Turn right. Go on. Turn right."), "there are three");
+    assert!(fails("Turn left. Walk on. Turn left."));
+    assert!(fails("Walk on. Turn right. Turn right."), "twice in a row is a copy");
+    assert!(fails("Walk straight on. Walk straight on."));
 }
 
 #[test]
