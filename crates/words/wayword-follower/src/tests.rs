@@ -4,7 +4,7 @@ use crate::{
     Building, Fit, Guide, Prior, Tree, Trial, Weights, best,
     change::{Kind, changes},
     online::{Decision, Hop, OnwardWeights, Reader, Sighting},
-    route::{Known, Thresholds, judge},
+    route::{Known, Thresholds, Unfollowed, judge},
     shares,
     swap::best_swap,
 };
@@ -148,6 +148,23 @@ fn a_text_of_another_walk_leads_elsewhere() {
     assert!(other.share < 0.01 && other.other > 0.5, "{} {}", other.share, other.other);
     assert_eq!(other.finding.check, Check::Route);
     assert!(judge("Go.").route.unwrap().ends.len() > 1, "a text that says nothing may end anywhere");
+}
+
+#[test]
+fn texts_with_too_few_or_too_many_steps_are_not_followed() {
+    let building = Building::of(&surveyed());
+    // Up and down the hall: more hops than one step leads.
+    let walk: Vec<usize> = [0, 1, 2, 1].into_iter().cycle().take(12).collect();
+    let known = Known { building: &building, walk: &walk, heading_rad: 0.0 };
+    let judge = |text: &str| {
+        judge(&Guide::read(text), known, Some(Prior::Shortest(8)), Weights::fitted(), Thresholds::default())
+    };
+    let few = judge("Walk to the kitchen.");
+    assert_eq!(few.route, Err(Unfollowed::TooFewSteps));
+    assert_eq!(few.wrong, []);
+    let many = judge(&"Turn left. ".repeat(100));
+    assert_eq!(many.route, Err(Unfollowed::TooManySteps));
+    assert_eq!((many.wrong.len(), many.turn_gain), (0, None), "nothing is said of its turns");
 }
 
 #[test]

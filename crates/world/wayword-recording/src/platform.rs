@@ -213,6 +213,11 @@ impl Platform for RecordingPlatform {
         Ok(self.source.scenes())
     }
 
+    /// Nobody knows how much the labels of a recording leave out.
+    fn lists_everything(&self) -> bool {
+        false
+    }
+
     /// Opens each recording and looks at its first picture, to report all errors before a run finds them item by item.
     fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         let all = self.source.scenes();
