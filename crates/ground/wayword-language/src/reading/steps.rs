@@ -2,7 +2,7 @@
 
 mod relation;
 
-use super::{Event, Floor, Ordinal, Reading, What, clauses, denial::denied, tokens::Tokens};
+use super::{Event, Floor, Reading, What, clauses, denial::denied, tokens::Tokens};
 use crate::{
     lexicon::room_name,
     text::{self, Token},
@@ -63,8 +63,6 @@ pub struct Told {
     pub event: usize,
     /// How the step has to do with it.
     pub relation: Relation,
-    /// Which one of several it is.
-    pub ordinal: Option<Ordinal>,
 }
 
 /// What a step has to do with doors.
@@ -214,7 +212,7 @@ impl Builder<'_> {
                         step.side = Some((relation, side));
                     }
                     let event = self.first_event + number;
-                    step.places.push(Told { event, relation, ordinal: place.ordinal });
+                    step.places.push(Told { event, relation });
                 }
                 _ => {}
             }
