@@ -2,7 +2,7 @@
 
 use crate::{
     corrupt_people::turned,
-    fit_follower::texts::{Scene, Text, texts},
+    fit_follower::texts::{SUCCESS_M, Scene, Text, texts},
     share::table,
 };
 use clap::Args;
@@ -13,14 +13,10 @@ use wayword::{error::Error, output::Output};
 use wayword_core::rng;
 use wayword_follower::{
     Fit, Guide, Prior, Tree, Trial, Weights, best,
-    route::{Known, Thresholds, judge},
+    route::{Known, Thresholds, judge, route},
     shares,
 };
 
-/// The walks that are thought of.
-const PRIOR: Prior = Prior::Shortest(8);
-/// A walk that ends nearer than this to the goal succeeds, metres.
-const SUCCESS_M: f64 = 3.0;
 /// Bins of the calibration error, of equal width.
 const BINS: usize = 10;
 /// Bounds of ambiguity that are tried: another walk's share of the annotated one's.
@@ -90,7 +86,7 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
 fn said(scenes: &[Scene], all: &[Text], neighbours: &[usize], at: usize, seed: u64) -> Said {
     let (text, weights) = (&all[at], Weights::fitted());
     let building = &scenes[text.scene].building;
-    let tree = Tree::of(building, text.walk[0], text.heading_rad, PRIOR);
+    let tree = Tree::of(building, text.walk[0], text.heading_rad, Prior::default());
     let fit = Fit::new(&Trial::new(&text.guide, building), &tree, weights);
     let shares = shares(&fit, &tree);
     let best = best(&fit, &tree).map(|walk| {
@@ -106,10 +102,10 @@ fn said(scenes: &[Scene], all: &[Text], neighbours: &[usize], at: usize, seed: u
     });
     let known = Known { building, walk: &text.walk, heading_rad: text.heading_rad };
     let elsewhere = |guide: &Guide| {
-        let judged = judge(guide, known, Some(PRIOR), weights, Thresholds::default());
-        judged.route.map_or(0.0, |route| log_ratio(route.other, route.share))
+        let route = route(guide, known, Some(Prior::default()), weights, Thresholds::default());
+        route.map_or(0.0, |route| log_ratio(route.other, route.share))
     };
-    let gain = |guide: &Guide| judge(guide, known, None, weights, Thresholds::default()).turn_gain;
+    let gain = |guide: &Guide| judge(guide, known, weights, Thresholds::default()).turn_gain;
     let purpose = |what: &'static str| rng(seed, &["reader figures", what, &at.to_string()]);
     let turns = turned(&text.words, &mut purpose("turn"))
         .and_then(|turned| Some([gain(&text.guide)?, gain(&Guide::read(&turned))?]));

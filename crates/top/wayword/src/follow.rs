@@ -7,9 +7,12 @@ use wayword_checks::{Checked, Evidence, FrameEvidence, Turns, World, objects_mea
 use wayword_core::{Ambiguity, Check, Finding, Frame, Path, Platform, Recent, SceneId, Survey, Verdict};
 use wayword_follower::{
     Building, Guide, Place, Prior, Weights,
-    route::{Known, Route, Thresholds, Unfollowed, judge},
+    route::{Known, Route, Thresholds, Unfollowed, judge, route},
 };
-use wayword_language::{Language, reading::read};
+use wayword_language::{
+    Language,
+    reading::{Reading, read},
+};
 use wayword_world::survey;
 
 /// A scene that was surveyed.
@@ -90,9 +93,6 @@ pub(crate) struct Ends {
     pub(crate) told_apart_by: Option<String>,
 }
 
-/// The walks that are thought of: the shortest path to each viewpoint up to this number of hops.
-const PRIOR: Prior = Prior::Shortest(8);
-
 impl<'a> Followed<'a> {
     /// A path in its scene. A path that does not go along the viewpoints of a graph is followed by what its own frames
     /// show.
@@ -126,40 +126,65 @@ impl<'a> Followed<'a> {
         Ok(Self { place: Surrounded::Nothing(building), walk, heading_rad })
     }
 
-    /// Follows a text. `tag` is that of its language, where its file gives one.
+    /// Follows a text, and judges its steps. `tag` is that of its language, where its file gives one.
     pub(crate) fn follow(&self, text: &str, tag: Option<&str>) -> Told {
-        let (building, prior) = match &self.place {
-            Surrounded::By(scene) => (&scene.followed, Some(PRIOR)),
-            Surrounded::Nothing(building) => (building, None),
+        let guide = match guide(text, tag) {
+            Ok(guide) => guide,
+            Err(why) => return Told::unknown(why),
         };
-        let known = Known { building, walk: &self.walk, heading_rad: self.heading_rad };
-        if !is_understood(text, tag) {
-            return Told::unknown("the program does not understand it");
+        let mut told = self.routed(&guide);
+        if told.turns == Turns::JudgedElsewhere {
+            let judged = judge(&guide, self.known(), Weights::fitted(), Thresholds::default());
+            told.findings.extend(judged.wrong);
+            told.turn_gain = judged.turn_gain;
         }
-        let guide = Guide::read(text);
-        if guide.is_empty() {
-            return Told::unknown("the text tells no step");
-        }
-        let judged = judge(&guide, known, prior, Weights::fitted(), Thresholds::default());
+        told
+    }
+
+    /// Says only where a text leads.
+    pub(crate) fn route(&self, text: &str) -> Told {
+        guide(text, None).map_or_else(Told::unknown, |guide| self.routed(&guide))
+    }
+
+    fn known(&self) -> Known<'_> {
+        let building = match &self.place {
+            Surrounded::By(scene) => &scene.followed,
+            Surrounded::Nothing(building) => building,
+        };
+        Known { building, walk: &self.walk, heading_rad: self.heading_rad }
+    }
+
+    fn routed(&self, guide: &Guide) -> Told {
+        let known = self.known();
+        let prior = matches!(self.place, Surrounded::By(_)).then(Prior::default);
+        let routed = route(guide, known, prior, Weights::fitted(), Thresholds::default());
         let apart = |route: &Route| match route.ends.split_first() {
-            Some((own, others)) if !others.is_empty() => building.told_apart_by(*own, others).map(str::to_owned),
+            Some((own, others)) if !others.is_empty() => known.building.told_apart_by(*own, others).map(str::to_owned),
             _ => None,
         };
-        if let Err(why @ (Unfollowed::TooManySteps | Unfollowed::TooFewSteps)) = judged.route {
+        if let Err(why @ (Unfollowed::TooManySteps | Unfollowed::TooFewSteps)) = routed {
             return Told::unknown(why.why());
         }
-        let seen = judged.route.as_ref().ok();
+        let seen = routed.as_ref().ok();
         let ends = seen.map(|route| Ends { count: route.ends.len(), told_apart_by: apart(route) });
         let route = seen.map(|route| Shares { annotated: route.share, other: route.other });
-        let finding = judged.route.map_or_else(|why| unknown_route(why.why()), |route| route.finding);
-        let findings = std::iter::once(finding).chain(judged.wrong).collect();
-        Told { findings, route, turn_gain: judged.turn_gain, ends, turns: Turns::JudgedElsewhere }
+        let finding = routed.map_or_else(|why| unknown_route(why.why()), |route| route.finding);
+        Told { findings: vec![finding], route, turn_gain: None, ends, turns: Turns::JudgedElsewhere }
     }
 }
 
-/// Whether the reader understands anything of a text: a text in another language may hold words that look like English.
-fn is_understood(text: &str, tag: Option<&str>) -> bool {
+/// What a text tells a walker; an error, with the reason, where nobody could follow it.
+fn guide(text: &str, tag: Option<&str>) -> Result<Guide, &'static str> {
     let reading = read(text, &BTreeSet::new());
+    if !is_understood(&reading, tag) {
+        return Err("the program does not understand it");
+    }
+    let guide = Guide::of(text, &reading);
+    if guide.is_empty() { Err("the text tells no step") } else { Ok(guide) }
+}
+
+/// Whether the reader understands anything of a text: a text in another language may hold words that look like English.
+fn is_understood(reading: &Reading, tag: Option<&str>) -> bool {
     let is_foreign = matches!(reading.language.or_tagged(tag), Language::Other(_));
     let mut clauses = reading.clauses.iter().filter(|clause| clause.span[0] < clause.span[1]).peekable();
     !is_foreign && (clauses.peek().is_none() || clauses.any(|clause| clause.understood))

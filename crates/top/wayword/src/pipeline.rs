@@ -101,7 +101,7 @@ struct Follower<'a> {
 impl Follow for Follower<'_> {
     fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity {
         let told = match &self.followed {
-            Ok(followed) => followed.follow(text, None),
+            Ok(followed) => followed.route(text),
             Err(why) => Told::unknown(why),
         };
         told.add_to(checked);

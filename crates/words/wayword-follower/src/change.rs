@@ -3,13 +3,7 @@
 //! A text that says "left" where the walk turns right fits better with that one word changed. Only the known walk is
 //! looked at, so no graph is needed.
 
-use crate::{
-    building::Building,
-    fit::Fit,
-    guide::{Guide, Trial},
-    tree::Tree,
-    weights::Weights,
-};
+use crate::{building::Building, guide::Guide, one_walk::OneWalk, weights::Weights};
 use wayword_core::{Climb, Side};
 
 /// A change of one step.
@@ -45,13 +39,12 @@ pub struct Change {
 /// `walk` has the viewpoints of the walk, and `heading_rad` says which way it begins (radians from +y, clockwise).
 #[must_use]
 pub fn changes(guide: &Guide, building: &Building, walk: &[usize], heading_rad: f64, weights: &Weights) -> Vec<Change> {
-    let tree = Tree::single(building, walk, heading_rad);
-    let fits = |guide: &Guide| Fit::new(&Trial::new(guide, building), &tree, weights).score(tree.len() - 1);
-    let as_told = fits(guide);
+    let known = OneWalk::new(building, walk, heading_rad, weights);
+    let as_told = known.score(guide);
     let mut changes: Vec<Change> = variants(guide)
         .into_iter()
         .map(|(kind, step, changed)| {
-            let gain = fits(&changed) - as_told;
+            let gain = known.score(&changed) - as_told;
             let told = &guide.steps[step].step;
             let turns = matches!(kind, Kind::Turn | Kind::NoTurn);
             let span = told.turn_span.filter(|_| turns).unwrap_or(told.span);

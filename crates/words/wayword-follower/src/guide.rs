@@ -7,7 +7,7 @@ use wayword_core::Side;
 use wayword_language::{
     lexicon::same_room,
     reading::{
-        What, read,
+        Reading, What, read,
         steps::{Relation, Step, steps},
     },
 };
@@ -114,7 +114,12 @@ impl Guide {
     /// Reads an instruction.
     #[must_use]
     pub fn read(text: &str) -> Self {
-        let reading = read(text, &BTreeSet::new());
+        Self::of(text, &read(text, &BTreeSet::new()))
+    }
+
+    /// The guide of an instruction that was read before.
+    #[must_use]
+    pub fn of(text: &str, reading: &Reading) -> Self {
         let mut rooms = Vec::new();
         let told = |step: Step| {
             let mut mentions: Vec<Mention> = Vec::new();
@@ -139,7 +144,7 @@ impl Guide {
             }
             Told { kind: Kind::of(&step), step, mentions }
         };
-        let mut steps: Vec<Told> = steps(text, &reading).into_iter().map(told).collect();
+        let mut steps: Vec<Told> = steps(text, reading).into_iter().map(told).collect();
         let is_goal = !steps.is_empty() && !steps.iter().any(|told| told.tells_way());
         if is_goal {
             steps.iter_mut().for_each(|told| told.kind = Kind::Task);

@@ -13,6 +13,7 @@ mod fit;
 mod guide;
 pub mod learn;
 mod near;
+mod one_walk;
 pub mod online;
 mod posterior;
 pub mod route;

@@ -23,6 +23,12 @@ pub struct Known<'a> {
     pub heading_rad: f64,
 }
 
+impl Known<'_> {
+    fn changes(&self, guide: &Guide, weights: &Weights) -> Vec<Change> {
+        changes(guide, self.building, self.walk, self.heading_rad, weights)
+    }
+}
+
 /// From which gain on a change of a step is taken for what the text should say, natural logs. `wayword-measure
 /// fit-follower` prints which share of people's texts gains more: 1.8 % by a turn to the other side, and .1 to .3 % by
 /// each of the others. In other buildings, it is about a third more.
@@ -46,13 +52,11 @@ impl Default for Thresholds {
     }
 }
 
-/// What a follower says of an instruction and its walk.
+/// What a follower says of an instruction and its walk alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// What is wrong with its steps; empty where nothing is.
+    /// What is wrong with its steps; empty where nothing is, and where it has too many.
     pub wrong: Vec<Finding>,
-    /// Whether it leads elsewhere.
-    pub route: Result<Route, Unfollowed>,
     /// What the best change of a turn gains, natural logs: the higher, the likelier the text has a wrong turn. `None` where
     /// it tells none.
     pub turn_gain: Option<f64>,
@@ -105,26 +109,18 @@ const APART_M: f64 = 3.0;
 /// it takes to a wrong one, 21 % (50 %): `wayword-measure reader-figures`.
 const AS_WELL: f64 = 0.8;
 
-/// Judges an instruction by the walk that it was written for. Without `prior`, other walks are not thought of.
+/// Judges an instruction by the walk that it was written for.
 #[must_use]
-pub fn judge(
-    guide: &Guide,
-    known: Known<'_>,
-    prior: Option<Prior>,
-    weights: &Weights,
-    thresholds: Thresholds,
-) -> Judged {
+pub fn judge(guide: &Guide, known: Known<'_>, weights: &Weights, thresholds: Thresholds) -> Judged {
     if guide.len() > MOST_STEPS {
-        return Judged { wrong: Vec::new(), route: Err(Unfollowed::TooManySteps), turn_gain: None };
+        return Judged { wrong: Vec::new(), turn_gain: None };
     }
-    let changes = changes(guide, known.building, known.walk, known.heading_rad, weights);
+    let changes = known.changes(guide, weights);
     let turn_gain = changes.iter().find(|change| change.kind == Kind::Turn).map(|change| change.gain);
     let mut wrong = wrong_steps(guide, &changes, thresholds);
     let swap = best_swap(guide, known.building, known.walk, known.heading_rad, weights);
     wrong.extend(swap.filter(|swap| swap.gain > thresholds.swap).map(wrong_order));
-    let route = prior.map(|prior| route(guide, known, prior, &changes, weights, thresholds));
-    let route = route.unwrap_or(Err(Unfollowed::NoGraph));
-    Judged { wrong, route, turn_gain }
+    Judged { wrong, turn_gain }
 }
 
 /// The steps that one change would make fit much better, each told once.
@@ -162,14 +158,22 @@ fn wrong_order(swap: Swap) -> Finding {
     Finding { check: Check::Order, verdict: Verdict::Fail, reason, span: Some(spans[0]) }
 }
 
-fn route(
+/// Whether an instruction leads elsewhere than the walk that it was written for. `prior` says which other walks are thought
+/// of; it is `None` where none is known.
+///
+/// # Errors
+/// With the reason, where that cannot be said.
+pub fn route(
     guide: &Guide,
     known: Known<'_>,
-    prior: Prior,
-    changes: &[Change],
+    prior: Option<Prior>,
     weights: &Weights,
     thresholds: Thresholds,
 ) -> Result<Route, Unfollowed> {
+    if guide.len() > MOST_STEPS {
+        return Err(Unfollowed::TooManySteps);
+    }
+    let prior = prior.ok_or(Unfollowed::NoGraph)?;
     let start = known.walk.first().copied().unwrap_or_default();
     let mut tree = Tree::of(known.building, start, known.heading_rad, prior);
     let own = tree.with(known.building, known.walk);
@@ -199,8 +203,13 @@ fn route(
         } else {
             String::new()
         },
-        span: changes.first().filter(|change| leads_elsewhere && change.gain > 0.0).map(|change| change.span),
+        span: if leads_elsewhere { fault(&known.changes(guide, weights)) } else { None },
     };
     let ends = ends.into_iter().map(|walk| tree.end(walk)).collect();
     Ok(Route { finding, share: shares[own], other, ends })
+}
+
+/// The byte range of the change that gains most, where one gains anything.
+fn fault(changes: &[Change]) -> Option<[usize; 2]> {
+    changes.first().filter(|change| change.gain > 0.0).map(|change| change.span)
 }

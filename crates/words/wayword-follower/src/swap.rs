@@ -3,9 +3,8 @@
 
 use crate::{
     building::Building,
-    fit::Fit,
     guide::{Guide, Mention, Trial},
-    tree::Tree,
+    one_walk::OneWalk,
     weights::Weights,
 };
 use wayword_language::reading::steps::Relation;
@@ -35,10 +34,9 @@ pub fn best_swap(
     heading_rad: f64,
     weights: &Weights,
 ) -> Option<Swap> {
-    let tree = Tree::single(building, walk, heading_rad);
-    let fits = |guide: &Guide| Fit::new(&Trial::new(guide, building), &tree, weights).score(tree.len() - 1);
+    let known = OneWalk::new(building, walk, heading_rad, weights);
     let places = places(guide, building);
-    let as_told = fits(guide);
+    let as_told = known.score(guide);
     let mut best: Option<Swap> = None;
     for (number, a) in places.iter().enumerate() {
         for b in &places[number + 1..] {
@@ -49,7 +47,7 @@ pub fn best_swap(
             let mut changed = guide.clone();
             changed.steps[a.step].mentions[a.place].meanings = second.meanings.clone();
             changed.steps[b.step].mentions[b.place].meanings = first.meanings.clone();
-            let gain = fits(&changed) - as_told;
+            let gain = known.score(&changed) - as_told;
             if gain.is_finite() && best.as_ref().is_none_or(|best| gain > best.gain) {
                 let name =
                     |mention: &Mention| mention.meanings.first().map(|what| what.name.clone()).unwrap_or_default();

@@ -4,7 +4,7 @@ use crate::{
     Building, Fit, Guide, Prior, Tree, Trial, Weights, best,
     change::{Kind, changes},
     online::{Decision, Hop, OnwardWeights, Reader, Sighting},
-    route::{Known, Thresholds, Unfollowed, judge},
+    route::{Known, Thresholds, Unfollowed, judge, route},
     shares,
     swap::best_swap,
 };
@@ -120,7 +120,7 @@ fn places_the_wrong_way_round_are_what_swapping_them_gains() {
     let orders = |text: &str| {
         let guide = Guide::read(text);
         let swap = best_swap(&guide, &building, &walk, 0.0, Weights::fitted()).unwrap();
-        let judged = judge(&guide, known, None, Weights::fitted(), Thresholds::default());
+        let judged = judge(&guide, known, Weights::fitted(), Thresholds::default());
         (swap, judged.wrong.into_iter().filter(|finding| finding.check == Check::Order).count())
     };
     let (right, fails) = orders("Walk past the plant, turn right and stop at the oven.");
@@ -138,16 +138,16 @@ fn places_the_wrong_way_round_are_what_swapping_them_gains() {
 fn a_text_of_another_walk_leads_elsewhere() {
     let building = Building::of(&surveyed());
     let known = Known { building: &building, walk: &[0, 1, 2, 5, 6], heading_rad: 0.0 };
-    let judge = |text: &str| {
-        judge(&Guide::read(text), known, Some(Prior::Shortest(8)), Weights::fitted(), Thresholds::default())
+    let route = |text: &str| {
+        route(&Guide::read(text), known, Some(Prior::Shortest(8)), Weights::fitted(), Thresholds::default())
     };
-    let own = judge(TO_KITCHEN).route.unwrap();
+    let own = route(TO_KITCHEN).unwrap();
     assert_eq!(own.ends, [6]);
     assert!(own.share > 0.5, "{}", own.share);
-    let other = judge(TO_BEDROOM).route.unwrap();
+    let other = route(TO_BEDROOM).unwrap();
     assert!(other.share < 0.01 && other.other > 0.5, "{} {}", other.share, other.other);
     assert_eq!(other.finding.check, Check::Route);
-    assert!(judge("Go.").route.unwrap().ends.len() > 1, "a text that says nothing may end anywhere");
+    assert!(route("Go.").unwrap().ends.len() > 1, "a text that says nothing may end anywhere");
 }
 
 #[test]
@@ -156,15 +156,17 @@ fn texts_with_too_few_or_too_many_steps_are_not_followed() {
     // Up and down the hall: more hops than one step leads.
     let walk: Vec<usize> = [0, 1, 2, 1].into_iter().cycle().take(12).collect();
     let known = Known { building: &building, walk: &walk, heading_rad: 0.0 };
-    let judge = |text: &str| {
-        judge(&Guide::read(text), known, Some(Prior::Shortest(8)), Weights::fitted(), Thresholds::default())
+    let told = |text: &str| {
+        let (guide, weights, thresholds) = (Guide::read(text), Weights::fitted(), Thresholds::default());
+        let route = route(&guide, known, Some(Prior::Shortest(8)), weights, thresholds);
+        (route, judge(&guide, known, weights, thresholds))
     };
-    let few = judge("Walk to the kitchen.");
-    assert_eq!(few.route, Err(Unfollowed::TooFewSteps));
-    assert_eq!(few.wrong, []);
-    let many = judge(&"Turn left. ".repeat(100));
-    assert_eq!(many.route, Err(Unfollowed::TooManySteps));
-    assert_eq!((many.wrong.len(), many.turn_gain), (0, None), "nothing is said of its turns");
+    let (few, of_few) = told("Walk to the kitchen.");
+    assert_eq!(few, Err(Unfollowed::TooFewSteps));
+    assert_eq!(of_few.wrong, []);
+    let (many, of_many) = told(&"Turn left. ".repeat(100));
+    assert_eq!(many, Err(Unfollowed::TooManySteps));
+    assert_eq!((of_many.wrong.len(), of_many.turn_gain), (0, None), "nothing is said of its turns");
 }
 
 #[test]

@@ -56,6 +56,13 @@ const ASIDE_RAD: std::ops::Range<f64> = 0.8..2.4;
 /// By how much a way has to lie better than another that it counts as better, radians.
 const BETTER_RAD: f64 = 0.2;
 
+impl Default for Prior {
+    /// The shortest paths of up to 8 hops: people's paths in R2R and REVERIE are shortest paths of 4 to 7.
+    fn default() -> Self {
+        Self::Shortest(8)
+    }
+}
+
 /// Most nodes of a tree. In a large building walks of two pieces are many; the shortest paths come first.
 const MOST_NODES: usize = 20_000;
 

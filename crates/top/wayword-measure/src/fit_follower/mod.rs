@@ -24,8 +24,6 @@ use wayword_follower::{
 
 /// How strongly a text is held against itself with one turn flipped.
 const CONTRAST: f64 = 1.0;
-/// The walks that the weights are fitted on.
-const PRIOR: Prior = Prior::Shortest(8);
 /// Texts whose slopes one thread adds up.
 const CHUNK: usize = 8;
 
@@ -180,7 +178,7 @@ fn fit_walker(
 }
 
 fn tree(scenes: &[Scene], text: &Text) -> Tree {
-    Tree::of(&scenes[text.scene].building, text.walk[0], text.heading_rad, PRIOR)
+    Tree::of(&scenes[text.scene].building, text.walk[0], text.heading_rad, Prior::default())
 }
 
 /// Success rate and SPL of the best walk.

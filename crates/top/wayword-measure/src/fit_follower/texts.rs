@@ -8,6 +8,7 @@ use std::{
 };
 use wayword::{
     error::Error,
+    people::episodes,
     platforms,
     settings::{Asked, AskedPlatform},
 };
@@ -43,7 +44,7 @@ pub(crate) struct Text {
 }
 
 /// A walk that ends nearer than this to the goal succeeds where there is no object, metres.
-const SUCCESS_M: f64 = 3.0;
+pub(crate) const SUCCESS_M: f64 = 3.0;
 
 /// Reads the texts of files, one list for each, and surveys their buildings. Paths of buildings that the platform lacks are
 /// skipped.
@@ -52,13 +53,7 @@ pub(crate) fn texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<Scene>, Vec<V
         AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
     let platform = platforms::open(&Asked::from(matterport).resolve()?)?;
     let platform = platform.as_ref();
-    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
-    let episodes = |file: &PathBuf| -> Result<Vec<Episode>, Error> {
-        let mut episodes = wayword_formats::read(file)?;
-        episodes.retain(|episode| there.contains(&episode.scene));
-        Ok(episodes)
-    };
-    let episodes = files.iter().map(episodes).collect::<Result<Vec<_>, Error>>()?;
+    let episodes = files.iter().map(|file| episodes(platform, file)).collect::<Result<Vec<_>, Error>>()?;
     let names: BTreeSet<&SceneId> = episodes.iter().flatten().map(|episode| &episode.scene).collect();
     let scene = |name: &SceneId| {
         let survey = survey(platform, name)?;

@@ -110,19 +110,13 @@ pub struct Compare {
 const AGENTS: [&str; 5] = ["clip-nav", "seq-clip-nav", "glip-nav", "reader", "reader-map"];
 
 /// Which walks an agent that knows the map thinks of, as typed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct AskedPrior(pub Prior);
 
 /// Most hops of a walk that an agent thinks of.
 const MOST_HOPS: usize = 20;
 /// Hops of the walks of two pieces.
 const HOPS_OF_PIECES: usize = 8;
-
-impl Default for AskedPrior {
-    fn default() -> Self {
-        Self(Prior::Shortest(8))
-    }
-}
 
 impl fmt::Display for AskedPrior {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -4,4 +4,4 @@ mod samples;
 mod walks;
 
 pub use samples::{Held, Labels, belongs, held, is_known};
-pub use walks::{Surveys, Text, Walk, left_out, walks};
+pub use walks::{Surveys, Text, Walk, episodes, left_out, walks};

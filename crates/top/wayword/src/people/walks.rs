@@ -48,14 +48,23 @@ pub fn left_out(scenes: &BTreeSet<SceneId>) -> BTreeSet<SceneId> {
     scenes.iter().rev().take(10).cloned().collect()
 }
 
+/// Reads the episodes of a file that lie in scenes of a platform.
+///
+/// # Errors
+/// When the file or the platform's data cannot be read.
+pub fn episodes(platform: &dyn Platform, file: &FilePath) -> Result<Vec<Episode>, Error> {
+    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
+    let mut episodes = wayword_formats::read(file)?;
+    episodes.retain(|episode| there.contains(&episode.scene));
+    Ok(episodes)
+}
+
 /// Reads the walks of a file. Paths of scenes that the platform lacks are skipped.
 ///
 /// # Errors
 /// When the file or the platform's data cannot be read, or a path does not fit its scene.
 pub fn walks(platform: &dyn Platform, file: &FilePath) -> Result<(Vec<Walk>, Surveys), Error> {
-    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
-    let mut episodes = wayword_formats::read(file)?;
-    episodes.retain(|episode| there.contains(&episode.scene));
+    let episodes = episodes(platform, file)?;
     let scenes: BTreeSet<&SceneId> = episodes.iter().map(|episode| &episode.scene).collect();
     let surveys = scenes
         .into_par_iter()

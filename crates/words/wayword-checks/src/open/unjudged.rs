@@ -105,7 +105,6 @@ fn turned_often(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     if !subject.evidence.motion.is_known() {
         return Vec::new();
     }
-    let stretches = Stretches::of(subject);
     let side = |event: &Event| match event.what {
         What::Turn(side @ (Side::Left | Side::Right)) if !event.denied => Some(side),
         _ => None,
@@ -115,7 +114,7 @@ fn turned_often(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let wrong = |run: &[Event]| {
         let first = run.first()?;
         let side = side(first)?;
-        let has_fewer = run.len() >= MANY as usize && stretches.turns(side) < run.len();
+        let has_fewer = run.len() >= MANY as usize && Stretches::of(subject).turns(side) < run.len();
         let reason = "the text tells more turns to this side than the path has";
         has_fewer.then(|| finding(Check::Turns, Verdict::Fail, reason, Some(first.span)))
     };

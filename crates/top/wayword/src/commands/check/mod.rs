@@ -6,8 +6,8 @@ mod walks;
 mod worlds;
 
 use crate::{
+    calibration,
     cli::{AskedWorld, Check as Args},
-    commands::calibrate,
     error::{Error, Exit},
     follow::{Followed, KnownScenes, Told, rejection},
     output::Output,
@@ -72,7 +72,7 @@ pub struct How<'a> {
 /// because nothing about it could be checked.
 pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &Output) -> Result<CheckReport, Error> {
     let platform = platforms::open(settings)?;
-    let calibration = how.calibration.map(|file| calibrate::read(file, platform.name())).transpose()?;
+    let calibration = how.calibration.map(|file| calibration::read(file, platform.name())).transpose()?;
     let held = Held::to(how.style, settings.seed)?;
     let walks = walks(file, platform.as_ref())?;
     let checking = Checking {
