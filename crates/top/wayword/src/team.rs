@@ -1,8 +1,8 @@
 //! The roles of a run: who asks, sees, summarises, writes, and writes if that fails.
 
 use crate::{
+    calibration,
     calls::Calls,
-    commands::calibrate,
     error::Error,
     settings::{Finish, LABELS, Settings, is_model},
     text_file,
@@ -112,7 +112,7 @@ fn calibration(settings: &Settings, platform: &dyn Platform) -> Result<Option<Ar
         }
         () if platform.lists_everything() => format!("the labels of platform {} list everything", platform.name()),
         () if !settings.has_dialogue() => "without a dialogue, labels are not asked for single things".to_owned(),
-        () => return Ok(Some(Arc::new(calibrate::read(file, platform.name())?))),
+        () => return Ok(Some(Arc::new(calibration::read(file, platform.name())?))),
     };
     Err(Error::usage(format!("--calibration {} has no effect: {lack}", file.display()), "leave it out"))
 }

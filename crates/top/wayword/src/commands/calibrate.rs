@@ -7,10 +7,9 @@ use crate::{
     people::{Held, Labels, belongs, held, is_known, walks},
     platforms,
     settings::Asked,
-    text_file,
 };
 use serde::Serialize;
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
 use wayword_checks::open::{Calibration, Case, Observed, Weights};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
@@ -51,21 +50,4 @@ struct Made {
 fn written(calibration: &Calibration) -> String {
     let head = "# Made by `wayword calibrate`. It comes from a dataset, whose terms apply: keep it to yourself.\n\n";
     head.to_owned() + &toml::to_string(calibration).unwrap_or_default()
-}
-
-/// Reads a file of calibrations for a platform.
-///
-/// # Errors
-/// When it cannot be read, is none, or was made for another platform.
-pub(crate) fn read(file: &Path, platform: &str) -> Result<Calibration, Error> {
-    let text = text_file::read(file, "read the calibration")?;
-    let hint = "make it with: wayword calibrate --platform matterport --data DIR --from R2R_train.json --out FILE";
-    let calibration = Calibration::read(&text)
-        .map_err(|error| Error::usage(format!("{} is no calibration: {}", file.display(), error.message()), hint))?;
-    if calibration.platform != platform {
-        let made_for = &calibration.platform;
-        let problem = format!("{} was made for platform {made_for}, and not for {platform}", file.display());
-        return Err(Error::usage(problem, hint));
-    }
-    Ok(calibration)
 }

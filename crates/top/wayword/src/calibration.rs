@@ -1,0 +1,22 @@
+//! The file of `--calibration`.
+
+use crate::{error::Error, text_file};
+use std::path::Path;
+use wayword_checks::open::Calibration;
+
+/// Reads a file of calibrations for a platform.
+///
+/// # Errors
+/// When it cannot be read, is none, or was made for another platform.
+pub(crate) fn read(file: &Path, platform: &str) -> Result<Calibration, Error> {
+    let text = text_file::read(file, "read the calibration")?;
+    let hint = "make it with: wayword calibrate --platform matterport --data DIR --from R2R_train.json --out FILE";
+    let calibration = Calibration::read(&text)
+        .map_err(|error| Error::usage(format!("{} is no calibration: {}", file.display(), error.message()), hint))?;
+    if calibration.platform != platform {
+        let made_for = &calibration.platform;
+        let problem = format!("{} was made for platform {made_for}, and not for {platform}", file.display());
+        return Err(Error::usage(problem, hint));
+    }
+    Ok(calibration)
+}
