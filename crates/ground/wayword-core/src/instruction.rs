@@ -81,4 +81,28 @@ pub struct Provenance {
     /// The writer whose texts all failed their checks, where another writer finished for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished_for: Option<String>,
+    /// How it was chosen, where several texts were written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<Chosen>,
+}
+
+/// How a text was chosen among several.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Chosen {
+    /// How many texts were written, repairs left out.
+    pub among: u32,
+    /// How many of them passed their checks.
+    pub passed: u32,
+    /// What chose.
+    pub by: ChosenBy,
+}
+
+/// What chose a text among several.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChosenBy {
+    /// A follower: the text leads to the end of its walk, and means its object, most surely for its length.
+    Follower,
+    /// The checks alone, because no text can be followed.
+    Checks,
 }

@@ -45,7 +45,7 @@ pub use ground::{Cover, Island, Way};
 pub use heading::{Compass, Heading, Side};
 pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
-pub use instruction::{Instruction, LONGEST_TEXT_BYTES, Mention, MentionKind, Provenance};
+pub use instruction::{Chosen, ChosenBy, Instruction, LONGEST_TEXT_BYTES, Mention, MentionKind, Provenance};
 pub use label::Label;
 pub use model::{Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling};
 pub use motion::{Climb, Motion, Move, Turn};

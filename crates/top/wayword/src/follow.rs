@@ -2,12 +2,15 @@
 
 use crate::{error::Error, platforms::SCENES_KEPT};
 use serde::Serialize;
-use std::{collections::BTreeSet, sync::Arc};
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, LazyLock},
+};
 use wayword_checks::{Checked, Evidence, FrameEvidence, Turns, World, objects_meant};
 use wayword_core::{Ambiguity, Check, Finding, Frame, Path, Platform, Recent, SceneId, Survey, Verdict};
 use wayword_follower::{
     Building, Guide, Place, Prior, Weights,
-    route::{Known, Route, Thresholds, Unfollowed, judge, route},
+    route::{Known, Route, Thresholds, Unfollowed, judge, leads_there, route},
 };
 use wayword_language::{
     Language,
@@ -51,6 +54,10 @@ impl Default for KnownScenes {
         Self::new()
     }
 }
+
+/// The weights of the follower that chooses between texts. They are others than those of the follower that judges texts, and
+/// of the agents: a text that suits one set of weights by chance gains nothing by another.
+static CHOOSES: LazyLock<Weights> = LazyLock::new(Weights::by_hand);
 
 /// A path as the follower knows it.
 pub(crate) struct Followed<'a> {
@@ -146,6 +153,17 @@ impl<'a> Followed<'a> {
         guide(text, None).map_or_else(Told::unknown, |guide| self.routed(&guide))
     }
 
+    /// How likely a text leads to the end of the path, for the choice between texts; `None` where it cannot be followed.
+    pub(crate) fn leads_there(&self, text: &str) -> Option<f64> {
+        let guide = guide(text, None).ok()?;
+        leads_there(&guide, self.known(), self.prior(), &CHOOSES).ok()
+    }
+
+    /// Which other walks are thought of.
+    fn prior(&self) -> Option<Prior> {
+        matches!(self.place, Surrounded::By(_)).then(Prior::default)
+    }
+
     fn known(&self) -> Known<'_> {
         let building = match &self.place {
             Surrounded::By(scene) => &scene.followed,
@@ -156,8 +174,7 @@ impl<'a> Followed<'a> {
 
     fn routed(&self, guide: &Guide) -> Told {
         let known = self.known();
-        let prior = matches!(self.place, Surrounded::By(_)).then(Prior::default);
-        let routed = route(guide, known, prior, Weights::fitted(), Thresholds::default());
+        let routed = route(guide, known, self.prior(), Weights::fitted(), Thresholds::default());
         let apart = |route: &Route| match route.ends.split_first() {
             Some((own, others)) if !others.is_empty() => known.building.told_apart_by(*own, others).map(str::to_owned),
             _ => None,

@@ -81,6 +81,7 @@ pub fn make(
             profile,
             seed: settings.seed,
             repairs: settings.repairs,
+            candidates: settings.candidates,
             follower: (!settings.no_route).then_some(&follower),
         };
         write_and_repair(team.writers(), team.observers(), order)
@@ -108,6 +109,10 @@ impl Follow for Follower<'_> {
         let ambiguity = told.ambiguity(text, self.evidence);
         checked.add(rejection(&ambiguity).filter(|_| self.rejects_ambiguous));
         ambiguity
+    }
+
+    fn leads_there(&self, text: &str) -> Option<f64> {
+        self.followed.as_ref().ok()?.leads_there(text)
     }
 }
 

@@ -158,6 +158,58 @@ fn wrong_order(swap: Swap) -> Finding {
     Finding { check: Check::Order, verdict: Verdict::Fail, reason, span: Some(spans[0]) }
 }
 
+/// The walks from one start, and how likely an instruction means each.
+struct Posterior {
+    tree: Tree,
+    /// The known walk.
+    own: usize,
+    shares: Vec<f64>,
+}
+
+impl Posterior {
+    fn of(guide: &Guide, known: Known<'_>, prior: Option<Prior>, weights: &Weights) -> Result<Self, Unfollowed> {
+        if guide.len() > MOST_STEPS {
+            return Err(Unfollowed::TooManySteps);
+        }
+        let prior = prior.ok_or(Unfollowed::NoGraph)?;
+        let start = known.walk.first().copied().unwrap_or_default();
+        let mut tree = Tree::of(known.building, start, known.heading_rad, prior);
+        let own = tree.with(known.building, known.walk);
+        let fit = Fit::new(&Trial::new(guide, known.building), &tree, weights);
+        if !fit.score(own).is_finite() {
+            return Err(Unfollowed::TooFewSteps);
+        }
+        let shares = shares(&fit, &tree);
+        Ok(Self { tree, own, shares })
+    }
+
+    /// Whether two walks end at places that are told apart.
+    fn are_apart(&self, building: &Building, a: usize, b: usize) -> bool {
+        let position = |walk: usize| building.viewpoints[self.tree.end(walk)].position;
+        position(a).distance(position(b)) >= APART_M
+    }
+
+    /// The walks that end elsewhere than the known one.
+    fn elsewhere(&self, building: &Building) -> Vec<usize> {
+        (1..self.tree.len()).filter(|walk| self.are_apart(building, *walk, self.own)).collect()
+    }
+}
+
+/// How likely an instruction leads to the end of the walk that it was written for, or nearer to it than 3 m, from 0 to 1.
+///
+/// # Errors
+/// With the reason, where that cannot be said.
+pub fn leads_there(
+    guide: &Guide,
+    known: Known<'_>,
+    prior: Option<Prior>,
+    weights: &Weights,
+) -> Result<f64, Unfollowed> {
+    let posterior = Posterior::of(guide, known, prior, weights)?;
+    let elsewhere: f64 = posterior.elsewhere(known.building).into_iter().map(|walk| posterior.shares[walk]).sum();
+    Ok((1.0 - elsewhere).clamp(0.0, 1.0))
+}
+
 /// Whether an instruction leads elsewhere than the walk that it was written for. `prior` says which other walks are thought
 /// of; it is `None` where none is known.
 ///
@@ -170,30 +222,20 @@ pub fn route(
     weights: &Weights,
     thresholds: Thresholds,
 ) -> Result<Route, Unfollowed> {
-    if guide.len() > MOST_STEPS {
-        return Err(Unfollowed::TooManySteps);
-    }
-    let prior = prior.ok_or(Unfollowed::NoGraph)?;
-    let start = known.walk.first().copied().unwrap_or_default();
-    let mut tree = Tree::of(known.building, start, known.heading_rad, prior);
-    let own = tree.with(known.building, known.walk);
-    let fit = Fit::new(&Trial::new(guide, known.building), &tree, weights);
-    if !fit.score(own).is_finite() {
-        return Err(Unfollowed::TooFewSteps);
-    }
-    let shares = shares(&fit, &tree);
-    let position = |walk: usize| known.building.viewpoints[tree.end(walk)].position;
-    let is_apart = |a: usize, b: usize| position(a).distance(position(b)) >= APART_M;
-    let mut walks: Vec<usize> = (1..tree.len()).filter(|walk| is_apart(*walk, own)).collect();
+    let posterior = Posterior::of(guide, known, prior, weights)?;
+    let Posterior { tree, own, shares } = &posterior;
+    let share = shares[*own];
+    let mut walks = posterior.elsewhere(known.building);
     walks.sort_by(|a, b| shares[*b].total_cmp(&shares[*a]));
     let other = walks.first().map_or(0.0, |walk| shares[*walk]);
-    let mut ends = vec![own];
+    let mut ends = vec![*own];
     for walk in walks {
-        if shares[walk] >= AS_WELL * shares[own] && ends.iter().all(|end| is_apart(*end, walk)) {
+        let is_new = ends.iter().all(|end| posterior.are_apart(known.building, *end, walk));
+        if shares[walk] >= AS_WELL * share && is_new {
             ends.push(walk);
         }
     }
-    let gain = (other / shares[own].max(f64::MIN_POSITIVE)).ln();
+    let gain = (other / share.max(f64::MIN_POSITIVE)).ln();
     let leads_elsewhere = gain > thresholds.route;
     let finding = Finding {
         check: Check::Route,
@@ -206,7 +248,7 @@ pub fn route(
         span: if leads_elsewhere { fault(&known.changes(guide, weights)) } else { None },
     };
     let ends = ends.into_iter().map(|walk| tree.end(walk)).collect();
-    Ok(Route { finding, share: shares[own], other, ends })
+    Ok(Route { finding, share, other, ends })
 }
 
 /// The byte range of the change that gains most, where one gains anything.

@@ -130,6 +130,7 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         ("Object of the task", target.to_owned()),
         ("Texts are checked against", against.to_owned()),
         ("Repairs", format!("at most {}", settings.repairs)),
+        ("Texts written, of which one is kept", settings.candidates.to_string()),
         ("Seed", settings.seed.to_string()),
     ];
     told.extend(calibration);

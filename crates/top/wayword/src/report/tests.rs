@@ -90,6 +90,7 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<F
             prompts_hash: None,
             repairs: 1,
             finished_for: None,
+            chosen: None,
         },
     }
 }

@@ -7,7 +7,7 @@ use super::{
     spans::segments,
 };
 use serde::Serialize;
-use wayword_core::{Finding, Instruction, Mention, MentionKind, Provenance, Verdict};
+use wayword_core::{Chosen, ChosenBy, Finding, Instruction, Mention, MentionKind, Provenance, Verdict};
 
 /// Most findings of an instruction that are shown.
 const MOST_FINDINGS: usize = 100;
@@ -189,9 +189,18 @@ fn provenance(provenance: &Provenance) -> String {
         more => format!("after {more} repairs"),
     };
     let after = provenance.finished_for.as_ref().map_or_else(String::new, |first| format!(" after {first} had failed"));
+    let chosen = provenance.chosen.as_ref().map_or_else(String::new, chosen);
     let prompts = provenance.prompts_hash.as_ref().map_or_else(String::new, |hash| format!(", prompts {hash}"));
     format!(
-        "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summarised, {writer} wrote{after}, {repairs}; \
+        "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summarised, {writer} wrote{after}, {repairs}{chosen}; \
          checked against {checked_against}; seed {seed}, style {style_hash}{prompts}"
     )
+}
+
+fn chosen(chosen: &Chosen) -> String {
+    let by = match chosen.by {
+        ChosenBy::Follower => "by the follower",
+        ChosenBy::Checks => "by the checks alone",
+    };
+    format!(", chosen among {} texts ({} passed) {by}", chosen.among, chosen.passed)
 }

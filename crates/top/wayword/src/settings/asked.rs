@@ -148,6 +148,10 @@ writing:
         /// Rewrite a text that failed a check, at most this many times. [default: 8; if a model writes, 3]
         #[arg(long, value_name = "N")]
         pub repairs: Option<u32>,
+        /// Write this many texts (1 to 32), and keep the one by which a follower finds the end of the path most surely for its
+        /// length. [default: 4; if a model writes, 1]
+        #[arg(long, value_name = "N")]
+        pub candidates: Option<u32>,
         /// Check texts against the platform's labels if it has any, or only against the captions. [default: labels]
         #[arg(long)]
         pub evidence: Option<Against>,

@@ -61,6 +61,9 @@ pub struct Settings {
     pub target: TargetMode,
     /// How often a text that failed a check is written again.
     pub repairs: u32,
+    /// How many texts are written, of which one is kept.
+    #[serde(default = "one")]
+    pub candidates: u32,
     /// Seed of everything random.
     pub seed: u64,
     /// Only this many items.
@@ -84,6 +87,10 @@ pub struct Settings {
     /// Hashes of the files and styles that the run began with, by name. A run is not continued with others.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
+}
+
+fn one() -> u32 {
+    1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
@@ -132,6 +139,10 @@ const PATHS: usize = 10;
 const REPAIRS: u32 = 8;
 /// The same if a model writes, because each repair costs a call.
 const REPAIRS_OF_MODELS: u32 = 3;
+/// Default of how many texts are written, of which one is kept. If a model writes, it is 1, because each costs a call.
+const CANDIDATES: u32 = 4;
+/// Largest `--candidates`.
+const MOST_CANDIDATES: u32 = 32;
 /// Largest `--repairs`.
 const MOST_REPAIRS: u32 = 100;
 /// Largest `--questions`: each question carries the whole dialogue before it.
@@ -204,6 +215,12 @@ impl Asked {
                 "give fewer: a text that fails that often will not pass later",
             ));
         }
+        if writing.candidates.is_some_and(|candidates| !(1..=MOST_CANDIDATES).contains(&candidates)) {
+            return Err(Error::usage(
+                format!("--candidates is not from 1 to {MOST_CANDIDATES}"),
+                "give a number in that range: each further text gains less",
+            ));
+        }
         if writing.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
             return Err(Error::usage(
                 format!("--questions is more than {MOST_QUESTIONS}"),
@@ -212,7 +229,7 @@ impl Asked {
         }
         let request = request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
-        let repairs = if is_model(&roles.write) { REPAIRS_OF_MODELS } else { REPAIRS };
+        let (repairs, candidates) = if is_model(&roles.write) { (REPAIRS_OF_MODELS, 1) } else { (REPAIRS, CANDIDATES) };
         let styles = writing.style.filter(|styles| !styles.is_empty());
         Ok(Settings {
             platform: platform.name().to_owned(),
@@ -230,6 +247,7 @@ impl Asked {
             questions: writing.questions.unwrap_or(QUESTIONS),
             target: writing.target.unwrap_or_default(),
             repairs: writing.repairs.unwrap_or(repairs),
+            candidates: writing.candidates.unwrap_or(candidates),
             seed: draw.seed.unwrap_or(0),
             limit: draw.limit,
             evidence: writing.evidence.unwrap_or_default(),

@@ -37,7 +37,8 @@ impl Writer for ModelWriter {
 
     fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
         let prompt = self.prompts.write(brief).map_err(ModelError::from)?;
-        let sampling = Sampling { temperature: TEMPERATURE, max_tokens: MAX_TOKENS, seed: brief.seed };
+        let seed = brief.seed.wrapping_add(u64::from(brief.candidate));
+        let sampling = Sampling { temperature: TEMPERATURE, max_tokens: MAX_TOKENS, seed };
         let reply = say(self.model.as_ref(), Message::user(prompt), sampling)?;
         let text = plain(&reply.text, &["instruction"]);
         if text.len() > LONGEST_TEXT_BYTES {

@@ -35,7 +35,14 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     let complaints = [Complaint { text: "Go.".to_owned(), findings: vec![finding] }];
     let profile = Profile::measure(&style.references);
     for walk in [Motion::Known, Motion::Unknown].into_iter().filter_map(walk) {
-        prompts.write(&Brief { walk: &walk, style: &style, profile: &profile, seed: 0, complaints: &complaints })?;
+        prompts.write(&Brief {
+            walk: &walk,
+            style: &style,
+            profile: &profile,
+            seed: 0,
+            candidate: 0,
+            complaints: &complaints,
+        })?;
     }
     Ok(())
 }

@@ -1,4 +1,6 @@
-//! Write, check, and write again what failed.
+//! Write, check, and write again what failed; of several texts, keep the one that is followed most surely.
+
+mod choose;
 
 use crate::{
     dialogue::Mode,
@@ -25,6 +27,8 @@ pub struct Order<'a> {
     pub seed: u64,
     /// How often a text that failed is written again, at most.
     pub repairs: u32,
+    /// How many texts are written, of which one is kept; at least 1.
+    pub candidates: u32,
     /// Who follows each text that passed its checks; nobody where `None`.
     pub follower: Option<&'a dyn Follow>,
 }
@@ -33,6 +37,11 @@ pub struct Order<'a> {
 pub trait Follow {
     /// Adds to a checked text whether it leads elsewhere, and returns what it may mean.
     fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity;
+
+    /// How likely a text leads to the end of its walk, from 0 to 1, for the choice between texts. It is another follower
+    /// than the one of [`Self::follow`], so that the text is not judged by the one that chose it. `None` where it cannot be
+    /// followed.
+    fn leads_there(&self, text: &str) -> Option<f64>;
 }
 
 /// Who writes.
@@ -68,10 +77,10 @@ pub fn write_and_repair(
     observers: Observers<'_>,
     order: Order<'_>,
 ) -> Result<Outcome, ModelError> {
-    let first = attempts(writers.writer, observers, order)?;
+    let first = choose::written(writers.writer, observers, order)?;
     let (Outcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
     let free = Order { repairs: order.repairs.max(FREE_REPAIRS), ..order };
-    let finished = attempts(finisher, observers, free)?;
+    let finished = choose::written(finisher, observers, free)?;
     Ok(match finished {
         Outcome::Accepted(mut instruction) => {
             instruction.provenance.finished_for = Some(writers.writer.name().to_owned());
@@ -84,12 +93,17 @@ pub fn write_and_repair(
 /// How often a finisher by rules writes again, at least. It costs nothing, so the limit for a model does not apply.
 const FREE_REPAIRS: u32 = 8;
 
-/// One writer's texts until one passes.
-fn attempts(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
+/// One writer's texts until one passes; `candidate` counts the texts of which one is kept.
+fn attempts(
+    writer: &dyn Writer,
+    observers: Observers<'_>,
+    order: Order<'_>,
+    candidate: u32,
+) -> Result<Outcome, ModelError> {
     let mut complaints: Vec<Complaint> = Vec::new();
     let mut least_bad: Option<Instruction> = None;
     for repairs in 0..=order.repairs {
-        let text = match writer.write(&brief(order, &complaints)) {
+        let text = match writer.write(&brief(order, candidate, &complaints)) {
             Ok(text) => text,
             Err(error @ WriteError::NoObject) => {
                 return Ok(Outcome::Rejected { last: least_bad, reason: error.to_string() });
@@ -117,8 +131,9 @@ fn attempts(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> 
     })
 }
 
-fn brief<'a>(order: Order<'a>, complaints: &'a [Complaint]) -> Brief<'a> {
-    Brief { walk: order.walk, style: order.style, profile: order.profile, seed: order.seed, complaints }
+fn brief<'a>(order: Order<'a>, candidate: u32, complaints: &'a [Complaint]) -> Brief<'a> {
+    let Order { walk, style, profile, seed, .. } = order;
+    Brief { walk, style, profile, seed, candidate, complaints }
 }
 
 fn unusable(text: String, reason: String) -> Complaint {
@@ -173,6 +188,7 @@ fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, r
         prompts_hash: observers.prompts_hash.map(str::to_owned),
         repairs,
         finished_for: None,
+        chosen: None,
     }
 }
 

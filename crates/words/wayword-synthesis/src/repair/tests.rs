@@ -12,13 +12,13 @@ use wayword_core::{
 };
 
 /// A writer that gives prepared texts in their order, and counts the complaints that it gets.
-struct Scripted {
+pub(super) struct Scripted {
     texts: Mutex<Vec<Result<String, WriteError>>>,
     complaints: Mutex<Vec<usize>>,
 }
 
 impl Scripted {
-    fn new(mut texts: Vec<Result<String, WriteError>>) -> Self {
+    pub(super) fn new(mut texts: Vec<Result<String, WriteError>>) -> Self {
         texts.reverse();
         Self { texts: Mutex::new(texts), complaints: Mutex::default() }
     }
@@ -35,7 +35,7 @@ impl Writer for Scripted {
     }
 }
 
-fn walk() -> Walk {
+pub(super) fn walk() -> Walk {
     along(&[(0.0, 0.0), (0.0, 3.0), (3.0, 3.0)], &["sofa", "lamp", "sink"])
 }
 
@@ -86,7 +86,8 @@ fn outcome_against(
 ) -> (Result<Outcome, ModelError>, Vec<usize>) {
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let order = Order { walk, evidence, style: &style, profile: &profile, seed: 0, repairs, follower: None };
+    let order =
+        Order { walk, evidence, style: &style, profile: &profile, seed: 0, repairs, candidates: 1, follower: None };
     let asker = RulesAsker::default();
     let observers = Observers {
         asker: &asker,
@@ -105,7 +106,7 @@ fn said(text: &str) -> Result<String, WriteError> {
     Ok(text.to_owned())
 }
 
-const GOOD: &str = "Walk past the sofa to the lamp and turn right. Stop at the sink.";
+pub(super) const GOOD: &str = "Walk past the sofa to the lamp and turn right. Stop at the sink.";
 const WITH_A_PIANO: &str = "Walk past the piano to the lamp and turn right. Stop at the sink.";
 
 #[test]
@@ -200,6 +201,7 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
                     profile: &profile,
                     seed,
                     repairs: 0,
+                    candidates: 1,
                     follower: None,
                 };
                 let writers = Writers { writer: &RulesWriter, finisher: None };
@@ -267,7 +269,7 @@ proptest! {
         let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
-            let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, follower: None };
+            let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, candidates: 1, follower: None };
             let writers = Writers { writer: &RulesWriter, finisher: None };
             let text = match write_and_repair(writers, observers, order).unwrap() {
                 Outcome::Accepted(instruction) => instruction.text,

@@ -34,6 +34,8 @@ pub struct Brief<'a> {
     pub profile: &'a Profile,
     /// The run's seed.
     pub seed: u64,
+    /// Which of several texts for the walk it is, from 0: each is another draw.
+    pub candidate: u32,
     /// What was wrong with earlier texts for this walk, oldest first.
     pub complaints: &'a [Complaint],
 }

@@ -27,8 +27,8 @@ impl Writer for RulesWriter {
     }
 
     fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
-        let attempt = brief.complaints.len().to_string();
-        let mut rng = rng(brief.seed, &["rules", &brief.style.name, &brief.walk.path.id, &attempt]);
+        let (attempt, candidate) = (brief.complaints.len().to_string(), brief.candidate.to_string());
+        let mut rng = rng(brief.seed, &["rules", &brief.style.name, &brief.walk.path.id, &attempt, &candidate]);
         if brief.profile.tells_turns() { the_way(brief, &mut rng) } else { the_place(brief, &mut rng) }
     }
 }

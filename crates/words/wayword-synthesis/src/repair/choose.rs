@@ -1,0 +1,159 @@
+//! Of several texts for one walk, the one that a follower finds the walk by most surely.
+
+use super::{Order, Outcome, attempts};
+use crate::{observe::Observers, writer::Writer};
+use wayword_core::{Chosen, ChosenBy, Instruction, ModelError, Verdict};
+use wayword_language::text::word_count;
+
+/// What a word costs against the chance to arrive, natural logs: of two texts that lead there as surely, the shorter is
+/// kept, and ten words more have to make it a tenth likelier.
+const COST_OF_A_WORD: f64 = 0.01;
+
+/// The texts of one writer, each with its repairs; the best of them is kept.
+pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
+    let mut accepted: Vec<Instruction> = Vec::new();
+    let mut rejected: Option<Outcome> = None;
+    let mut passed = 0;
+    for candidate in 0..order.candidates.max(1) {
+        match attempts(writer, observers, order, candidate)? {
+            Outcome::Accepted(instruction) => {
+                passed += 1;
+                if accepted.iter().all(|other| other.text != instruction.text) {
+                    accepted.push(instruction);
+                }
+            }
+            outcome @ Outcome::Rejected { .. } => rejected = rejected.or(Some(outcome)),
+        }
+    }
+    let (best, by) = best(accepted, order);
+    Ok(match (best, rejected) {
+        (Some(mut instruction), _) => {
+            let chosen = Chosen { among: order.candidates, passed, by };
+            instruction.provenance.chosen = (order.candidates > 1).then_some(chosen);
+            Outcome::Accepted(instruction)
+        }
+        (None, Some(rejected)) => rejected,
+        (None, None) => Outcome::Rejected { last: None, reason: "no text was written".to_owned() },
+    })
+}
+
+/// The text that is kept, and what chose it. A text whose checks all pass goes before one with something unverified.
+fn best(accepted: Vec<Instruction>, order: Order<'_>) -> (Option<Instruction>, ChosenBy) {
+    let verdict = accepted.iter().map(|instruction| instruction.verdict).min().unwrap_or(Verdict::Pass);
+    let mut alike = accepted.into_iter().filter(|instruction| instruction.verdict == verdict).peekable();
+    let Some(follower) = order.follower.filter(|_| order.candidates > 1) else {
+        return (alike.next(), ChosenBy::Checks);
+    };
+    let scored: Vec<(Option<f64>, Instruction)> = alike
+        .map(|instruction| {
+            (follower.leads_there(&instruction.text).map(|share| worth(share, &instruction)), instruction)
+        })
+        .collect();
+    let by = if scored.iter().any(|(score, _)| score.is_some()) { ChosenBy::Follower } else { ChosenBy::Checks };
+    let mut best: Option<(Option<f64>, Instruction)> = None;
+    for (score, instruction) in scored {
+        // Of equal ones the first stays.
+        if best.as_ref().is_none_or(|(before, _)| score > *before) {
+            best = Some((score, instruction));
+        }
+    }
+    (best.map(|(_, instruction)| instruction), by)
+}
+
+/// What a text is worth that leads to the end with a probability of `share`, natural logs: that, and the chance to take
+/// the right object there, less the cost of its words.
+fn worth(share: f64, instruction: &Instruction) -> f64 {
+    let objects = instruction.ambiguity.as_ref().map_or(1, |ambiguity| ambiguity.objects.max(1));
+    share.max(f64::MIN_POSITIVE).ln() - (objects as f64).ln() - COST_OF_A_WORD * word_count(&instruction.text) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        dialogue::{Mode, RulesAsker, RulesSummariser},
+        offline::Labels,
+        repair::{
+            Follow,
+            tests::{GOOD, Scripted, walk},
+        },
+        style::{Profile, built_in},
+    };
+    use wayword_checks::Checked;
+    use wayword_core::Ambiguity;
+
+    /// Finds the end the more surely, the more often a text says "lamp"; cannot follow one that names the sofa.
+    struct LampFinder;
+
+    impl Follow for LampFinder {
+        fn follow(&self, _: &str, _: &mut Checked) -> Ambiguity {
+            Ambiguity { objects: 1, ..Ambiguity::default() }
+        }
+
+        fn leads_there(&self, text: &str) -> Option<f64> {
+            (!text.contains("sofa")).then(|| 0.2 + 0.3 * text.matches("lamp").count() as f64)
+        }
+    }
+
+    const TO_THE_LAMP: &str = "Walk to the lamp and turn right. Stop at the sink.";
+    const ON: &str = "Walk straight ahead and turn right. Stop at the sink.";
+    const TO_A_PIANO: &str = "Walk to the piano and turn right. Stop at the sink.";
+
+    fn kept(texts: &[&str], follower: Option<&dyn Follow>) -> Instruction {
+        let walk = walk();
+        let evidence = walk.evidence().unwrap();
+        let style = built_in("r2r").unwrap();
+        let profile = Profile::measure(&style.references);
+        let order = Order {
+            walk: &walk,
+            evidence: &evidence,
+            style: &style,
+            profile: &profile,
+            seed: 0,
+            repairs: 0,
+            candidates: u32::try_from(texts.len()).unwrap(),
+            follower,
+        };
+        let asker = RulesAsker::default();
+        let observers = Observers {
+            asker: &asker,
+            answerer: &Labels::default(),
+            summariser: &RulesSummariser,
+            mode: Mode::Fixed,
+            prompts_hash: None,
+        };
+        let writer = Scripted::new(texts.iter().map(|text| Ok((*text).to_owned())).collect());
+        match written(&writer, observers, order).unwrap() {
+            Outcome::Accepted(instruction) => instruction,
+            Outcome::Rejected { reason, .. } => panic!("{reason}"),
+        }
+    }
+
+    #[test]
+    fn the_text_that_leads_there_most_surely_is_kept_and_the_record_says_what_chose() {
+        let kept = kept(&[ON, TO_A_PIANO, TO_THE_LAMP, GOOD], Some(&LampFinder));
+        assert_eq!(kept.text, TO_THE_LAMP);
+        assert_eq!(kept.provenance.chosen, Some(Chosen { among: 4, passed: 3, by: ChosenBy::Follower }));
+    }
+
+    #[test]
+    fn where_nothing_can_be_followed_the_checks_choose_alone_and_the_record_says_so() {
+        let follower: &dyn Follow = &LampFinder;
+        for follower in [None, Some(follower)] {
+            let kept = kept(&[TO_A_PIANO, GOOD], follower);
+            assert_eq!(kept.text, GOOD);
+            assert_eq!(kept.provenance.chosen, Some(Chosen { among: 2, passed: 1, by: ChosenBy::Checks }));
+        }
+    }
+
+    #[test]
+    fn of_texts_that_lead_there_as_surely_the_shorter_one_is_kept() {
+        let longer = "Walk straight ahead and carry on and turn right. Stop at the sink.";
+        assert_eq!(kept(&[longer, ON], Some(&LampFinder)).text, ON);
+    }
+
+    #[test]
+    fn of_a_single_text_nothing_is_chosen() {
+        assert_eq!(kept(&[GOOD], Some(&LampFinder)).provenance.chosen, None);
+    }
+}
