@@ -2,6 +2,7 @@
 
 mod landmarks;
 mod phrases;
+mod place;
 mod route;
 mod rules;
 mod task;
