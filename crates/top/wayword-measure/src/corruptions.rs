@@ -155,9 +155,8 @@ mod tests {
                 .into_iter()
                 .map(|(name, turn_deg)| SeenThing {
                     name: name.to_owned(),
-                    object: None,
-                    colour: None,
                     turn_rad: Some(f64::to_radians(turn_deg)),
+                    ..SeenThing::default()
                 })
                 .collect(),
             knows_things: true,

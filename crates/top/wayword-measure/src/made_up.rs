@@ -35,7 +35,6 @@ pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKin
             style_hash: String::new(),
             prompts_hash: None,
             repairs: 0,
-            candidates: 1,
             finished_for: None,
             chosen: None,
         },

@@ -11,7 +11,7 @@ use crate::{
     styles::Measured,
     team::Team,
 };
-use wayword_checks::{Checked, Evidence, Source};
+use wayword_checks::{Checked, Evidence, Memory, Source};
 use wayword_core::{Ambiguity, Frame, Gaze, Motion, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
     observe::observe,
@@ -63,6 +63,9 @@ pub fn make(
     let observations = observe(&world, &path, settings.frames, team.observers())?;
     let walk = Walk::new(path, observations);
     let evidence = evidence(&walk, &world, settings.evidence)?;
+    // Where labels see, the writer remembers all that they list around each frame; a model's captions else.
+    let sees_labels = team.observers().answerer.name() == "labels" && evidence.source == Source::Labels;
+    let memory = if sees_labels { Memory::of(&evidence, &walk.path) } else { walk.memory() };
     let scene = match settings.no_route || evidence.source != Source::Labels {
         true => None,
         false => Some(scenes.get(platform, &walk.path.scene)?),
@@ -76,6 +79,7 @@ pub fn make(
     let outcomes = styles.iter().map(|Measured { style, profile }| {
         let order = Order {
             walk: &walk,
+            memory: &memory,
             evidence: &evidence,
             style,
             profile,

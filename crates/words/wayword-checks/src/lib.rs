@@ -13,6 +13,7 @@ mod form;
 mod landmarks;
 mod leak;
 mod made_up;
+pub mod memory;
 pub mod open;
 mod order;
 mod sides;
@@ -31,6 +32,7 @@ use wayword_language::{
 
 pub use evidence::{Building, Distance, Evidence, FrameEvidence, NEAR_M, SeenThing, Source, Surroundings};
 pub use leak::{SHARED_RUN, shared_run};
+pub use memory::Memory;
 pub use witnesses::{Testimony, lift};
 pub use world::{Reach, Turns, World};
 

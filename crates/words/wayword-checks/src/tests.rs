@@ -7,7 +7,7 @@ use wayword_core::{Check, Constraints, Motion, Move, Style, Verdict};
 /// A frame in a room (empty where it is not known), with things (`None` where they are not known), on a storey (0 where
 /// it is not known).
 fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
-    let seen = |name: &&str| SeenThing { name: (*name).to_owned(), object: None, colour: None, turn_rad: None };
+    let seen = |name: &&str| SeenThing { name: (*name).to_owned(), ..SeenThing::default() };
     FrameEvidence {
         rooms: Some(room).filter(|room| !room.is_empty()).map(str::to_owned).into_iter().collect(),
         things: things.unwrap_or_default().iter().map(seen).collect(),
@@ -312,9 +312,9 @@ fn an_object_that_the_text_tells_apart_is_one() {
     let mut evidence = to_the_bedroom();
     let lamp = |colour: &str, turn_rad: f64| SeenThing {
         name: "lamp".into(),
-        object: None,
         colour: Some(colour.into()),
         turn_rad: Some(turn_rad),
+        ..SeenThing::default()
     };
     evidence.frames[2].things.extend([lamp("green", -1.0), lamp("white", 1.0)]);
     evidence.frames[2].things.retain(|thing| thing.name != "lamp" || thing.turn_rad.is_some());

@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     fn labels(names: &[&str]) -> Vec<SeenThing> {
-        let label = |name: &&str| SeenThing { name: (*name).to_owned(), object: None, colour: None, turn_rad: None };
+        let label = |name: &&str| SeenThing { name: (*name).to_owned(), ..SeenThing::default() };
         names.iter().map(label).collect()
     }
 

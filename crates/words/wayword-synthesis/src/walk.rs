@@ -1,7 +1,7 @@
 //! A path together with what was seen along it: all that a writer gets.
 
 use serde::{Deserialize, Serialize};
-use wayword_checks::Evidence;
+use wayword_checks::{Evidence, Memory};
 use wayword_core::{Distinction, Heading, Move, Observation, Path, Side, Sighting, Witness};
 
 /// Which views of each frame are captioned.
@@ -71,5 +71,12 @@ impl Walk {
     #[must_use]
     pub fn evidence(&self) -> Option<Evidence> {
         Evidence::from_captions(&self.path, &self.observations)
+    }
+
+    /// What stays in mind of it, as its captions tell.
+    #[must_use]
+    pub fn memory(&self) -> Memory {
+        let evidence = self.evidence().unwrap_or_else(|| Evidence::of_path_alone(&self.path));
+        Memory::of(&evidence, &self.path)
     }
 }

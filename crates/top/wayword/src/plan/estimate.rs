@@ -180,7 +180,15 @@ fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path:
     let walk = Walk::new(path.clone(), vec![seen; path.frames.len()]);
     let mut load = Load::default();
     for Measured { style, profile } in styles {
-        let brief = Brief { walk: &walk, style, profile, seed: settings.seed, candidate: 0, complaints: &[] };
+        let brief = Brief {
+            walk: &walk,
+            memory: &walk.memory(),
+            style,
+            profile,
+            seed: settings.seed,
+            candidate: 0,
+            complaints: &[],
+        };
         load.call(&prompts.write(&brief)?, INSTRUCTION_TOKENS);
     }
     Ok(load.times(u64::from(settings.candidates)))

@@ -28,6 +28,7 @@ impl Evidence {
                                 object: None,
                                 colour: sighting.colour.clone(),
                                 turn_rad: sighting.place.map(turn_rad),
+                                ..SeenThing::default()
                             });
                         }
                     }

@@ -1,7 +1,7 @@
 //! Evidence from the platform's own labels.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
-use wayword_core::{Path, View};
+use wayword_core::{DVec3, Label, Path, View};
 
 impl Evidence {
     /// Evidence from ground truth: `panoramas` holds, for each frame, the views all around it. `None` where the
@@ -20,10 +20,18 @@ impl Evidence {
                     object: Some(label.object.clone()),
                     colour: label.colour.clone(),
                     turn_rad: Some(frame.pose.heading.turn_to(label.heading)),
+                    distance_m: label.distance_m.or_else(|| Some(label.position?.distance(frame.pose.position))),
+                    position: label.position.or_else(|| placed(label, frame.pose.position)),
                 }));
             }
             evidence
         });
         known.then(|| Self::of(path, frames.collect(), Source::Labels))
     }
+}
+
+/// Where a label's object is, from its direction and distance.
+fn placed(label: &Label, eye: DVec3) -> Option<DVec3> {
+    let (up, along) = (libm::sin(label.elevation_rad), libm::cos(label.elevation_rad));
+    Some(eye + (label.heading.direction() * along + DVec3::Z * up) * label.distance_m?)
 }

@@ -8,7 +8,7 @@ mod surroundings;
 pub use building::Building;
 pub use surroundings::{Distance, NEAR_M, Surroundings};
 
-use wayword_core::{Climb, Motion, Move, ObjectId, Path, motion};
+use wayword_core::{Climb, DVec3, Motion, Move, ObjectId, Path, motion};
 use wayword_language::lexicon::{Class, agree, is_fabric, room_name, same_room, thing};
 
 /// What is known of a path, frame by frame.
@@ -38,7 +38,7 @@ pub struct FrameEvidence {
 }
 
 /// An object that is seen from a frame.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SeenThing {
     /// Its name.
     pub name: String,
@@ -48,6 +48,10 @@ pub struct SeenThing {
     pub colour: Option<String>,
     /// Its direction from the frame's heading, radians in (-π, π], positive right.
     pub turn_rad: Option<f64>,
+    /// Its distance from the eye, metres, where it is known.
+    pub distance_m: Option<f64>,
+    /// Its centre, metres, world frame, where it is known.
+    pub position: Option<DVec3>,
 }
 
 /// Who vouches for evidence.

@@ -121,7 +121,15 @@ fn a_text_of_two_megabytes_is_refused_and_not_sent_back_whole() {
     let walk = trial::walk(Motion::Known).unwrap();
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, candidate: 0, complaints: &[] };
+    let brief = Brief {
+        walk: &walk,
+        memory: &walk.memory(),
+        style: &style,
+        profile: &profile,
+        seed: 0,
+        candidate: 0,
+        complaints: &[],
+    };
     let writer = ModelWriter::new(Scripted::new(&[&long]), prompts());
     let Err(WriteError::Unusable { text, reason }) = writer.write(&brief) else { panic!("it is used") };
     assert!(text.len() < 1000 && text.starts_with("Go past the sofa"), "{} bytes", text.len());

@@ -76,7 +76,15 @@ fn the_writing_prompts() {
         }];
         let complaints = [Complaint { text: "Go up.".into(), findings }];
         let complaints = if name == "reverie" { &complaints[..] } else { &[] };
-        let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, candidate: 0, complaints };
+        let brief = Brief {
+            walk: &walk,
+            memory: &walk.memory(),
+            style: &style,
+            profile: &profile,
+            seed: 0,
+            candidate: 0,
+            complaints,
+        };
         insta::assert_snapshot!(format!("write_{name}"), prompts.write(&brief).unwrap());
     }
 }
@@ -89,7 +97,15 @@ fn who_writes_about_a_video_without_poses_is_told_to_make_no_motion_up() {
     let walk = Walk::new(path, walk().observations);
     let style = built_in("reverie").unwrap();
     let profile = Profile::measure(&style.references);
-    let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, candidate: 0, complaints: &[] };
+    let brief = Brief {
+        walk: &walk,
+        memory: &walk.memory(),
+        style: &style,
+        profile: &profile,
+        seed: 0,
+        candidate: 0,
+        complaints: &[],
+    };
     insta::assert_snapshot!("write_without_poses", Prompts::new(&[]).unwrap().write(&brief).unwrap());
 }
 
@@ -99,7 +115,15 @@ fn a_style_without_tasks_is_given_none_to_end_in() {
     let tells_task = |name: &str| {
         let style = built_in(name).unwrap();
         let profile = Profile::measure(&style.references);
-        let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, candidate: 0, complaints: &[] };
+        let brief = Brief {
+            walk: &walk,
+            memory: &walk.memory(),
+            style: &style,
+            profile: &profile,
+            seed: 0,
+            candidate: 0,
+            complaints: &[],
+        };
         prompts.write(&brief).unwrap().contains("ends in a task")
     };
     assert!(!tells_task("r2r") && tells_task("reverie"));
@@ -189,7 +213,15 @@ fn the_longest_style_and_walk_that_are_allowed_fit_into_a_prompt() {
     let summary = "A hallway with a picture. ".repeat(40);
     let observations = vec![Observation { summary, ..Observation::default() }; 1000];
     let walk = Walk::new(long.path, observations);
-    let brief = Brief { walk: &walk, style: &style, profile: &profile, seed: 0, candidate: 0, complaints: &[] };
+    let brief = Brief {
+        walk: &walk,
+        memory: &walk.memory(),
+        style: &style,
+        profile: &profile,
+        seed: 0,
+        candidate: 0,
+        complaints: &[],
+    };
     assert!(Prompts::new(&[]).unwrap().write(&brief).is_ok());
 }
 

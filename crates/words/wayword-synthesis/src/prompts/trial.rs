@@ -37,6 +37,7 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     for walk in [Motion::Known, Motion::Unknown].into_iter().filter_map(walk) {
         prompts.write(&Brief {
             walk: &walk,
+            memory: &walk.memory(),
             style: &style,
             profile: &profile,
             seed: 0,

@@ -106,6 +106,7 @@ mod tests {
         let profile = Profile::measure(&style.references);
         let order = Order {
             walk: &walk,
+            memory: &walk.memory(),
             evidence: &evidence,
             style: &style,
             profile: &profile,

@@ -9,7 +9,7 @@ use crate::{
     walk::Walk,
     writer::{Brief, Complaint, RulesWriter, WriteError, Writer},
 };
-use wayword_checks::{Checked, Evidence, Subject, check_own};
+use wayword_checks::{Checked, Evidence, Memory, Subject, check_own};
 use wayword_core::{Ambiguity, Check, Finding, Instruction, ModelError, Provenance, Style, Verdict};
 
 /// Everything that one instruction is made from.
@@ -17,6 +17,8 @@ use wayword_core::{Ambiguity, Check, Finding, Instruction, ModelError, Provenanc
 pub struct Order<'a> {
     /// The path and what was seen along it.
     pub walk: &'a Walk,
+    /// What stays in mind of the walk, for the writer.
+    pub memory: &'a Memory,
     /// What the text is checked against.
     pub evidence: &'a Evidence,
     /// The style to write in.
@@ -132,8 +134,8 @@ fn attempts(
 }
 
 fn brief<'a>(order: Order<'a>, candidate: u32, complaints: &'a [Complaint]) -> Brief<'a> {
-    let Order { walk, style, profile, seed, .. } = order;
-    Brief { walk, style, profile, seed, candidate, complaints }
+    let Order { walk, memory, style, profile, seed, .. } = order;
+    Brief { walk, memory, style, profile, seed, candidate, complaints }
 }
 
 fn unusable(text: String, reason: String) -> Complaint {

@@ -86,8 +86,17 @@ fn outcome_against(
 ) -> (Result<Outcome, ModelError>, Vec<usize>) {
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let order =
-        Order { walk, evidence, style: &style, profile: &profile, seed: 0, repairs, candidates: 1, follower: None };
+    let order = Order {
+        walk,
+        memory: &walk.memory(),
+        evidence,
+        style: &style,
+        profile: &profile,
+        seed: 0,
+        repairs,
+        candidates: 1,
+        follower: None,
+    };
     let asker = RulesAsker::default();
     let observers = Observers {
         asker: &asker,
@@ -196,6 +205,7 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
             for seed in 0..40 {
                 let order = Order {
                     walk: &walk,
+                    memory: &walk.memory(),
                     evidence: &evidence,
                     style: &style,
                     profile: &profile,
@@ -269,7 +279,7 @@ proptest! {
         let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
-            let order = Order { walk: &walk, evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, candidates: 1, follower: None };
+            let order = Order { walk: &walk, memory: &walk.memory(), evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, candidates: 1, follower: None };
             let writers = Writers { writer: &RulesWriter, finisher: None };
             let text = match write_and_repair(writers, observers, order).unwrap() {
                 Outcome::Accepted(instruction) => instruction.text,

@@ -8,6 +8,7 @@ mod rules;
 mod task;
 
 use crate::{style::Profile, walk::Walk};
+use wayword_checks::Memory;
 use wayword_core::{Finding, ModelError, Style};
 
 pub use rules::RulesWriter;
@@ -29,6 +30,8 @@ pub trait Writer: Send + Sync {
 pub struct Brief<'a> {
     /// The path and what was seen along it; its target, where one is given.
     pub walk: &'a Walk,
+    /// What stays in mind of the walk.
+    pub memory: &'a Memory,
     /// The style to write in.
     pub style: &'a Style,
     /// What the style's references are like.

@@ -1,0 +1,125 @@
+//! What stays in mind of a walk: each thing once, the rooms in the order in which one passes them, the bends, the
+//! flights of stairs and the openings between rooms. It is made of the evidence and the path alone, for writers and
+//! checks alike.
+
+mod openings;
+#[cfg(test)]
+mod tests;
+mod things;
+mod ways;
+
+pub use openings::{Opening, leads_through_a_door};
+pub use things::{Glimpse, Passed, Remembered};
+pub use ways::{Bend, Flight, Stay};
+
+use crate::Evidence;
+use wayword_core::{DVec3, Heading, Path, Side};
+use wayword_language::lexicon::agree;
+
+/// The memory of a walk.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Memory {
+    /// The things, in the order in which they are first seen.
+    pub things: Vec<Remembered>,
+    /// The rooms, in order. Frames whose room is not known belong to none.
+    pub stays: Vec<Stay>,
+    /// The turns, in order: several small turns to one side are one. None where the motion is unknown.
+    pub bends: Vec<Bend>,
+    /// The flights of stairs, in order.
+    pub flights: Vec<Flight>,
+    /// Where the room changes between two frames, in order.
+    pub openings: Vec<Opening>,
+    /// The eye at each frame, metres; empty where the motion is unknown.
+    eyes: Vec<DVec3>,
+    /// The heading at each frame, before the turn of its move.
+    headings: Vec<Heading>,
+    /// The number of frames.
+    frames: usize,
+}
+
+impl Memory {
+    /// The memory of a path, of which the evidence says what can be seen.
+    #[must_use]
+    pub fn of(evidence: &Evidence, path: &Path) -> Self {
+        let is_known = path.motion.is_known();
+        let eyes: Vec<DVec3> = match is_known {
+            true => path.frames.iter().map(|frame| frame.pose.position).collect(),
+            false => Vec::new(),
+        };
+        let headings: Vec<Heading> = path.frames.iter().map(|frame| frame.pose.heading).collect();
+        let stays = ways::stays(evidence);
+        let openings = openings::openings(&stays, evidence);
+        Self {
+            things: things::things(evidence, &eyes, &headings),
+            bends: ways::bends(&evidence.moves),
+            flights: ways::flights(evidence),
+            frames: path.frames.len(),
+            stays,
+            openings,
+            eyes,
+            headings,
+        }
+    }
+
+    /// The number of frames of the walk.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// The room in which a frame lies.
+    #[must_use]
+    pub fn room(&self, frame: usize) -> Option<&str> {
+        self.stay(frame).map(|stay| stay.room.as_str())
+    }
+
+    /// The stay to which a frame belongs.
+    #[must_use]
+    pub fn stay(&self, frame: usize) -> Option<&Stay> {
+        self.stays.iter().find(|stay| (stay.entered..=stay.left).contains(&frame))
+    }
+
+    /// The distance of a thing from a frame along the floor, metres, where it is known.
+    #[must_use]
+    pub fn distance_m(&self, thing: &Remembered, frame: usize) -> Option<f64> {
+        let glimpsed = || thing.glimpse(frame).and_then(|glimpse| glimpse.distance_m);
+        match (thing.position, self.eyes.get(frame)) {
+            (Some(position), Some(eye)) => Some((position - *eye).truncate().length()),
+            _ => glimpsed(),
+        }
+    }
+
+    /// The side of a walker at a frame on which a thing lies, looking along the frame's heading.
+    #[must_use]
+    pub fn side(&self, thing: &Remembered, frame: usize) -> Option<Side> {
+        let (eye, heading) = (self.eyes.get(frame)?, self.headings.get(frame)?);
+        match thing.position {
+            Some(position) => Heading::towards(*eye, position).map(|to| heading.side_of(to)),
+            None => thing.glimpse(frame)?.turn_rad.map(|turn_rad| heading.side_of(heading.turned(turn_rad))),
+        }
+    }
+
+    /// Which one a thing is among those of its name that one passes on the same side in the same stay, the first being 1,
+    /// and how many there are. `None` where one does not pass it, or the positions are not known.
+    #[must_use]
+    pub fn ordinal(&self, thing: &Remembered) -> Option<(usize, usize)> {
+        let passed = thing.passed.filter(|_| thing.position.is_some())?;
+        let stay = self.stay(passed.frame)?;
+        let mut alike: Vec<(f64, &Remembered)> = Vec::new();
+        for other in self.things.iter().filter(|other| agree(&other.name, &thing.name)) {
+            let Some(by) = other.passed else { return None };
+            other.position?;
+            if by.side == passed.side && (stay.entered..=stay.left).contains(&by.frame) {
+                alike.push((by.along_m, other));
+            }
+        }
+        alike.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let place = alike.iter().position(|(_, other)| *other == thing)?;
+        Some((place + 1, alike.len()))
+    }
+
+    /// The things that are seen from a frame.
+    pub fn seen_from(&self, frame: usize) -> impl Iterator<Item = &Remembered> {
+        self.things.iter().filter(move |thing| thing.glimpse(frame).is_some())
+    }
+}

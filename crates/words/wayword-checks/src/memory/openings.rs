@@ -1,0 +1,81 @@
+//! Where a walk goes from one room to another.
+
+use super::Stay;
+use crate::Evidence;
+use wayword_language::lexicon::{Class, room_name, thing};
+
+/// A change of rooms between two frames in a row.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Opening {
+    /// The last frame before it.
+    pub before: usize,
+    /// The first frame behind it.
+    pub behind: usize,
+    /// The room that one leaves.
+    pub from: String,
+    /// The room that one enters.
+    pub to: String,
+    /// Whether there is a door or doorway in it.
+    pub has_door: bool,
+}
+
+/// Rooms with a wall around them: whoever enters or leaves one goes through a door or doorway. Between the others a house may
+/// be open.
+const CLOSED: &[&str] = &[
+    "bedroom",
+    "bathroom",
+    "toilet",
+    "closet",
+    "office",
+    "laundry room",
+    "utility room",
+    "garage",
+    "meeting room",
+    "classroom",
+    "porch",
+    "balcony",
+    "outdoor area",
+    "gym",
+    "locker room",
+    "spa",
+    "tv room",
+    "library",
+];
+
+/// Whether a change from one room to another leads through a door or doorway: one of them has walls of its own.
+#[must_use]
+pub fn leads_through_a_door(from: &str, to: &str) -> bool {
+    let name = |room: &str| room_name(room).unwrap_or_default().to_owned();
+    let (from, to) = (name(from), name(to));
+    let is_closed = |room: &String| CLOSED.contains(&room.as_str());
+    let is_outside = |room: &String| matches!(room.as_str(), "porch" | "balcony" | "outdoor area");
+    from != to && (is_closed(&from) || is_closed(&to)) && !(is_outside(&from) && is_outside(&to))
+}
+
+/// The openings between stays that follow one another without a frame between.
+pub(super) fn openings(stays: &[Stay], evidence: &Evidence) -> Vec<Opening> {
+    let next = stays.windows(2).filter(|pair| pair[0].left + 1 == pair[1].entered);
+    next.map(|pair| {
+        let (before, behind) = (pair[0].left, pair[1].entered);
+        Opening {
+            before,
+            behind,
+            has_door: leads_through_a_door(&pair[0].room, &pair[1].room)
+                || [before, behind].iter().any(|frame| shows_door(evidence, *frame)),
+            from: pair[0].room.clone(),
+            to: pair[1].room.clone(),
+        }
+    })
+    .collect()
+}
+
+/// Whether a door is seen from a frame, near where that is known.
+fn shows_door(evidence: &Evidence, frame: usize) -> bool {
+    let is_door = |name: &str| thing(name).is_some_and(|thing| thing.class == Class::Door);
+    let is_near = |distance_m: Option<f64>| distance_m.is_none_or(|distance_m| distance_m <= DOOR_M);
+    let things = evidence.frames.get(frame).into_iter().flat_map(|frame| &frame.things);
+    things.into_iter().any(|seen| is_door(&seen.name) && is_near(seen.distance_m))
+}
+
+/// A door this near to one of the two frames is taken to be the one between them, metres.
+const DOOR_M: f64 = 2.5;

@@ -1,0 +1,220 @@
+//! The things of a walk, each once.
+
+use crate::{Evidence, SeenThing};
+use std::f64::consts::{FRAC_PI_3, FRAC_PI_4};
+use wayword_core::{DVec3, Heading, Side};
+use wayword_language::lexicon::{agree, normal};
+
+/// A thing that was seen along a walk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remembered {
+    /// Its name.
+    pub name: String,
+    /// Its id, where it comes from labels.
+    pub object: Option<wayword_core::ObjectId>,
+    /// Its colour, where one is known and no glimpse has another.
+    pub colour: Option<String>,
+    /// Where it is, metres, world frame.
+    pub position: Option<DVec3>,
+    /// From which frames it is seen, ascending.
+    pub glimpses: Vec<Glimpse>,
+    /// Where one passes it, if one does.
+    pub passed: Option<Passed>,
+}
+
+/// A thing as it is seen from one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Glimpse {
+    /// The frame.
+    pub frame: usize,
+    /// Its direction from the frame's heading, radians in (-π, π], positive right.
+    pub turn_rad: Option<f64>,
+    /// Its distance, metres.
+    pub distance_m: Option<f64>,
+}
+
+/// How one passes a thing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passed {
+    /// The frame nearest to where one passes it.
+    pub frame: usize,
+    /// The side on which it lies then: left or right.
+    pub side: Side,
+    /// How far along the walk that is, metres; the number of the frame where distances are not known.
+    pub along_m: f64,
+}
+
+impl Remembered {
+    /// The first frame from which it is seen.
+    #[must_use]
+    pub fn first_seen(&self) -> usize {
+        self.glimpses.first().map_or(0, |glimpse| glimpse.frame)
+    }
+
+    /// The last frame from which it is seen.
+    #[must_use]
+    pub fn last_seen(&self) -> usize {
+        self.glimpses.last().map_or(0, |glimpse| glimpse.frame)
+    }
+
+    /// How it is seen from a frame.
+    #[must_use]
+    pub fn glimpse(&self, frame: usize) -> Option<&Glimpse> {
+        self.glimpses.iter().find(|glimpse| glimpse.frame == frame)
+    }
+}
+
+/// Sightings without ids that lie no farther apart are of one thing, metres.
+const SAME_M: f64 = 0.8;
+/// Two directions cross where they differ by more than this, radians.
+const CROSSING_RAD: f64 = 0.17;
+/// Things without a known place are taken to be no farther than this, metres.
+const FARTHEST_M: f64 = 8.0;
+
+/// A sighting with the eye that had it.
+struct Sighted<'a> {
+    frame: usize,
+    thing: &'a SeenThing,
+    /// Its direction, where poses are known.
+    towards: Option<Heading>,
+    eye: Option<DVec3>,
+}
+
+/// The things of a walk. `eyes` is empty where the motion is unknown.
+pub(super) fn things(evidence: &Evidence, eyes: &[DVec3], headings: &[Heading]) -> Vec<Remembered> {
+    let mut groups: Vec<Vec<Sighted<'_>>> = Vec::new();
+    for (frame, seen) in evidence.frames.iter().enumerate() {
+        let before = groups.len();
+        for thing in &seen.things {
+            let eye = eyes.get(frame).copied();
+            let turned = |turn_rad: f64| headings.get(frame).map(|heading| heading.turned(turn_rad));
+            let sighted = Sighted { frame, thing, eye, towards: eye.and(thing.turn_rad).and_then(turned) };
+            // Of one frame, two sightings without ids are two things.
+            let joins = |(at, group): &(usize, &Vec<Sighted<'_>>)| match &thing.object {
+                Some(id) => group[0].thing.object.as_ref() == Some(id),
+                None => *at < before && group.iter().all(|other| other.frame != frame) && is_same(group, &sighted),
+            };
+            match groups.iter().enumerate().find(joins).map(|(at, _)| at) {
+                Some(at) => groups[at].push(sighted),
+                None => groups.push(vec![sighted]),
+            }
+        }
+    }
+    groups
+        .into_iter()
+        .filter(|group| !normal(&group[0].thing.name).is_empty())
+        .map(|group| joined(&group, eyes))
+        .collect()
+}
+
+/// Whether a sighting without an id is of the thing that earlier sightings are of: the names agree, no colour differs,
+/// and the directions can meet.
+fn is_same(group: &[Sighted<'_>], new: &Sighted<'_>) -> bool {
+    let Some(last) = group.last() else { return false };
+    let same_colour = match (&last.thing.colour, &new.thing.colour) {
+        (Some(a), Some(b)) => a == b,
+        _ => true,
+    };
+    if group[0].thing.object.is_some() || !same_colour || !agree(&last.thing.name, &new.thing.name) {
+        return false;
+    }
+    if let (Some(a), Some(b)) = (last.thing.position, new.thing.position) {
+        return a.distance(b) <= SAME_M;
+    }
+    match (last.eye.zip(last.towards), new.eye.zip(new.towards)) {
+        (Some(a), Some(b)) => can_meet(a, b),
+        // Without directions, what frames in a row name is one thing.
+        _ => new.frame - last.frame <= 1,
+    }
+}
+
+/// Whether two rays over the floor can show one thing: they cross ahead of both eyes, or run along one line.
+fn can_meet(a: (DVec3, Heading), b: (DVec3, Heading)) -> bool {
+    match crossing(a, b) {
+        Some((_, far_a, far_b)) => far_a.min(far_b) > 0.0 && far_a.max(far_b) <= FARTHEST_M,
+        None => a.1.turn_to(b.1).abs() < FRAC_PI_4,
+    }
+}
+
+/// Where two rays cross over the floor, and how far from either eye.
+fn crossing(a: (DVec3, Heading), b: (DVec3, Heading)) -> Option<(DVec3, f64, f64)> {
+    let (along_a, along_b) = (a.1.direction().truncate(), b.1.direction().truncate());
+    let across = along_a.perp_dot(along_b);
+    if across.abs() < libm::sin(CROSSING_RAD) {
+        return None;
+    }
+    let gap = (b.0 - a.0).truncate();
+    let (far_a, far_b) = (gap.perp_dot(along_b) / across, gap.perp_dot(along_a) / across);
+    let at = a.0.truncate() + along_a * far_a;
+    Some((at.extend(a.0.z), far_a, far_b))
+}
+
+fn joined(group: &[Sighted<'_>], eyes: &[DVec3]) -> Remembered {
+    let first = group[0].thing;
+    let position = position(group);
+    let mut glimpses: Vec<Glimpse> = Vec::new();
+    for sighted in group {
+        if glimpses.last().is_none_or(|last| last.frame != sighted.frame) {
+            let by_place = || Some((position? - sighted.eye?).length());
+            let distance_m = sighted.thing.distance_m.or_else(by_place);
+            glimpses.push(Glimpse { frame: sighted.frame, turn_rad: sighted.thing.turn_rad, distance_m });
+        }
+    }
+    let mut colours = group.iter().filter_map(|sighted| sighted.thing.colour.as_ref());
+    let colour = colours.next().filter(|first| colours.all(|other| other == *first)).cloned();
+    let passed = match position {
+        Some(position) => passed_at(position, eyes),
+        None => passed_by_glimpses(&glimpses),
+    };
+    Remembered { name: first.name.clone(), object: first.object.clone(), colour, position, glimpses, passed }
+}
+
+/// Where a thing is: as its labels say, or where two of its directions cross.
+fn position(group: &[Sighted<'_>]) -> Option<DVec3> {
+    let listed = group.iter().find_map(|sighted| sighted.thing.position);
+    let rays: Vec<(DVec3, Heading)> = group.iter().filter_map(|sighted| sighted.eye.zip(sighted.towards)).collect();
+    let crossed = || {
+        let (first, last) = (rays.first()?, rays.last()?);
+        crossing(*first, *last).filter(|(_, a, b)| a.min(*b) > 0.0 && a.max(*b) <= FARTHEST_M).map(|(at, ..)| at)
+    };
+    listed.or_else(crossed)
+}
+
+/// A thing is passed where it lies beside a hop, and not before its beginning or after its end, metres of slack.
+const SLACK_M: f64 = 0.3;
+/// What is farther off the way than this is not passed, metres.
+const BESIDE_M: f64 = 4.0;
+/// What lies nearer to the line of the walk than this lies on neither side, metres.
+const IN_THE_WAY_M: f64 = 0.15;
+
+fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<Passed> {
+    let mut best: Option<(f64, Passed)> = None;
+    let mut walked_m = 0.0;
+    for (at, hop) in eyes.windows(2).enumerate() {
+        let (along, to) = ((hop[1] - hop[0]).truncate(), (position - hop[0]).truncate());
+        let length_m = along.length();
+        if length_m > 0.0 {
+            let along_m = to.dot(along) / length_m;
+            let off_m = along.perp_dot(to) / length_m;
+            let beside = (-SLACK_M..=length_m + SLACK_M).contains(&along_m);
+            let is_near = (IN_THE_WAY_M..=BESIDE_M).contains(&off_m.abs());
+            if beside && is_near && best.as_ref().is_none_or(|(nearest, _)| off_m.abs() < *nearest) {
+                let side = if off_m > 0.0 { Side::Left } else { Side::Right };
+                let frame = if along_m * 2.0 > length_m { at + 1 } else { at };
+                best = Some((off_m.abs(), Passed { frame, side, along_m: walked_m + along_m }));
+            }
+        }
+        walked_m += length_m;
+    }
+    best.map(|(_, passed)| passed)
+}
+
+/// Without a place: one passes what was ahead and is then beside one.
+fn passed_by_glimpses(glimpses: &[Glimpse]) -> Option<Passed> {
+    glimpses.windows(2).find_map(|pair| {
+        let (before, now) = (pair[0].turn_rad?, pair[1].turn_rad?);
+        let side = if now < 0.0 { Side::Left } else { Side::Right };
+        let passes = before.abs() < FRAC_PI_3 && now.abs() >= FRAC_PI_3 && now.abs() < 3.0 * FRAC_PI_4;
+        passes.then_some(Passed { frame: pair[1].frame, side, along_m: pair[1].frame as f64 })
+    })
+}
