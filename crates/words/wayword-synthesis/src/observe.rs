@@ -38,6 +38,17 @@ pub enum ObserveError {
 /// A panorama's description has fewer words than this (arXiv 2403.11487).
 const CONDENSED_WORDS: usize = 20;
 
+/// A view that is to be talked about.
+#[derive(Debug, Clone)]
+pub struct Planned {
+    /// Number of its frame on the path.
+    pub frame: usize,
+    /// The direction and width that the view shows.
+    pub gaze: Gaze,
+    /// What is looked at.
+    pub view: View,
+}
+
 /// Captions of a path: one observation per frame.
 ///
 /// At the last frame of a central run, if nothing is seen ahead, the walker looks all around. A robot that has arrived
@@ -51,26 +62,76 @@ pub fn observe(
     selection: FrameSelection,
     observers: Observers<'_>,
 ) -> Result<Vec<Observation>, ObserveError> {
-    let last = path.frames.len().saturating_sub(1);
-    let frames = path.frames.iter().enumerate();
-    frames
-        .map(|(at, frame)| {
-            let looks = look_at(platform, path, frame, &gazes(frame, selection), observers)?;
-            let empty = !looks
-                .iter()
-                .flat_map(|look| &look.caption.sightings)
-                .any(|sighting| sighting.witness == Witness::Seen);
-            // Without poses one cannot look around: the frame has one picture.
-            let may_look = path.motion.is_known() && selection == FrameSelection::Central;
-            let looks = if at == last && empty && may_look {
-                look_at(platform, path, frame, &Gaze::around(frame.pose.heading), observers)?
-            } else {
-                looks
-            };
-            let Condensed { text, by } = summary(frame, &looks, observers)?;
-            Ok(Observation { summary: text, by, looks })
-        })
-        .collect()
+    observe_with(platform, path, selection, observers, &|views| {
+        views.iter().map(|planned| talk_about(&planned.view, observers)).collect()
+    })
+}
+
+/// The same, where the caller says how views are talked about: `talk` gets views that do not depend on each other, and
+/// returns one caption each, in their order.
+///
+/// # Errors
+/// When the platform gives no view, or a question is not answered.
+pub fn observe_with(
+    platform: &dyn Platform,
+    path: &Path,
+    selection: FrameSelection,
+    observers: Observers<'_>,
+    talk: &dyn Fn(&[Planned]) -> Result<Vec<Caption>, ModelError>,
+) -> Result<Vec<Observation>, ObserveError> {
+    let mut looks: Vec<Vec<Look>> = vec![Vec::new(); path.frames.len()];
+    let planned = plan(platform, path, selection)?;
+    assign(talk(&planned)?, planned, &mut looks);
+    if let Some(planned) = plan_at_end(platform, path, selection, &looks)? {
+        looks.last_mut().into_iter().for_each(Vec::clear);
+        assign(talk(&planned)?, planned, &mut looks);
+    }
+    let frames = path.frames.iter().zip(looks);
+    Ok(frames.map(|(frame, looks)| observation(frame, looks, observers)).collect::<Result<_, _>>()?)
+}
+
+/// The views of a path that are to be talked about, frame by frame.
+///
+/// # Errors
+/// When the platform gives no view.
+pub fn plan(platform: &dyn Platform, path: &Path, selection: FrameSelection) -> Result<Vec<Planned>, PlatformError> {
+    let mut planned = Vec::new();
+    for (at, frame) in path.frames.iter().enumerate() {
+        planned.extend(views(platform, path, at, &gazes(frame, selection))?);
+    }
+    Ok(planned)
+}
+
+/// The views all around the end of a central path, where its view ahead shows nothing.
+fn plan_at_end(
+    platform: &dyn Platform,
+    path: &Path,
+    selection: FrameSelection,
+    looks: &[Vec<Look>],
+) -> Result<Option<Vec<Planned>>, PlatformError> {
+    let (Some(frame), Some(at_end)) = (path.frames.last(), looks.last()) else { return Ok(None) };
+    let mut sightings = at_end.iter().flat_map(|look| &look.caption.sightings);
+    let is_empty = !sightings.any(|sighting| sighting.witness == Witness::Seen);
+    // Without poses one cannot look around: the frame has one picture.
+    if !is_empty || !path.motion.is_known() || selection != FrameSelection::Central {
+        return Ok(None);
+    }
+    views(platform, path, looks.len() - 1, &Gaze::around(frame.pose.heading)).map(Some)
+}
+
+/// Joins the looks of a frame to its observation.
+///
+/// # Errors
+/// When the summariser gives nothing.
+pub fn observation(frame: &Frame, looks: Vec<Look>, observers: Observers<'_>) -> Result<Observation, ModelError> {
+    let Condensed { text, by } = summary(frame, &looks, observers)?;
+    Ok(Observation { summary: text, by, looks })
+}
+
+fn assign(captions: Vec<Caption>, planned: Vec<Planned>, looks: &mut [Vec<Look>]) {
+    for (Planned { frame, gaze, .. }, caption) in planned.into_iter().zip(captions) {
+        looks[frame].push(Look { gaze, caption });
+    }
 }
 
 /// Where to look from a frame.
@@ -82,25 +143,19 @@ pub fn gazes(frame: &Frame, selection: FrameSelection) -> Vec<Gaze> {
     }
 }
 
-fn look_at(
-    platform: &dyn Platform,
-    path: &Path,
-    frame: &Frame,
-    gazes: &[Gaze],
-    observers: Observers<'_>,
-) -> Result<Vec<Look>, ObserveError> {
-    let views = gazes.iter().map(|gaze| Ok((gaze, platform.look(&path.scene, frame, *gaze)?)));
+fn views(platform: &dyn Platform, path: &Path, at: usize, gazes: &[Gaze]) -> Result<Vec<Planned>, PlatformError> {
+    let views = gazes.iter().map(|gaze| Ok((gaze, platform.look(&path.scene, &path.frames[at], *gaze)?)));
     let views: Vec<(&Gaze, View)> = views.collect::<Result<_, PlatformError>>()?;
     // A camera shows one direction of a place, so blank views are left out. If all are blank they stay, because the
     // error then says what is missing.
     let all_blank = views.iter().all(|(_, view)| view.is_blank());
-    let looks = views.into_iter().filter(|(_, view)| all_blank || !view.is_blank()).map(|(gaze, view)| {
+    let planned = views.into_iter().filter(|(_, view)| all_blank || !view.is_blank()).map(|(gaze, view)| {
         // A camera's picture may show a slightly different direction than the one asked for.
         let shown = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
         let gaze = if view.image.is_some() { shown } else { *gaze };
-        Ok(Look { gaze, caption: talk_about(&view, observers)? })
+        Planned { frame: at, gaze, view }
     });
-    looks.collect()
+    Ok(planned.collect())
 }
 
 /// Runs one dialogue about a view to its end.
