@@ -1,5 +1,6 @@
 //! Takes from a model's reply what was asked for.
 
+use super::chatter::without_chatter;
 use wayword_core::{Finish, Reply};
 
 /// The text of a reply. Of a reply that was cut off: up to the end of its last sentence, or all of it where no sentence
@@ -14,9 +15,10 @@ pub(super) fn whole_sentences(reply: &Reply) -> &str {
     text.rmatch_indices(['.', '!', '?']).find(ends).map_or(text, |(end, _)| &text[..=end])
 }
 
-/// A text as one line, without the label, the quotes and the marks of emphasis that models put around it.
+/// A text as one line, without the chatter, the label, the quotes and the marks of emphasis that models put around it.
 pub(super) fn plain(text: &str, labels: &[&str]) -> String {
-    let joined = text.split_whitespace().collect::<Vec<_>>().join(" ").replace("**", "");
+    let text = text.replace("**", "");
+    let joined = without_chatter(&text).split_whitespace().collect::<Vec<_>>().join(" ");
     let mut rest = joined.trim();
     for label in labels {
         let starts = rest.get(..label.len()).is_some_and(|start| start.eq_ignore_ascii_case(label));
@@ -42,6 +44,8 @@ mod tests {
             ("**Instruction:** \"Go to the\n sink.\"", "Go to the sink."),
             ("Go to the sink.", "Go to the sink."),
             ("“Go.”", "Go."),
+            ("Sure! Here is the instruction:\n\n\"Go to the sink.\"\n\nLet me know if it fits.", "Go to the sink."),
+            ("```\nInstruction: Go to the sink.\n```", "Go to the sink."),
             ("\"Go\" and \"stop\"", "\"Go\" and \"stop\""),
             ("instruction", "instruction"),
             ("", ""),

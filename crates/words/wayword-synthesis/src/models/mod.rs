@@ -5,6 +5,7 @@
 
 mod answerer;
 mod asker;
+mod chatter;
 mod clean;
 mod summariser;
 mod writer;

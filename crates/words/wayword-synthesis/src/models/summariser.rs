@@ -2,6 +2,7 @@
 
 use super::{
     PERCEPTION_SEED,
+    chatter::refuses,
     clean::{plain, whole_sentences},
     say,
 };
@@ -11,12 +12,12 @@ use crate::{
 };
 use std::sync::Arc;
 use wayword_core::{
-    Caption, Exchange, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling, Sighting, Witness,
+    Caption, Exchange, Finish, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling, Sighting, Witness,
 };
 use wayword_language::{lexicon::agree, text::word_count};
 
-/// Lets a language model summarise. If a caption names what was denied, or what no answer named, the model is asked once
-/// more, with the reason. If it fails again, rules summarise, and the caption says so.
+/// Lets a language model summarise. If a caption names what was denied, or what no answer named, or if it is a refusal or cut
+/// off, the model is asked once more, with the reason. If it fails again, rules summarise, and the caption says so.
 #[derive(Clone)]
 pub struct ModelSummariser {
     model: Arc<dyn LanguageModel>,
@@ -42,13 +43,18 @@ impl ModelSummariser {
         faults: impl Fn(&str) -> Vec<String>,
     ) -> Result<Result<String, Vec<String>>, ModelError> {
         let mut complaints = Vec::new();
-        for _ in 0..ATTEMPTS {
+        for attempt in 1..=ATTEMPTS {
             let reply = say(self.model.as_ref(), Message::user(prompt(&complaints)?), SAMPLING)?;
             let text = plain(whole_sentences(&reply), &["caption", "summary"]);
             let found = match text.len() {
                 0 => vec!["it was empty".to_owned()],
                 bytes if bytes > LONGEST_TEXT_BYTES => {
                     vec![format!("it has {bytes} bytes, more than {LONGEST_TEXT_BYTES}")]
+                }
+                _ if refuses(&text) => vec!["it refused to describe the picture".to_owned()],
+                // The whole sentences of the last attempt are better than what rules make of the answers.
+                _ if reply.finish == Finish::Length && attempt < ATTEMPTS => {
+                    vec!["it was cut off: write a shorter one".to_owned()]
                 }
                 _ => faults(&text),
             };

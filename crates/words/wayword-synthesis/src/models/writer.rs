@@ -1,6 +1,6 @@
 //! A language model that writes instructions.
 
-use super::{clean::plain, say};
+use super::{chatter::refuses, clean::plain, say};
 use crate::{
     prompts::Prompts,
     writer::{Brief, WriteError, Writer},
@@ -48,6 +48,7 @@ impl Writer for ModelWriter {
         }
         let unusable = |reason: &str| Err(WriteError::Unusable { text: text.clone(), reason: reason.to_owned() });
         match reply.finish {
+            _ if refuses(&text) => unusable("it refused instead of giving directions: write the instruction itself"),
             Finish::Stop if text.is_empty() => unusable("it was empty"),
             Finish::Stop => Ok(text),
             Finish::Length => unusable("it was cut off: write a shorter text"),

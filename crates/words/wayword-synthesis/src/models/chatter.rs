@@ -1,0 +1,153 @@
+//! What a model says around the text that it was asked for, and replies that are no text but a refusal.
+
+use wayword_language::{
+    Phrases,
+    chatter::{AGREEING, ANNOUNCED, ANNOUNCING, PARTING, REFUSING},
+    text::words,
+};
+
+/// Most words of a sentence that announces a text.
+const ANNOUNCING_WORDS: usize = 24;
+/// How much of a sentence is looked at, bytes: its beginning tells what it is.
+const LOOKED_AT: usize = 300;
+
+/// A text without code fences around it, sentences that announce it, and sentences behind it that are no part of it.
+pub(super) fn without_chatter(text: &str) -> &str {
+    let text = without_fence(text);
+    let sentences = sentences(text);
+    let before = sentences.iter().take_while(|sentence| announces(sentence)).count();
+    // A reply of nothing but chatter stays as it is: whoever asked sees that it is no text.
+    let Some(first) = sentences.get(before) else { return text };
+    let behind = sentences.iter().skip(before + 1).find(|sentence| parts(sentence));
+    let start = offset(text, first);
+    let end = behind.map_or(text.len(), |sentence| offset(text, sentence));
+    text[start..end].trim().trim_end_matches("---").trim()
+}
+
+/// Whether a reply is a refusal.
+pub(super) fn refuses(text: &str) -> bool {
+    let said = spoken(text.trim_start_matches(['"', '“', '*']));
+    begins(&said, &REFUSING)
+}
+
+/// What stands in the first code fence, without the name of its language.
+fn without_fence(text: &str) -> &str {
+    const FENCE: &str = "```";
+    let Some((_, inside)) = text.split_once(FENCE) else { return text };
+    let inside = inside.split(FENCE).next().unwrap_or(inside);
+    let body = match inside.split_once('\n') {
+        Some((tag, body)) if !tag.trim().contains(' ') => body,
+        _ => inside,
+    };
+    if body.trim().is_empty() { text } else { body }
+}
+
+/// The sentences of a text: each ends at its mark, at a colon, or at the end of its line.
+fn sentences(text: &str) -> Vec<&str> {
+    let mut sentences = Vec::new();
+    for line in text.lines() {
+        let mut start = 0;
+        let marks = line.char_indices().filter(|(_, c)| matches!(c, '.' | '!' | '?' | ':'));
+        for (at, mark) in marks {
+            let rest = &line[at + mark.len_utf8()..];
+            let close = rest.len() - rest.trim_start_matches(['"', '”', '\'', '*', ')']).len();
+            if rest[close..].is_empty() || rest[close..].starts_with(char::is_whitespace) {
+                let end = at + mark.len_utf8() + close;
+                sentences.push(&line[start..end]);
+                start = end;
+            }
+        }
+        sentences.push(&line[start..]);
+    }
+    sentences.into_iter().map(str::trim).filter(|sentence| sentence.contains(char::is_alphanumeric)).collect()
+}
+
+/// Where a part of a text begins in it.
+fn offset(text: &str, part: &str) -> usize {
+    part.as_ptr() as usize - text.as_ptr() as usize
+}
+
+/// Whether a sentence only says that a text follows.
+fn announces(sentence: &str) -> bool {
+    let said = spoken(sentence);
+    let said: &[String] = match agreeing(&said) {
+        0 => &said,
+        all if all == said.len() => return true,
+        some => &said[some..],
+    };
+    let names_text = said.iter().any(|word| ANNOUNCED.contains(&word.as_str()));
+    let leads = sentence.trim_end_matches('*').ends_with(':');
+    names_text && said.len() <= ANNOUNCING_WORDS && (leads || begins(said, &ANNOUNCING))
+}
+
+/// Whether a sentence behind a text is no part of it: a remark, or a count of its words.
+fn parts(sentence: &str) -> bool {
+    let said = spoken(sentence);
+    let counts = sentence.starts_with('(') && said.iter().any(|word| word == "words" || word == "note");
+    counts || begins(&said, &PARTING)
+}
+
+/// How many words at the beginning only say yes.
+fn agreeing(said: &[String]) -> usize {
+    let longest = |from: usize| {
+        let fits = AGREEING.iter().filter(|phrase| said[from..].iter().take(phrase.len()).eq(phrase.iter()));
+        fits.map(Vec::len).max().unwrap_or(0)
+    };
+    let first = longest(0);
+    first + if first < said.len() && first > 0 { longest(first) } else { 0 }
+}
+
+fn begins(said: &[String], phrases: &Phrases) -> bool {
+    phrases.iter().any(|phrase| said.len() >= phrase.len() && said.iter().zip(phrase.iter()).all(|(a, b)| a == b))
+}
+
+fn spoken(sentence: &str) -> Vec<String> {
+    words(&sentence[..sentence.floor_char_boundary(LOOKED_AT)].replace('’', "'"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_stands_around_a_text_is_taken_off() {
+        for (told, wanted) in [
+            ("Sure! Here is the instruction: Go to the sink.", "Go to the sink."),
+            ("Certainly! Here's a concise instruction in the style of the reference texts:\n\nGo to the sink.", "Go to the sink."),
+            ("Go to the sink.\n\nLet me know if you need anything else!", "Go to the sink."),
+            ("Go to the sink. I hope this helps.", "Go to the sink."),
+            ("Of course.\nGo to the sink and stop.", "Go to the sink and stop."),
+            ("```text\nGo to the sink.\n```", "Go to the sink."),
+            ("Here you go:\n```\nGo to the sink.\n```\nThis instruction has five words.", "Go to the sink."),
+            ("Go to the sink.\n\n(4 words)", "Go to the sink."),
+            ("Go to the sink.\n---\nNote: I used the sink as the landmark.", "Go to the sink."),
+            ("Here is the revised instruction.\nWalk past the bed.", "Walk past the bed."),
+            ("Walk 2.5 metres. Stop: the sink is there.", "Walk 2.5 metres. Stop: the sink is there."),
+            ("Follow the directions on the sign.", "Follow the directions on the sign."),
+            ("This is the room with a bed. Stop here.", "This is the room with a bed. Stop here."),
+            ("Sure!", "Sure!"),
+            ("", ""),
+        ] {
+            assert_eq!(without_chatter(told), wanted, "{told}");
+        }
+    }
+
+    #[test]
+    fn refusals_are_recognised_and_instructions_are_not() {
+        for refusal in ["I'm sorry, but I can't help with that.", "I’m sorry, I cannot.", "As an AI, I do not see.", "Sorry!"] {
+            assert!(refuses(refusal), "{refusal}");
+        }
+        for text in ["Go past the sorry-looking plant.", "Into the hall. I can't stress it enough.", "Stop."] {
+            assert!(!refuses(text), "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_reply_is_taken(reply in "(\\PC|[\n`:.! ]|Sure|Note){0,300}") {
+            prop_assert!(reply.contains(without_chatter(&reply)));
+            let _ = refuses(&reply);
+        }
+    }
+}
