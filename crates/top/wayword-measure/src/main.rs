@@ -25,6 +25,7 @@ mod skeleton;
 mod stage;
 mod storm;
 mod sweep;
+mod tell_apart;
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
@@ -181,6 +182,8 @@ enum What {
     ReaderFigures(reader_figures::Flags),
     /// Try out the settings of agents on a train split.
     Sweep(sweep::Flags),
+    /// Tell generated texts from people's with a plain classifier, cross-validated by building.
+    TellApart(tell_apart::Flags),
 }
 
 fn main() -> ExitCode {
@@ -188,6 +191,7 @@ fn main() -> ExitCode {
     let is_json = match &what {
         What::People(flags) => flags.json,
         What::Found(flags) => flags.judging.json,
+        What::TellApart(flags) => flags.json,
         _ => false,
     };
     let output = Output::new(is_json, false);
@@ -221,6 +225,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Found(flags) => found::measure(flags, output),
         What::ReaderFigures(flags) => reader_figures::measure(&flags, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
+        What::TellApart(flags) => tell_apart::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }
 }
