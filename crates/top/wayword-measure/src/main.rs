@@ -26,6 +26,7 @@ mod stage;
 mod storm;
 mod sweep;
 mod tell_apart;
+mod texts;
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
@@ -184,6 +185,8 @@ enum What {
     Sweep(sweep::Flags),
     /// Tell generated texts from people's with a plain classifier, cross-validated by building.
     TellApart(tell_apart::Flags),
+    /// Measure generated texts: bare turns, lengths, word types, openers, and what they share with other texts.
+    Texts(texts::Flags),
 }
 
 fn main() -> ExitCode {
@@ -192,6 +195,7 @@ fn main() -> ExitCode {
         What::People(flags) => flags.json,
         What::Found(flags) => flags.judging.json,
         What::TellApart(flags) => flags.json,
+        What::Texts(flags) => flags.json,
         _ => false,
     };
     let output = Output::new(is_json, false);
@@ -226,6 +230,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::ReaderFigures(flags) => reader_figures::measure(&flags, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::TellApart(flags) => tell_apart::measure(&flags, output),
+        What::Texts(flags) => texts::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }
 }

@@ -11,7 +11,7 @@ const LEAST_TEXTS: usize = 2;
 const LENGTH_UNIT: f64 = 20.0;
 
 /// A text in lower case, with letters and digits of ASCII alone, and one space between words.
-pub(crate) fn plain(text: &str) -> String {
+pub(super) fn plain(text: &str) -> String {
     let kept = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
     let lower = text.to_lowercase();
     let kept: String = lower.chars().map(kept).collect();
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn runs_of_up_to_three_words_are_features_where_two_texts_have_them() {
-        let texts = ["go to the door", "go to it"].map(|text| grams(text));
+        let texts = ["go to the door", "go to it"].map(grams);
         assert!(texts[0].contains("to the door") && !texts[0].contains("go to the door"));
         let features = Features::of(texts.iter());
         let names: Vec<&str> = features.places().map(|(gram, _)| gram).collect();

@@ -8,8 +8,7 @@ mod logistic;
 
 use crate::share::Share;
 use clap::Args;
-pub(crate) use grams::plain;
-use grams::{Features, grams};
+use grams::{Features, grams, plain};
 use logistic::{Model, Row};
 use rand::seq::IndexedRandom;
 use serde::Serialize;

@@ -1,0 +1,87 @@
+//! Measures of generated texts, each beside people's figure. Nothing here is shared with the writer or the checks: only
+//! the lexicon's names are.
+
+mod clauses;
+mod copies;
+mod names;
+mod row;
+mod surface;
+
+use crate::share::table;
+use clap::Args;
+use copies::Train;
+use row::Row;
+use serde_json::json;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
+use wayword::{error::Error, output::Output};
+use wayword_formats::Episode;
+
+/// The flags of `texts`.
+#[derive(Debug, Args)]
+pub(crate) struct Flags {
+    /// Generated texts: a dataset file of any format.
+    generated: PathBuf,
+    /// People's texts of the same items, which stand in a column beside.
+    #[arg(long)]
+    people: Option<PathBuf>,
+    /// Texts that the writer could have copied from: what is shared with them is counted.
+    #[arg(long)]
+    train: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let generated = wayword_formats::read(&flags.generated)?;
+    let people = flags.people.as_deref().map(|file| of_items(file, &generated)).transpose()?;
+    let train = flags.train.as_deref().map(wayword_formats::read).transpose()?;
+    let train = train.map(|episodes| {
+        let texts = episodes.iter().flat_map(|episode| &episode.instructions);
+        Train::of(texts.map(String::as_str))
+    });
+    let sides: Vec<(&str, Vec<Row>)> = [("generated", Some(&generated)), ("people", people.as_ref())]
+        .into_iter()
+        .filter_map(|(name, episodes)| Some((name, rows(episodes?, train.as_ref()))))
+        .collect();
+    let value = sides.iter().map(|(name, rows)| ((*name).to_owned(), json!(rows))).collect::<serde_json::Map<_, _>>();
+    output.data(&value, side_by_side(&sides));
+    Ok(())
+}
+
+/// People's items that were generated too; all of them where there is none.
+fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, Error> {
+    let ids: BTreeSet<&str> = generated.iter().map(|episode| episode.id.as_str()).collect();
+    let (same, others): (Vec<Episode>, Vec<Episode>) =
+        wayword_formats::read(file)?.into_iter().partition(|episode| ids.contains(episode.id.as_str()));
+    Ok(if same.is_empty() { others } else { same })
+}
+
+fn rows(episodes: &[Episode], train: Option<&Train>) -> Vec<Row> {
+    let texts = in_turn(episodes);
+    let mut rows = surface::rows(&texts);
+    rows.extend(copies::rows(&texts, train));
+    rows
+}
+
+/// The first text of each item, then the second ones, and so on.
+fn in_turn(episodes: &[Episode]) -> Vec<&str> {
+    let most = episodes.iter().map(|episode| episode.instructions.len()).max().unwrap_or(0);
+    let nth = |at: usize| episodes.iter().filter_map(move |episode| episode.instructions.get(at));
+    (0..most).flat_map(nth).map(String::as_str).collect()
+}
+
+fn side_by_side(sides: &[(&str, Vec<Row>)]) -> String {
+    let head = std::iter::once(String::new()).chain(sides.iter().map(|(name, _)| (*name).to_owned()));
+    let names = sides.first().map_or(&[][..], |(_, rows)| rows);
+    let line = |row: &Row| {
+        let of = |rows: &[Row]| {
+            rows.iter().find(|other| other.name == row.name).map_or("-".to_owned(), |row| row.value.cell())
+        };
+        std::iter::once(row.name.clone()).chain(sides.iter().map(|(_, rows)| of(rows))).collect()
+    };
+    table(&std::iter::once(head.collect()).chain(names.iter().map(line)).collect::<Vec<_>>())
+}
