@@ -16,9 +16,9 @@ pub(super) struct Train {
 }
 
 impl Train {
-    pub(super) fn of<'a>(texts: impl Iterator<Item = &'a str> + Clone) -> Self {
-        let all = |length: usize| texts.clone().flat_map(move |text| runs(&words(text), length)).collect();
-        Self { runs: RUNS.map(all).into(), skeletons: texts.clone().map(skeleton).collect() }
+    pub(super) fn of(texts: &[&str]) -> Self {
+        let all = |length: usize| texts.iter().flat_map(|text| runs(&words(text), length)).collect();
+        Self { runs: RUNS.map(all).into(), skeletons: texts.iter().map(|text| skeleton(text)).collect() }
     }
 }
 
@@ -67,13 +67,13 @@ mod tests {
     #[test]
     fn texts_that_differ_in_objects_and_rooms_share_a_skeleton() {
         let texts = ["Go to the kitchen and wipe the table.", "Go to the bedroom and wipe the mirror.", "Wait here."];
-        let train = Train::of(["go to the garage and wipe the car, please", "wait"].into_iter());
+        let train = Train::of(&["go to the garage and wipe the car, please", "wait"]);
         let rows = rows(&texts, Some(&train));
         let values: Vec<Value> = rows.iter().map(|row| row.value).collect();
         let share = |count| Value::Share { count, of: 3 };
         // "Go to the", "and wipe the": five words in a row need the same room.
         assert_eq!(values, [share(2), Value::Number(2.0), share(0), share(0), share(0), share(0)]);
-        let copied = Train::of(["so, go to the kitchen and wipe"].into_iter());
+        let copied = Train::of(&["so, go to the kitchen and wipe"]);
         assert_eq!(super::rows(&texts, Some(&copied))[3].value, share(1));
     }
 }

@@ -39,10 +39,7 @@ pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let generated = wayword_formats::read(&flags.generated)?;
     let people = flags.people.as_deref().map(|file| of_items(file, &generated)).transpose()?;
     let train = flags.train.as_deref().map(wayword_formats::read).transpose()?;
-    let train = train.map(|episodes| {
-        let texts = episodes.iter().flat_map(|episode| &episode.instructions);
-        Train::of(texts.map(String::as_str))
-    });
+    let train = train.map(|episodes| Train::of(&in_turn(&episodes)));
     let sides: Vec<(&str, Vec<Row>)> = [("generated", Some(&generated)), ("people", people.as_ref())]
         .into_iter()
         .filter_map(|(name, episodes)| Some((name, rows(episodes?, train.as_ref()))))
