@@ -1,6 +1,6 @@
 //! What is said about a view, and who vouches for it.
 
-use crate::{ModelError, Side, View};
+use crate::{ModelError, Schema, Side, View};
 use serde::{Deserialize, Serialize};
 
 /// A view in words, with the evidence behind them.
@@ -11,13 +11,45 @@ pub struct Caption {
     /// The room, where one was named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub room: Option<String>,
+    /// The rooms that it may be, where the witness was not sure of one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub perhaps_rooms: Vec<String>,
     /// What was said to be there, not to be there, or not known.
     pub sightings: Vec<Sighting>,
+    /// The ways out of the room that were named.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ways: Vec<WayOut>,
     /// The whole dialogue.
     pub transcript: Vec<Exchange>,
     /// Who wrote the text, where the run's summariser did not: it failed, or there was nothing to summarise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
+    /// What became of the form that was asked for, where an answer did not have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form: Option<Form>,
+}
+
+/// What became of an answer that did not have the form that was asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// The second answer had it.
+    Mended,
+    /// No answer had it: the last one was read as words.
+    Broken,
+}
+
+/// A way out of the room that a view shows.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WayOut {
+    /// What it is: "doorway", "stairs".
+    pub name: String,
+    /// Where it was said to be in the view.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<Where>,
+    /// The room that is seen through it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leads_to: Option<String>,
 }
 
 /// One object, and what a witness said of it.
@@ -33,11 +65,42 @@ pub struct Sighting {
     /// The colour it was said to have.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,
+    /// Further colours it was said to have.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub more_colours: Vec<String>,
+    /// What it was said to be made of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
+    /// Whether it was said to be far away.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_far: bool,
+    /// Whether it was said to stand out for somebody who walks there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stands_out: bool,
     /// Whether several were said to be there.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub several: bool,
     /// Who said so (`labels`, `provider/model`).
     pub by: String,
+}
+
+impl Sighting {
+    /// What a witness said of an object, and nothing more.
+    #[must_use]
+    pub fn new(name: impl Into<String>, witness: Witness, by: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            witness,
+            place: None,
+            colour: None,
+            more_colours: Vec::new(),
+            material: None,
+            is_far: false,
+            stands_out: false,
+            several: false,
+            by: by.into(),
+        }
+    }
 }
 
 /// What a witness said about an object.
@@ -132,6 +195,8 @@ pub enum Trouble {
     Loop,
     /// It is the answer to another question, word for word.
     Repeat,
+    /// It does not have the form that was asked for.
+    Form,
 }
 
 /// A question about a view, with what was said before.
@@ -143,6 +208,18 @@ pub struct Ask<'a> {
     pub question: &'a str,
     /// The dialogue so far.
     pub history: &'a [Exchange],
+    /// What the answer is to be.
+    pub answer: AnswerForm,
+}
+
+/// What an answer is to be.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum AnswerForm {
+    /// A sentence or two.
+    #[default]
+    Words,
+    /// JSON of this form, whatever else surrounds it.
+    Json(Schema),
 }
 
 /// What was answered.

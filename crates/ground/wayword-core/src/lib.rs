@@ -34,7 +34,9 @@ pub mod verdict;
 pub mod view;
 
 pub use ambiguity::Ambiguity;
-pub use caption::{Answer, Answerer, Ask, Caption, Exchange, Sighting, Trouble, Where, Witness};
+pub use caption::{
+    Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Trouble, WayOut, Where, Witness,
+};
 pub use contain::contained;
 pub use encoder::{Grounder, TextEncoder};
 pub use failure::Failure;
@@ -47,7 +49,7 @@ pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
 pub use instruction::{Chosen, ChosenBy, Instruction, LONGEST_TEXT_BYTES, Mention, MentionKind, Provenance};
 pub use label::Label;
-pub use model::{Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling};
+pub use model::{Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling, Schema};
 pub use motion::{Climb, Motion, Move, Turn};
 pub use observation::{Look, Observation};
 pub use path::{Distinction, Frame, Path, Target};

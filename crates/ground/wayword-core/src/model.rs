@@ -47,6 +47,17 @@ pub struct Request {
     pub sampling: Sampling,
     /// Number of this request among equal ones that each need a new answer; 0 for the first.
     pub replicate: u32,
+    /// The form of the reply, where it is to be JSON. Services that can hold a model to it do.
+    pub schema: Option<Schema>,
+}
+
+/// A form of JSON, in the words of JSON Schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Schema {
+    /// Its name: letters and underscores.
+    pub name: &'static str,
+    /// The schema as text.
+    pub json: &'static str,
 }
 
 /// What a model said.

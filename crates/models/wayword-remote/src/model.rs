@@ -210,7 +210,7 @@ mod tests {
         {
             let text = text.repeat(100);
             let (bytes, messages) = (text.len() as u64, vec![Message::user(text)]);
-            let size = size(&Request { messages, sampling: sampling.clone(), replicate: 0 });
+            let size = size(&Request { messages, sampling: sampling.clone(), replicate: 0, schema: None });
             assert!(size.most_tokens_in(0) >= bytes, "{size:?}");
         }
     }

@@ -9,6 +9,7 @@ pub mod offline;
 pub mod perception;
 pub mod prompts;
 pub mod repair;
+pub mod seeing;
 pub mod style;
 pub mod walk;
 pub mod writer;

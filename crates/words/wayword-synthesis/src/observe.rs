@@ -2,11 +2,12 @@
 
 use crate::{
     dialogue::{Asker, Condensed, Dialogue, Mode, Need, RulesSummariser, Summariser},
+    seeing::see,
     walk::FrameSelection,
 };
 use wayword_core::{
-    Answerer, Ask, Caption, Exchange, Frame, Gaze, Look, ModelError, Observation, Path, Platform, PlatformError, Side,
-    View, Witness,
+    AnswerForm, Answerer, Ask, Caption, Exchange, Frame, Gaze, Look, ModelError, Observation, Path, Platform,
+    PlatformError, Side, View, Witness,
 };
 
 /// Who asks, sees and summarises, and how.
@@ -158,18 +159,21 @@ fn views(platform: &dyn Platform, path: &Path, at: usize, gazes: &[Gaze]) -> Res
     Ok(planned.collect())
 }
 
-/// Runs one dialogue about a view to its end.
+/// Asks about a view until all is said.
 ///
 /// # Errors
 /// When a role does not answer.
 pub fn talk_about(view: &View, observers: Observers<'_>) -> Result<Caption, ModelError> {
+    if let Mode::Structured { questions } = observers.mode {
+        return see(view, observers, questions);
+    }
     let mut dialogue = Dialogue::new(observers.mode);
     loop {
         match dialogue.need() {
             Need::Question => dialogue.ask(observers.asker.next_question(dialogue.transcript())?),
             Need::Answer(question) => {
                 let history: Vec<Exchange> = dialogue.transcript().to_vec();
-                let ask = Ask { view, question: &question, history: &history };
+                let ask = Ask { view, question: &question, history: &history, answer: AnswerForm::Words };
                 let answer =
                     observers.answerer.answer(&[ask]).pop().unwrap_or_else(|| Err(unanswered(observers.answerer)));
                 dialogue.answer(&answer?);
@@ -180,7 +184,7 @@ pub fn talk_about(view: &View, observers: Observers<'_>) -> Result<Caption, Mode
 }
 
 /// The error for an answerer that leaves a question out. Without it the dialogue would ask the same question for ever.
-fn unanswered(answerer: &dyn Answerer) -> ModelError {
+pub(crate) fn unanswered(answerer: &dyn Answerer) -> ModelError {
     ModelError::Failed { model: answerer.name().to_owned(), reason: "it gave no answer".to_owned() }
 }
 
@@ -192,7 +196,7 @@ fn caption(transcript: &[Exchange], observers: Observers<'_>) -> Result<Caption,
     match (observers.mode, transcript) {
         (Mode::Dialogue { .. }, _) => observers.summariser.sum_up(transcript, answerer),
         (Mode::Single, [only]) => Ok(Caption { text: only.answer.clone(), by: Some(answerer.to_owned()), ..rules()? }),
-        (Mode::Fixed | Mode::Single, _) => rules(),
+        (Mode::Fixed | Mode::Single | Mode::Structured { .. }, _) => rules(),
     }
 }
 
@@ -201,7 +205,10 @@ fn summary(frame: &Frame, looks: &[Look], observers: Observers<'_>) -> Result<Co
         return Ok(Condensed { text: only.caption.text.clone(), by: None });
     }
     let directed = |look| (direction(frame, look), &look.caption);
-    observers.summariser.condense(&looks.iter().map(directed).collect::<Vec<_>>(), CONDENSED_WORDS)
+    // A structured answer costs one call, and its caption none.
+    let rules = matches!(observers.mode, Mode::Structured { .. });
+    let summariser: &dyn Summariser = if rules { &RulesSummariser } else { observers.summariser };
+    summariser.condense(&looks.iter().map(directed).collect::<Vec<_>>(), CONDENSED_WORDS)
 }
 
 /// The direction of a look in words, as seen by the walker.

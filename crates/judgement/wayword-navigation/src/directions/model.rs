@@ -37,7 +37,12 @@ impl ByModel {
 
     /// One reply per prompt, in their order.
     fn ask(&self, prompts: &[&str], replicate: u32) -> Vec<Result<Directions, Trouble>> {
-        let request = |prompt: &&str| Request { messages: vec![Message::user(*prompt)], sampling: SAMPLING, replicate };
+        let request = |prompt: &&str| Request {
+            messages: vec![Message::user(*prompt)],
+            sampling: SAMPLING,
+            replicate,
+            schema: None,
+        };
         let requests: Vec<Request> = prompts.iter().map(request).collect();
         let mut replies = self.model.complete(&requests).into_iter();
         let next = |_| match replies.next() {

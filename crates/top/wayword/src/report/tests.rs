@@ -32,21 +32,15 @@ fn path(id: &str) -> WalkPath {
 }
 
 fn observation(room: &str, thing: &str) -> Observation {
-    let sighting = |name: &str, witness| Sighting {
-        name: name.into(),
-        witness,
-        place: Some(Where::Left),
-        colour: None,
-        several: false,
-        by: "labels".into(),
-    };
+    let sighting =
+        |name: &str, witness| Sighting { place: Some(Where::Left), ..Sighting::new(name, witness, "labels") };
     let text = format!("A {room} with a {thing} on the left.");
     let caption = Caption {
         text: text.clone(),
         room: Some(room.into()),
         sightings: vec![sighting(thing, Witness::Seen), sighting("piano", Witness::Denied)],
         transcript: vec![Exchange::new("Is there a piano?", "No.")],
-        by: None,
+        ..Caption::default()
     };
     Observation { looks: vec![Look { gaze: Gaze::quarter(Heading::NORTH), caption }], summary: text, by: None }
 }

@@ -14,10 +14,11 @@ mod trouble;
 use wayword_core::{Caption, Exchange, ModelError, Trouble};
 use wayword_language::text::words;
 
-pub(crate) use answers::{Asked, Wanted, asked, sightings};
+pub(crate) use answers::{Asked, Wanted, asked, colour_at, room, sightings};
 pub use faults::{CaptionFault, caption_faults};
 pub use questions::RulesAsker;
 pub use summary::RulesSummariser;
+pub(crate) use summary::caption_of;
 
 /// The fixed first request of a dialogue (ChatCaptioner opens every dialogue with a request for a description).
 pub const OPENING: &str = "Describe in detail what you see.";
@@ -78,6 +79,11 @@ pub enum Mode {
     Fixed,
     /// [`OPENING`] alone: its answer is the caption.
     Single,
+    /// One request for JSON ([`crate::seeing`]), then questions about what it leaves open, up to a number.
+    Structured {
+        /// Most questions after it.
+        questions: usize,
+    },
 }
 
 /// What a dialogue needs next.
@@ -123,7 +129,7 @@ impl Dialogue {
     #[must_use]
     pub fn new(mode: Mode) -> Self {
         let first = match mode {
-            Mode::Dialogue { .. } | Mode::Single => OPENING,
+            Mode::Dialogue { .. } | Mode::Single | Mode::Structured { .. } => OPENING,
             Mode::Fixed => FIXED_QUERIES[0],
         };
         let mut dialogue = Self { mode, pending: None, exhausted: false, stale: 0, transcript: Vec::new() };
@@ -180,7 +186,8 @@ impl Dialogue {
                 self.stale = if counts { self.stale + 1 } else { 0 };
                 self.exhausted = self.transcript.len() > questions || self.stale >= STALE_ROUNDS;
             }
-            Mode::Single => self.exhausted = true,
+            // A structured request is no dialogue.
+            Mode::Single | Mode::Structured { .. } => self.exhausted = true,
             Mode::Fixed => self.put(FIXED_QUERIES.get(self.transcript.len()).map(|query| (*query).to_owned())),
         }
     }

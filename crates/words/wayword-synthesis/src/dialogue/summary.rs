@@ -24,8 +24,8 @@ impl Summariser for RulesSummariser {
     fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError> {
         let told = sightings(transcript, answerer);
         let room = room(transcript);
-        let text = held(room.as_deref(), &told);
-        Ok(Caption { text, room, sightings: told, transcript: transcript.to_vec(), by: None })
+        let text = caption_of(room.as_deref(), &told);
+        Ok(Caption { text, room, sightings: told, transcript: transcript.to_vec(), ..Caption::default() })
     }
 
     fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError> {
@@ -36,7 +36,7 @@ impl Summariser for RulesSummariser {
 
 /// The caption of what was seen. Names may be any words, and two names side by side may read as a third. So names that
 /// would make a fault are left out, and in the end the room too.
-fn held(room: Option<&str>, told: &[Sighting]) -> String {
+pub(crate) fn caption_of(room: Option<&str>, told: &[Sighting]) -> String {
     let is_denied = |seen: &Sighting| told.iter().any(|other| denies(other, &seen.name, seen.colour.as_deref()));
     let mut seen: Vec<&Sighting> =
         told.iter().filter(|sighting| sighting.witness == Witness::Seen && !is_denied(sighting)).collect();
@@ -57,8 +57,8 @@ fn caption(room: Option<&str>, seen: &[&Sighting]) -> String {
         Where::Right => " on the right",
     };
     let item = |sighting: &&Sighting| {
-        let name =
-            sighting.colour.as_ref().map_or(sighting.name.clone(), |colour| format!("{colour} {}", sighting.name));
+        let name = [sighting.colour.as_deref(), sighting.material.as_deref(), Some(sighting.name.as_str())];
+        let name = name.into_iter().flatten().collect::<Vec<_>>().join(" ");
         let name = if sighting.several { counted(7, &name) } else { with_article(&name) };
         format!("{name}{}", sighting.place.map_or("", place))
     };

@@ -1,9 +1,12 @@
 //! A language model that sees.
 
 use super::{PERCEPTION_SEED, clean::whole_sentences};
-use crate::prompts::{Manner, Prompts};
+use crate::{
+    prompts::{Manner, Prompts},
+    seeing::complaint,
+};
 use std::sync::Arc;
-use wayword_core::{Answer, Answerer, Ask, LanguageModel, Message, ModelError, Request, Role, Sampling};
+use wayword_core::{Answer, AnswerForm, Answerer, Ask, LanguageModel, Message, ModelError, Request, Role, Sampling};
 
 /// Puts questions about a view's picture to a language model that sees.
 #[derive(Clone)]
@@ -15,6 +18,9 @@ pub struct ModelAnswerer {
 
 /// The likeliest answer, because what is in a picture does not change with a random draw.
 const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
+
+/// Room for the JSON of about twenty things.
+const OF_JSON: Sampling = Sampling { max_tokens: 1_000, ..SAMPLING };
 
 impl ModelAnswerer {
     /// An answerer that asks a model, with prompts of the form that it expects.
@@ -29,9 +35,12 @@ impl ModelAnswerer {
             needs: "a picture",
             hint: "use a platform or data folder with pictures, or `--see labels` where there are labels",
         })?;
-        let text = self.prompts.answer(self.manner, ask.question, ask.history)?;
+        let (text, sampling, schema) = match ask.answer {
+            AnswerForm::Words => (self.prompts.answer(self.manner, ask.question, ask.history)?, SAMPLING, None),
+            AnswerForm::Json(schema) => (self.prompts.see(complaint(ask.question))?, OF_JSON, Some(schema)),
+        };
         let message = Message { role: Role::User, text, image: Some(image) };
-        Ok(Request { messages: vec![message], sampling: SAMPLING, replicate: 0 })
+        Ok(Request { messages: vec![message], sampling, replicate: 0, schema })
     }
 }
 
@@ -46,8 +55,9 @@ impl Answerer for ModelAnswerer {
         let mut replies = self.model.complete(&good).into_iter();
         let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it gave no answer".to_owned() };
         let answer = |request: Result<Request, ModelError>| {
-            request?;
-            replies.next().unwrap_or_else(|| Err(lost())).map(|reply| whole_sentences(&reply).to_owned())
+            let is_json = request?.schema.is_some();
+            let reply = replies.next().unwrap_or_else(|| Err(lost()))?;
+            Ok(if is_json { reply.text } else { whole_sentences(&reply).to_owned() })
         };
         requests.into_iter().map(answer).collect()
     }

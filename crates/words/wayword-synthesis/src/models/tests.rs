@@ -6,7 +6,7 @@ use crate::{
     writer::{Brief, WriteError, Writer},
 };
 use std::sync::{Arc, Mutex};
-use wayword_core::{Answerer, Ask, Exchange, Finish, Heading, Image, Motion, Pose, View};
+use wayword_core::{AnswerForm, Answerer, Ask, Exchange, Finish, Heading, Image, Motion, Pose, View};
 
 /// A model that gives prepared replies in their order, and keeps the requests.
 pub(crate) struct Scripted {
@@ -108,7 +108,7 @@ fn a_model_is_shown_the_picture_and_one_that_was_cut_off_keeps_whole_sentences()
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
     let view = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, Some(image.clone()), None);
     let blind = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, None, None);
-    let ask = |view| Ask { view, question: OPENING, history: &[] };
+    let ask = |view| Ask { view, question: OPENING, history: &[], answer: AnswerForm::Words };
     let answers = eye.answer(&[ask(&blind), ask(&view)]);
     assert!(matches!(&answers[0], Err(ModelError::NothingToSee { .. })));
     assert_eq!(answers[1].as_deref(), Ok("A bed."));

@@ -3,10 +3,11 @@
 //! Labels may reach no farther than two metres. Of a big thing that such a room has, they do not say that it is not there,
 //! unless their platform lists everything, or a calibration says otherwise.
 
+use super::listed::listed;
 use crate::dialogue::{Asked, Wanted, asked};
 use std::sync::Arc;
 use wayword_checks::open::{Calibration, is_expected};
-use wayword_core::{Answer, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
+use wayword_core::{Answer, AnswerForm, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
 use wayword_language::lexicon::{agree, counted, normal, plural, same_room, with_article};
 
 /// The answerer that reads a view's labels.
@@ -27,17 +28,21 @@ impl Answerer for Labels {
     }
 
     fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
-        asks.iter().map(|ask| self.of(ask.view, ask.question)).collect()
+        asks.iter().map(|ask| self.of(ask)).collect()
     }
 }
 
 impl Labels {
-    fn of(&self, view: &View, question: &str) -> Result<Answer, ModelError> {
+    fn of(&self, ask: &Ask<'_>) -> Result<Answer, ModelError> {
+        let Ask { view, question, .. } = *ask;
         let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
             name: "--see labels".into(),
             needs: "labels",
             hint: "name a model that sees pictures, as in --see ollama/llava (docs/MODELS.md), or use a platform with labels",
         })?;
+        if ask.answer != AnswerForm::Words {
+            return Ok(listed(view, truth));
+        }
         Ok(match asked(question) {
             Asked::Room => truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room))),
             Asked::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
@@ -115,7 +120,7 @@ fn not_sure() -> Answer {
     "I am not sure.".to_owned()
 }
 
-fn third(view: &View, label: &Label) -> Where {
+pub(super) fn third(view: &View, label: &Label) -> Where {
     Where::at(view.pose.heading.turn_to(label.heading), view.horizontal_fov_rad)
 }
 
@@ -202,7 +207,10 @@ mod tests {
 
     fn ask(question: &str) -> String {
         let view = view();
-        Labels::default().answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap()
+        Labels::default()
+            .answer(&[Ask { view: &view, question, history: &[], answer: AnswerForm::Words }])
+            .remove(0)
+            .unwrap()
     }
 
     #[test]
@@ -247,7 +255,10 @@ mod tests {
         truth.room = Some("dining room".into());
         let view = View::new(known.pose, known.horizontal_fov_rad, None, Some(truth));
         let ask = |question: &str| {
-            Labels::default().answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap()
+            Labels::default()
+                .answer(&[Ask { view: &view, question, history: &[], answer: AnswerForm::Words }])
+                .remove(0)
+                .unwrap()
         };
         assert_eq!(ask("Is there a dining table?"), "I am not sure.");
         assert_eq!(ask("How many dining tables are there?"), "I am not sure.");
@@ -263,7 +274,9 @@ mod tests {
         truth.room = Some("dining room".into());
         let view = View::new(known.pose, known.horizontal_fov_rad, None, Some(truth));
         let question = "Is there a dining table?";
-        let answer = |labels: Labels| labels.answer(&[Ask { view: &view, question, history: &[] }]).remove(0).unwrap();
+        let answer = |labels: Labels| {
+            labels.answer(&[Ask { view: &view, question, history: &[], answer: AnswerForm::Words }]).remove(0).unwrap()
+        };
         assert_eq!(answer(Labels { list_everything: true, ..Labels::default() }), "No, there is no dining table.");
         let calibrated = |close: &str| {
             let head = "platform = \"matterport\"\nfrom = \"a.json\"\ntexts = 1\n[names.\"dining table\"]\n";
@@ -279,8 +292,9 @@ mod tests {
     #[test]
     fn without_labels_it_says_so() {
         let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
-        let error =
-            Labels::default().answer(&[Ask { view: &blind, question: "Which room is this?", history: &[] }]).remove(0);
+        let error = Labels::default()
+            .answer(&[Ask { view: &blind, question: "Which room is this?", history: &[], answer: AnswerForm::Words }])
+            .remove(0);
         let message = error.unwrap_err().to_string();
         assert!(message.starts_with("--see labels needs labels, but this view has none: name a model"));
     }

@@ -2,6 +2,7 @@
 
 mod distinguish;
 mod labels;
+mod listed;
 
 pub use distinguish::distinguish;
 pub use labels::Labels;

@@ -14,7 +14,8 @@ use wayword_core::{Exchange, ModelError, Sighting, Witness};
 use crate::{dialogue::is_opening, writer::Brief};
 
 /// The templates: name and source.
-const BUILT_IN: [(&str, &str); 7] = [
+const BUILT_IN: [(&str, &str); 8] = [
+    ("see", include_str!("templates/see.j2")),
     ("question", include_str!("templates/question.j2")),
     ("answer", include_str!("templates/answer.j2")),
     ("answer_question", include_str!("templates/answer_question.j2")),
@@ -159,6 +160,14 @@ impl Prompts {
             Manner::Completion => "answer_completion",
         };
         self.fill(name, context! { question, history, is_opening => is_opening(question) })
+    }
+
+    /// Asks a model that sees for all that a view shows, as JSON. `complaint` says what was wrong with its last answer.
+    ///
+    /// # Errors
+    /// When an overridden template cannot be filled.
+    pub fn see(&self, complaint: Option<&str>) -> Result<String, PromptError> {
+        self.fill("see", context! { complaint => complaint.unwrap_or_default() })
     }
 
     /// Asks a language model to summarise a dialogue. The prompt names what was denied, so that it stays out, and what was

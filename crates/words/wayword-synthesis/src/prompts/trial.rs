@@ -14,16 +14,10 @@ use wayword_core::{
 
 pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     let transcript = [Exchange::new("Is there a bed?", "No.")];
-    let denied = Sighting {
-        name: "bed".to_owned(),
-        witness: Witness::Denied,
-        place: None,
-        colour: None,
-        several: false,
-        by: String::new(),
-    };
+    let denied = Sighting::new("bed", Witness::Denied, "");
     let complaints = ["it names a bed".to_owned()];
     prompts.question(&transcript)?;
+    prompts.see(Some("there is no JSON in it"))?;
     for manner in [Manner::Chat, Manner::Question, Manner::Completion] {
         prompts.answer(manner, "Is there a bed?", &transcript)?;
     }

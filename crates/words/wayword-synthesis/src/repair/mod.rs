@@ -173,6 +173,7 @@ fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, r
         Mode::Dialogue { .. } => observers.asker.name(),
         Mode::Fixed => "fixed queries",
         Mode::Single => "one fixed request",
+        Mode::Structured { .. } => "one structured request",
     };
     // Several looks of a frame are condensed even where one answer described each.
     let condensed = order.walk.observations.iter().any(|observation| observation.looks.len() > 1);

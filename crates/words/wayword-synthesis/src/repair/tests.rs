@@ -49,14 +49,7 @@ fn along(places: &[(f64, f64)], things: &[&str]) -> Walk {
         motion: Motion::Known,
         target: None,
     };
-    let seen = |name: &str| Sighting {
-        name: name.into(),
-        witness: Witness::Seen,
-        place: Some(Where::Middle),
-        colour: None,
-        several: false,
-        by: "test".into(),
-    };
+    let seen = |name: &str| Sighting { place: Some(Where::Middle), ..Sighting::new(name, Witness::Seen, "test") };
     let observations = path.frames.iter().zip(things).map(|(frame, name)| {
         let caption = Caption { text: format!("A {name}."), sightings: vec![seen(name)], ..Caption::default() };
         let look = Look { gaze: Gaze::quarter(frame.pose.heading), caption };

@@ -50,7 +50,7 @@ fn things(answer: &str, known: &BTreeSet<String>) -> Vec<Mention> {
 
 fn told(mentions: Vec<Mention>, place: Option<Where>) -> Vec<Told> {
     let aside = |Mention { name, witness, place: own, colour, several, .. }| {
-        aside(Sighting { name, witness, place: own.or(place), colour, several, by: String::new() })
+        aside(Sighting { place: own.or(place), colour, several, ..sighting(&name, witness) })
     };
     mentions.into_iter().map(aside).collect()
 }
@@ -66,7 +66,7 @@ fn aside(sighting: Sighting) -> Told {
 }
 
 fn sighting(name: &str, witness: Witness) -> Sighting {
-    Sighting { name: name.to_owned(), witness, place: None, colour: None, several: false, by: String::new() }
+    Sighting::new(name, witness, "")
 }
 
 /// Mentions of a wanted thing, and the others.

@@ -23,7 +23,7 @@ use wayword_language::{
 
 pub(super) use mentions::{Mention, mentions};
 pub(crate) use {
-    phrases::Wanted,
+    phrases::{Wanted, colour_at},
     question::{Asked, asked},
 };
 
@@ -126,7 +126,7 @@ fn add(joined: &mut Vec<Sighting>, earlier: usize, told: Told) {
 const MOST_BYTES: usize = 40;
 
 /// The room that was named: in answer to a question for it, else in the first description.
-pub(super) fn room(transcript: &[Exchange]) -> Option<String> {
+pub(crate) fn room(transcript: &[Exchange]) -> Option<String> {
     let asked_for = transcript.iter().find_map(|exchange| match asked(&exchange.question) {
         Asked::Room => answered(&exchange.answer),
         Asked::IsRoom(name) if polarity_of(&exchange.answer) == Polarity::Yes => Some(name),

@@ -71,7 +71,7 @@ pub(super) fn place_phrases(words: &[&str]) -> Vec<PlacePhrase> {
 }
 
 /// The colour that begins at a word, with its shade, and the number of its words.
-pub(super) fn colour_at(words: &[&str]) -> Option<(String, usize)> {
+pub(crate) fn colour_at(words: &[&str]) -> Option<(String, usize)> {
     let is_colour = |word: &&&str| COLOURS.contains(word) || MORE_COLOURS.contains(word);
     let plain = |word: &str| match word {
         "gray" => "grey".to_owned(),

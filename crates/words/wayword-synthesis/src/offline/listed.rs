@@ -1,0 +1,46 @@
+//! A view's labels in the form of a structured answer.
+
+use super::labels::third;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use wayword_core::{GroundTruth, Label, View, Where};
+use wayword_language::lexicon::{Class, plural, thing};
+
+/// Most things that it lists, the nearest first.
+const MOST_LISTED: usize = 14;
+/// Beyond this, a thing is far.
+const FAR_M: f64 = 4.0;
+
+/// What the labels of a view say, as JSON.
+pub(super) fn listed(view: &View, truth: &GroundTruth) -> String {
+    let mut labels: Vec<(&Label, Where)> = truth.labels.iter().map(|label| (label, third(view, label))).collect();
+    let distance = |label: &Label| label.distance_m.unwrap_or(f64::INFINITY);
+    labels.sort_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)));
+    let mut counts: BTreeMap<(&str, Where), usize> = BTreeMap::new();
+    for (label, place) in &labels {
+        *counts.entry((&label.name, *place)).or_default() += 1;
+    }
+    let is_door =
+        |label: &Label| matches!(thing(&label.name).map(|thing| thing.class), Some(Class::Door | Class::Stairs));
+    let ways: Vec<Value> = labels
+        .iter()
+        .filter(|(label, _)| is_door(label))
+        .map(|(label, place)| json!({ "kind": label.name, "side": place, "leads_to": "unknown" }))
+        .collect();
+    let mut things: Vec<Value> = Vec::new();
+    for (label, place) in labels {
+        let Some(count) = counts.remove(&(label.name.as_str(), place)) else { continue };
+        let far = if label.distance_m.is_some_and(|metres| metres > FAR_M) { "far" } else { "near" };
+        things.push(json!({
+            "name": if count > 1 { plural(&label.name) } else { label.name.clone() },
+            "colours": label.colour.iter().collect::<Vec<_>>(),
+            "material": "",
+            "side": place,
+            "distance": far,
+            "sure": "sure",
+        }));
+    }
+    things.truncate(MOST_LISTED);
+    let room = truth.room.as_deref().unwrap_or("unknown");
+    json!({ "room": room, "room_sure": "sure", "ways_out": ways, "things": things, "stands_out": [] }).to_string()
+}

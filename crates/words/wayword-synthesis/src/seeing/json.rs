@@ -1,0 +1,184 @@
+//! Finds the JSON in an answer, whatever surrounds it, and mends what models get wrong.
+
+use serde_json::{Deserializer, Value};
+
+/// Longest answer that is read, bytes. A full one has about 2,000.
+pub(super) const MOST_BYTES: usize = 32 * 1024;
+
+/// The JSON of an answer.
+#[derive(Debug, PartialEq)]
+pub(super) struct Found {
+    pub(super) value: Value,
+    /// Whether the answer ends in the middle of it. The value then holds what was complete.
+    pub(super) is_cut: bool,
+}
+
+/// The first object of an answer, or an array of objects.
+///
+/// # Errors
+/// When there is none, or it is too long: what is wrong, in words for the model.
+pub(super) fn find(answer: &str) -> Result<Found, String> {
+    if answer.len() > MOST_BYTES {
+        return Err(format!("it has {} bytes, more than {MOST_BYTES}", answer.len()));
+    }
+    let start = answer.find('{').ok_or("there is no JSON in it")?;
+    let text = &answer[start..];
+    if let Some(Ok(value)) = Deserializer::from_str(text).into_iter::<Value>().next() {
+        return Ok(Found { value, is_cut: false });
+    }
+    let (mended, is_cut) = mended(text);
+    match Deserializer::from_str(&mended).into_iter::<Value>().next() {
+        Some(Ok(value)) => Ok(Found { value, is_cut }),
+        Some(Err(error)) => Err(format!("it is no valid JSON ({error})")),
+        None => Err("there is no JSON in it".to_owned()),
+    }
+}
+
+/// Where the text stands: how much of it is complete, and what is open there.
+#[derive(Default)]
+struct Mending {
+    out: String,
+    open: Vec<char>,
+    /// The length up to which everything is complete, and what was open there.
+    whole: Option<(usize, Vec<char>)>,
+}
+
+/// Most brackets within each other; JSON of the form has four.
+const DEEPEST: usize = 32;
+
+/// JSON without commas before brackets, with the words and quotes of JSON in place of other languages', and closed where
+/// it was cut off. Also whether it was.
+fn mended(text: &str) -> (String, bool) {
+    let mut mending = Mending::default();
+    let mut rest = text;
+    while let Some(next) = rest.chars().next() {
+        let taken = match next {
+            '"' | '\'' | '“' => match string(rest, next) {
+                Some((said, taken)) => {
+                    mending.out.push_str(&Value::String(said).to_string());
+                    taken
+                }
+                None => break,
+            },
+            '{' | '[' if mending.open.len() == DEEPEST => break,
+            '{' | '[' => {
+                mending.open.push(if next == '{' { '}' } else { ']' });
+                mending.out.push(next);
+                1
+            }
+            '}' | ']' => {
+                mending.close(next);
+                if mending.open.is_empty() {
+                    return (mending.out, false);
+                }
+                1
+            }
+            '/' if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
+            _ if next.is_ascii_alphabetic() => {
+                let taken = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+                mending.out.push_str(&word(&rest[..taken]));
+                taken
+            }
+            _ => {
+                mending.out.push(next);
+                next.len_utf8()
+            }
+        };
+        rest = &rest[taken..];
+    }
+    mending.ended()
+}
+
+impl Mending {
+    fn close(&mut self, bracket: char) {
+        self.without_comma();
+        if self.open.last() == Some(&bracket) {
+            self.open.pop();
+            self.out.push(bracket);
+            self.whole = Some((self.out.len(), self.open.clone()));
+        }
+    }
+
+    fn without_comma(&mut self) {
+        let kept = self.out.trim_end().trim_end_matches(',').len();
+        self.out.truncate(kept);
+    }
+
+    /// What was complete when the text ended, closed.
+    fn ended(mut self) -> (String, bool) {
+        let Some((length, open)) = self.whole.take() else { return (String::new(), true) };
+        self.out.truncate(length);
+        self.out.extend(open.iter().rev());
+        (self.out, true)
+    }
+}
+
+/// The string that a text begins with, without its quotes, and its length with them. `None` where it does not end.
+fn string(text: &str, quote: char) -> Option<(String, usize)> {
+    let end = if quote == '“' { '”' } else { quote };
+    let mut said = String::new();
+    let mut characters = text.char_indices().skip(1);
+    while let Some((at, next)) = characters.next() {
+        match next {
+            '\\' => match characters.next()?.1 {
+                'n' | 't' | 'r' => said.push(' '),
+                other => said.push(other),
+            },
+            next if next == end => return Some((said, at + next.len_utf8())),
+            next => said.push(next),
+        }
+    }
+    None
+}
+
+/// A bare word as JSON has it: a constant, or a string that lacks its quotes.
+fn word(word: &str) -> String {
+    match word.to_ascii_lowercase().as_str() {
+        "true" => "true".to_owned(),
+        "false" => "false".to_owned(),
+        "none" | "null" | "nan" | "undefined" => "null".to_owned(),
+        // The exponent of a number.
+        "e" => "e".to_owned(),
+        _ => Value::String(word.to_owned()).to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn what_surrounds_json_and_what_models_get_wrong_in_it_is_mended() {
+        let wanted = json!({ "room": "hall", "things": [{ "name": "sofa", "sure": true }] });
+        for answer in [
+            r#"{"room": "hall", "things": [{"name": "sofa", "sure": true}]}"#,
+            "Sure! Here it is:\n```json\n{\"room\": \"hall\", \"things\": [{\"name\": \"sofa\", \"sure\": true}]}\n```\nAnything else?",
+            r#"{"room": "hall", "things": [{"name": "sofa", "sure": true,},],}"#,
+            r#"{'room': 'hall', 'things': [{'name': 'sofa', 'sure': True}]}"#,
+            "{“room”: “hall”, “things”: [{“name”: “sofa”, “sure”: true}]}",
+            r#"{room: "hall", things: [{name: sofa, sure: true}]}"#,
+            "{\"room\": \"hall\", // where one stands\n \"things\": [{\"name\": \"sofa\", \"sure\": true}]}",
+        ] {
+            assert_eq!(find(answer), Ok(Found { value: wanted.clone(), is_cut: false }), "{answer}");
+        }
+    }
+
+    #[test]
+    fn of_json_that_was_cut_off_stays_what_was_complete() {
+        let cut = r#"{"room": "hall", "things": [{"name": "sofa"}, {"name": "lamp"}, {"name": "tab"#;
+        let value = json!({ "room": "hall", "things": [{ "name": "sofa" }, { "name": "lamp" }] });
+        assert_eq!(find(cut), Ok(Found { value, is_cut: true }));
+        assert!(find(r#"{"room": "ha"#).is_err());
+    }
+
+    #[test]
+    fn no_answer_takes_long_or_panics() {
+        for answer in ["", "I'm sorry, I can't help with that.", "{", "}{", "{'", "{\"a\": \\", "[[[[", "{“", "{\u{0}"]
+        {
+            assert!(find(answer).is_err(), "{answer}");
+        }
+        assert!(find(&"{\"a\":".repeat(5_000)).is_err());
+        assert!(find(&format!("{{\"room\": \"{}\"}}", "x".repeat(2_000_000))).unwrap_err().contains("2000012 bytes"));
+    }
+}

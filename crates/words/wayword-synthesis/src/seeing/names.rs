@@ -1,0 +1,210 @@
+//! Names of things and rooms as models give them, in the words of the lexicon.
+
+use crate::dialogue::colour_at;
+use wayword_language::{
+    answers::{ANYTHING, BUNCHES, GUESSING, MATERIALS, NO_OBJECTS, NUMBERS, QUALITIES, TELLS_NOTHING},
+    lexicon::{is_room, is_thing, normal, says_several, singular, thing},
+    reading::vocabulary::{ABSTRACT, ADJECTIVES, BREAKERS},
+};
+
+/// Longest name, bytes.
+const MOST_BYTES: usize = 40;
+/// Most words of a name.
+const MOST_WORDS: usize = 4;
+/// Most names that one thing may have: "sofa or bench".
+const MOST_NAMES: usize = 3;
+
+/// What a name says.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Named {
+    /// The names that it may have, each in the singular; one where the witness knows which.
+    pub(crate) names: Vec<String>,
+    pub(crate) is_guess: bool,
+    pub(crate) several: bool,
+    pub(crate) colours: Vec<String>,
+    pub(crate) material: Option<String>,
+}
+
+/// Reads a name; without names where it is none.
+pub(crate) fn named(said: &str) -> Named {
+    let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase().replace('’', "'");
+    let mut named = Named { is_guess: said.contains('?'), ..Named::default() };
+    let plain = said.split('(').next().unwrap_or_default().replace('/', " or ");
+    let words: Vec<&str> = plain.split(|c: char| !(c.is_alphanumeric() || "-'".contains(c))).collect();
+    let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
+    for one in words.split(|word| *word == "or") {
+        if let Some(name) = one_name(one, &mut named).filter(|name| !named.names.contains(name))
+            && named.names.len() < MOST_NAMES
+        {
+            named.names.push(name);
+        }
+    }
+    named
+}
+
+fn one_name(words: &[&str], named: &mut Named) -> Option<String> {
+    let mut words = before_the_place(words);
+    loop {
+        let (first, rest) = words.split_first()?;
+        if is_thing(&normal(&words.join(" "))) {
+            break;
+        }
+        if GUESSING.contains(first) {
+            named.is_guess = true;
+        } else if let Some((colour, length)) = colour_at(words) {
+            named.add_colour(colour);
+            words = &words[length..];
+            continue;
+        } else if MATERIALS.contains(first) {
+            named.material.get_or_insert((*first).to_owned());
+        } else if NUMBERS.contains(first) || first.parse::<u32>().is_ok_and(|count| count > 1) {
+            named.several = true;
+        } else if BUNCHES.contains(first) && rest.first() == Some(&"of") {
+            named.several = true;
+            words = &rest[1..];
+            continue;
+        } else if !(is_quality(first) || rest.is_empty()) {
+            break;
+        } else if rest.is_empty() {
+            break;
+        }
+        words = rest;
+    }
+    let name = words.join(" ");
+    let several = says_several(&name);
+    named.several |= several;
+    let name = if several { singular(&name) } else { name };
+    is_name(&name).then_some(name)
+}
+
+impl Named {
+    pub(crate) fn add_colour(&mut self, colour: String) {
+        if !self.colours.contains(&colour) && self.colours.len() < 4 {
+            self.colours.push(colour);
+        }
+    }
+}
+
+/// "Television on the wall" is a television. "Chest of drawers" stays whole.
+fn before_the_place<'a, 'b>(words: &'a [&'b str]) -> &'a [&'b str] {
+    let ends = |at: &usize| {
+        let of_bunch = words[*at] == "of" && *at > 0 && BUNCHES.contains(&words[at - 1]);
+        BREAKERS.contains(&words[*at]) && *at > 0 && !of_bunch && !is_quality(words[*at])
+    };
+    let end = (1..words.len()).find(ends).unwrap_or(words.len());
+    let longer = (end..=words.len()).rev().find(|end| is_thing(&normal(&words[..*end].join(" "))));
+    &words[..longer.unwrap_or(end)]
+}
+
+fn is_quality(word: &str) -> bool {
+    QUALITIES.contains(&word) || ADJECTIVES.contains(&word) || TELLS_NOTHING.contains(&word)
+}
+
+/// Whether words can name a thing.
+fn is_name(name: &str) -> bool {
+    let head = name.rsplit(' ').next().unwrap_or_default();
+    let is_nothing = |word: &str| {
+        let word = &normal(word);
+        let lists: [&[&str]; 4] = [&NO_OBJECTS, &ANYTHING, &ABSTRACT, &BUNCHES];
+        lists.iter().any(|list| list.contains(&word.as_str())) || is_quality(word) || MATERIALS.contains(&word.as_str())
+    };
+    let fits = name.len() <= MOST_BYTES
+        && name.split(' ').count() <= MOST_WORDS
+        && name.chars().filter(|c| c.is_alphabetic()).count() >= 2;
+    let in_lexicon =
+        is_thing(&normal(name)) && thing(name).is_some_and(|thing| thing.name != "picture" || head != "image");
+    fits && (in_lexicon || !(is_nothing(head) || colour_at(&[head]).is_some()))
+}
+
+/// The rooms that a name may mean, and whether it is a guess.
+pub(crate) fn rooms(said: &str) -> (Vec<String>, bool) {
+    let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase();
+    let words: Vec<&str> =
+        said.split(|c: char| !(c.is_alphanumeric() || c == '\'')).filter(|word| !word.is_empty()).collect();
+    let is_guess = said.contains('?') || words.iter().any(|word| GUESSING.contains(word));
+    let mut names: Vec<String> = Vec::new();
+    for one in words.split(|word| *word == "or") {
+        let tells = |word: &&str| !GUESSING.contains(word) && !matches!(*word, "a" | "an" | "the");
+        let one: Vec<&str> = one.iter().copied().filter(tells).collect();
+        if let Some(name) = room(&one).filter(|name| !names.contains(name))
+            && names.len() < MOST_NAMES
+        {
+            names.push(name);
+        }
+    }
+    (names, is_guess)
+}
+
+/// The longest known room at the end of words, or the words themselves where they are few.
+fn room(words: &[&str]) -> Option<String> {
+    const NOTHING: [&str; 12] =
+        ["unknown", "unclear", "none", "n", "null", "not", "cannot", "no", "nowhere", "room", "another", "indoors"];
+    if words.iter().any(|word| NOTHING.contains(word)) && words.last() != Some(&"room") || words == ["room"] {
+        return None;
+    }
+    let known = |from: usize, to: usize| is_room(&normal(&words[from..to].join(" ")));
+    for length in (1..=words.len().min(MOST_WORDS)).rev() {
+        if let Some(from) = (0..=words.len() - length).rev().find(|from| known(*from, from + length)) {
+            return Some(words[from..from + length].join(" "));
+        }
+    }
+    let name = words.join(" ");
+    let is_short = (1..=3).contains(&words.len()) && name.len() <= MOST_BYTES;
+    let is_word = words.iter().all(|word| word.chars().all(char::is_alphabetic) && word.len() > 2);
+    (is_short && is_word && words.last() == Some(&"room")).then_some(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_told_from_what_surrounds_it() {
+        for (said, names) in [
+            ("Sofa", vec!["sofa"]),
+            ("the large flat-screen television on the wall", vec!["television"]),
+            ("two tall grey armchairs", vec!["armchair"]),
+            ("a row of kitchen cabinets", vec!["kitchen cabinet"]),
+            ("light wooden floor", vec!["floor"]),
+            ("chest of drawers", vec!["chest of drawers"]),
+            ("sofa or bench", vec!["sofa", "bench"]),
+            ("sofa/couch", vec!["sofa", "couch"]),
+            ("stainless steel refrigerator", vec!["refrigerator"]),
+            ("soft, blotchy pattern", vec![]),
+            ("soft", vec![]),
+            ("white", vec![]),
+            ("wooden", vec![]),
+            ("item", vec![]),
+            ("", vec![]),
+            ("12", vec![]),
+            ("\u{1f6cb}", vec![]),
+        ] {
+            assert_eq!(named(said).names, names, "{said}");
+        }
+    }
+
+    #[test]
+    fn colours_material_number_and_doubt_are_kept() {
+        let told = named("possibly two dark grey leather armchairs");
+        assert!(told.is_guess && told.several);
+        assert_eq!((told.colours, told.material), (vec!["dark grey".to_owned()], Some("leather".to_owned())));
+        assert!(named("piano?").is_guess && !named("piano").is_guess);
+    }
+
+    #[test]
+    fn rooms_are_named_or_not_known() {
+        for (said, wanted, guess) in [
+            ("Living Room", vec!["living room"], false),
+            ("kitchen or dining room", vec!["kitchen", "dining room"], false),
+            ("possibly a hallway", vec!["hallway"], true),
+            ("a large master bedroom", vec!["master bedroom"], false),
+            ("unknown", vec![], false),
+            ("not sure", vec![], false),
+            ("the room", vec![], false),
+            ("music room", vec!["music room"], false),
+            ("I'm sorry, I cannot tell", vec![], false),
+        ] {
+            assert_eq!(rooms(said), (wanted.into_iter().map(str::to_owned).collect(), guess), "{said}");
+        }
+    }
+}

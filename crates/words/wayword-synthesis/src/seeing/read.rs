@@ -1,0 +1,293 @@
+//! Reads what a model says of a view, as far as it can be understood: other names of fields, other types, another case.
+
+use super::{
+    json,
+    names::{Named, named, rooms},
+};
+use crate::dialogue::colour_at;
+use serde_json::{Map, Value};
+use wayword_core::{WayOut, Where};
+use wayword_language::{
+    answers::MATERIALS,
+    lexicon::{Class, agree, thing},
+};
+
+/// Most things that are kept of one view.
+const MOST_THINGS: usize = 24;
+/// Most ways out that are kept.
+const MOST_WAYS: usize = 8;
+/// Most words of which colours are taken.
+const MOST_COLOUR_WORDS: usize = 12;
+
+/// What a model says of a view.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Seen {
+    /// The rooms that one may stand in; one where the model is sure.
+    pub(super) rooms: Vec<String>,
+    pub(super) room_is_sure: bool,
+    pub(super) ways: Vec<WayOut>,
+    pub(super) things: Vec<Thing>,
+}
+
+/// One thing.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Thing {
+    pub(super) told: Named,
+    pub(super) is_sure: bool,
+    pub(super) place: Option<Where>,
+    pub(super) is_far: bool,
+    pub(super) stands_out: bool,
+}
+
+/// Reads an answer.
+///
+/// # Errors
+/// What is wrong with it, in words for the model. An answer that was cut off is read where `takes_part`.
+pub(super) fn read(answer: &str, takes_part: bool) -> Result<Seen, String> {
+    let json::Found { value, is_cut } = json::find(answer)?;
+    if is_cut && !takes_part {
+        return Err("it was cut off: name fewer things".to_owned());
+    }
+    let Value::Object(fields) = value else { return Err("it is no JSON object".to_owned()) };
+    let room = field(&fields, &["room", "roomtype", "location", "scene"]);
+    let listed = field(&fields, &["things", "objects", "items", "thing"]);
+    if room.is_none() && listed.is_none() {
+        return Err("it has neither \"room\" nor \"things\"".to_owned());
+    }
+    let cues: Vec<Named> = field(&fields, &["standsout", "standout", "landmarks", "salient"])
+        .map(texts)
+        .unwrap_or_default()
+        .iter()
+        .map(|cue| named(cue))
+        .collect();
+    let things: Vec<Thing> = listed
+        .map(entries)
+        .unwrap_or_default()
+        .into_iter()
+        .filter_map(|entry| thing_of(entry, &cues))
+        .take(MOST_THINGS)
+        .collect();
+    if let Some(listed) = listed.filter(|listed| things.is_empty() && !is_empty(listed)) {
+        return Err(format!("\"things\" is no list of things with names: {}", short(listed)));
+    }
+    let (rooms, is_guess) = rooms(&room.map(text).unwrap_or_default());
+    let says_sure = field(&fields, &["roomsure", "roomcertainty"]).is_none_or(is_sure);
+    let ways = field(&fields, &["waysout", "exits", "ways", "openings", "doors"]).map(entries).unwrap_or_default();
+    Ok(Seen {
+        room_is_sure: rooms.len() == 1 && says_sure && !is_guess,
+        rooms,
+        ways: ways.into_iter().filter_map(way).take(MOST_WAYS).collect(),
+        things: each_once(things),
+    })
+}
+
+/// The first of some fields. Case and underscores do not matter.
+fn field<'a>(fields: &'a Map<String, Value>, names: &[&str]) -> Option<&'a Value> {
+    let plain = |key: &str| key.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
+    names.iter().find_map(|name| {
+        fields.iter().find(|(key, value)| plain(key) == *name && !value.is_null()).map(|(_, value)| value)
+    })
+}
+
+/// A value as text: the first text within it.
+fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) => number.to_string(),
+        Value::Bool(flag) => flag.to_string(),
+        Value::Array(values) => values.first().map(text).unwrap_or_default(),
+        Value::Object(fields) => {
+            field(fields, &["name", "label", "object", "thing", "kind", "type", "room"]).map(text).unwrap_or_default()
+        }
+        Value::Null => String::new(),
+    }
+}
+
+fn texts(value: &Value) -> Vec<String> {
+    match value {
+        Value::Array(values) => values.iter().take(MOST_THINGS).map(text).collect(),
+        Value::Null => Vec::new(),
+        Value::String(text) => text.split([',', ';']).take(MOST_THINGS).map(str::to_owned).collect(),
+        other => vec![text(other)],
+    }
+}
+
+/// The entries of a list. A single entry, and names with commas between them, are lists too.
+fn entries(value: &Value) -> Vec<&Value> {
+    match value {
+        Value::Array(values) => values.iter().take(4 * MOST_THINGS).collect(),
+        Value::Null => Vec::new(),
+        other => vec![other],
+    }
+}
+
+fn is_empty(value: &Value) -> bool {
+    match value {
+        Value::Array(values) => values.is_empty(),
+        Value::String(text) => matches!(text.trim().to_lowercase().as_str(), "" | "none" | "nothing"),
+        Value::Object(fields) => fields.is_empty(),
+        _ => false,
+    }
+}
+
+fn thing_of(entry: &Value, cues: &[Named]) -> Option<Thing> {
+    let mut told = match entry {
+        Value::Number(_) | Value::Bool(_) => return None,
+        entry => named(&text(entry)),
+    };
+    let empty = Map::new();
+    let fields = entry.as_object().unwrap_or(&empty);
+    for colour in field(fields, &["colours", "colors", "colour", "color"])
+        .map(texts)
+        .unwrap_or_default()
+        .iter()
+        .flat_map(|said| colours(said))
+    {
+        told.add_colour(colour);
+    }
+    let material = field(fields, &["material", "materials"]).map(text).unwrap_or_default().to_lowercase();
+    told.material = material
+        .split(|c: char| !c.is_alphabetic())
+        .find(|word| MATERIALS.contains(word))
+        .map(str::to_owned)
+        .or(told.material);
+    let stands_out = cues.iter().any(|cue| is_cue(cue, &told));
+    // Walls, floors and ceilings are everywhere, and count only where one knows a place by them.
+    told.names.retain(|name| stands_out || !is_everywhere(name));
+    if told.names.is_empty() {
+        return None;
+    }
+    let count = field(fields, &["count", "number", "how many", "several"]).map(text).unwrap_or_default();
+    told.several |= count.parse::<u32>().is_ok_and(|count| count > 1)
+        || matches!(count.as_str(), "true" | "several" | "many" | "two");
+    let is_far = field(fields, &["distance", "nearorfar", "far", "depth"]).map(text).unwrap_or_default().to_lowercase();
+    Some(Thing {
+        is_sure: told.names.len() == 1
+            && !told.is_guess
+            && field(fields, &["sure", "certainty", "confidence", "howsure", "certain"]).is_none_or(is_sure),
+        place: field(fields, &["side", "position", "where", "place", "location"]).and_then(|side| place(&text(side))),
+        is_far: is_far.contains("far") || is_far.contains("back") || is_far == "true",
+        stands_out,
+        told,
+    })
+}
+
+/// Whether a cue means a thing. "Brick wall" means no white wall.
+fn is_cue(cue: &Named, told: &Named) -> bool {
+    let names = cue.names.iter().any(|cue| told.names.iter().any(|name| agree(cue, name)));
+    let is_everywhere = told.names.iter().any(|name| is_everywhere(name));
+    let material = cue.material.is_none() || cue.material == told.material;
+    if is_everywhere {
+        return names && material && (told.material.is_some() || !told.colours.is_empty());
+    }
+    names && (material || told.material.is_none())
+}
+
+fn is_everywhere(name: &str) -> bool {
+    thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"))
+}
+
+fn colours(said: &str) -> Vec<String> {
+    let said = said.to_lowercase();
+    let words: Vec<&str> =
+        said.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_empty()).take(MOST_COLOUR_WORDS).collect();
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        let next = colour_at(&words[at..]);
+        at += next.as_ref().map_or(1, |(_, length)| *length);
+        found.extend(next.map(|(colour, _)| colour));
+    }
+    found
+}
+
+/// Whether a model says that it is sure.
+fn is_sure(value: &Value) -> bool {
+    match value {
+        Value::Bool(flag) => *flag,
+        Value::Number(number) => number.as_f64().is_some_and(|share| share >= 0.75),
+        other => {
+            let said = text(other).to_lowercase();
+            let doubts = [
+                "perhaps",
+                "unsure",
+                "not",
+                "mayb",
+                "guess",
+                "possib",
+                "probab",
+                "likely",
+                "low",
+                "medium",
+                "uncertain",
+                "false",
+                "no",
+            ];
+            !doubts.iter().any(|doubt| said.starts_with(doubt) || said.contains(&format!(" {doubt}")))
+        }
+    }
+}
+
+/// The third of the view that words name; `None` where they name none or several.
+fn place(said: &str) -> Option<Where> {
+    let said = said.to_lowercase();
+    let has = |words: &[&str]| words.iter().any(|word| said.contains(word));
+    let middle = has(&["middle", "cent", "ahead", "front"]);
+    match (has(&["left"]), has(&["right"]), middle) {
+        (true, false, _) => Some(Where::Left),
+        (false, true, _) => Some(Where::Right),
+        (false, false, true) => Some(Where::Middle),
+        _ => None,
+    }
+}
+
+fn way(entry: &Value) -> Option<WayOut> {
+    let told = named(&text(entry));
+    let empty = Map::new();
+    let fields = entry.as_object().unwrap_or(&empty);
+    let leads_to = field(fields, &["leadsto", "to", "room", "behind"]).map(text).unwrap_or_default();
+    let (mut rooms, is_guess) = rooms(&leads_to);
+    let room = if rooms.len() == 1 && !is_guess { rooms.pop() } else { None };
+    let name = told.names.into_iter().next().filter(|name| {
+        let class = thing(name).map(|thing| thing.class);
+        let fits = matches!(class, Some(Class::Door | Class::Stairs)) || is_opening(name);
+        fits && !told.is_guess
+    });
+    // A hallway that one looks along is a way, but no thing.
+    let name = name.or_else(|| room.is_some().then(|| "opening".to_owned()))?;
+    let place = field(fields, &["side", "position", "where", "place"]).and_then(|side| place(&text(side)));
+    Some(WayOut { name, place, leads_to: room })
+}
+
+fn is_opening(name: &str) -> bool {
+    thing(name).is_some_and(|thing| matches!(thing.name, "doorway" | "arch" | "archway"))
+        || ["doorway", "archway", "opening", "entrance", "exit", "gate", "elevator"]
+            .iter()
+            .any(|kind| name.ends_with(kind))
+}
+
+/// Things of one name and side are several.
+fn each_once(things: Vec<Thing>) -> Vec<Thing> {
+    let mut kept: Vec<Thing> = Vec::new();
+    for thing in things {
+        let same = |other: &&mut Thing| other.told.names == thing.told.names && other.place == thing.place;
+        match kept.iter_mut().find(same) {
+            Some(other)
+                if other.told.colours == thing.told.colours
+                    || other.told.colours.is_empty()
+                    || thing.told.colours.is_empty() =>
+            {
+                other.told.several = true;
+                other.is_sure |= thing.is_sure;
+                other.stands_out |= thing.stands_out;
+                other.is_far &= thing.is_far;
+            }
+            _ => kept.push(thing),
+        }
+    }
+    kept
+}
+
+fn short(value: &Value) -> String {
+    value.to_string().chars().take(80).collect()
+}

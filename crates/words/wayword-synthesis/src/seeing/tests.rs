@@ -1,0 +1,183 @@
+use super::*;
+use crate::{
+    dialogue::{Mode, RulesAsker},
+    observe::talk_about,
+};
+use std::sync::Mutex;
+use wayword_core::{Answer, Answerer, DVec3, Heading, Pose, WayOut, Where};
+
+/// An answerer that gives these answers in their order and keeps what it was asked.
+struct Scripted {
+    answers: Mutex<Vec<String>>,
+    asked: Mutex<Vec<String>>,
+}
+
+impl Answerer for Scripted {
+    fn name(&self) -> &str {
+        "test/eye"
+    }
+
+    fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
+        let one = |ask: &Ask<'_>| {
+            self.asked.lock().unwrap().push(ask.question.to_owned());
+            Ok(self.answers.lock().unwrap().remove(0))
+        };
+        asks.iter().map(one).collect()
+    }
+}
+
+/// The caption that these answers give, and the questions.
+fn seen(answers: &[&str], questions: usize) -> (Caption, Vec<String>) {
+    let answerer = Scripted {
+        answers: Mutex::new(answers.iter().map(|answer| (*answer).to_owned()).collect()),
+        asked: Mutex::default(),
+    };
+    let view = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
+    let observers = Observers {
+        asker: &RulesAsker::default(),
+        answerer: &answerer,
+        summariser: &RulesSummariser,
+        mode: Mode::Structured { questions },
+        prompts_hash: None,
+    };
+    let caption = talk_about(&view, observers).unwrap();
+    (caption, answerer.asked.into_inner().unwrap())
+}
+
+const GOOD: &str = r#"{"room": "living room", "room_sure": "sure",
+    "ways_out": [{"kind": "doorway", "side": "right", "leads_to": "kitchen"}, {"kind": "door", "side": "left", "leads_to": "unknown"}],
+    "things": [
+      {"name": "sofa", "colours": ["dark grey", "white"], "material": "leather", "side": "left", "distance": "near", "sure": "sure"},
+      {"name": "armchair or stool", "colours": [], "material": "", "side": "right", "distance": "near", "sure": "sure"},
+      {"name": "piano", "colours": ["black"], "material": "", "side": "middle", "distance": "far", "sure": "perhaps"},
+      {"name": "wall", "colours": ["white"], "material": "", "side": "middle", "distance": "far", "sure": "sure"},
+      {"name": "brick wall", "colours": [], "material": "", "side": "right", "distance": "far", "sure": "sure"},
+      {"name": "lamps", "colours": [], "material": "", "side": "middle", "distance": "near", "sure": "sure"}],
+    "stands_out": ["brick wall"]}"#;
+
+fn of<'a>(caption: &'a Caption, name: &str) -> &'a Sighting {
+    caption.sightings.iter().find(|sighting| sighting.name == name).unwrap_or_else(|| panic!("{name}: {caption:?}"))
+}
+
+#[test]
+fn an_answer_becomes_evidence_and_a_caption_in_one_call() {
+    let (caption, asked) = seen(&[GOOD], 0);
+    assert_eq!((asked.len(), caption.form, caption.room.as_deref()), (1, None, Some("living room")));
+    let sofa = of(&caption, "sofa");
+    assert_eq!((sofa.witness, sofa.place, sofa.is_far), (Witness::Seen, Some(Where::Left), false));
+    assert_eq!((sofa.colour.as_deref(), sofa.more_colours.as_slice()), (Some("dark grey"), &["white".to_owned()][..]));
+    assert_eq!(sofa.material.as_deref(), Some("leather"));
+    for doubtful in ["armchair", "stool", "piano"] {
+        assert_eq!(of(&caption, doubtful).witness, Witness::Unsure, "{doubtful}");
+    }
+    assert!(of(&caption, "lamp").several && of(&caption, "wall").stands_out);
+    let walls = caption.sightings.iter().filter(|sighting| sighting.name == "wall");
+    assert_eq!(walls.map(|wall| wall.material.as_deref()).collect::<Vec<_>>(), [Some("brick")]);
+    let kitchen = WayOut { name: "doorway".into(), place: Some(Where::Right), leads_to: Some("kitchen".into()) };
+    assert_eq!(caption.ways[0], kitchen);
+    assert_eq!(
+        caption.text,
+        "A living room with a brick wall on the right, a dark grey leather sofa on the left, several lamps in the middle, \
+         a doorway on the right and a door on the left. A doorway on the right leads to a kitchen."
+    );
+    assert_eq!(caption.transcript[0].answer, GOOD);
+}
+
+#[test]
+fn what_surrounds_the_json_and_other_names_case_and_types_do_no_harm() {
+    for answer in [
+        format!("Sure! Here is what I see:\n```json\n{GOOD}\n```\nLet me know if you need more."),
+        GOOD.replace("\"things\"", "\"Objects\"")
+            .replace("\"left\"", "\"LEFT\"")
+            .replace("\"sure\": \"sure\"", "\"Sure\": true"),
+        GOOD.replace("{\"name\": \"sofa\"", "{\"label\": \"A Sofa\"")
+            .replace("\"side\": \"left\"", "\"position\": \"on the far left\""),
+        GOOD.replace("[\"dark grey\", \"white\"]", "\"dark grey and white\"").replace("}],\n", "},],\n"),
+    ] {
+        let (caption, asked) = seen(&[&answer], 0);
+        assert_eq!((asked.len(), caption.form), (1, None), "{answer}");
+        let sofa = of(&caption, "sofa");
+        assert_eq!((sofa.place, sofa.colour.as_deref()), (Some(Where::Left), Some("dark grey")), "{answer}");
+    }
+}
+
+#[test]
+fn missing_fields_and_bare_names_are_enough() {
+    let (caption, _) = seen(&[r#"{"things": ["sofa", "two lamps", 7, null, {"name": ["chair"]}]}"#], 0);
+    assert_eq!(caption.room, None);
+    let names: Vec<&str> = caption.sightings.iter().map(|sighting| sighting.name.as_str()).collect();
+    assert_eq!(names, ["sofa", "lamp", "chair"]);
+}
+
+#[test]
+fn an_answer_that_breaks_the_form_is_asked_for_once_more() {
+    let bad = [
+        "There is a sofa on the left.",
+        r#"{"things": [1, 2, 3]}"#,
+        r#"{"mood": "calm"}"#,
+        "{\"room\": \"ha",
+        "I'm sorry, I can't help with that.",
+    ];
+    for bad in bad {
+        let (caption, asked) = seen(&[bad, GOOD], 0);
+        assert_eq!((asked.len(), caption.form), (2, Some(Form::Mended)), "{bad}");
+        assert!(complaint(&asked[1]).is_some_and(|why| !why.is_empty()), "{asked:?}");
+        assert_eq!(caption.transcript[1].trouble, Some(Trouble::Form));
+        assert_eq!(caption.transcript[0].answer, bad);
+    }
+}
+
+#[test]
+fn an_answer_that_breaks_it_twice_is_read_as_words() {
+    let (caption, asked) = seen(&["Hm.", "It is a kitchen with a red table on the left and a fridge."], 0);
+    assert_eq!((asked.len(), caption.form, caption.room.as_deref()), (2, Some(Form::Broken), Some("kitchen")));
+    assert_eq!(of(&caption, "table").colour.as_deref(), Some("red"));
+    let (refused, _) = seen(&["I'm sorry, I can't assist with that."; 2], 0);
+    assert_eq!((refused.form, refused.sightings.len(), refused.room), (Some(Form::Broken), 0, None));
+}
+
+#[test]
+fn of_an_answer_that_is_cut_off_twice_stays_what_was_complete() {
+    let cut = &GOOD[..GOOD.find("\"piano\"").unwrap()];
+    let (caption, _) = seen(&[cut, cut], 0);
+    assert_eq!((caption.form, caption.room.as_deref()), (Some(Form::Broken), Some("living room")));
+    assert_eq!(of(&caption, "sofa").witness, Witness::Seen);
+}
+
+#[test]
+fn an_answer_of_two_megabytes_is_neither_read_nor_kept() {
+    let long = format!("{{\"things\": [{}]}}", "\"sofa\", ".repeat(250_000));
+    let (caption, asked) = seen(&[&long, &long], 0);
+    assert_eq!(caption.form, Some(Form::Broken));
+    assert!(asked[1].contains("bytes, more than"), "{}", asked[1]);
+    assert!(caption.transcript.iter().all(|exchange| exchange.answer.len() <= MOST_KEPT));
+    let many =
+        format!("{{\"room\": \"hall\", \"things\": [{}]}}", "{\"name\": \"sofa\", \"side\": \"x\"}, ".repeat(900));
+    assert!(seen(&[&many, &many], 0).0.sightings.len() <= 24);
+}
+
+#[test]
+fn what_stays_open_is_asked_only_where_that_is_wanted() {
+    let open = r#"{"room": "unknown", "things": [{"name": "sofa"}, {"name": "piano", "sure": "perhaps"}, {"name": "harp", "sure": "perhaps"}]}"#;
+    assert_eq!(seen(&[open], 0).1.len(), 1);
+    let (caption, asked) = seen(&[open, "It is a music room.", "Yes, on the left.", "No."], 3);
+    assert_eq!(asked[1..], ["Which room is this?", "Is there a piano?", "Is there a harp?"]);
+    assert_eq!(caption.room.as_deref(), Some("music room"));
+    assert_eq!(of(&caption, "piano").witness, Witness::Seen);
+    assert_eq!(of(&caption, "harp").witness, Witness::Denied);
+    assert_eq!(caption.text, "A music room with a sofa and a piano.");
+}
+
+#[test]
+fn what_is_only_perhaps_there_is_named_where_nothing_else_is() {
+    let (caption, _) = seen(&[r#"{"room": "kitchen or dining room", "things": [{"name": "possibly a stove"}]}"#], 0);
+    assert_eq!((caption.room, caption.perhaps_rooms.len()), (None, 2));
+    assert_eq!(caption.text, "A place. It is perhaps a kitchen or a dining room. Perhaps there is a stove.");
+}
+
+proptest::proptest! {
+    #[test]
+    fn no_answer_makes_it_panic(answer in "(\\PC|[\n{}\\[\\]\":,']|\"name\"|\"things\"|room|sofa|\\\\){0,80}") {
+        seen(&[&answer, &answer], 0);
+    }
+}
