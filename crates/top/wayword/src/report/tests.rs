@@ -184,7 +184,7 @@ fn what_comes_from_files_and_models_stays_text() {
         room: Some(SCRIPT.into()),
         sightings: vec![Sighting { name: SCRIPT.into(), ..walk.observations[0].looks[0].caption.sightings[0].clone() }],
         transcript: vec![Exchange::new(SCRIPT, "\" onload=\"alert(1)")],
-        by: None,
+        ..Caption::default()
     };
     walk.path.target.as_mut().unwrap().name = SCRIPT.into();
     let mut hostile = instruction(
