@@ -32,6 +32,8 @@ const LONGEST_PX: u32 = 640;
 /// Horizontal field of view where neither the recording nor the user says it, radians: that of a robot's or phone's
 /// usual camera.
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
+/// A recording of so many frames or fewer is one path, however short or long it is.
+pub(crate) const WHOLE: usize = 12;
 /// Most unreadable recordings that an error lists.
 const MOST_TOLD: usize = 3;
 const HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
@@ -143,6 +145,11 @@ impl Opened {
         if self.recording.track.is_some() { Motion::Known } else { Motion::Unknown }
     }
 
+    /// Whether it has few frames, and no gap that no path crosses.
+    fn is_short(&self) -> bool {
+        self.stops.len() <= WHOLE && self.breaks.is_empty()
+    }
+
     /// Frames from one stop to another, both included.
     fn frames(&self, first: usize, last: usize) -> Vec<Frame> {
         if self.recording.track.is_none() {
@@ -169,9 +176,12 @@ impl Opened {
     }
 
     /// First and last stop of a path that fits the request: the whole recording if it fits, else a stretch of it;
-    /// `None` where none fits.
+    /// `None` where none fits. A short recording is taken whole, unless the request asks for another length than usual.
     fn stretch(&self, request: &PathRequest, dice: &mut impl Rng) -> Option<(usize, usize)> {
         let end = self.stops.len().checked_sub(1).filter(|end| *end > 0)?;
+        if self.is_short() && *request == PathRequest::default() {
+            return Some((0, end));
+        }
         let (far, wanted) = self.measured(request);
         // Lengths grow with the last stop, so the stops that fit follow each other.
         let lasts = |first: usize| {

@@ -1,13 +1,17 @@
 //! Where frames should be: marks at equal distances or times, and the pictures near each.
 
 use super::{INTERVAL_M, INTERVAL_S, MOST_LEFT_OUT};
-use crate::reel::Recording;
+use crate::{platform::WHOLE, reel::Recording};
 use wayword_core::DVec3;
 
 /// Most pictures that are looked at for one mark.
 const MOST_CANDIDATES: usize = 5;
 /// A picture at most this far from a mark may be its frame, share of the interval.
 const NEAR: f64 = 0.2;
+/// An interval that is shorter than any time between pictures, seconds.
+const LEAST_S: f64 = 1e-6;
+/// Pictures that are at least so far apart on average are not the pictures of a video, seconds.
+const LEAST_APART_S: f64 = 0.5;
 /// A rest at the end gets its own mark if it has at least this share of the interval; else the last mark moves to the
 /// end.
 const LEFT_OVER: f64 = 0.5;
@@ -27,7 +31,8 @@ pub(super) struct Mark {
 pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
     let times_s = recording.reel.times_s();
     let Some(track) = &recording.track else {
-        let interval_s = recording.described.interval_s.unwrap_or(INTERVAL_S);
+        let usual_s = if is_slide_show(times_s) { LEAST_S } else { INTERVAL_S };
+        let interval_s = recording.described.interval_s.unwrap_or(usual_s);
         let all: Vec<usize> = (0..times_s.len()).collect();
         let off = |a: usize, b: usize| (times_s[a] - times_s[b]).abs();
         return (spread(&all, interval_s, &off), 0);
@@ -49,6 +54,12 @@ pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
         passed = until;
     }
     (marks, times_s.len() - posed.len())
+}
+
+/// Whether somebody took a few single pictures, each of which is meant to be a frame; not a clip of a video.
+fn is_slide_show(times_s: &[f64]) -> bool {
+    let span_s = times_s.last().zip(times_s.first()).map_or(0.0, |(last, first)| last - first);
+    times_s.len() <= WHOLE && span_s >= LEAST_APART_S * times_s.len().saturating_sub(1) as f64
 }
 
 /// Marks about one interval apart. The distance from the last mark counts, not the length of the track, because a

@@ -231,3 +231,24 @@ fn what_is_odd_about_poses_is_told() {
     platform.graph(&scene).unwrap();
     assert_eq!(heard.lock().unwrap().len(), 1, "{heard:?}");
 }
+
+#[test]
+fn a_short_recording_is_taken_whole_unless_another_length_is_asked_for() {
+    // Four metres of the walk are less than the usual least length, and three pictures are fewer than the usual hops.
+    for (poses, pictures) in [(true, 5), (true, 2), (false, 3)] {
+        let folder = walk(poses);
+        for at in pictures..=8 {
+            std::fs::remove_file(folder.path().join(format!("{at}.png"))).unwrap();
+        }
+        if poses {
+            let csv = std::fs::read_to_string(folder.path().join("poses.csv")).unwrap();
+            let kept: Vec<&str> = csv.lines().take(pictures + 1).collect();
+            std::fs::write(folder.path().join("poses.csv"), kept.join("\n")).unwrap();
+        }
+        let (platform, scene, _) = open(&folder);
+        let path = platform.sample_path(&scene, &PathRequest::default(), 7).unwrap();
+        assert_eq!(path.frames.len(), pictures, "with poses: {poses}");
+        let long = PathRequest { length_m: 50.0..=60.0, hops: 50..=60 };
+        assert!(matches!(platform.sample_path(&scene, &long, 7), Err(PlatformError::NoSuchPath { .. })));
+    }
+}
