@@ -84,6 +84,9 @@ pub struct Provenance {
     /// How it was chosen, where several texts were written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<Chosen>,
+    /// Whether a target was given that nobody saw from the last frame: the writer knew its name alone.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub target_undescribed: bool,
 }
 
 /// How a text was chosen among several.
@@ -105,4 +108,9 @@ pub enum ChosenBy {
     Follower,
     /// The checks alone, because no text can be followed.
     Checks,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_false(flag: &bool) -> bool {
+    !*flag
 }

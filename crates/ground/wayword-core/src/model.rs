@@ -23,8 +23,8 @@ pub struct Message {
     pub role: Role,
     /// Its words.
     pub text: String,
-    /// The picture that goes with it, for a model that sees.
-    pub image: Option<Arc<Image>>,
+    /// The pictures that go with it, in order, for a model that sees.
+    pub images: Vec<Arc<Image>>,
 }
 
 /// How a model samples its words.
@@ -136,7 +136,13 @@ impl Message {
     /// A user's message in words alone.
     #[must_use]
     pub fn user(text: impl Into<String>) -> Self {
-        Self { role: Role::User, text: text.into(), image: None }
+        Self { role: Role::User, text: text.into(), images: Vec::new() }
+    }
+
+    /// A user's message about pictures.
+    #[must_use]
+    pub fn about(text: impl Into<String>, images: Vec<Arc<Image>>) -> Self {
+        Self { role: Role::User, text: text.into(), images }
     }
 }
 

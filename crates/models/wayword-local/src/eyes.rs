@@ -85,7 +85,11 @@ impl Eye for Blip2Eye {
 fn shown<'a>(name: &str, request: &'a Request) -> Result<(&'a Image, &'a str), LocalError> {
     let wrong = |problem: &str| LocalError::Compute { model: name.to_owned(), problem: problem.to_owned() };
     let [message] = &request.messages[..] else { return Err(wrong("it takes one message, not a conversation")) };
-    let picture = message.image.as_deref();
+    let picture = match &message.images[..] {
+        [] => None,
+        [only] => Some(&**only),
+        _ => return Err(wrong("it takes one picture at a time")),
+    };
     let picture = picture.ok_or_else(|| wrong("it answers about pictures and does not write texts: use it to see (--see of `generate`), and for no other role"))?;
     Ok((picture, message.text.trim()))
 }

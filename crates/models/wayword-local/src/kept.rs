@@ -61,7 +61,7 @@ impl LocalModel {
     /// The call for the ledger.
     fn call(&self, request: &Request) -> Call {
         let message = |message: &Message| {
-            let picture = message.image.as_deref().map(hash);
+            let picture = message.images.first().map(|image| hash(image));
             json!({ "role": message.role, "text": message.text, "image_sha256": picture })
         };
         let messages: Vec<Value> = request.messages.iter().map(message).collect();

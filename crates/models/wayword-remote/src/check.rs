@@ -9,7 +9,7 @@ use std::{
     sync::Arc,
     time::{SystemTime, UNIX_EPOCH},
 };
-use wayword_core::{Image, LanguageModel, Message, Request, Role, Sampling};
+use wayword_core::{Image, LanguageModel, Message, Request, Sampling};
 
 /// Side of the test picture, pixels: large enough for every service.
 const SQUARE_PX: u32 = 64;
@@ -227,7 +227,7 @@ impl Finding {
         let square = Image::new(SQUARE_PX, SQUARE_PX, pixels).ok()?;
         let text = "Which colour is this picture? Answer with one word.".to_owned();
         let to_do = "choose another model for --see";
-        Some(match ask(model, Message { role: Role::User, text, image: Some(Arc::new(square)) }) {
+        Some(match ask(model, Message::about(text, vec![Arc::new(square)])) {
             Ok(colour) if colour.to_lowercase().contains("red") => Self::ok(format!("{} sees", model.name())),
             Ok(said) => {
                 let what = format!("{} was shown a red square and said: {}", model.name(), faults::short(&said));

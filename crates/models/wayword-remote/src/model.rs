@@ -74,8 +74,8 @@ impl RemoteModel {
 
     fn lines(&self, messages: &[Message]) -> Result<Vec<Line>, String> {
         let line = |message: &Message| {
-            let picture = message.image.as_ref().map(|image| self.pictures.encode(image)).transpose()?;
-            Ok(Line { role: message.role, text: message.text.clone(), picture })
+            let pictures = message.images.iter().map(|image| self.pictures.encode(image)).collect::<Result<_, _>>()?;
+            Ok(Line { role: message.role, text: message.text.clone(), pictures })
         };
         messages.iter().map(line).collect()
     }
@@ -87,8 +87,15 @@ impl RemoteModel {
             let mut message = Map::new();
             message.insert("role".to_owned(), json!(line.role));
             message.insert("text".to_owned(), line.text.clone().into());
-            if let Some(picture) = &line.picture {
-                message.insert("image_sha256".to_owned(), picture.sha256.clone().into());
+            match &line.pictures[..] {
+                [] => {}
+                [only] => drop(message.insert("image_sha256".to_owned(), only.sha256.clone().into())),
+                several => {
+                    let hashes = several.iter().map(|picture| Value::from(picture.sha256.as_str()));
+                    message.insert("images_sha256".to_owned(), hashes.collect());
+                }
+            }
+            if !line.pictures.is_empty() {
                 message.insert("picture_px".to_owned(), self.pictures.longer_px().into());
             }
             Value::Object(message)
@@ -145,7 +152,7 @@ fn size(request: &Request) -> Size {
     let chars = request.messages.iter().map(|message| message.text.chars().count() as u64 + 16).sum();
     let other_bytes = |message: &Message| message.text.bytes().filter(|byte| !byte.is_ascii()).count() as u64;
     let other_bytes = request.messages.iter().map(other_bytes).sum();
-    let pictures = request.messages.iter().filter(|message| message.image.is_some()).count() as u64;
+    let pictures = request.messages.iter().map(|message| message.images.len() as u64).sum();
     Size { chars, other_bytes, pictures, max_tokens: request.sampling.max_tokens.into() }
 }
 

@@ -26,6 +26,22 @@ impl Services {
         if self.is_reached_directly(endpoint) { lets_in(endpoint) } else { Ok(()) }
     }
 
+    /// Refuses a model that is to be shown pictures, if its provider takes none. Whether a single model takes pictures is
+    /// not known before it is asked; `doctor` shows it one.
+    ///
+    /// # Errors
+    /// When it takes no pictures, or there is no such provider.
+    pub fn takes_pictures(&self, name: &str) -> Result<(), ConfigError> {
+        let model = self.model(name)?;
+        let provider = &model.endpoint.provider;
+        if !provider.blind {
+            return Ok(());
+        }
+        let problem = format!("{name} cannot be shown pictures, because {} takes none", provider.name);
+        let hint = "name a model that sees, behind a chat endpoint; or leave the pictures out".to_owned();
+        Err(ConfigError::NotReady { problem, hint })
+    }
+
     /// The base URL of a model's service.
     ///
     /// # Errors
@@ -119,6 +135,19 @@ mod tests {
     fn a_key_that_is_missing_is_told() {
         let problem = told("http://127.0.0.1:9/v1", Some("WAYWORD_NO_SUCH_KEY")).unwrap();
         assert!(problem.contains("WAYWORD_NO_SUCH_KEY") && problem.contains("export"), "{problem}");
+    }
+
+    #[test]
+    fn a_provider_without_pictures_is_told_before_any_call() {
+        let told = |name: &str| {
+            let config = Config { base_url: Some("http://127.0.0.1:9/v1".to_owned()), ..Config::default() };
+            let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();
+            Services::new(config, run).unwrap().takes_pictures(name).err().map(|error| error.to_string())
+        };
+        assert_eq!(told("server/words"), None);
+        for name in ["completions/words", "deepseek/chat"] {
+            assert!(told(name).unwrap().contains("cannot be shown pictures"), "{name}");
+        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::{
 };
 use tempfile::TempDir;
 use wayword::{error::Error, output::Output};
-use wayword_core::{Image, LanguageModel, Message, Request, Role, Sampling};
+use wayword_core::{Image, LanguageModel, Message, Request, Sampling};
 use wayword_ledger::{Ledger, Limits};
 use wayword_remote::{Concurrency, Config, RemoteModel, Services};
 
@@ -119,8 +119,8 @@ pub(super) fn pictures(calls: usize, output: &Output) -> Result<(), Error> {
             (0..calls / asked).filter_map(|number| noise(number + asked).ok().map(Arc::new)).collect();
         let cpu = resources::cpu();
         let failed = client.make(calls, |number| {
-            let image = images.get(number / asked).cloned();
-            request(Message { role: Role::User, text: format!("Question: what is {number}?\nAnswer:"), image })
+            let image = images.get(number / asked).cloned().into_iter().collect();
+            request(Message::about(format!("Question: what is {number}?\nAnswer:"), image))
         });
         let own: Duration = resources::cpu() - cpu;
         lines.push(format!(

@@ -37,6 +37,7 @@ pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKin
             repairs: 0,
             finished_for: None,
             chosen: None,
+            target_undescribed: false,
         },
     }
 }

@@ -116,7 +116,7 @@ impl Stage {
         let team = Team::new(&job.settings, calls.as_ref(), &self.world)?;
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };
-        let one = |item| make(item, &job.settings, world, &team, &plan.styles);
+        let one = |item| make(item, &job.settings, world, &team, &plan.styles, 1);
         let work = || plan.items.par_iter().map(one).collect();
         let made = match threads {
             Ok(threads) => threads.install(work),

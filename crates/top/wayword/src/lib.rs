@@ -2,6 +2,7 @@
 //!
 //! This is a library beside the binary, so that `wayword-measure` runs exactly what users run.
 
+mod at_once;
 mod calibration;
 pub mod calls;
 pub mod cli;

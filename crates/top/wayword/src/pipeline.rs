@@ -1,6 +1,7 @@
 //! Makes one item: from its path to checked instructions.
 
 use crate::{
+    at_once::at_once,
     error::Error,
     follow::{Followed, GOES_UNKNOWN, KnownScenes, Told, rejection},
     item::Item,
@@ -12,12 +13,13 @@ use crate::{
     team::Team,
 };
 use wayword_checks::{Checked, Evidence, Memory, Source};
-use wayword_core::{Ambiguity, Frame, Gaze, Motion, Path, Platform, PlatformError, SceneId, View};
+use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Motion, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
-    observe::observe,
+    observe::{Planned, observe_with, talk_about},
     offline::distinguish,
     repair::{Follow, Order, Outcome, write_and_repair},
     walk::Walk,
+    writer::FramePicture,
 };
 
 /// The result of an item.
@@ -25,7 +27,7 @@ use wayword_synthesis::{
 pub struct Made {
     /// The path and what was seen along it.
     pub walk: Walk,
-    /// One per style, in the order of the run's styles.
+    /// As many per style as each path gets, in the order of the run's styles.
     pub outcomes: Vec<Outcome>,
     /// The picture ahead of each frame, if the platform has pictures.
     pub pictures: Vec<Picture>,
@@ -42,7 +44,8 @@ pub struct RunPlatform<'a> {
     pub scenes: &'a KnownScenes,
 }
 
-/// Makes an item's instructions.
+/// Makes an item's instructions. Its views are talked about on as many threads as `threads` says, and so are its styles
+/// written; the results do not depend on that.
 ///
 /// # Errors
 /// When its path does not fit its scene, the files of the scene have changed since the run began, a view cannot be had, or a model
@@ -53,6 +56,7 @@ pub fn make(
     world: RunPlatform<'_>,
     team: &Team,
     styles: &[Measured],
+    threads: usize,
 ) -> Result<Made, Error> {
     let RunPlatform { platform, data, scenes } = world;
     let world = Remembering::new(platform);
@@ -60,7 +64,13 @@ pub fn make(
     if let Some(data) = data {
         data.check(platform, &path.scene)?;
     }
-    let observations = observe(&world, &path, settings.frames, team.observers())?;
+    let observers = team.observers();
+    let talk = |views: &[Planned]| -> Result<Vec<Caption>, ModelError> {
+        // A view that fails does not keep the others from being talked about, so the error is always that of the first.
+        let ends = |told: &Result<Caption, ModelError>| told.as_ref().is_err_and(ModelError::ends_run);
+        at_once(views, threads, |planned| talk_about(&planned.view, observers), ends).into_iter().collect()
+    };
+    let observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
     let walk = Walk::new(path, observations);
     let evidence = evidence(&walk, &world, settings.evidence)?;
     // Where labels see, the writer remembers all that they list around each frame; a model's captions else.
@@ -76,7 +86,9 @@ pub fn make(
         scene => Followed::new(scene, &walk.path, &evidence),
     };
     let follower = Follower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
-    let outcomes = styles.iter().map(|Measured { style, profile }| {
+    let ahead = ahead(&world, &walk.path)?;
+    let shown = if settings.roles.write_sees { shown(&ahead, &settings.roles.write)? } else { Vec::new() };
+    let write = |Measured { style, profile }: &Measured| {
         let order = Order {
             walk: &walk,
             memory: &memory,
@@ -87,12 +99,54 @@ pub fn make(
             repairs: settings.repairs,
             candidates: settings.candidates,
             follower: (!settings.no_route).then_some(&follower),
+            earlier: &[],
+            pictures: &shown,
         };
-        write_and_repair(team.writers(), team.observers(), order)
-    });
-    let outcomes = outcomes.collect::<Result<_, _>>()?;
-    let pictures = pictures::encode(&ahead(&world, &walk.path)?)?;
+        texts(team, order, settings.per_path)
+    };
+    let ends = |texts: &Result<Vec<Outcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
+    let outcomes = at_once(styles, threads, write, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let outcomes = outcomes.into_iter().flatten().collect();
+    let pictures = pictures::encode(&ahead)?;
     Ok(Made { walk, outcomes, pictures })
+}
+
+/// The texts of one walk in one style. Each has to differ from those before it.
+fn texts(team: &Team, order: Order<'_>, number: usize) -> Result<Vec<Outcome>, ModelError> {
+    let (mut outcomes, mut earlier) = (Vec::new(), Vec::new());
+    for _ in 0..number {
+        let outcome = write_and_repair(team.writers(), team.observers(), Order { earlier: &earlier, ..order })?;
+        earlier.push(match &outcome {
+            Outcome::Accepted(instruction) | Outcome::Rejected { last: Some(instruction), .. } => {
+                instruction.text.clone()
+            }
+            Outcome::Rejected { last: None, .. } => String::new(),
+        });
+        outcomes.push(outcome);
+    }
+    Ok(outcomes)
+}
+
+/// Most pictures that a writer is shown: of a longer path the first, the last, and some between them at equal distances.
+pub(crate) const MOST_SHOWN: usize = 16;
+
+/// The pictures that a writer is shown.
+///
+/// # Errors
+/// When there are none.
+fn shown(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, ModelError> {
+    let pictures = ahead.iter().enumerate().filter_map(|(frame, view)| Some((frame, view.image.clone()?)));
+    let all: Vec<FramePicture> = pictures.map(|(frame, image)| FramePicture { frame, image }).collect();
+    if all.is_empty() {
+        return Err(ModelError::NothingToSee {
+            name: writer.to_owned(),
+            needs: "pictures for --write-sees",
+            hint: "use a platform or data folder with pictures, or leave --write-sees out",
+        });
+    }
+    let kept = all.len().min(MOST_SHOWN);
+    let places = (0..kept).map(|at| at * (all.len() - 1) / (kept - 1).max(1));
+    Ok(places.map(|at| all[at].clone()).collect())
 }
 
 /// Follows the texts of one path.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use wayword_checks::{Evidence, Memory};
 use wayword_core::{Distinction, Heading, Move, Observation, Path, Side, Sighting, Witness};
+use wayword_language::lexicon::{agree, thing};
 
 /// Which views of each frame are captioned.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,6 +15,9 @@ pub enum FrameSelection {
     /// Four views, north east south west, condensed (arXiv 2403.11487, "panoramic").
     Panoramic,
 }
+
+/// Who answers from labels, as sightings name it.
+const LABELS: &str = "labels";
 
 /// All that a writer gets to know about a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,14 +55,27 @@ impl Walk {
         Self { moves: path.moves(), path, observations }
     }
 
-    /// The objects that were seen from a frame, look by look.
+    /// The objects that were seen from a frame, look by look. What a model named is left out where it is no thing that the
+    /// lexicon has: half of a phrase that was read wrongly ("soft") would become a landmark. Labels name things only.
     pub fn seen(&self, frame: usize) -> impl Iterator<Item = Seen<'_>> {
         let heading = self.path.frames.get(frame).map_or(Heading::NORTH, |frame| frame.pose.heading);
         let has_sides = self.path.motion.is_known();
         self.observations.get(frame).into_iter().flat_map(|observation| &observation.looks).flat_map(move |look| {
-            let seen = look.caption.sightings.iter().filter(|sighting| sighting.witness == Witness::Seen);
+            let seen = look
+                .caption
+                .sightings
+                .iter()
+                .filter(|sighting| sighting.witness == Witness::Seen && is_thing(sighting));
             seen.map(move |sighting| Seen { sighting, side: look.side_of(sighting, heading).filter(|_| has_sides) })
         })
+    }
+
+    /// Whether the target was seen from the last frame; also where there is no target.
+    #[must_use]
+    pub fn describes_target(&self) -> bool {
+        let last = self.path.frames.len().saturating_sub(1);
+        let is_it = |name: &str| self.seen(last).any(|seen| agree(&seen.sighting.name, name));
+        self.path.target.as_ref().is_none_or(|target| is_it(&target.name))
     }
 
     /// The room of a frame, as its captions name it.
@@ -79,4 +96,9 @@ impl Walk {
         let evidence = self.evidence().unwrap_or_else(|| Evidence::of_path_alone(&self.path));
         Memory::of(&evidence, &self.path)
     }
+}
+
+/// Whether a sighting is of a thing: labels name things, and of a model's words those that the lexicon has.
+fn is_thing(sighting: &Sighting) -> bool {
+    sighting.by == LABELS || thing(&sighting.name).is_some()
 }

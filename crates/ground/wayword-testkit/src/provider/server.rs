@@ -23,8 +23,10 @@ use tokio::net::TcpListener;
 
 /// Largest request that is accepted; several pictures fit.
 const LARGEST_BODY: usize = 64 << 20;
-/// The tokens that a picture counts as.
-const PICTURE_TOKENS: u64 = 85;
+/// The tokens that a picture counts as: about those of one of 512 x 384 pixels, as two large services count.
+const PICTURE_TOKENS: u64 = 262;
+/// Characters of English text for each of its tokens.
+const CHARS_PER_TOKEN: u64 = 4;
 
 /// What all connections share.
 pub(super) struct Shared {
@@ -180,10 +182,10 @@ impl Shared {
         let heard = dialect.heard(&body, arrival.model.as_deref()).map_err(|why| refused(Wrong::Request, why))?;
         let script = self.behaviour.scripts.get(&heard.model);
         let script = script.ok_or_else(|| refused(Wrong::Model, "There is no such model."))?;
-        let tokens_in = heard.messages.iter().map(|(_, text)| words(text)).sum::<u64>();
+        let tokens_in = heard.messages.iter().map(|(_, text)| tokens(text)).sum::<u64>();
         let tokens_in = tokens_in + PICTURE_TOKENS * heard.pictures.len() as u64;
         let (text, end) = cut(script.reply(&heard), &heard);
-        Ok(Said { tokens_in, tokens_out: words(&text), text, end, model: heard.model })
+        Ok(Said { tokens_in, tokens_out: tokens(&text), text, end, model: heard.model })
     }
 }
 
@@ -193,6 +195,10 @@ impl Arrival {
         let body = String::from_utf8_lossy(&self.body);
         wayword_core::seed::derive(0, &[self.dialect.name(), model, &body])
     }
+}
+
+fn tokens(text: &str) -> u64 {
+    (text.len() as u64).div_ceil(CHARS_PER_TOKEN)
 }
 
 fn words(text: &str) -> u64 {

@@ -1,7 +1,9 @@
 //! Anthropic's messages (<https://docs.anthropic.com/en/api/messages>).
 
 use super::{Asked, End, Heard, Line, Missing, Wire, content};
+use crate::picture::Picture;
 use serde_json::{Map, Value, json};
+use std::sync::Arc;
 use wayword_core::Role;
 
 /// The version of the API that this file implements.
@@ -28,18 +30,19 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
 
 fn message(line: &Line) -> Value {
     let role = if line.role == Role::Assistant { "assistant" } else { "user" };
-    match &line.picture {
-        None => json!({ "role": role, "content": line.text }),
-        Some(picture) => {
-            let source = json!({ "type": "base64", "media_type": "image/jpeg", "data": picture.base64 });
-            let mut parts = vec![json!({ "type": "image", "source": source })];
-            // The service refuses an empty text block.
-            if !line.text.is_empty() {
-                parts.push(json!({ "type": "text", "text": line.text }));
-            }
-            json!({ "role": role, "content": parts })
-        }
+    if line.pictures.is_empty() {
+        return json!({ "role": role, "content": line.text });
     }
+    let picture = |picture: &Arc<Picture>| {
+        let source = json!({ "type": "base64", "media_type": "image/jpeg", "data": picture.base64 });
+        json!({ "type": "image", "source": source })
+    };
+    let mut parts: Vec<Value> = line.pictures.iter().map(picture).collect();
+    // The service refuses an empty text block.
+    if !line.text.is_empty() {
+        parts.push(json!({ "type": "text", "text": line.text }));
+    }
+    json!({ "role": role, "content": parts })
 }
 
 /// Reads a reply's body.

@@ -33,15 +33,15 @@ fn message(line: &Line) -> Value {
         Role::User => "user",
         Role::Assistant => "assistant",
     };
-    match &line.picture {
-        None => json!({ "role": role, "content": line.text }),
-        Some(picture) => {
-            let url = format!("data:image/jpeg;base64,{}", picture.base64);
-            let parts =
-                json!([{ "type": "text", "text": line.text }, { "type": "image_url", "image_url": { "url": url } }]);
-            json!({ "role": role, "content": parts })
-        }
+    if line.pictures.is_empty() {
+        return json!({ "role": role, "content": line.text });
     }
+    let mut parts = vec![json!({ "type": "text", "text": line.text })];
+    parts.extend(line.pictures.iter().map(|picture| {
+        let url = format!("data:image/jpeg;base64,{}", picture.base64);
+        json!({ "type": "image_url", "image_url": { "url": url } })
+    }));
+    json!({ "role": role, "content": parts })
 }
 
 /// Reads a reply's body.

@@ -9,7 +9,7 @@ use wayword_core::Role;
 /// # Errors
 /// When there is a picture.
 pub(super) fn to_wire(asked: Asked<'_>) -> Result<Wire, &'static str> {
-    if asked.lines.iter().any(|line| line.picture.is_some()) {
+    if asked.lines.iter().any(|line| !line.pictures.is_empty()) {
         return Err("the completions endpoint takes no pictures: for --see, choose a model behind a chat endpoint");
     }
     let mut body = Map::new();

@@ -32,9 +32,8 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
 fn message(line: &Line) -> Value {
     let role = if line.role == Role::Assistant { "model" } else { "user" };
     let mut parts = vec![json!({ "text": line.text })];
-    if let Some(picture) = &line.picture {
-        parts.push(json!({ "inlineData": { "mimeType": "image/jpeg", "data": picture.base64 } }));
-    }
+    let inline = |data: &str| json!({ "inlineData": { "mimeType": "image/jpeg", "data": data } });
+    parts.extend(line.pictures.iter().map(|picture| inline(&picture.base64)));
     json!({ "role": role, "parts": parts })
 }
 

@@ -35,7 +35,7 @@ pub enum Dialect {
 pub(crate) struct Line {
     pub(crate) role: Role,
     pub(crate) text: String,
-    pub(crate) picture: Option<Arc<Picture>>,
+    pub(crate) pictures: Vec<Arc<Picture>>,
 }
 
 /// A request to a model.
@@ -148,6 +148,11 @@ impl Dialect {
         }?;
         heard.text = after_thinking(&heard.text).trim().to_owned();
         Ok(heard)
+    }
+
+    /// Whether a message of this dialect can hold pictures.
+    pub(crate) fn takes_pictures(self) -> bool {
+        self != Self::Completions
     }
 
     /// The path of the service's list of models.

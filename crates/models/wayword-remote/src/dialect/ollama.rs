@@ -29,8 +29,9 @@ fn message(line: &Line) -> Value {
         Role::Assistant => "assistant",
     };
     let mut message = json!({ "role": role, "content": line.text });
-    if let (Some(picture), Value::Object(message)) = (&line.picture, &mut message) {
-        message.insert("images".to_owned(), json!([picture.base64]));
+    if let (false, Value::Object(message)) = (line.pictures.is_empty(), &mut message) {
+        let pictures = line.pictures.iter().map(|picture| Value::from(picture.base64.as_str()));
+        message.insert("images".to_owned(), pictures.collect());
     }
     message
 }

@@ -11,12 +11,12 @@ fn provider(name: &str, own: &str) -> Provider {
 }
 
 fn line(role: Role, text: &str) -> Line {
-    Line { role, text: text.to_owned(), picture: None }
+    Line { role, text: text.to_owned(), pictures: Vec::new() }
 }
 
 fn seen(text: &str) -> Line {
     let picture = Picture { base64: "QUJD".to_owned(), sha256: "00".to_owned() };
-    Line { picture: Some(Arc::new(picture)), ..line(Role::User, text) }
+    Line { pictures: vec![Arc::new(picture)], ..line(Role::User, text) }
 }
 
 fn conversation() -> Vec<Line> {
@@ -276,4 +276,17 @@ fn thinking_is_removed_where_it_comes_first() {
     assert_eq!(after_thinking("<think>is it a"), "");
     assert_eq!(after_thinking("A sign says <think>hard</think>."), "A sign says <think>hard</think>.");
     assert_eq!(after_thinking("A sofa."), "A sofa.");
+}
+
+#[test]
+fn several_pictures_of_a_message_are_sent_in_their_order() {
+    let picture = |data: &str| Arc::new(Picture { base64: data.to_owned(), sha256: data.to_owned() });
+    let lines = [Line { pictures: vec![picture("QQ"), picture("Qg")], ..line(Role::User, "Write.") }];
+    for name in ["openai", "anthropic", "gemini", "ollama"] {
+        let body = wire(&provider(name, ""), &lines).unwrap().body.to_string();
+        let places = ["QQ", "Qg"].map(|data| body.find(&format!("{data}\"")).unwrap());
+        assert!(places[0] < places[1], "{name}: {body}");
+    }
+    let config = "[providers.completions]\nbase_url = \"http://127.0.0.1:1/v1\"";
+    assert!(wire(&provider("completions", config), &lines).unwrap_err().contains("takes no pictures"));
 }

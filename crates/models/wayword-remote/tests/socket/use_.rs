@@ -13,7 +13,7 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_core::{Finish, Image, LanguageModel, Message, Role};
+use wayword_core::{Finish, Image, LanguageModel, Message};
 use wayword_ledger::{Ledger, Limits};
 use wayword_remote::{Config, Level, Prices, Services};
 
@@ -118,7 +118,7 @@ fn a_picture_goes_out_as_jpeg_and_stands_in_the_ledger_as_its_hash() {
     let run = run();
     let image = Arc::new(Image::new(600, 400, [200, 0, 0].repeat(600 * 400)).unwrap());
     let mut request = ask("Colour?");
-    request.messages = vec![Message { role: Role::User, text: "Colour?".to_owned(), image: Some(image) }];
+    request.messages = vec![Message::about("Colour?", vec![image])];
     assert_eq!(model(&server, "", &run).complete(&[request])[0].as_ref().unwrap().text, "Red.");
     assert!(server.requests()[0].contains("data:image/jpeg;base64,/9j/"));
     let file = folder.path().join("calls.jsonl");

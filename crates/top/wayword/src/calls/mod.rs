@@ -40,6 +40,8 @@ pub struct Calls {
     run: Run,
     record: Option<PathBuf>,
     workers: usize,
+    /// Whether calls wait for a network.
+    waits: bool,
 }
 
 impl Calls {
@@ -65,6 +67,9 @@ impl Calls {
         };
         let priced = |name: &str| Ok((name.to_owned(), price(name)?));
         let prices = settings.roles.models().into_iter().map(priced).collect::<Result<_, Error>>()?;
+        if settings.roles.write_sees {
+            services.takes_pictures(&settings.roles.write)?;
+        }
         if let Some(recording) = &service.replay {
             File::open(recording).map_err(Error::io(recording, "read the recording"))?;
         } else if !settings.roles.models().is_empty() {
@@ -106,7 +111,7 @@ impl Calls {
         // A command that does not wait for a network has no use for more items than cores.
         let waits = models.iter().any(|name| !is_in_process(name));
         let workers = if waits { concurrency(service).threads() } else { cores() };
-        Ok(Some(Self { services, local, run, record: service.record.clone(), workers }))
+        Ok(Some(Self { services, local, run, record: service.record.clone(), workers, waits }))
     }
 
     /// A model by its name.
@@ -161,6 +166,13 @@ impl Calls {
     #[must_use]
     pub fn workers(&self) -> usize {
         self.workers
+    }
+
+    /// How many views of one path to talk about at a time while so many items are left: together the items keep all
+    /// workers busy, and a single path does so alone.
+    #[must_use]
+    pub fn views_at_once(&self, items_left: usize) -> usize {
+        if self.waits { self.workers.div_ceil(items_left.clamp(1, self.workers.max(1))) } else { 1 }
     }
 
     /// Ends the sending: calls in flight are finished, and their answers kept.

@@ -64,6 +64,7 @@ struct Load {
 const TYPICAL_QUESTION: &str = "What stands on the left side of the room, and what does it look like?";
 const TYPICAL_ANSWER: &str = "There is a small wooden table with a lamp on it, and a grey chair stands next to it.";
 const TYPICAL_CAPTION: &str = "A living room with a grey sofa on the left, a wooden table in the middle, two chairs on the right and a lamp beside the window. A doorway leads to a hallway.";
+const TYPICAL_INSTRUCTION: &str = "Walk past the grey sofa and turn left at the bookcase. Go through the doorway into the hallway and stop next to the small table.";
 /// Tokens of a typical reply of each kind.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
@@ -144,6 +145,11 @@ fn questions(settings: &Settings) -> usize {
     }
 }
 
+/// Tokens of a picture of 4 by 3, as wide as pictures are sent at most.
+fn picture_tokens(settings: &Settings) -> u64 {
+    u64::from(settings.roles.picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN
+}
+
 /// What the dialogue about one view takes.
 struct Talk {
     asking: Load,
@@ -157,7 +163,7 @@ impl Talk {
         let rounds = questions(settings);
         let mut transcript = Vec::new();
         let (mut asking, mut seeing) = (Load::default(), Load::default());
-        let picture = u64::from(settings.roles.picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN;
+        let picture = picture_tokens(settings);
         for round in 0..rounds {
             if round > 0 {
                 asking.call(&prompts.question(&transcript)?, QUESTION_TOKENS);
@@ -174,22 +180,21 @@ impl Talk {
     }
 }
 
-/// Writing once for each style; repairs come on top, and their number is not known before.
+/// Writing each text once; repairs come on top, and their number is not known before.
 fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path: &Path) -> Result<Load, PromptError> {
     let seen = Observation { summary: TYPICAL_CAPTION.to_owned(), ..Observation::default() };
     let walk = Walk::new(path.clone(), vec![seen; path.frames.len()]);
+    let memory = walk.memory();
     let mut load = Load::default();
+    let pictures = if settings.roles.write_sees { path.frames.len().min(pipeline::MOST_SHOWN) as u64 } else { 0 };
     for Measured { style, profile } in styles {
-        let brief = Brief {
-            walk: &walk,
-            memory: &walk.memory(),
-            style,
-            profile,
-            seed: settings.seed,
-            candidate: 0,
-            complaints: &[],
-        };
-        load.call(&prompts.write(&brief)?, INSTRUCTION_TOKENS);
+        let earlier: Vec<String> = (0..settings.per_path).map(|_| TYPICAL_INSTRUCTION.to_owned()).collect();
+        for number in 0..settings.per_path {
+            let brief =
+                Brief { earlier: &earlier[..number], ..Brief::new(&walk, &memory, style, profile, settings.seed) };
+            load.call(&prompts.write(&brief)?, INSTRUCTION_TOKENS);
+            load.tokens_in += pictures * picture_tokens(settings);
+        }
     }
     Ok(load.times(u64::from(settings.candidates)))
 }

@@ -85,6 +85,7 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<F
             repairs: 1,
             finished_for: None,
             chosen: None,
+            target_undescribed: false,
         },
     }
 }
@@ -115,8 +116,9 @@ fn run_of(first: &WalkRecord, instruction: &Instruction) -> tempfile::TempDir {
             style: "r2r".into(),
             reason: "turns: the path turns right there".into(),
             last: Some(last),
+            number: 0,
         },
-        Rejected { item: "c".into(), style: String::new(), reason: "no such viewpoint".into(), last: None },
+        Rejected { item: "c".into(), style: String::new(), reason: "no such viewpoint".into(), last: None, number: 0 },
     ];
     let config = toml::to_string(&Asked::default().resolve().unwrap()).unwrap();
     fs::write(run.path().join(file::CONFIG), config).unwrap();
@@ -301,7 +303,13 @@ fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile:
         text.text = format!("{} It is number {number}.", text.text);
         if rejected.contains(&number) {
             let reason = "turns: the path turns right there".to_owned();
-            refused.push_str(&line(&Rejected { item: id.clone(), style: "r2r".into(), reason, last: Some(text) }));
+            refused.push_str(&line(&Rejected {
+                item: id.clone(),
+                style: "r2r".into(),
+                reason,
+                last: Some(text),
+                number: 0,
+            }));
             continue;
         }
         if unverified.contains(&number) {

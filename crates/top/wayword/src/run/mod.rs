@@ -31,7 +31,7 @@ use wayword_world::files;
 use held::Held;
 pub(crate) use held::hold;
 pub use journal::{Journal, read_lines};
-pub use record::{FailedItem, Map, Rejected, WalkRecord, extra};
+pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, text_name};
 pub use world_data::WorldData;
 
 /// A run folder in which only this process works.
@@ -116,7 +116,7 @@ impl RunFolder {
         self.folder.join(file::FRAMES)
     }
 
-    /// Whether an item needs no more work: its path and pictures are there, and each style has its line.
+    /// Whether an item needs no more work: its path and pictures are there, and each text ([`text_name`]) has its line.
     #[must_use]
     fn is_done(&self, item: &str, styles: &[String]) -> bool {
         let has = |style: &str| {

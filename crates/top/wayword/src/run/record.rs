@@ -1,7 +1,7 @@
 //! The lines of a run folder.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map as JsonMap, Value, json};
+use serde_json::{Map as JsonMap, Value};
 use wayword_core::{DVec3, Failure, Instruction, Observation, Path, Platform, PlatformError, ViewpointGraph};
 
 /// A path and what was seen along it: a line of `walks.jsonl`.
@@ -47,6 +47,14 @@ pub struct Rejected {
     /// The best text there was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<Instruction>,
+    /// Its number among the texts of its path and style, from 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub number: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_zero(number: &usize) -> bool {
+    *number == 0
 }
 
 /// An item that failed: a line of `errors.jsonl`. The same command tries it again.
@@ -70,11 +78,25 @@ pub(super) fn key(item: &str, style: &str) -> String {
     format!("{item}\u{1f}{style}")
 }
 
-pub(super) fn instruction_key(value: &Value) -> Option<String> {
-    Some(key(value.get("path")?.get("id")?.as_str()?, value.get("style")?.as_str()?))
+/// What identifies a text within its item: its style, and its number where the style has several.
+#[must_use]
+pub fn text_name(style: &str, number: usize) -> String {
+    if number == 0 { style.to_owned() } else { format!("{style}\u{1f}{number}") }
 }
 
-/// The item of a key, and the style if it has one.
+/// The field of a record that has the number of its text.
+const NUMBER: &str = "number";
+
+fn name_of(value: &Value) -> Option<String> {
+    let number = value.get(NUMBER).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
+    Some(text_name(value.get("style")?.as_str()?, number.unwrap_or(0)))
+}
+
+pub(super) fn instruction_key(value: &Value) -> Option<String> {
+    Some(key(value.get("path")?.get("id")?.as_str()?, &name_of(value)?))
+}
+
+/// The item of a key, and the name of its text if it has one.
 pub(super) fn parts(key: &str) -> (&str, Option<&str>) {
     key.split_once('\u{1f}').map_or((key, None), |(item, style)| (item, Some(style)))
 }
@@ -93,17 +115,20 @@ impl WalkRecord {
 
 impl Rejected {
     pub(super) fn key_of(value: &Value) -> Option<String> {
-        Some(key(value.get("item")?.as_str()?, value.get("style")?.as_str()?))
+        Some(key(value.get("item")?.as_str()?, &name_of(value)?))
     }
 }
 
-/// What an instruction's record holds besides the format's own fields.
+/// What an instruction's record holds besides the format's own fields: the path in its dataset, and the number of the
+/// text where its path and style have several.
 #[must_use]
-pub fn extra(path_id: &str) -> JsonMap<String, Value> {
-    match json!({ "path_id": path_id }) {
-        Value::Object(extra) => extra,
-        _ => JsonMap::new(),
+pub fn extra(path_id: &str, number: usize) -> JsonMap<String, Value> {
+    let mut extra = JsonMap::new();
+    extra.insert("path_id".to_owned(), path_id.into());
+    if number > 0 {
+        extra.insert(NUMBER.to_owned(), number.into());
     }
+    extra
 }
 
 impl Map {

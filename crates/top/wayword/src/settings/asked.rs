@@ -152,6 +152,10 @@ writing:
         /// length. [default: 4; if a model writes, 1]
         #[arg(long, value_name = "N")]
         pub candidates: Option<u32>,
+        /// Write N texts for each path and style, 1 to 9, that differ from each other: as in --per-path 3 for three texts a path, the
+        /// number that R2R has. [default: 1]
+        #[arg(long, value_name = "N")]
+        pub per_path: Option<usize>,
         /// Check texts against the platform's labels if it has any, or only against the captions. [default: labels]
         #[arg(long)]
         pub evidence: Option<Against>,

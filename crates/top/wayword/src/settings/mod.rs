@@ -64,6 +64,9 @@ pub struct Settings {
     /// How many texts are written, of which one is kept.
     #[serde(default = "one")]
     pub candidates: u32,
+    /// How many texts each path gets in each style.
+    #[serde(default = "one_text", skip_serializing_if = "is_one")]
+    pub per_path: usize,
     /// Seed of everything random.
     pub seed: u64,
     /// Only this many items.
@@ -91,6 +94,15 @@ pub struct Settings {
 
 fn one() -> u32 {
     1
+}
+
+fn one_text() -> usize {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_one(number: &usize) -> bool {
+    *number == 1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
@@ -147,6 +159,8 @@ const MOST_CANDIDATES: u32 = 32;
 const MOST_REPAIRS: u32 = 100;
 /// Largest `--questions`: each question carries the whole dialogue before it.
 const MOST_QUESTIONS: usize = 100;
+/// Largest `--per-path`: later texts of a path differ ever less from the earlier ones.
+const MOST_PER_PATH: usize = 9;
 /// Largest `--paths`.
 const MOST_PATHS: usize = 1_000_000;
 
@@ -221,6 +235,12 @@ impl Asked {
                 "give a number in that range: each further text gains less",
             ));
         }
+        if writing.per_path.is_some_and(|number| !(1..=MOST_PER_PATH).contains(&number)) {
+            return Err(Error::usage(
+                format!("--per-path is not from 1 to {MOST_PER_PATH}"),
+                "for more texts make several runs, each with its own --seed",
+            ));
+        }
         if writing.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
             return Err(Error::usage(
                 format!("--questions is more than {MOST_QUESTIONS}"),
@@ -248,6 +268,7 @@ impl Asked {
             target: writing.target.unwrap_or_default(),
             repairs: writing.repairs.unwrap_or(repairs),
             candidates: writing.candidates.unwrap_or(candidates),
+            per_path: writing.per_path.unwrap_or(1),
             seed: draw.seed.unwrap_or(0),
             limit: draw.limit,
             evidence: writing.evidence.unwrap_or_default(),

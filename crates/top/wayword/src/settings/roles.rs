@@ -1,6 +1,6 @@
 //! Who asks, sees, summarises and writes in a run, by name.
 
-use super::asked::group;
+use super::{asked::group, is_false};
 use crate::error::Error;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -37,6 +37,10 @@ group! {
         /// Who writes: rules, or a model. [default: the model of --llm, else rules]
         #[arg(long, value_name = "MODEL")]
         pub write: Option<String>,
+        /// Show the model that writes the pictures ahead of the frames, at most 16 of a path, besides their descriptions: as in
+        /// --write openai/gpt-4.1-mini --write-sees. A provider that takes no pictures is refused.
+        #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+        pub write_sees: Option<bool>,
         /// Who writes the instruction if all texts of the model failed a check: rules, or nobody (it is rejected). The provenance
         /// says who wrote it. [default: rules]
         #[arg(long)]
@@ -92,6 +96,9 @@ pub struct Roles {
     pub summarise: String,
     /// Who writes.
     pub write: String,
+    /// Whether the model that writes is shown the pictures of the frames.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub write_sees: bool,
     /// Who writes if all texts of a model failed.
     pub finish: Finish,
     /// Base URL, if there is one provider.
@@ -114,6 +121,7 @@ impl Default for Roles {
             see: LABELS.to_owned(),
             summarise: RULES.to_owned(),
             write: RULES.to_owned(),
+            write_sees: false,
             finish: Finish::default(),
             base_url: None,
             picture_px: PICTURE_PX,
@@ -151,11 +159,20 @@ impl AskedRoles {
                 "most models look at 300 to 1600 pixels",
             ));
         }
+        let write = text(self.write, "--write", &default.write)?;
+        let write_sees = self.write_sees.unwrap_or(false);
+        if write_sees && (!is_model(&write) || is_in_process(&write)) {
+            return Err(Error::usage(
+                format!("--write-sees: {write} writes, and cannot be shown pictures"),
+                "name a model over HTTP that sees, as in --write openai/gpt-4.1-mini --write-sees",
+            ));
+        }
         Ok(Roles {
             ask: text(self.ask, "--ask", &default.ask)?,
             see: self.see.map_or(Ok(default.see), |name| named("--see", name, LABELS))?,
             summarise: text(self.summarise, "--summarise", &default.summarise)?,
-            write: text(self.write, "--write", &default.write)?,
+            write,
+            write_sees,
             finish: self.finish.unwrap_or_default(),
             base_url: self.base_url,
             picture_px,

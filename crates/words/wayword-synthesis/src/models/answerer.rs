@@ -6,7 +6,7 @@ use crate::{
     seeing::complaint,
 };
 use std::sync::Arc;
-use wayword_core::{Answer, AnswerForm, Answerer, Ask, LanguageModel, Message, ModelError, Request, Role, Sampling};
+use wayword_core::{Answer, AnswerForm, Answerer, Ask, LanguageModel, Message, ModelError, Request, Sampling};
 
 /// Puts questions about a view's picture to a language model that sees.
 #[derive(Clone)]
@@ -39,7 +39,7 @@ impl ModelAnswerer {
             AnswerForm::Words => (self.prompts.answer(self.manner, ask.question, ask.history)?, SAMPLING, None),
             AnswerForm::Json(schema) => (self.prompts.see(complaint(ask.question))?, OF_JSON, Some(schema)),
         };
-        let message = Message { role: Role::User, text, image: Some(image) };
+        let message = Message::about(text, vec![image]);
         Ok(Request { messages: vec![message], sampling, replicate: 0, schema })
     }
 }

@@ -114,7 +114,10 @@ mod tests {
     fn what_stands_around_a_text_is_taken_off() {
         for (told, wanted) in [
             ("Sure! Here is the instruction: Go to the sink.", "Go to the sink."),
-            ("Certainly! Here's a concise instruction in the style of the reference texts:\n\nGo to the sink.", "Go to the sink."),
+            (
+                "Certainly! Here's a concise instruction in the style of the reference texts:\n\nGo to the sink.",
+                "Go to the sink.",
+            ),
             ("Go to the sink.\n\nLet me know if you need anything else!", "Go to the sink."),
             ("Go to the sink. I hope this helps.", "Go to the sink."),
             ("Of course.\nGo to the sink and stop.", "Go to the sink and stop."),
@@ -135,7 +138,9 @@ mod tests {
 
     #[test]
     fn refusals_are_recognised_and_instructions_are_not() {
-        for refusal in ["I'm sorry, but I can't help with that.", "I’m sorry, I cannot.", "As an AI, I do not see.", "Sorry!"] {
+        for refusal in
+            ["I'm sorry, but I can't help with that.", "I’m sorry, I cannot.", "As an AI, I do not see.", "Sorry!"]
+        {
             assert!(refuses(refusal), "{refusal}");
         }
         for text in ["Go past the sorry-looking plant.", "Into the hall. I can't stress it enough.", "Stop."] {

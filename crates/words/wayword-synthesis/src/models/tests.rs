@@ -3,7 +3,7 @@ use crate::{
     dialogue::{Asker, OPENING, Summariser},
     prompts::{Manner, Prompts, trial},
     style::{Profile, built_in},
-    writer::{Brief, WriteError, Writer},
+    writer::{Brief, FramePicture, WriteError, Writer},
 };
 use std::sync::{Arc, Mutex};
 use wayword_core::{AnswerForm, Answerer, Ask, Exchange, Finish, Heading, Image, Motion, Pose, View};
@@ -112,7 +112,7 @@ fn a_model_is_shown_the_picture_and_one_that_was_cut_off_keeps_whole_sentences()
     let answers = eye.answer(&[ask(&blind), ask(&view)]);
     assert!(matches!(&answers[0], Err(ModelError::NothingToSee { .. })));
     assert_eq!(answers[1].as_deref(), Ok("A bed."));
-    assert_eq!(model.heard.lock().unwrap()[0].messages[0].image, Some(image));
+    assert_eq!(model.heard.lock().unwrap()[0].messages[0].images, [image]);
 }
 
 #[test]
@@ -121,15 +121,8 @@ fn a_text_of_two_megabytes_is_refused_and_not_sent_back_whole() {
     let walk = trial::walk(Motion::Known).unwrap();
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let brief = Brief {
-        walk: &walk,
-        memory: &walk.memory(),
-        style: &style,
-        profile: &profile,
-        seed: 0,
-        candidate: 0,
-        complaints: &[],
-    };
+    let memory = walk.memory();
+    let brief = Brief::new(&walk, &memory, &style, &profile, 0);
     let writer = ModelWriter::new(Scripted::new(&[&long]), prompts());
     let Err(WriteError::Unusable { text, reason }) = writer.write(&brief) else { panic!("it is used") };
     assert!(text.len() < 1000 && text.starts_with("Go past the sofa"), "{} bytes", text.len());
@@ -151,4 +144,30 @@ fn what_a_model_does_not_do_is_told() {
         ModelError::Stopped { reason: "the budget is spent".into(), hint: "raise --max-usd".into(), is_lost: false };
     let model = Scripted::with(vec![Err(stop.clone())]);
     assert_eq!(ModelAsker::new(model, prompts()).next_question(&[]), Err(stop));
+}
+
+#[test]
+fn a_refusal_is_no_text_and_a_writer_that_sees_gets_the_pictures() {
+    let walk = trial::walk(Motion::Known).unwrap();
+    let style = built_in("r2r").unwrap();
+    let profile = Profile::measure(&style.references);
+    let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
+    let pictures = [FramePicture { frame: 1, image: Arc::clone(&image) }];
+    let brief = Brief { pictures: &pictures, ..Brief::new(&walk, &style, &profile, 0) };
+    let model = Scripted::new(&["I'm sorry, but I can't assist with that.", "Sure! Instruction: \"Go on. Stop.\""]);
+    let writer = ModelWriter::new(model.clone(), prompts());
+    assert!(matches!(writer.write(&brief), Err(WriteError::Unusable { reason, .. }) if reason.contains("refused")));
+    assert_eq!(writer.write(&brief).unwrap(), "Go on. Stop.");
+    let heard = model.heard.lock().unwrap();
+    assert_eq!(heard[0].messages[0].images, [image]);
+    assert!(heard[0].messages[0].text.contains("attached, in this order: Frame 1."), "{}", heard[0].messages[0].text);
+}
+
+#[test]
+fn a_summary_that_was_cut_off_is_asked_again_and_then_kept_as_far_as_it_goes() {
+    let cut = || Ok(Reply { text: "A bedroom with a bed. In the".to_owned(), finish: Finish::Length });
+    let model = Scripted::with(vec![cut(), cut()]);
+    let caption = ModelSummariser::new(model.clone(), prompts()).sum_up(&transcript(), "test").unwrap();
+    assert_eq!((caption.text.as_str(), caption.by), ("A bedroom with a bed.", None));
+    assert!(model.prompts()[1].contains("it was cut off"));
 }

@@ -37,9 +37,10 @@ impl Writer for ModelWriter {
 
     fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
         let prompt = self.prompts.write(brief).map_err(ModelError::from)?;
+        let pictures = brief.pictures.iter().map(|picture| Arc::clone(&picture.image)).collect();
         let seed = brief.seed.wrapping_add(u64::from(brief.candidate));
         let sampling = Sampling { temperature: TEMPERATURE, max_tokens: MAX_TOKENS, seed };
-        let reply = say(self.model.as_ref(), Message::user(prompt), sampling)?;
+        let reply = say(self.model.as_ref(), Message::about(prompt, pictures), sampling)?;
         let text = plain(&reply.text, &["instruction"]);
         if text.len() > LONGEST_TEXT_BYTES {
             let reason = format!("it has {} bytes, more than {LONGEST_TEXT_BYTES}: write a few sentences", text.len());

@@ -4,6 +4,7 @@
 //! the prompt has measured moves, so that the model guesses no turn, and the reasons why an earlier text was refused.
 
 mod bounds;
+mod corrections;
 pub(crate) mod trial;
 mod writing;
 

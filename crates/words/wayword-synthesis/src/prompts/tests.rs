@@ -6,8 +6,8 @@ use crate::{
     writer::Complaint,
 };
 use wayword_core::{
-    Check, DVec3, Distinction, Finding, Motion, ObjectId, Observation, Path, SceneId, Side, Style, Target, Verdict,
-    path::Stop,
+    Caption, Check, DVec3, Distinction, Finding, Gaze, Look, Motion, ObjectId, Observation, Path, SceneId, Side, Style,
+    Target, Verdict, Where, path::Stop,
 };
 
 fn transcript() -> Vec<Exchange> {
@@ -76,15 +76,7 @@ fn the_writing_prompts() {
         }];
         let complaints = [Complaint { text: "Go up.".into(), findings }];
         let complaints = if name == "reverie" { &complaints[..] } else { &[] };
-        let brief = Brief {
-            walk: &walk,
-            memory: &walk.memory(),
-            style: &style,
-            profile: &profile,
-            seed: 0,
-            candidate: 0,
-            complaints,
-        };
+        let brief = Brief { complaints, ..Brief::new(&walk, &walk.memory(), &style, &profile, 0) };
         insta::assert_snapshot!(format!("write_{name}"), prompts.write(&brief).unwrap());
     }
 }
@@ -97,15 +89,7 @@ fn who_writes_about_a_video_without_poses_is_told_to_make_no_motion_up() {
     let walk = Walk::new(path, walk().observations);
     let style = built_in("reverie").unwrap();
     let profile = Profile::measure(&style.references);
-    let brief = Brief {
-        walk: &walk,
-        memory: &walk.memory(),
-        style: &style,
-        profile: &profile,
-        seed: 0,
-        candidate: 0,
-        complaints: &[],
-    };
+    let brief = Brief::new(&walk, &walk.memory(), &style, &profile, 0);
     insta::assert_snapshot!("write_without_poses", Prompts::new(&[]).unwrap().write(&brief).unwrap());
 }
 
@@ -115,18 +99,82 @@ fn a_style_without_tasks_is_given_none_to_end_in() {
     let tells_task = |name: &str| {
         let style = built_in(name).unwrap();
         let profile = Profile::measure(&style.references);
-        let brief = Brief {
-            walk: &walk,
-            memory: &walk.memory(),
-            style: &style,
-            profile: &profile,
-            seed: 0,
-            candidate: 0,
-            complaints: &[],
-        };
+        let brief = Brief::new(&walk, &walk.memory(), &style, &profile, 0);
         prompts.write(&brief).unwrap().contains("ends in a task")
     };
     assert!(!tells_task("r2r") && tells_task("reverie"));
+}
+
+/// The prompt after one refusal, about some words of the refused text.
+fn after_refusal(text: &str, check: Check, words: &str, reason: &str) -> String {
+    let start = text.find(words).unwrap();
+    let span = Some([start, start + words.len()]);
+    let finding = Finding { check, verdict: Verdict::Fail, reason: reason.into(), span };
+    let complaints = [Complaint { text: text.into(), findings: vec![finding] }];
+    let (walk, style) = (walk(), built_in("r2r").unwrap());
+    let profile = Profile::measure(&style.references);
+    let brief = Brief { complaints: &complaints, ..Brief::new(&walk, &walk.memory(), &style, &profile, 0) };
+    Prompts::new(&[]).unwrap().write(&brief).unwrap()
+}
+
+#[test]
+fn a_refusal_says_what_would_be_right() {
+    let reason = "the path does not turn left there";
+    let one = after_refusal("Walk on. Turn left. Go up the stairs.", Check::Turns, "Turn left", reason);
+    assert!(
+        one.contains(
+            "you wrote \"Turn left\": the path does not turn left there (the walk turns right there, at Frame 1)"
+        ),
+        "{one}"
+    );
+    let two = after_refusal("Turn left. Turn left. Stop.", Check::Turns, "Turn left", reason);
+    assert!(two.contains("the turns of the walk are, in order: turns right at Frame 1"), "{two}");
+    let down = after_refusal("Go down the stairs.", Check::Floors, "down the stairs", "it does not go down");
+    assert!(down.contains("it goes up stairs from Frame 2"), "{down}");
+    let piano = after_refusal("Go past the piano.", Check::Landmarks, "piano", "no frame of the path shows \"piano\"");
+    assert!(piano.contains("name something that the frames show"), "{piano}");
+}
+
+#[test]
+fn a_prompt_shows_at_most_24_references_whatever_the_style_has() {
+    let references: Vec<String> = (0..500).map(|at| format!("Walk past chair {at}.")).collect();
+    let style = Style { references, ..built_in("r2r").unwrap() };
+    let (walk, profile) = (walk(), Profile::measure(&style.references));
+    let of =
+        |seed| Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &walk.memory(), &style, &profile, seed)).unwrap();
+    assert_eq!(of(1).matches("Walk past chair").count(), 24);
+    assert_eq!(of(1), of(1));
+    assert_ne!(of(1), of(2));
+}
+
+#[test]
+fn what_a_frame_shows_is_listed_and_a_target_that_nobody_saw_is_told_as_such() {
+    let style = built_in("reverie").unwrap();
+    let profile = Profile::measure(&style.references);
+    let prompt = |walk: &Walk| Prompts::new(&[]).unwrap().write(&Brief::new(walk, &style, &profile, 0)).unwrap();
+    let mut seen = walk();
+    let target = seen.path.target.as_mut().unwrap();
+    (target.has_namesake, target.name) = (false, "lamp".into());
+    assert!(prompt(&seen).contains("lamp (no description mentions it"), "{}", prompt(&seen));
+    let sighting = |name: &str, witness, place| Sighting {
+        name: name.into(),
+        witness,
+        place,
+        colour: Some("white".into()),
+        several: false,
+        by: "test".into(),
+    };
+    let sightings = vec![
+        sighting("lamp", Witness::Seen, Some(Where::Left)),
+        sighting("bed", Witness::Seen, None),
+        sighting("mirror", Witness::Denied, None),
+        sighting("soft", Witness::Seen, None),
+    ];
+    let gaze = Gaze::quarter(seen.path.frames[3].pose.heading);
+    seen.observations[3].looks = vec![Look { gaze, caption: Caption { sightings, ..Caption::default() } }];
+    let prompt = prompt(&seen);
+    assert!(!prompt.contains("no description mentions it"), "{prompt}");
+    assert!(prompt.contains("Landmarks: white lamp (left), white bed\n"), "{prompt}");
 }
 
 #[test]
@@ -213,15 +261,7 @@ fn the_longest_style_and_walk_that_are_allowed_fit_into_a_prompt() {
     let summary = "A hallway with a picture. ".repeat(40);
     let observations = vec![Observation { summary, ..Observation::default() }; 1000];
     let walk = Walk::new(long.path, observations);
-    let brief = Brief {
-        walk: &walk,
-        memory: &walk.memory(),
-        style: &style,
-        profile: &profile,
-        seed: 0,
-        candidate: 0,
-        complaints: &[],
-    };
+    let brief = Brief::new(&walk, &walk.memory(), &style, &profile, 0);
     assert!(Prompts::new(&[]).unwrap().write(&brief).is_ok());
 }
 

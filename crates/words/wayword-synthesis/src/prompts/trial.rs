@@ -29,14 +29,11 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     let complaints = [Complaint { text: "Go.".to_owned(), findings: vec![finding] }];
     let profile = Profile::measure(&style.references);
     for walk in [Motion::Known, Motion::Unknown].into_iter().filter_map(walk) {
+        let earlier = ["Go on.".to_owned()];
         prompts.write(&Brief {
-            walk: &walk,
-            memory: &walk.memory(),
-            style: &style,
-            profile: &profile,
-            seed: 0,
-            candidate: 0,
             complaints: &complaints,
+            earlier: &earlier,
+            ..Brief::new(&walk, &walk.memory(), &style, &profile, 0)
         })?;
     }
     Ok(())

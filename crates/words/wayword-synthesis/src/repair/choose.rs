@@ -114,6 +114,8 @@ mod tests {
             repairs: 0,
             candidates: u32::try_from(texts.len()).unwrap(),
             follower,
+            earlier: &[],
+            pictures: &[],
         };
         let asker = RulesAsker::default();
         let observers = Observers {

@@ -7,10 +7,11 @@ use crate::{
     observe::Observers,
     style::{Profile, hash},
     walk::Walk,
-    writer::{Brief, Complaint, RulesWriter, WriteError, Writer},
+    writer::{Brief, Complaint, FramePicture, RulesWriter, WriteError, Writer},
 };
 use wayword_checks::{Checked, Evidence, Memory, Subject, check_own};
-use wayword_core::{Ambiguity, Check, Finding, Instruction, ModelError, Provenance, Style, Verdict};
+use wayword_core::{Ambiguity, Check, Finding, Instruction, ModelError, Provenance, Style, Verdict, seed};
+use wayword_language::text::words;
 
 /// Everything that one instruction is made from.
 #[derive(Clone, Copy)]
@@ -33,6 +34,10 @@ pub struct Order<'a> {
     pub candidates: u32,
     /// Who follows each text that passed its checks; nobody where `None`.
     pub follower: Option<&'a dyn Follow>,
+    /// Texts that the walk already has in this style: the new one has to differ from them, and is drawn anew.
+    pub earlier: &'a [String],
+    /// Pictures of frames, for a writer that sees.
+    pub pictures: &'a [FramePicture],
 }
 
 /// Follows texts over what is known around their path.
@@ -106,6 +111,10 @@ fn attempts(
     let mut least_bad: Option<Instruction> = None;
     for repairs in 0..=order.repairs {
         let text = match writer.write(&brief(order, candidate, &complaints)) {
+            Ok(text) if is_there(&text, order.earlier) => {
+                complaints.push(unusable(text, "this way already has this text: write another one".to_owned()));
+                continue;
+            }
             Ok(text) => text,
             Err(error @ WriteError::NoObject) => {
                 return Ok(Outcome::Rejected { last: least_bad, reason: error.to_string() });
@@ -134,8 +143,19 @@ fn attempts(
 }
 
 fn brief<'a>(order: Order<'a>, candidate: u32, complaints: &'a [Complaint]) -> Brief<'a> {
-    let Order { walk, memory, style, profile, seed, .. } = order;
-    Brief { walk, memory, style, profile, seed, candidate, complaints }
+    let Order { walk, memory, style, profile, earlier, pictures, .. } = order;
+    // A later text of the same walk is drawn anew.
+    let seed = match earlier.len() {
+        0 => order.seed,
+        number => seed::derive(order.seed, &["text", &number.to_string()]),
+    };
+    Brief { candidate, complaints, earlier, pictures, ..Brief::new(walk, memory, style, profile, seed) }
+}
+
+/// Whether one of the earlier texts says the same words.
+fn is_there(text: &str, earlier: &[String]) -> bool {
+    let said = words(text);
+    earlier.iter().any(|other| words(other) == said)
 }
 
 fn unusable(text: String, reason: String) -> Complaint {
@@ -192,6 +212,7 @@ fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, r
         repairs,
         finished_for: None,
         chosen: None,
+        target_undescribed: !order.walk.describes_target(),
     }
 }
 

@@ -89,6 +89,8 @@ fn outcome_against(
         repairs,
         candidates: 1,
         follower: None,
+        earlier: &[],
+        pictures: &[],
     };
     let asker = RulesAsker::default();
     let observers = Observers {
@@ -206,6 +208,8 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
                     repairs: 0,
                     candidates: 1,
                     follower: None,
+                    earlier: &[],
+                    pictures: &[],
                 };
                 let writers = Writers { writer: &RulesWriter, finisher: None };
                 let outcome = write_and_repair(writers, observers, order).unwrap();
@@ -220,6 +224,42 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn a_text_that_the_walk_already_has_is_written_again() {
+    const OTHER: &str = "Head past the sofa to the lamp and turn right. Wait at the sink.";
+    let walk = walk();
+    let evidence = walk.evidence().unwrap();
+    let style = built_in("r2r").unwrap();
+    let profile = Profile::measure(&style.references);
+    let asker = RulesAsker::default();
+    let observers = Observers {
+        asker: &asker,
+        answerer: &Labels::default(),
+        summariser: &RulesSummariser,
+        mode: Mode::Fixed,
+        prompts_hash: None,
+    };
+    let write = |writer: &dyn Writer, earlier: &[String]| {
+        let (walk, evidence, style, profile) = (&walk, &evidence, &style, &profile);
+        let order =
+            Order { walk, evidence, style, profile, seed: 0, repairs: 8, follower: None, earlier, pictures: &[] };
+        match write_and_repair(Writers { writer, finisher: None }, observers, order).unwrap() {
+            Outcome::Accepted(instruction) => instruction,
+            rejected => panic!("{rejected:?}"),
+        }
+    };
+    let again = GOOD.to_uppercase();
+    let writer = Scripted::new(vec![said(&again), said(OTHER), said(GOOD)]);
+    let second = write(&writer, &[GOOD.to_owned()]);
+    assert_eq!((second.text.as_str(), second.provenance.repairs), (OTHER, 1));
+    let mut texts: Vec<String> = Vec::new();
+    for _ in 0..4 {
+        let text = write(&RulesWriter, &texts).text;
+        assert!(!texts.contains(&text), "{text}");
+        texts.push(text);
     }
 }
 
@@ -272,7 +312,7 @@ proptest! {
         let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
-            let order = Order { walk: &walk, memory: &walk.memory(), evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, candidates: 1, follower: None };
+            let order = Order { walk: &walk, memory: &walk.memory(), evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, candidates: 1, follower: None, earlier: &[], pictures: &[] };
             let writers = Writers { writer: &RulesWriter, finisher: None };
             let text = match write_and_repair(writers, observers, order).unwrap() {
                 Outcome::Accepted(instruction) => instruction.text,

@@ -8,8 +8,9 @@ mod rules;
 mod task;
 
 use crate::{style::Profile, walk::Walk};
+use std::sync::Arc;
 use wayword_checks::Memory;
-use wayword_core::{Finding, ModelError, Style};
+use wayword_core::{Finding, Image, ModelError, Style};
 
 pub use rules::RulesWriter;
 
@@ -42,6 +43,27 @@ pub struct Brief<'a> {
     pub candidate: u32,
     /// What was wrong with earlier texts for this walk, oldest first.
     pub complaints: &'a [Complaint],
+    /// Texts that this walk already has, in the same style: this one has to differ.
+    pub earlier: &'a [String],
+    /// Pictures of frames, for a writer that sees; in the order of the frames.
+    pub pictures: &'a [FramePicture],
+}
+
+/// The picture ahead of a frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FramePicture {
+    /// Number of the frame.
+    pub frame: usize,
+    /// What is seen ahead of it.
+    pub image: Arc<Image>,
+}
+
+impl<'a> Brief<'a> {
+    /// A first text for a walk: nothing was written yet, and no pictures are shown.
+    #[must_use]
+    pub fn new(walk: &'a Walk, memory: &'a Memory, style: &'a Style, profile: &'a Profile, seed: u64) -> Self {
+        Self { walk, memory, style, profile, seed, candidate: 0, complaints: &[], earlier: &[], pictures: &[] }
+    }
 }
 
 /// A text that failed its checks.

@@ -30,7 +30,17 @@ impl Script for Author {
         let target = prompt.split("on this object of the last frame: ").nth(1).and_then(|rest| rest.lines().next());
         let target = target.map(|target| target.split(" (").next().unwrap_or(target).trim_end_matches('.'));
         let coarse = prompt.contains("an activity part");
-        if coarse { coarse_text(&frames, target, careless) } else { fine_text(&frames, target, careless, &mut rng) }
+        let text = if coarse {
+            coarse_text(&frames, target, careless)
+        } else {
+            fine_text(&frames, target, careless, &mut rng)
+        };
+        // A way that already has a text gets the same one in other words.
+        match prompt.matches("This way already has the instruction: ").count() {
+            0 => text,
+            1 => text.replace("Walk past", "Go past").replace("Go on until", "Walk on until"),
+            _ => text.replace("Walk past", "Move past").replace("Go on until", "Head on until").replace("Stop", "Wait"),
+        }
     }
 }
 

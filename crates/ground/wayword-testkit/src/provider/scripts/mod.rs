@@ -19,8 +19,8 @@ pub use questioner::Questioner;
 pub use summariser::Summariser;
 pub use troubles::Troubled;
 
-/// All roles behind one model name. A request with a picture goes to the eye, and any other to the role that its prompt
-/// is for.
+/// All roles behind one model name. A request to write goes to the author, with pictures or without; another request with
+/// a picture goes to the eye, and any other to the role that its prompt is for.
 #[derive(Debug, Clone)]
 pub struct Cast {
     /// Sees.
@@ -49,10 +49,10 @@ impl Cast {
 impl Script for Cast {
     fn reply(&self, heard: &Heard) -> String {
         let prompt = heard.prompt();
-        if !heard.pictures.is_empty() {
-            self.eye.reply(heard)
-        } else if prompt.contains("Frame 0:") {
+        if prompt.contains("Frame 0:") {
             self.author.reply(heard)
+        } else if !heard.pictures.is_empty() {
+            self.eye.reply(heard)
         } else if prompt.contains("Ask one new question") {
             self.questioner.reply(heard)
         } else if prompt.contains("Sum up") {

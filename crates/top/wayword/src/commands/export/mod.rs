@@ -16,6 +16,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
+use wayword_core::ObjectId;
 use wayword_formats::{
     Episode, Format, jsonl,
     jsonl::Record,
@@ -175,20 +176,22 @@ fn refuse_without_poses(format: Format, records: &[Record]) -> Result<(), Error>
     }
 }
 
-/// REVERIE names an item by its path and object. Items without an object that share a path and a start become one item
-/// with several instructions; those that start with another heading become another path.
+/// REVERIE names an item by its path and object. Items that share a path, a start and an object, or have none, become one
+/// item with several instructions; those without an object that start with another heading become another path.
 fn gathered(episodes: Vec<Episode>) -> Vec<Episode> {
     let mut items: Vec<Episode> = Vec::new();
-    let mut starts: BTreeMap<(String, Option<u64>), usize> = BTreeMap::new();
+    let mut starts: BTreeMap<(String, Option<ObjectId>, Option<u64>), usize> = BTreeMap::new();
     let mut starts_of_path: BTreeMap<String, usize> = BTreeMap::new();
     for mut episode in episodes {
-        if episode.target_object.is_some() {
-            items.push(episode);
-            continue;
-        }
-        let start = (episode.path_id.clone(), episode.start_heading.map(|heading| heading.rad().to_bits()));
+        let object = episode.target_object.clone();
+        let start = (episode.path_id.clone(), object, episode.start_heading.map(|heading| heading.rad().to_bits()));
         if let Some(at) = starts.get(&start) {
             join(&mut items[*at], episode);
+            continue;
+        }
+        if episode.target_object.is_some() {
+            starts.insert(start, items.len());
+            items.push(episode);
             continue;
         }
         let others = starts_of_path.entry(episode.path_id.clone()).or_default();
@@ -232,7 +235,7 @@ fn about(record: &Record) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{Heading, ObjectId, SceneId};
+    use wayword_core::{Heading, SceneId};
 
     fn episode(path_id: &str, object: Option<&str>, heading: f64, text: &str) -> Episode {
         let mut episode = Episode::new(text, path_id, SceneId::new("s").unwrap());
@@ -250,9 +253,10 @@ mod tests {
             episode("7", Some("3"), 1.0, "b"),
             episode("7", None, 1.0, "c"),
             episode("7", None, 2.0, "d"),
+            episode("7", Some("3"), 1.0, "e"),
         ]);
         let told: Vec<_> = items.iter().map(|item| (item.path_id.as_str(), item.instructions.join(" "))).collect();
-        assert_eq!(told, [("7", "a c".into()), ("7", "b".into()), ("7-1", "d".into())]);
+        assert_eq!(told, [("7", "a c".into()), ("7", "b e".into()), ("7-1", "d".into())]);
         assert_eq!(items[0].extra["wayword"], json!(["a", "c"]));
     }
 }

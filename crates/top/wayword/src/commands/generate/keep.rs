@@ -64,15 +64,17 @@ fn made_item(
         originals: item.originals().to_vec(),
         has_pictures,
     })?;
-    for (outcome, Measured { style, .. }) in made.outcomes.into_iter().zip(styles) {
+    let per_style = made.outcomes.len().div_ceil(styles.len().max(1));
+    let names = styles.iter().flat_map(|Measured { style, .. }| (0..per_style).map(move |number| (style, number)));
+    for (outcome, (style, number)) in made.outcomes.into_iter().zip(names) {
         match outcome {
             Outcome::Accepted(instruction) => {
                 let mut record = Record::new(world.platform.name(), made.walk.path.clone(), instruction);
-                record.extra = extra(&item.path_id());
+                record.extra = extra(&item.path_id(), number);
                 run.instructions.append(&record)?;
             }
             Outcome::Rejected { last, reason } => {
-                run.rejected.append(&Rejected { item: item.id(), style: style.name.clone(), reason, last })?;
+                run.rejected.append(&Rejected { item: item.id(), style: style.name.clone(), reason, last, number })?;
             }
         }
     }

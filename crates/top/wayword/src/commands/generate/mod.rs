@@ -18,13 +18,17 @@ use crate::{
     pipeline::{RunPlatform, make},
     plan::Plan,
     platforms::{self, has_hops},
-    run::{RunFolder, WorldData, continued, is_begun},
+    run::{RunFolder, WorldData, continued, is_begun, text_name},
     settings::{Job, Settings},
+    styles::Measured,
     team::Team,
 };
 use keep::keep;
 use progress::Progress;
-use std::path::Path;
+use std::{
+    path::Path,
+    sync::atomic::{AtomicUsize, Ordering},
+};
 use wayword_core::{PathRequest, Platform, PlatformError};
 
 pub use summary::Summary;
@@ -111,7 +115,11 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let team = Team::new(settings, calls.as_ref(), platform.as_ref())?;
     let Plan { items, styles, .. } = &plan;
 
-    let names: Vec<String> = styles.iter().map(|measured| measured.style.name.clone()).collect();
+    let numbers = |measured: &Measured| {
+        let style = measured.style.name.clone();
+        (0..settings.per_path).map(move |number| text_name(&style, number))
+    };
+    let names: Vec<String> = styles.iter().flat_map(numbers).collect();
     let left = run.left(items, &names);
     if left.len() < items.len() {
         let done = items.len() - left.len();
@@ -122,9 +130,13 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
     let world = RunPlatform { platform: platform.as_ref(), data: Some(&data), scenes: &KnownScenes::new() };
+    let unmade = AtomicUsize::new(left.len());
     let making = |item: &&Item| {
         interrupt::check()?;
-        make(item, settings, world, &team, styles)
+        let threads = calls.as_ref().map_or(1, |calls| calls.views_at_once(unmade.load(Ordering::Relaxed)));
+        let made = make(item, settings, world, &team, styles, threads);
+        unmade.fetch_sub(1, Ordering::Relaxed);
+        made
     };
     in_order(&left, workers, making, |item, made| {
         let fate = keep(&mut run, world, item, made, styles)?;

@@ -1,0 +1,145 @@
+//! Around the model that writes: pictures that it is shown, several texts for each path, and views asked about at the same
+//! time.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+#[path = "common/models.rs"]
+mod stage;
+
+use common::{Building, EPISODES, run};
+use stage::{Stage, cast};
+use std::{
+    collections::BTreeSet,
+    fs,
+    sync::{Arc, Mutex},
+    time::{Duration, Instant},
+};
+use wayword_testkit::provider::{
+    Behaviour, Gallery, Heard, Script,
+    scripts::{Cast, FlawedEye},
+};
+
+/// A careful cast, and the number of pictures of each request to write.
+fn watched() -> (Behaviour, Arc<Mutex<Vec<usize>>>) {
+    let shown = Arc::new(Mutex::new(Vec::new()));
+    let (noted, cast) = (Arc::clone(&shown), Cast::new(FlawedEye::new(Gallery::default(), 1, 0.0), 1, 0.0));
+    let words = move |heard: &Heard| {
+        if heard.prompt().contains("Frame 0:") {
+            noted.lock().unwrap().push(heard.pictures.len());
+        }
+        cast.reply(heard)
+    };
+    let eye = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.0), 1, 0.0);
+    (Behaviour::of("words", words).and("eye", eye), shown)
+}
+
+#[test]
+fn a_writer_that_sees_is_shown_the_frames_of_its_path() {
+    let (behaviour, shown) = watched();
+    let stage = Stage::new(behaviour);
+    let ran = stage.generate("run", &["--paths", "2", "--write-sees", "--json"]);
+    assert_eq!((ran.code, ran.json()["errors"].as_u64()), (Some(0), Some(0)), "{ran:?}");
+    let frames: Vec<usize> = stage.building.records("run").iter().map(|record| record.path.frames.len()).collect();
+    let shown = shown.lock().unwrap();
+    assert!(!shown.is_empty() && shown.iter().all(|pictures| frames.contains(pictures)), "{shown:?} of {frames:?}");
+}
+
+#[test]
+fn who_cannot_be_shown_pictures_is_refused_before_the_first_call() {
+    let stage = Stage::new(cast());
+    let base = ["generate", "--paths", "1", "--out", "run", "--write-sees"];
+    for (args, told) in [
+        (&[][..], "rules writes, and cannot be shown pictures"),
+        (&["--llm", "completions/words", "--base-url", "http://127.0.0.1:9/v1"][..], "takes none"),
+    ] {
+        let args: Vec<&str> = base.iter().chain(args).copied().collect();
+        assert!(stage.building.wayword(&args).refused().contains(told), "{args:?}");
+        assert!(!stage.building.path("run").exists());
+    }
+    assert_eq!(stage.provider.requests(), 0);
+}
+
+#[test]
+fn each_path_gets_as_many_different_texts_as_asked_for() {
+    let building = Building::new();
+    let args = ["--episodes", EPISODES, "--style", "r2r", "--style", "reverie", "--per-path", "3", "--limit", "4"];
+    let ran = building.generate("run", &args);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let records = building.records("run");
+    assert_eq!(records.len(), 4 * 2 * 3);
+    for three in records.chunks(3) {
+        let texts: BTreeSet<&str> = three.iter().map(|record| record.instruction.text.as_str()).collect();
+        assert_eq!((texts.len(), three[0].path.id.clone()), (3, three[2].path.id.clone()), "{texts:?}");
+        assert_eq!(three[0].instruction.style, three[2].instruction.style);
+    }
+    let before = fs::read(building.path("run/instructions.jsonl")).unwrap();
+    assert_eq!(building.generate("run", &args).code, Some(0));
+    assert!(before == fs::read(building.path("run/instructions.jsonl")).unwrap(), "the same command changes bytes");
+    // The first text of a path is the one that it would have alone.
+    let alone = building.generate("alone", &["--episodes", EPISODES, "--style", "r2r", "--limit", "4"]);
+    assert_eq!(alone.code, Some(0));
+    for record in building.records("alone") {
+        let text = &record.instruction.text;
+        assert!(records.iter().any(|other| other.instruction.text == *text), "{text}");
+    }
+    for (style, format) in [("r2r", "r2r"), ("reverie", "reverie")] {
+        let args = ["export", "--run", "run", "--format", format, "--style", style, "--out", "out.json"];
+        assert_eq!(building.wayword(&args).code, Some(0), "{format}");
+        let episodes = wayword_formats::read(&building.path("out.json")).unwrap();
+        let texts: usize = episodes.iter().map(|episode| episode.instructions.len()).sum();
+        assert!(texts == 12 && episodes.len() <= 4, "{format}: {texts} texts of {} items", episodes.len());
+    }
+    assert!(building.generate("more", &["--per-path", "10"]).refused().contains("--per-path is not from 1 to 9"));
+    assert_eq!(building.wayword(&["report", "--run", "run"]).code, Some(0));
+}
+
+#[test]
+fn a_model_is_told_the_earlier_texts_of_a_path() {
+    let (behaviour, shown) = watched();
+    let stage = Stage::new(behaviour);
+    let ran = stage.generate("run", &["--paths", "2", "--per-path", "2", "--json"]);
+    assert_eq!((ran.code, ran.json()["errors"].as_u64()), (Some(0), Some(0)), "{ran:?}");
+    let texts: Vec<String> = stage.building.records("run").into_iter().map(|record| record.instruction.text).collect();
+    assert_eq!(texts.iter().collect::<BTreeSet<_>>().len(), 4, "{texts:?}");
+    assert!(shown.lock().unwrap().len() >= 4);
+}
+
+/// Twelve views and more at 100 ms a call: one after another they take over a second.
+#[test]
+fn the_views_of_one_path_are_asked_about_at_the_same_time() {
+    let timed = |concurrency: &str| {
+        let stage = Stage::new(Behaviour { latency: Duration::from_millis(100), ..watched().0 });
+        let args = ["--paths", "1", "--frames", "panoramic", "--perception", "single", "--concurrency", concurrency];
+        let begun = Instant::now();
+        let ran = stage.generate("run", &args);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        (begun.elapsed(), stage)
+    };
+    let (slow, one) = timed("1");
+    let (fast, eight) = timed("8");
+    let calls = eight.provider.requests();
+    assert!(calls >= 12 && eight.provider.log().most_at_once > 4, "{calls} calls");
+    assert!(eight.provider.log().most_at_once <= 8);
+    assert!(fast < slow / 2, "{fast:?} with eight at a time, {slow:?} with one");
+    for file in ["walks.jsonl", "instructions.jsonl"] {
+        let read = |stage: &Stage| fs::read(stage.building.path("run").join(file)).unwrap();
+        assert!(read(&one) == read(&eight), "{file} depends on the order of the answers");
+    }
+}
+
+#[test]
+fn a_plan_counts_the_texts_and_pictures_of_a_run() {
+    let stage = Stage::new(cast());
+    let planned = |more: &[&str]| {
+        let args = ["--style", "r2r", "--hops", "3..7", "--paths", "4", "--dry-run", "--json"];
+        let args: Vec<&str> = args.iter().chain(more).copied().collect();
+        let plan = run(&mut stage.command("generate", &args)).json();
+        let models = plan["models"].as_array().unwrap().clone();
+        let words = models.iter().find(|model| model["model"] == "server/words").unwrap().clone();
+        (words["calls"].as_u64().unwrap(), words["tokens_in"].as_u64().unwrap())
+    };
+    let (one, three) = (planned(&[]), planned(&["--per-path", "3"]));
+    assert_eq!(three.0, one.0 + 2 * 4);
+    assert!(planned(&["--write-sees"]).1 > one.1 + 4 * 4 * 262);
+}

@@ -1,0 +1,98 @@
+//! Why a text was refused, and what would be right, as far as the walk tells.
+
+use super::writing::{frame_of_move, way};
+use crate::writer::{Brief, Complaint};
+use wayword_core::{Check, Climb, Finding, Move, Side, Turn, Verdict};
+use wayword_language::{
+    lexicon::agree,
+    reading::{What, read},
+};
+
+/// Most things of which a sentence says where they are.
+const MOST_NAMED: usize = 3;
+
+/// The reasons of a refused text, each with the words it is about and with what would be right.
+pub(super) fn reasons(brief: &Brief<'_>, complaint: &Complaint) -> Vec<String> {
+    let failed = complaint.findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
+    failed.map(|finding| reason(brief, &complaint.text, finding)).collect()
+}
+
+fn reason(brief: &Brief<'_>, text: &str, finding: &Finding) -> String {
+    let words = finding.span.and_then(|[from, to]| text.get(from..to));
+    let told = match words {
+        Some(words) if !finding.reason.contains(words) => format!("you wrote {words:?}: {}", finding.reason),
+        _ => finding.reason.clone(),
+    };
+    match right(brief, text, finding, words) {
+        Some(right) => format!("{told} ({right})"),
+        None => told,
+    }
+}
+
+/// What would be right, where the walk tells it.
+fn right(brief: &Brief<'_>, text: &str, finding: &Finding, words: Option<&str>) -> Option<String> {
+    if !brief.walk.path.motion.is_known() && matches!(finding.check, Check::Turns | Check::Floors | Check::Order) {
+        return None;
+    }
+    match finding.check {
+        Check::Turns => Some(turns(brief, text, finding.span)),
+        Check::Floors => Some(climbs(&brief.walk.moves)),
+        Check::Landmarks | Check::Order => where_seen(brief, words?),
+        Check::Leak => Some("say it in other words".to_owned()),
+        Check::Coverage => Some("use plain words for ways, rooms and things".to_owned()),
+        Check::Form | Check::Task | Check::Route => None,
+    }
+}
+
+/// How the walk turns where the text tells this turn; all its turns where the text tells more or fewer.
+fn turns(brief: &Brief<'_>, text: &str, span: Option<[usize; 2]>) -> String {
+    let moves = brief.walk.moves.iter().enumerate().filter(|(_, step)| step.turn() != Turn::Straight);
+    let walked: Vec<(usize, &Move)> = moves.collect();
+    let read = read(text, &std::collections::BTreeSet::new());
+    let told = read.events.iter().filter(|event| matches!(event.what, What::Turn(_)) && !event.denied);
+    let told: Vec<[usize; 2]> = told.map(|event| event.span).collect();
+    let overlaps = |other: &[usize; 2]| span.is_some_and(|span| span[0] < other[1] && other[0] < span[1]);
+    let at = told.iter().position(overlaps).filter(|_| told.len() == walked.len());
+    if let Some((frame, step)) = at.and_then(|at| walked.get(at)) {
+        return format!("the walk {} there, at {}", way(step.turn()), frame_of_move(*frame));
+    }
+    if walked.is_empty() {
+        return "the walk goes straight on and never turns".to_owned();
+    }
+    let all = walked.iter().map(|(frame, step)| format!("{} at {}", way(step.turn()), frame_of_move(*frame)));
+    format!("the turns of the walk are, in order: {}", all.collect::<Vec<_>>().join(", "))
+}
+
+/// Where the walk climbs.
+fn climbs(moves: &[Move]) -> String {
+    let climbs = moves.iter().enumerate().filter_map(|(frame, step)| {
+        let way = match step.climb() {
+            Climb::Level => return None,
+            Climb::Up => "up",
+            Climb::Down => "down",
+        };
+        Some(format!("it goes {way} stairs from {}", frame_of_move(frame)))
+    });
+    let climbs: Vec<String> = climbs.collect();
+    if climbs.is_empty() { "the walk stays on one floor".to_owned() } else { climbs.join(", ") }
+}
+
+/// Where the frames show what the words name, and how it looks; what to do if none does.
+fn where_seen(brief: &Brief<'_>, words: &str) -> Option<String> {
+    let name = words.trim_start_matches("the ").trim();
+    let frames = 0..brief.walk.observations.len();
+    let seen = frames.flat_map(|frame| brief.walk.seen(frame).map(move |seen| (frame, seen)));
+    let seen = seen.filter(|(_, seen)| agree(&seen.sighting.name, name)).take(MOST_NAMED);
+    let seen: Vec<String> = seen
+        .map(|(frame, seen)| {
+            let colour = seen.sighting.colour.as_ref().map_or(String::new(), |colour| format!("{colour} "));
+            let side = match seen.side {
+                Some(Side::Left) => ", on the left",
+                Some(Side::Right) => ", on the right",
+                _ => "",
+            };
+            format!("Frame {frame} shows a {colour}{}{side}", seen.sighting.name)
+        })
+        .collect();
+    Some(if seen.is_empty() { "name something that the frames show".to_owned() } else { seen.join("; ") })
+}
