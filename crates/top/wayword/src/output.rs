@@ -98,6 +98,19 @@ impl Output {
         self.bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}{left}").with_prefix(what)
     }
 
+    /// A progress bar for items whose calls tell how far they are: `{prefix}` is what was made, and the message the calls.
+    #[must_use]
+    pub fn progress_by_calls(&self, total: usize) -> ProgressBar {
+        self.bar(total as u64, "items {bar:24} {pos}/{len}  {msg}  {prefix}")
+    }
+
+    /// Prints how far something is, where there is no terminal that shows a bar.
+    pub fn in_lines(&self, text: impl Display) {
+        if !io::stderr().is_terminal() {
+            self.say(text);
+        }
+    }
+
     /// A progress bar for bytes, whose length is set later; hidden if standard error is not a terminal.
     #[cfg(feature = "local")]
     #[must_use]

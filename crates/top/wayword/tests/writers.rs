@@ -143,3 +143,47 @@ fn a_plan_counts_the_texts_and_pictures_of_a_run() {
     assert_eq!(three.0, one.0 + 2 * 4);
     assert!(planned(&["--write-sees"]).1 > one.1 + 4 * 4 * 262);
 }
+
+/// Without a terminal a long run says now and then how far its calls are.
+#[test]
+fn a_run_without_a_terminal_tells_how_far_its_calls_are() {
+    let stage = Stage::new(Behaviour { latency: Duration::from_millis(400), ..watched().0 });
+    let args = ["--paths", "1", "--frames", "panoramic", "--perception", "single", "--concurrency", "1"];
+    let ran = stage.generate("run", &args);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let line = ran.err.lines().find(|line| line.contains(" calls")).unwrap_or_else(|| panic!("{ran:?}"));
+    assert!(line.starts_with("0/1 items, ") && line.contains(" of about ") && line.ends_with(" left"), "{line}");
+    // It is known from the start how many calls there will be.
+    let numbers: Vec<u64> = line.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse().ok()).collect();
+    let asked = stage.provider.requests();
+    assert!(numbers[3].abs_diff(asked) <= asked / 5 + 1, "{line}, and {asked} were asked");
+    let quiet = stage.generate("again", &[&args[..], &["--quiet"]].concat());
+    assert!(!quiet.err.contains(" calls"), "{quiet:?}");
+}
+
+/// The tokens that a plan estimates are within 30 % of those that the run uses, in each way of asking.
+#[test]
+fn a_plan_is_within_a_third_of_what_the_run_uses() {
+    for args in [
+        &["--perception", "dialogue"][..],
+        &["--perception", "single"],
+        &["--perception", "fixed", "--frames", "panoramic"],
+        &["--perception", "single", "--write-sees", "--per-path", "2"],
+    ] {
+        let stage = Stage::new(watched().0);
+        let asked = ["--paths", "8", "--picture-px", "512", "--json"];
+        let plan = [&asked[..], args, &["--dry-run"]].concat();
+        let planned = stage.generate("plan", &plan).json();
+        let sum = |field: &str| {
+            let models = planned["models"].as_array().unwrap().iter();
+            models.map(|model| model[field].as_u64().unwrap()).sum::<u64>() as f64
+        };
+        let ran = stage.generate("run", &[&asked[..], args].concat());
+        let spent = &ran.json()["spent"];
+        for (planned, used) in [("tokens_in", "tokens_in"), ("tokens_out", "tokens_out"), ("calls", "answered")] {
+            let share = sum(planned) / spent[used].as_f64().unwrap();
+            println!("{args:?}: {planned} {share:.2}");
+            assert!((0.7..=1.3).contains(&share), "{args:?}: {planned} planned / used is {share:.2}");
+        }
+    }
+}

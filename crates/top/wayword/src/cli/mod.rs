@@ -155,13 +155,19 @@ pub struct Generate {
 Examples:
   wayword check REVERIE_val_seen.json --platform matterport --data DATA --style reverie
   wayword check R2R_val_seen.json --platform matterport --data DATA --style r2r --json
-  wayword check runs/houses/instructions.jsonl --platform house --style r2r")]
+  wayword check runs/houses/instructions.jsonl --platform house --style r2r
+  wayword check edited.json --run runs/houses")]
 pub struct Check {
     /// File of instructions: R2R, REVERIE, RxR or Wayword.
     pub file: PathBuf,
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,
+    /// Check against what this run saw: its folder has the paths and their captions, so no platform is needed. For texts of a run
+    /// that somebody changed after `wayword export`. A text is held against a closed world where captions were the run's
+    /// evidence; labels are not kept in a run, so what the captions lack is unverified there.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["platform", "data", "at", "island", "calibration"])]
+    pub run: Option<PathBuf>,
     /// Check that every text keeps to this style. Without it, a text written by Wayword is checked against the built-in style that
     /// it was written in, and any other text only against its path.
     #[arg(long, value_name = "STYLE", value_parser = styles::typed)]

@@ -4,6 +4,7 @@ use super::Plan;
 use crate::{
     count::count,
     error::Error,
+    item::Item,
     pipeline,
     platforms::Remembering,
     settings::{Perception, Settings, is_model},
@@ -76,11 +77,21 @@ const PIXELS_PER_TOKEN: u64 = 750;
 
 impl Estimate {
     pub(super) fn of(plan: &Plan<'_>) -> Result<Self, Error> {
+        Self::of_items(plan, plan.items.iter())
+    }
+
+    /// All calls.
+    pub(super) fn calls(&self) -> u64 {
+        self.models.iter().map(|asked| asked.calls).sum()
+    }
+
+    /// The same for some of the items.
+    pub(super) fn of_items<'i>(plan: &Plan<'_>, items: impl Iterator<Item = &'i Item>) -> Result<Self, Error> {
         let settings = &plan.job.settings;
         let prompts = prompts(settings)?;
         let mut estimate = Self { questions: questions(settings), ..Self::default() };
         let (mut views, mut panoramas, mut writing) = (BTreeSet::new(), BTreeSet::new(), Load::default());
-        for item in &plan.items {
+        for item in items {
             let world = Remembering::new(plan.platform);
             // An item without a path fails in the run, and asks nothing of models.
             let Ok(path) = pipeline::path(item, settings, &world) else { continue };

@@ -18,6 +18,9 @@ use wayword_remote::Price;
 
 pub use estimate::Estimate;
 
+/// Items that stand for the others when the calls of a run are estimated.
+const FEW: usize = 8;
+
 /// What a run works on, and with which models.
 pub struct Plan<'a> {
     /// What was asked for.
@@ -59,6 +62,15 @@ impl<'a> Plan<'a> {
     /// When a file cannot be read.
     pub fn settings(&self) -> Result<Settings, Error> {
         Ok(Settings { inputs: inputs::inputs(self.job, &self.styles)?, ..self.job.settings.clone() })
+    }
+
+    /// How many calls an item takes, if nothing is asked twice: the mean of the first few of these.
+    ///
+    /// # Errors
+    /// When a prompt cannot be used.
+    pub fn calls_per_item(&self, items: &[&Item]) -> Result<f64, Error> {
+        let few = &items[..items.len().min(FEW)];
+        Ok(Estimate::of_items(self, few.iter().copied())?.calls() as f64 / few.len().max(1) as f64)
     }
 
     /// What the run would ask of models, and what that would cost.

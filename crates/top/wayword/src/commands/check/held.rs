@@ -1,7 +1,7 @@
 //! The style that each text is checked against.
 
 use super::{CheckReport, walks::Text};
-use crate::{error::Error, styles};
+use crate::{error::Error, settings::Settings, styles};
 use wayword_core::{Constraints, Style};
 use wayword_synthesis::style::{built_in, built_in_names, hash};
 
@@ -11,6 +11,8 @@ pub(super) struct Held {
     given: Option<Style>,
     /// The built-in styles with their hashes. A user's own style may have the name of one, but never its hash.
     known: Vec<(String, Style)>,
+    /// The style of texts that name none, where their run has one style only.
+    sole: Option<Style>,
     /// A style without constraints.
     any: Style,
 }
@@ -23,12 +25,26 @@ impl Held {
         let known = built_in_names().into_iter().map(built_in).collect::<Result<Vec<_>, _>>()?;
         let known = known.into_iter().map(|style| (hash(&style), style)).collect();
         let any = Style { name: "any".into(), references: Vec::new(), constraints: Constraints::default() };
-        Ok(Self { given, known, any })
+        Ok(Self { given, known, sole: None, any })
+    }
+
+    /// The same with the styles of a run, as far as their files are still there.
+    pub(super) fn of_run(style: Option<&str>, run: &Settings) -> Result<Self, Error> {
+        let mut held = Self::to(style, run.seed)?;
+        let own: Vec<Style> = styles::find(&run.style, run.seed)
+            .map_or_else(|_| Vec::new(), |styles| styles.into_iter().map(|measured| measured.style).collect());
+        held.known.extend(own.iter().map(|style| (hash(style), style.clone())));
+        held.sole = <[Style; 1]>::try_from(own).ok().map(|[only]| only);
+        Ok(held)
     }
 
     /// The style of a text, or one without constraints.
     pub(super) fn style_of(&self, text: &Text) -> &Style {
-        self.given.as_ref().or_else(|| self.own(text)).unwrap_or(&self.any)
+        self.given.as_ref().or_else(|| self.own(text)).or_else(|| self.sole_of(text)).unwrap_or(&self.any)
+    }
+
+    fn sole_of(&self, text: &Text) -> Option<&Style> {
+        self.sole.as_ref().filter(|_| text.style.is_none())
     }
 
     fn own(&self, text: &Text) -> Option<&Style> {
@@ -38,11 +54,12 @@ impl Held {
 
     /// Counts a text under its style. A text of a dataset that names no style is not counted.
     pub(super) fn count(&self, text: &Text, report: &mut CheckReport) {
-        let (styles, name) = match (self.given.as_ref().or_else(|| self.own(text)), &text.style) {
-            (Some(style), _) => (&mut report.styles, &style.name),
-            (None, Some(named)) => (&mut report.unknown_styles, &named.name),
-            (None, None) => return,
-        };
+        let (styles, name) =
+            match (self.given.as_ref().or_else(|| self.own(text)).or_else(|| self.sole_of(text)), &text.style) {
+                (Some(style), _) => (&mut report.styles, &style.name),
+                (None, Some(named)) => (&mut report.unknown_styles, &named.name),
+                (None, None) => return,
+            };
         *styles.entry(name.clone()).or_default() += 1;
     }
 }

@@ -1,6 +1,7 @@
 //! `wayword check`.
 
 mod held;
+mod of_run;
 mod report;
 mod walks;
 mod worlds;
@@ -45,6 +46,9 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
         reject_ambiguous: args.reject_ambiguous,
         calibration: args.calibration.as_deref(),
     };
+    if let Some(run) = &args.run {
+        return of_run::check_file(&args.file, run, how);
+    }
     check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, how, output)
 }
 

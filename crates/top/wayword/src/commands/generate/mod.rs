@@ -1,6 +1,7 @@
 //! `wayword generate`.
 
 mod keep;
+mod pace;
 mod progress;
 mod summary;
 
@@ -24,10 +25,12 @@ use crate::{
     team::Team,
 };
 use keep::keep;
+use pace::Pace;
 use progress::Progress;
 use std::{
     path::Path,
     sync::atomic::{AtomicUsize, Ordering},
+    thread,
 };
 use wayword_core::{PathRequest, Platform, PlatformError};
 
@@ -129,6 +132,8 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let _graceful = interrupt::finish_first(calls.as_ref());
     let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
+    let expected = if calls.is_some() { plan.calls_per_item(&left)? } else { 0.0 };
+    let pace = Pace::new(left.len(), workers, expected);
     let world = RunPlatform { platform: platform.as_ref(), data: Some(&data), scenes: &KnownScenes::new() };
     let unmade = AtomicUsize::new(left.len());
     let making = |item: &&Item| {
@@ -138,10 +143,22 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
         unmade.fetch_sub(1, Ordering::Relaxed);
         made
     };
-    in_order(&left, workers, making, |item, made| {
-        let fate = keep(&mut run, world, item, made, styles)?;
-        progress.takes_note(&mut run, fate)
-    })?;
+    let bar = progress.bar();
+    let kept = thread::scope(|scope| {
+        if let Some(calls) = &calls {
+            let (pace, bar) = (&pace, &bar);
+            let said = |told: &str| output.in_lines(format_args!("{}/{} items, {told}", bar.position(), items.len()));
+            scope.spawn(move || pace.watch(|| calls.spent(), |told| bar.set_message(told.to_owned()), said));
+        }
+        let kept = in_order(&left, workers, making, |item, made| {
+            let fate = keep(&mut run, world, item, made, styles)?;
+            pace.item_is_done();
+            progress.takes_note(&mut run, fate)
+        });
+        pace.end();
+        kept
+    });
+    kept?;
     run.arrange(items.iter(), &names)?;
     run.sync()?;
     let stopped = progress.end();

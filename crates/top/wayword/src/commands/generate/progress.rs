@@ -36,7 +36,8 @@ pub(super) struct Progress<'a> {
 
 impl<'a> Progress<'a> {
     pub(super) fn new(output: &Output, items: usize, left: usize, calls: Option<&'a Calls>) -> Self {
-        let bar = output.progress(items, "items");
+        // With models the calls tell how long it takes: an item may take minutes.
+        let bar = if calls.is_some() { output.progress_by_calls(items) } else { output.progress(items, "items") };
         bar.set_position((items - left) as u64);
         // The items that earlier commands finished say nothing about the pace.
         bar.reset_eta();
@@ -49,6 +50,11 @@ impl<'a> Progress<'a> {
             nothing_but: Some((String::new(), 0)),
             stop: None,
         }
+    }
+
+    /// The bar, for whoever shows the calls on it.
+    pub(super) fn bar(&self) -> ProgressBar {
+        self.bar.clone()
     }
 
     /// Takes note of what became of an item. Returns whether the run goes on.
@@ -65,7 +71,10 @@ impl<'a> Progress<'a> {
         };
         self.left -= 1;
         self.bar.inc(1);
-        self.bar.set_message(self.message(run));
+        match self.calls {
+            None => self.bar.set_message(self.message(run)),
+            Some(_) => self.bar.set_prefix(self.message(run)),
+        }
         self.unflushed += 1;
         if self.unflushed == FLUSH {
             run.sync()?;
