@@ -3,6 +3,7 @@
 
 mod clauses;
 mod copies;
+mod listener;
 mod names;
 mod row;
 mod surface;
@@ -16,7 +17,13 @@ use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
 };
-use wayword::{error::Error, output::Output};
+use wayword::{
+    error::Error,
+    output::Output,
+    platforms,
+    settings::{Asked, AskedPlatform},
+};
+use wayword_core::Platform;
 use wayword_formats::Episode;
 
 /// The flags of `texts`.
@@ -30,6 +37,15 @@ pub(crate) struct Flags {
     /// Texts that the writer could have copied from: what is shared with them is counted.
     #[arg(long)]
     train: Option<PathBuf>,
+    /// Platform of the paths: its labels say whether a text pins its target down. Without it, that is left out.
+    #[arg(long, requires = "data")]
+    platform: Option<String>,
+    /// Folder of the platform's data.
+    #[arg(long, requires = "platform")]
+    data: Option<PathBuf>,
+    /// Show this many generated texts that do not pin their target down, and why.
+    #[arg(long, default_value_t = 0)]
+    show: usize,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -40,13 +56,27 @@ pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let people = flags.people.as_deref().map(|file| of_items(file, &generated)).transpose()?;
     let train = flags.train.as_deref().map(wayword_formats::read).transpose()?;
     let train = train.map(|episodes| Train::of(&in_turn(&episodes)));
-    let sides: Vec<(&str, Vec<Row>)> = [("generated", Some(&generated)), ("people", people.as_ref())]
-        .into_iter()
-        .filter_map(|(name, episodes)| Some((name, rows(episodes?, train.as_ref()))))
-        .collect();
+    let platform = flags.platform.clone().map(|name| open(name, flags.data.clone())).transpose()?;
+    let mut sides: Vec<(&str, Vec<Row>)> = Vec::new();
+    for (name, episodes) in [("generated", Some(&generated)), ("people", people.as_ref())] {
+        let Some(episodes) = episodes else { continue };
+        let mut rows = rows(episodes, train.as_ref());
+        if let Some(platform) = &platform {
+            let heard = listener::hear(platform.as_ref(), episodes)?;
+            rows.extend(listener::rows(&heard));
+            let wrong = heard.iter().filter(|heard| name == "generated" && !heard.is_pinned()).take(flags.show);
+            wrong.for_each(|heard| output.say(format!("{}: {}: {}", heard.item, heard.fault(), heard.text)));
+        }
+        sides.push((name, rows));
+    }
     let value = sides.iter().map(|(name, rows)| ((*name).to_owned(), json!(rows))).collect::<serde_json::Map<_, _>>();
     output.data(&value, side_by_side(&sides));
     Ok(())
+}
+
+fn open(platform: String, data: Option<PathBuf>) -> Result<Box<dyn Platform>, Error> {
+    let asked = AskedPlatform { platform: Some(platform), data, ..AskedPlatform::default() };
+    platforms::open(&Asked::from(asked).resolve()?)
 }
 
 /// People's items that were generated too; all of them where there is none.

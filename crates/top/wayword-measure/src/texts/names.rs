@@ -1,5 +1,6 @@
 //! Where a text names objects and rooms, by the lexicon's names alone.
 
+use std::collections::BTreeSet;
 use wayword_language::lexicon::{Class, is_room, is_thing, longest_name, normal_word, thing};
 
 /// Words that begin a phrase that names something.
@@ -10,6 +11,9 @@ const DETERMINERS: [&str; 36] = [
 ];
 /// How far before a name such a word may stand.
 const REACH: usize = 4;
+
+/// A room of any kind.
+const ANY_ROOM: &str = "room";
 
 /// A name in a text.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +40,16 @@ impl Named {
         self.is_thing && (is_stairs || !self.is_room) && !matches!(self.class(), Some(Class::Fabric) | None)
     }
 
+    /// The name of a room; empty for "the room".
+    pub(super) fn room_word(&self) -> String {
+        if self.name == ANY_ROOM { String::new() } else { self.name.clone() }
+    }
+
+    /// Whether it is a wall, a floor, or another part of the building itself.
+    pub(super) fn is_floor(&self) -> bool {
+        self.class() == Some(Class::Fabric)
+    }
+
     fn class(&self) -> Option<Class> {
         thing(&self.name).map(|thing| thing.class)
     }
@@ -49,13 +63,25 @@ pub(super) fn words(text: &str) -> Vec<String> {
 
 /// The names among words: the longest at each place. A word that may be a verb is a name only after an article.
 pub(super) fn named(words: &[String]) -> Vec<Named> {
+    let mut found = all(words, &BTreeSet::new());
+    found.retain(|name| is_introduced(words, name));
+    found
+}
+
+/// The same with more names of things, in normal spelling, and with "room" alone; also without an article.
+pub(super) fn named_with(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
+    all(words, known)
+}
+
+fn all(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
     let normal: Vec<String> = words.iter().map(|word| normal_word(word)).collect();
     let (mut found, mut at) = (Vec::new(), 0);
     while at < words.len() {
         let most = longest_name().max(3).min(words.len() - at);
         let longest = (1..=most).rev().find_map(|length| {
             let name = normal[at..at + length].join(" ");
-            let (is_room, is_thing) = (is_room(&name), is_thing(&name));
+            let is_any_room = name == ANY_ROOM && !known.is_empty();
+            let (is_room, is_thing) = (is_room(&name) || is_any_room, is_thing(&name) || known.contains(&name));
             (is_room || is_thing).then_some(Named { start: at, end: at + length, name, is_room, is_thing })
         });
         match longest {
@@ -66,7 +92,6 @@ pub(super) fn named(words: &[String]) -> Vec<Named> {
             None => at += 1,
         }
     }
-    found.retain(|name| is_introduced(words, name));
     found
 }
 
