@@ -153,7 +153,8 @@ fn a_refusal_is_no_text_and_a_writer_that_sees_gets_the_pictures() {
     let profile = Profile::measure(&style.references);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
     let pictures = [FramePicture { frame: 1, image: Arc::clone(&image) }];
-    let brief = Brief { pictures: &pictures, ..Brief::new(&walk, &style, &profile, 0) };
+    let memory = walk.memory();
+    let brief = Brief { pictures: &pictures, ..Brief::new(&walk, &memory, &style, &profile, 0) };
     let model = Scripted::new(&["I'm sorry, but I can't assist with that.", "Sure! Instruction: \"Go on. Stop.\""]);
     let writer = ModelWriter::new(model.clone(), prompts());
     assert!(matches!(writer.write(&brief), Err(WriteError::Unusable { reason, .. }) if reason.contains("refused")));

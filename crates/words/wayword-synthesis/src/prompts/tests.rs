@@ -76,7 +76,8 @@ fn the_writing_prompts() {
         }];
         let complaints = [Complaint { text: "Go up.".into(), findings }];
         let complaints = if name == "reverie" { &complaints[..] } else { &[] };
-        let brief = Brief { complaints, ..Brief::new(&walk, &walk.memory(), &style, &profile, 0) };
+        let memory = walk.memory();
+        let brief = Brief { complaints, ..Brief::new(&walk, &memory, &style, &profile, 0) };
         insta::assert_snapshot!(format!("write_{name}"), prompts.write(&brief).unwrap());
     }
 }
@@ -89,7 +90,8 @@ fn who_writes_about_a_video_without_poses_is_told_to_make_no_motion_up() {
     let walk = Walk::new(path, walk().observations);
     let style = built_in("reverie").unwrap();
     let profile = Profile::measure(&style.references);
-    let brief = Brief::new(&walk, &walk.memory(), &style, &profile, 0);
+    let memory = walk.memory();
+    let brief = Brief::new(&walk, &memory, &style, &profile, 0);
     insta::assert_snapshot!("write_without_poses", Prompts::new(&[]).unwrap().write(&brief).unwrap());
 }
 
@@ -99,7 +101,8 @@ fn a_style_without_tasks_is_given_none_to_end_in() {
     let tells_task = |name: &str| {
         let style = built_in(name).unwrap();
         let profile = Profile::measure(&style.references);
-        let brief = Brief::new(&walk, &walk.memory(), &style, &profile, 0);
+        let memory = walk.memory();
+        let brief = Brief::new(&walk, &memory, &style, &profile, 0);
         prompts.write(&brief).unwrap().contains("ends in a task")
     };
     assert!(!tells_task("r2r") && tells_task("reverie"));
@@ -113,7 +116,8 @@ fn after_refusal(text: &str, check: Check, words: &str, reason: &str) -> String 
     let complaints = [Complaint { text: text.into(), findings: vec![finding] }];
     let (walk, style) = (walk(), built_in("r2r").unwrap());
     let profile = Profile::measure(&style.references);
-    let brief = Brief { complaints: &complaints, ..Brief::new(&walk, &walk.memory(), &style, &profile, 0) };
+    let memory = walk.memory();
+    let brief = Brief { complaints: &complaints, ..Brief::new(&walk, &memory, &style, &profile, 0) };
     Prompts::new(&[]).unwrap().write(&brief).unwrap()
 }
 
@@ -140,8 +144,8 @@ fn a_prompt_shows_at_most_24_references_whatever_the_style_has() {
     let references: Vec<String> = (0..500).map(|at| format!("Walk past chair {at}.")).collect();
     let style = Style { references, ..built_in("r2r").unwrap() };
     let (walk, profile) = (walk(), Profile::measure(&style.references));
-    let of =
-        |seed| Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &walk.memory(), &style, &profile, seed)).unwrap();
+    let memory = walk.memory();
+    let of = |seed| Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &memory, &style, &profile, seed)).unwrap();
     assert_eq!(of(1).matches("Walk past chair").count(), 24);
     assert_eq!(of(1), of(1));
     assert_ne!(of(1), of(2));
@@ -151,18 +155,16 @@ fn a_prompt_shows_at_most_24_references_whatever_the_style_has() {
 fn what_a_frame_shows_is_listed_and_a_target_that_nobody_saw_is_told_as_such() {
     let style = built_in("reverie").unwrap();
     let profile = Profile::measure(&style.references);
-    let prompt = |walk: &Walk| Prompts::new(&[]).unwrap().write(&Brief::new(walk, &style, &profile, 0)).unwrap();
+    let prompt =
+        |walk: &Walk| Prompts::new(&[]).unwrap().write(&Brief::new(walk, &walk.memory(), &style, &profile, 0)).unwrap();
     let mut seen = walk();
     let target = seen.path.target.as_mut().unwrap();
     (target.has_namesake, target.name) = (false, "lamp".into());
     assert!(prompt(&seen).contains("lamp (no description mentions it"), "{}", prompt(&seen));
     let sighting = |name: &str, witness, place| Sighting {
-        name: name.into(),
-        witness,
         place,
         colour: Some("white".into()),
-        several: false,
-        by: "test".into(),
+        ..Sighting::new(name, witness, "test")
     };
     let sightings = vec![
         sighting("lamp", Witness::Seen, Some(Where::Left)),
@@ -261,7 +263,8 @@ fn the_longest_style_and_walk_that_are_allowed_fit_into_a_prompt() {
     let summary = "A hallway with a picture. ".repeat(40);
     let observations = vec![Observation { summary, ..Observation::default() }; 1000];
     let walk = Walk::new(long.path, observations);
-    let brief = Brief::new(&walk, &walk.memory(), &style, &profile, 0);
+    let memory = walk.memory();
+    let brief = Brief::new(&walk, &memory, &style, &profile, 0);
     assert!(Prompts::new(&[]).unwrap().write(&brief).is_ok());
 }
 

@@ -231,6 +231,7 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
 fn a_text_that_the_walk_already_has_is_written_again() {
     const OTHER: &str = "Head past the sofa to the lamp and turn right. Wait at the sink.";
     let walk = walk();
+    let memory = walk.memory();
     let evidence = walk.evidence().unwrap();
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
@@ -243,9 +244,20 @@ fn a_text_that_the_walk_already_has_is_written_again() {
         prompts_hash: None,
     };
     let write = |writer: &dyn Writer, earlier: &[String]| {
-        let (walk, evidence, style, profile) = (&walk, &evidence, &style, &profile);
-        let order =
-            Order { walk, evidence, style, profile, seed: 0, repairs: 8, follower: None, earlier, pictures: &[] };
+        let (walk, memory, evidence, style, profile) = (&walk, &memory, &evidence, &style, &profile);
+        let order = Order {
+            walk,
+            memory,
+            evidence,
+            style,
+            profile,
+            seed: 0,
+            repairs: 8,
+            candidates: 1,
+            follower: None,
+            earlier,
+            pictures: &[],
+        };
         match write_and_repair(Writers { writer, finisher: None }, observers, order).unwrap() {
             Outcome::Accepted(instruction) => instruction,
             rejected => panic!("{rejected:?}"),
