@@ -2,7 +2,7 @@
 
 use crate::{error::Error, settings::Settings};
 use std::{collections::BTreeSet, path::Path as FilePath, sync::Arc};
-use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, seed};
+use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, ViewpointId, seed};
 use wayword_formats::Episode;
 use wayword_world::path_of;
 
@@ -84,7 +84,27 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
         first: first_scene(number, settings, scenes.len()),
         seed: seed::derive(settings.seed, &["path", &number.to_string()]),
     };
-    Ok((0..settings.paths).map(item).collect())
+    let number_of_scenes = scenes.len();
+    let items: Vec<Item> = (0..settings.paths).map(item).collect();
+    if platform.name() == RECORDING && number_of_scenes <= MOST_LOOKED_AT {
+        return Ok(without_repeats(items, settings, platform));
+    }
+    Ok(items)
+}
+
+/// The platform whose random paths may all be the same one: a short recording is taken whole.
+const RECORDING: &str = "recording";
+/// Most recordings that are opened to find paths that are the same; more are opened one by one, as the run goes.
+const MOST_LOOKED_AT: usize = 8;
+
+/// The items whose paths differ from those before them, and those that have no path: the run says why.
+fn without_repeats(items: Vec<Item>, settings: &Settings, platform: &dyn Platform) -> Vec<Item> {
+    let mut taken: BTreeSet<(SceneId, Vec<Option<ViewpointId>>)> = BTreeSet::new();
+    let mut is_new = |item: &Item| {
+        let Ok(path) = item.path(settings, platform) else { return true };
+        taken.insert((path.scene, path.frames.into_iter().map(|frame| frame.viewpoint).collect()))
+    };
+    items.into_iter().filter(|item| is_new(item)).collect()
 }
 
 /// The scene of a random path. Paths go scene by scene, because a platform keeps only the last few scenes loaded. Paths that were

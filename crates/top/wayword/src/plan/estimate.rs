@@ -21,8 +21,8 @@ use wayword_synthesis::{
     writer::Brief,
 };
 
-/// An estimate of what a run would ask of models. It assumes that no dialogue ends early, that nothing is asked or
-/// written a second time, and that the ledger is empty.
+/// An estimate of what a run would ask of models. It assumes that dialogues end where they usually do, that nothing is
+/// asked or written a second time, and that the ledger is empty.
 #[derive(Debug, Default, Serialize)]
 pub struct Estimate {
     /// Items of the run that have a path.
@@ -66,6 +66,9 @@ const TYPICAL_QUESTION: &str = "What stands on the left side of the room, and wh
 const TYPICAL_ANSWER: &str = "There is a small wooden table with a lamp on it, and a grey chair stands next to it.";
 const TYPICAL_CAPTION: &str = "A living room with a grey sofa on the left, a wooden table in the middle, two chairs on the right and a lamp beside the window. A doorway leads to a hallway.";
 const TYPICAL_INSTRUCTION: &str = "Walk past the grey sofa and turn left at the bookcase. Go through the doorway into the hallway and stop next to the small table.";
+/// The share of its follow-up questions that a dialogue asks on average, because it ends where two answers bring nothing
+/// new.
+const USUAL_SHARE: f64 = 0.55;
 /// Tokens of a typical reply of each kind.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
@@ -161,6 +164,14 @@ fn picture_tokens(settings: &Settings) -> u64 {
     u64::from(settings.roles.picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN
 }
 
+/// Questions per view as they are asked on average.
+fn usual_questions(settings: &Settings) -> usize {
+    match settings.perception {
+        Perception::Dialogue => 1 + (settings.questions as f64 * USUAL_SHARE).round() as usize,
+        Perception::Fixed | Perception::Single => questions(settings),
+    }
+}
+
 /// What the dialogue about one view takes.
 struct Talk {
     asking: Load,
@@ -171,7 +182,7 @@ struct Talk {
 
 impl Talk {
     fn of(prompts: &Prompts, settings: &Settings) -> Result<Self, PromptError> {
-        let rounds = questions(settings);
+        let rounds = usual_questions(settings);
         let mut transcript = Vec::new();
         let (mut asking, mut seeing) = (Load::default(), Load::default());
         let picture = picture_tokens(settings);
@@ -242,7 +253,7 @@ impl fmt::Display for Estimate {
         }
         writeln!(
             f,
-            "estimate, if no dialogue ends early, nothing is asked or written twice, and the ledger is empty:"
+            "estimate, if dialogues end where they usually do, nothing is asked or written twice, and the ledger is empty:"
         )?;
         for asked in &self.models {
             write!(
