@@ -1,7 +1,10 @@
 //! Each landmark needs a frame that shows it.
 
 use super::{finding, or_pass, sides};
-use crate::evidence::{Evidence, Source};
+use crate::{
+    evidence::{Evidence, Source},
+    memory::frames_at_doors,
+};
 use std::collections::BTreeMap;
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{
@@ -106,6 +109,13 @@ fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict,
 struct Seen<'a> {
     evidence: &'a Evidence,
     frames_of_things: BTreeMap<&'a str, Vec<usize>>,
+    /// The frames beside a door or doorway through which the walk leads.
+    doors: Vec<usize>,
+}
+
+/// Whether a name means what one goes through between rooms. A change of rooms shows it, whether or not labels list it.
+fn is_door(name: &str) -> bool {
+    matches!(name, "door" | "doorway" | "opening" | "entrance" | "exit" | "threshold")
 }
 
 impl<'a> Seen<'a> {
@@ -116,7 +126,7 @@ impl<'a> Seen<'a> {
                 frames_of_things.entry(&thing.name).or_default().push(at);
             }
         }
-        Self { evidence, frames_of_things }
+        Self { evidence, frames_of_things, doors: frames_at_doors(evidence) }
     }
 
     fn shown(&self, place: &Place) -> Shown {
@@ -132,6 +142,9 @@ impl<'a> Seen<'a> {
         }
         if thing(&place.name).is_some_and(|thing| thing.class == Class::Stairs) {
             frames.extend(self.evidence.frames_on_stairs());
+        }
+        if is_door(&place.name) {
+            frames.extend(&self.doors);
         }
         frames.sort_unstable();
         frames.dedup();

@@ -8,6 +8,7 @@ mod tests;
 mod things;
 mod ways;
 
+pub(crate) use openings::frames_at_doors;
 pub use openings::{Opening, leads_through_a_door};
 pub use things::{Glimpse, Passed, Remembered};
 pub use ways::{Bend, Flight, Stay};

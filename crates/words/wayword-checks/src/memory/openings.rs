@@ -1,6 +1,6 @@
 //! Where a walk goes from one room to another.
 
-use super::Stay;
+use super::{Stay, ways};
 use crate::Evidence;
 use wayword_language::lexicon::{Class, room_name, thing};
 
@@ -67,6 +67,12 @@ pub(super) fn openings(stays: &[Stay], evidence: &Evidence) -> Vec<Opening> {
         }
     })
     .collect()
+}
+
+/// The frames on either side of a door or doorway through which the walk leads.
+pub(crate) fn frames_at_doors(evidence: &Evidence) -> Vec<usize> {
+    let through = openings(&ways::stays(evidence), evidence).into_iter().filter(|opening| opening.has_door);
+    through.flat_map(|opening| [opening.before, opening.behind]).collect()
 }
 
 /// Whether a door is seen from a frame, near where that is known.

@@ -1,6 +1,7 @@
 //! Styles: the built-in ones, a user's own, and what reference texts of a style are like.
 
 mod profile;
+pub mod way;
 
 use sha2::{Digest, Sha256};
 use wayword_core::Style;

@@ -1,5 +1,6 @@
 //! What the reference texts of a style are like: the parameters of the rules writer.
 
+use super::way::Way;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use wayword_language::{
@@ -24,6 +25,9 @@ pub struct Profile {
     pub floors: f64,
     /// Share that ends in a full stop.
     pub full_stops: f64,
+    /// How they tell a way.
+    #[serde(skip)]
+    pub way: Way,
 }
 
 impl Profile {
@@ -50,6 +54,7 @@ impl Profile {
             tasks: share(&|at| readings[at].task.is_some()),
             floors: share(&|at| readings[at].events.iter().any(|event| matches!(event.what, What::Floor(_)))),
             full_stops: share(&|at| texts[at].trim_end().ends_with(['.', '!'])),
+            way: Way::measure(texts.iter().map(|text| text.as_str()).zip(&readings)),
         }
     }
 

@@ -1,11 +1,11 @@
-//! Which of the things that were seen are worth naming.
+//! Which of the things that are remembered are worth naming.
 
 use super::Brief;
-use crate::walk::Seen;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use wayword_checks::memory::Remembered;
 use wayword_core::{Side, Verdict};
-use wayword_language::lexicon::{agree, is_room, normal, plural, thing};
+use wayword_language::lexicon::{Class, agree, is_fabric, is_room, normal, thing};
 
 /// Chooses landmarks, each kind of thing once in a text.
 pub(super) struct Landmarks<'a> {
@@ -17,10 +17,39 @@ pub(super) struct Landmarks<'a> {
 /// A landmark in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Landmark {
-    /// "the sofa", "the two lamps".
+    /// "the sofa", "the green lamp".
     pub(super) phrase: String,
-    /// The side of the walker on which it was seen.
+    /// The name alone.
+    pub(super) name: String,
+    /// Its colour, where it is known.
+    pub(super) colour: Option<String>,
+    /// How many of its name are seen there.
+    pub(super) alike: usize,
+    /// The side of the walker on which it is from the frame for which it was chosen.
     pub(super) side: Option<Side>,
+    /// The side on which one passes it, and from which frame.
+    pub(super) passed: Option<(usize, Side)>,
+}
+
+/// A landmark is said at a frame that is no farther from it than this, metres.
+const NEAR_M: f64 = 2.5;
+/// One stops at a thing that is no farther than this, metres.
+const STOP_M: f64 = 1.9;
+
+/// How much it counts that a style's texts name a thing often, for the root of how often.
+const MENTIONED: f64 = 0.06;
+/// How much is left to chance.
+const CHANCE: f64 = 1.5;
+/// How often much more is.
+const RARE: f64 = 0.2;
+
+/// What a landmark is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Use {
+    /// It is named while one is at a frame, or goes to it.
+    Here,
+    /// One stops there.
+    Stop,
 }
 
 impl<'a> Landmarks<'a> {
@@ -49,20 +78,77 @@ impl<'a> Landmarks<'a> {
 
     /// The landmark of at least that salience that identifies a frame best, if there is one.
     pub(super) fn choose(&mut self, frame: usize, salience: u8, rng: &mut ChaCha8Rng) -> Option<Landmark> {
-        let walk = self.brief.walk;
-        let told = walk
-            .seen(frame)
-            .filter(|seen| is_tellable(&seen.sighting.name, salience) && self.is_free(&seen.sighting.name));
-        let scored = told.map(|seen| {
-            let salience = thing(&seen.sighting.name).map_or(0.0, |thing| f64::from(thing.salience));
-            let elsewhere = (0..walk.path.frames.len()).filter(|at| {
-                *at != frame && walk.seen(*at).any(|other| agree(&other.sighting.name, &seen.sighting.name))
-            });
-            (salience * 2.0 - elsewhere.count() as f64 + rng.random_range(0.0..1.5), seen)
-        });
+        self.find(frame, salience, Use::Here, rng)
+    }
+
+    /// The same for one use.
+    pub(super) fn find(&mut self, frame: usize, salience: u8, to: Use, rng: &mut ChaCha8Rng) -> Option<Landmark> {
+        let memory = self.brief.memory;
+        let told = memory
+            .seen_from(frame)
+            .filter(|seen| is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, to));
+        // Now and then anything will do, so that texts differ.
+        let chance = if rng.random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
+        let scored = told.map(|seen| (self.score(seen, frame) + rng.random_range(0.0..chance), seen));
         let (_, best) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        self.used.push(normal(&best.sighting.name));
-        Some(landmark(&best))
+        self.used.push(normal(&best.name));
+        Some(self.landmark(best, frame))
+    }
+
+    /// The best landmark at a frame that is still free, without taking it.
+    pub(super) fn peek(&self, frame: usize, salience: u8) -> Option<Landmark> {
+        let told = self.brief.memory.seen_from(frame).filter(|seen| {
+            is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, Use::Here)
+        });
+        let best = told.max_by(|a, b| self.score(a, frame).total_cmp(&self.score(b, frame)))?;
+        Some(self.landmark(best, frame))
+    }
+
+    /// Keeps a landmark's name from being used again.
+    pub(super) fn take(&mut self, landmark: Landmark) -> Landmark {
+        self.used.push(normal(&landmark.name));
+        landmark
+    }
+
+    fn fits(&self, seen: &Remembered, frame: usize, to: Use) -> bool {
+        let memory = self.brief.memory;
+        let most_m = if to == Use::Stop { STOP_M } else { NEAR_M };
+        let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
+        let side = memory.side(seen, frame);
+        let is_there = match to {
+            Use::Here => side != Some(Side::Behind) || memory.distance_m(seen, frame).is_some(),
+            Use::Stop => side != Some(Side::Behind),
+        };
+        is_near && is_there
+    }
+
+    /// Salient things that people name, near the frame, and few of their name.
+    fn score(&self, seen: &Remembered, frame: usize) -> f64 {
+        let memory = self.brief.memory;
+        let known = thing(&seen.name);
+        let salience = known.map_or(0.0, |thing| f64::from(thing.salience));
+        let mentions = known.map_or(0.0, |thing| self.brief.profile.way.mentions(thing.name));
+        let far_m = memory.distance_m(seen, frame).unwrap_or(NEAR_M);
+        let alike = || memory.things.iter().filter(|other| agree(&other.name, &seen.name));
+        let elsewhere = alike().filter(|other| other.glimpse(frame).is_none()).count();
+        let earlier = alike().filter(|other| other.first_seen() < frame);
+        let on_wall = known.is_some_and(|thing| thing.class == Class::WallArt);
+        salience * 1.5 - f64::from(u8::from(on_wall)) + mentions.sqrt() * MENTIONED
+            - far_m * 0.5
+            - elsewhere.min(5) as f64 * 0.6
+            - earlier.count().min(3) as f64 * 0.5
+    }
+
+    fn landmark(&self, seen: &Remembered, frame: usize) -> Landmark {
+        let name = seen.name.clone();
+        let phrase = match &seen.colour {
+            Some(colour) => format!("the {colour} {name}"),
+            None => format!("the {name}"),
+        };
+        let memory = self.brief.memory;
+        let alike = memory.seen_from(frame).filter(|other| normal(&other.name) == normal(&seen.name)).count();
+        let passed = seen.passed.map(|passed| (passed.frame, passed.side));
+        Landmark { phrase, name, colour: seen.colour.clone(), alike, side: memory.side(seen, frame), passed }
     }
 }
 
@@ -70,15 +156,7 @@ impl<'a> Landmarks<'a> {
 fn is_tellable(name: &str, salience: u8) -> bool {
     let plain =
         name.len() <= 30 && name.chars().all(|c| c.is_alphabetic() || c == ' ' || c == '-') && !name.contains(" and ");
-    plain && !is_room(&normal(name)) && thing(name).is_some_and(|thing| thing.salience >= salience)
-}
-
-fn landmark(seen: &Seen<'_>) -> Landmark {
-    let sighting = seen.sighting;
-    let name = if sighting.several { plural(&sighting.name) } else { sighting.name.clone() };
-    let phrase = match sighting.colour.as_ref().filter(|_| !sighting.several) {
-        Some(colour) => format!("the {colour} {name}"),
-        None => format!("the {name}"),
-    };
-    Landmark { phrase, side: seen.side }
+    let is_fixed = |class: Class| matches!(class, Class::Door | Class::Stairs);
+    let tells = thing(name).is_some_and(|thing| thing.salience >= salience && !is_fixed(thing.class));
+    plain && !is_room(&normal(name)) && !is_fabric(name) && tells
 }

@@ -6,6 +6,7 @@ mod place;
 mod route;
 mod rules;
 mod task;
+mod telling;
 
 use crate::{style::Profile, walk::Walk};
 use std::sync::Arc;

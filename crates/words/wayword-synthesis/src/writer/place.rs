@@ -3,10 +3,10 @@
 use super::{
     Brief, WriteError,
     landmarks::Landmarks,
-    phrases::{self, fill, level_phrase, ordinal, pick, the, unbent},
+    phrases::{self, drawn, fill, level_phrase, ordinal, pick, the, unbent},
     route::{last_climb, stands_still, usable_room},
-    rules::{drawn, ends_in_task, join, sentence_target, sentences},
-    task,
+    rules::{join, sentence_target, sentences},
+    telling::ending,
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -45,7 +45,7 @@ const GO_BY: &[&str] = &[
 /// A text that names the place at the end, and what to do there.
 pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
     let mut landmarks = Landmarks::new(brief);
-    let task = if ends_in_task(brief, rng) { Some(task::task(brief, rng)?) } else { None };
+    let task = ending(brief, rng)?;
     if let Some((_, name)) = &task {
         landmarks.reserve(name);
     }

@@ -1,0 +1,169 @@
+//! How the texts of a style tell a way: the shapes of their clauses, what joins these, and the names that they give to
+//! rooms and things, each with how many texts have it.
+
+mod kind;
+mod shapes;
+#[cfg(test)]
+mod tests;
+
+pub use kind::Kind;
+pub use shapes::Joint;
+
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::LazyLock,
+};
+use wayword_language::{
+    lexicon::{normal, room_name, thing},
+    reading::{Reading, What},
+};
+
+/// How the texts of a style tell a way.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Way {
+    /// The shapes of each kind of clause, with how often they occur.
+    pub shapes: BTreeMap<Kind, BTreeMap<String, f64>>,
+    /// How often each kind of clause occurs, whatever its words.
+    pub kinds: BTreeMap<Kind, f64>,
+    /// What joins a clause to the one before it.
+    pub joints: BTreeMap<Joint, f64>,
+    /// The same for the clause that tells to stop.
+    pub stop_joints: BTreeMap<Joint, f64>,
+    /// The names of each room, by its usual name.
+    pub rooms: BTreeMap<String, BTreeMap<String, f64>>,
+    /// The names of each thing, by its usual name.
+    pub things: BTreeMap<String, BTreeMap<String, f64>>,
+}
+
+/// Our own constructions, with shares that were measured on R2R's training split.
+#[derive(Deserialize)]
+struct BuiltIn {
+    /// The words of which shapes may consist.
+    words: String,
+    #[serde(flatten)]
+    way: Way,
+}
+
+static BUILT_IN: LazyLock<BuiltIn> =
+    LazyLock::new(|| toml::from_str(include_str!("../builtin/way.toml")).unwrap_or_default());
+
+impl Default for BuiltIn {
+    fn default() -> Self {
+        Self { words: String::new(), way: Way::default() }
+    }
+}
+
+static ALLOWED: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
+
+/// A shape is a formula where so many texts have it.
+const FEWEST_TEXTS: f64 = 3.0;
+/// So many clauses tell more than our own.
+const ENOUGH: f64 = 40.0;
+/// A name belongs to a room or thing where it has at least this share of its mentions.
+const LEAST_SHARE: f64 = 0.04;
+
+impl Way {
+    /// Measures texts that were read. Where a text's clauses show too little, the built-in constructions fill in.
+    #[must_use]
+    pub fn measure<'a>(texts: impl IntoIterator<Item = (&'a str, &'a Reading)>) -> Self {
+        let mut way = Self::default();
+        for (text, reading) in texts {
+            way.add(text, reading);
+        }
+        way.settle();
+        way.complete();
+        way
+    }
+
+    fn add(&mut self, text: &str, reading: &Reading) {
+        let mut seen = BTreeSet::new();
+        for clause in shapes::told(text, reading, &ALLOWED) {
+            let joints = if clause.stops { &mut self.stop_joints } else { &mut self.joints };
+            if clause.joint != Joint::Start {
+                *joints.entry(clause.joint).or_default() += 1.0;
+            }
+            if let Some(kind) = clause.kind {
+                *self.kinds.entry(kind).or_default() += 1.0;
+            }
+            if let Some((kind, shape)) = clause.shape
+                && seen.insert((kind, shape.clone()))
+            {
+                *self.shapes.entry(kind).or_default().entry(shape).or_default() += 1.0;
+            }
+        }
+        for event in &reading.events {
+            let What::Place(place) = &event.what else { continue };
+            let Some(said) = text.get(event.span[0]..event.span[1]).map(str::to_lowercase) else { continue };
+            if place.several || said.contains(|c: char| !c.is_ascii_lowercase() && c != ' ') {
+                continue;
+            }
+            if let Some(room) = room_name(&place.name).filter(|_| place.is_room) {
+                *self.rooms.entry(room.to_owned()).or_default().entry(said).or_default() += 1.0;
+            } else if let Some(thing) = thing(&place.name) {
+                *self.things.entry(thing.name.to_owned()).or_default().entry(said).or_default() += 1.0;
+            }
+        }
+    }
+
+    /// Keeps what several texts say, and what is read again as what it was.
+    fn settle(&mut self) {
+        for (kind, shapes) in &mut self.shapes {
+            shapes.retain(|shape, texts| *texts >= FEWEST_TEXTS && shapes::reads_the_same(*kind, shape, &ALLOWED));
+        }
+        self.shapes.retain(|_, shapes| !shapes.is_empty());
+        for (usual, names) in self.rooms.iter_mut().chain(self.things.iter_mut()) {
+            let total: f64 = names.values().sum();
+            names.retain(|name, texts| {
+                let is_plain = name == usual || !name.ends_with(&format!(" {usual}"));
+                *texts >= FEWEST_TEXTS && *texts >= total * LEAST_SHARE && is_plain && normal(name) == *name
+            });
+        }
+        self.rooms.retain(|_, names| !names.is_empty());
+        self.things.retain(|_, names| !names.is_empty());
+    }
+
+    /// Our own constructions and names, where these texts show too few.
+    fn complete(&mut self) {
+        let own = &BUILT_IN.way;
+        if self.kinds.values().sum::<f64>() < ENOUGH * ENOUGH {
+            self.kinds = own.kinds.clone();
+        }
+        for (kind, shapes) in &own.shapes {
+            let told = self.shapes.entry(*kind).or_default();
+            if told.values().sum::<f64>() < ENOUGH {
+                *told = shapes.clone();
+            }
+        }
+        for (told, own) in [(&mut self.joints, &own.joints), (&mut self.stop_joints, &own.stop_joints)] {
+            if told.values().sum::<f64>() < ENOUGH {
+                *told = own.clone();
+            }
+        }
+        for (told, own) in [(&mut self.rooms, &own.rooms), (&mut self.things, &own.things)] {
+            let is_small = told.values().flat_map(BTreeMap::values).sum::<f64>() < ENOUGH * ENOUGH;
+            if is_small {
+                *told = own.clone();
+            }
+        }
+    }
+
+    /// Our own constructions.
+    #[must_use]
+    pub fn built_in() -> &'static Self {
+        &BUILT_IN.way
+    }
+
+    /// How often a kind of clause occurs.
+    #[must_use]
+    pub fn count(&self, kind: Kind) -> f64 {
+        self.kinds.get(&kind).copied().unwrap_or_default()
+    }
+
+    /// How often things of that usual name are mentioned.
+    #[must_use]
+    pub fn mentions(&self, usual: &str) -> f64 {
+        self.things.get(usual).map_or(0.0, |names| names.values().sum())
+    }
+}

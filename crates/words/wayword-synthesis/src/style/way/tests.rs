@@ -1,0 +1,73 @@
+use super::*;
+use wayword_language::reading::read;
+
+fn measured(texts: &[&str]) -> Way {
+    let readings: Vec<Reading> = texts.iter().map(|text| read(text, &BTreeSet::new())).collect();
+    let mut way = Way::default();
+    for (text, reading) in texts.iter().zip(&readings) {
+        way.add(text, reading);
+    }
+    way.settle();
+    way
+}
+
+#[test]
+fn a_shape_is_what_several_texts_say_with_their_names_left_out() {
+    let way = measured(&[
+        "Walk past the piano and turn left at the desk. Stop by the sofa.",
+        "Walk past the globe, then turn right at the lamp. Wait in the attic.",
+        "Leave the kitchen. Walk past the bench and turn left at the stove and stop by the sink.",
+    ]);
+    assert_eq!(way.shapes[&Kind::Pass]["walk past the {l}"], 3.0);
+    assert_eq!(way.shapes[&Kind::TurnAt]["turn {s} at the {l}"], 3.0);
+    assert!(!way.shapes.contains_key(&Kind::Leave), "one text is no formula");
+    assert_eq!((way.kinds[&Kind::Leave], way.kinds[&Kind::StopAt]), (1.0, 2.0));
+    assert_eq!((way.joints[&Joint::And], way.joints[&Joint::CommaThen], way.joints[&Joint::Stop]), (2.0, 1.0, 1.0));
+    assert_eq!((way.stop_joints[&Joint::Stop], way.stop_joints[&Joint::And]), (2.0, 1.0));
+}
+
+#[test]
+fn what_says_more_than_its_kind_is_no_shape() {
+    for text in [
+        "Walk past the second piano.",
+        "Walk past the green piano.",
+        "Walk past the spooky piano.",
+        "Walk past piano.",
+        "Past the piano.",
+        "Turn left in the far corner.",
+        "Do not walk past the piano.",
+        "Wait in the piano.",
+        "Walk ten feet past the piano.",
+    ] {
+        let way = measured(&[text; 4]);
+        assert!(way.shapes.values().all(BTreeMap::is_empty), "{text}: {:?}", way.shapes);
+    }
+}
+
+#[test]
+fn names_are_counted_by_what_they_mean() {
+    let way = measured(&["Cross the hall. Stop by the couch."; 3]);
+    assert_eq!(way.rooms["hallway"]["hall"], 3.0);
+    assert_eq!(way.things["sofa"]["couch"], 3.0);
+    assert_eq!(way.mentions("sofa"), 3.0);
+}
+
+#[test]
+fn every_shape_of_our_own_is_read_as_what_it_says() {
+    let own = Way::built_in();
+    assert!(own.shapes.len() > 30 && own.joints.len() > 5, "way.toml is not read");
+    for (kind, shapes) in &own.shapes {
+        assert!(own.kinds.contains_key(kind), "{kind:?} has no share");
+        for shape in shapes.keys() {
+            assert!(shapes::reads_the_same(*kind, shape, &ALLOWED), "{kind:?}: {shape}");
+        }
+    }
+}
+
+#[test]
+fn few_texts_are_completed_by_our_own_constructions() {
+    let text = "Walk past the piano.";
+    let reading = read(text, &BTreeSet::new());
+    let way = Way::measure([(text, &reading)]);
+    assert_eq!(&way, Way::built_in());
+}
