@@ -69,12 +69,27 @@ pub struct ProviderConfig {
     pub extra: Option<serde_json::Map<String, serde_json::Value>>,
     /// Those of `temperature`, `seed` and `max_tokens` that are not sent.
     pub omit: Option<Vec<String>>,
+    /// How it is told that a reply is to be JSON of some form.
+    pub json: Option<Json>,
     /// Most requests per minute.
     pub requests_per_minute: Option<f64>,
     /// Most tokens per minute, in and out.
     pub tokens_per_minute: Option<f64>,
     /// Whether its `x-ratelimit` headers give the number of requests per day, and not per minute.
     pub advertises_requests_per_day: Option<bool>,
+}
+
+/// How a service is told that a reply is to be JSON of some form.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Json {
+    /// It gets the schema and holds the model to it.
+    Schema,
+    /// It holds the model to JSON; the form stands in the prompt.
+    Object,
+    /// The prompt alone says so.
+    #[default]
+    Prompt,
 }
 
 impl Default for Config {
@@ -119,7 +134,7 @@ impl ProviderConfig {
             ($($field:ident),*) => { $(if other.$field.is_some() { self.$field.clone_from(&other.$field); })* };
         }
         take!(dialect, base_url, key_env, local, blind, max_tokens_field, seed_field, extra, omit);
-        take!(requests_per_minute, tokens_per_minute, advertises_requests_per_day);
+        take!(requests_per_minute, tokens_per_minute, advertises_requests_per_day, json);
         self
     }
 }

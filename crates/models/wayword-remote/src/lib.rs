@@ -32,7 +32,7 @@ mod services;
 mod transport;
 
 pub use check::{Finding, Level};
-pub use config::{Concurrency, Config, ProviderConfig};
+pub use config::{Concurrency, Config, Json, ProviderConfig};
 pub use dialect::Dialect;
 pub use error::{ConfigError, PricesError};
 pub use model::RemoteModel;

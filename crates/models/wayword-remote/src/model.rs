@@ -1,7 +1,7 @@
 //! A model behind HTTP.
 
 use crate::{
-    Price,
+    Json, Price,
     call::{Sending, Size, Unanswered},
     dialect::{Asked, Line},
     endpoint::{Closed, Endpoint},
@@ -50,6 +50,7 @@ impl RemoteModel {
                 model: self.model(),
                 lines: &lines,
                 sampling: &request.sampling,
+                schema: request.schema,
             };
             let wire = self.endpoint.provider.dialect.to_wire(asked);
             let wire = wire.map_err(|reason| Unanswered::Failed(reason.to_owned()))?;
@@ -107,6 +108,12 @@ impl RemoteModel {
         asked.insert("temperature".to_owned(), sampling.temperature.into());
         asked.insert("max_tokens".to_owned(), sampling.max_tokens.into());
         asked.insert("seed".to_owned(), sampling.seed.into());
+        if let Some(schema) = request.schema.filter(|_| provider.json != Json::Prompt) {
+            asked.insert(
+                "schema".to_owned(),
+                json!({ "name": schema.name, "way": format!("{:?}", provider.json), "json": schema.json }),
+            );
+        }
         if !provider.extra.is_empty() {
             asked.insert("extra".to_owned(), provider.extra.clone().into());
         }

@@ -1,6 +1,6 @@
 //! Providers: the built-in table, and the user's settings.
 
-use crate::{Config, ConfigError, Dialect, ProviderConfig, base_url::BaseUrl};
+use crate::{Config, ConfigError, Dialect, Json, ProviderConfig, base_url::BaseUrl};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -22,6 +22,7 @@ pub(crate) struct Provider {
     pub(crate) seed_field: String,
     pub(crate) extra: Map<String, Value>,
     pub(crate) omit: Vec<String>,
+    pub(crate) json: Json,
     pub(crate) requests_per_minute: Option<f64>,
     pub(crate) tokens_per_minute: Option<f64>,
     pub(crate) advertises_requests_per_day: bool,
@@ -92,6 +93,7 @@ impl Table {
             seed_field: text(&own.seed_field, "seed"),
             extra: own.extra.clone().unwrap_or_default(),
             omit: own.omit.clone().unwrap_or_default(),
+            json: own.json.unwrap_or_default(),
             requests_per_minute: own.requests_per_minute.or(config.requests_per_minute),
             tokens_per_minute: own.tokens_per_minute.or(config.tokens_per_minute),
             advertises_requests_per_day: own.advertises_requests_per_day.unwrap_or(false),

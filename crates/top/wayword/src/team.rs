@@ -68,6 +68,12 @@ impl Team {
             answerer: match sees {
                 Some(model) => {
                     let manner = calls.map_or(Ok(Manner::Chat), |calls| calls.manner(&roles.see))?;
+                    if settings.perception.is_structured() && manner != Manner::Chat {
+                        return Err(Error::usage(
+                            format!("{} answers in words alone, and --perception asks for JSON", roles.see),
+                            "give --perception dialogue or single",
+                        ));
+                    }
                     Box::new(ModelAnswerer::new(model, prompts(), manner))
                 }
                 None => Box::new(labels),

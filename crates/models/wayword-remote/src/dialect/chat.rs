@@ -1,6 +1,7 @@
 //! OpenAI's chat completions (<https://platform.openai.com/docs/api-reference/chat>).
 
 use super::{Asked, End, Heard, Line, Missing, Wire, content, seed};
+use crate::Json;
 use serde_json::{Map, Value, json};
 use wayword_core::Role;
 
@@ -10,6 +11,15 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
     body.insert("model".to_owned(), asked.model.into());
     body.insert("messages".to_owned(), asked.lines.iter().map(message).collect());
     sampling(asked, &mut body);
+    if let Some((way, name, schema)) = asked.json() {
+        let format = match way {
+            Json::Schema => {
+                json!({ "type": "json_schema", "json_schema": { "name": name, "strict": true, "schema": schema } })
+            }
+            Json::Object | Json::Prompt => json!({ "type": "json_object" }),
+        };
+        body.insert("response_format".to_owned(), format);
+    }
     Wire { path: "/chat/completions".to_owned(), body: body.into() }
 }
 

@@ -1,6 +1,7 @@
 //! Gemini's `generateContent` (<https://ai.google.dev/api/generate-content>).
 
 use super::{Asked, End, Heard, Line, Missing, Wire, seed};
+use crate::Json;
 use serde_json::{Map, Value, json};
 use wayword_core::Role;
 
@@ -25,8 +26,30 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
     if provider.sends("seed") {
         generation.insert("seed".to_owned(), seed(sampling).into());
     }
+    if let Some((way, _, mut schema)) = asked.json() {
+        generation.insert("responseMimeType".to_owned(), "application/json".into());
+        if way == Json::Schema {
+            to_open_api(&mut schema);
+            generation.insert("responseSchema".to_owned(), schema);
+        }
+    }
     body.insert("generationConfig".to_owned(), generation.into());
     Wire { path: format!("/models/{}:generateContent", in_path(asked.model)), body: body.into() }
+}
+
+/// A schema in the service's own words: types in capitals, and without what it does not know.
+fn to_open_api(schema: &mut Value) {
+    match schema {
+        Value::Object(fields) => {
+            fields.remove("additionalProperties");
+            if let Some(Value::String(kind)) = fields.get_mut("type") {
+                kind.make_ascii_uppercase();
+            }
+            fields.values_mut().for_each(to_open_api);
+        }
+        Value::Array(values) => values.iter_mut().for_each(to_open_api),
+        _ => {}
+    }
 }
 
 fn message(line: &Line) -> Value {

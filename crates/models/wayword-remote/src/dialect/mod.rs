@@ -7,11 +7,11 @@ mod completions;
 mod gemini;
 mod ollama;
 
-use crate::{picture::Picture, provider::Provider};
+use crate::{Json, picture::Picture, provider::Provider};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::sync::Arc;
-use wayword_core::{Role, Sampling};
+use wayword_core::{Role, Sampling, Schema};
 
 /// A service's API.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -45,6 +45,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) model: &'a str,
     pub(crate) lines: &'a [Line],
     pub(crate) sampling: &'a Sampling,
+    /// The form of the reply, where it is to be JSON.
+    pub(crate) schema: Option<Schema>,
 }
 
 /// A request as it is sent, without the key.
@@ -212,6 +214,14 @@ fn after_thinking(text: &str) -> &str {
 /// A seed of 31 bits, which every service takes.
 fn seed(sampling: &Sampling) -> u64 {
     sampling.seed & 0x7fff_ffff
+}
+
+impl Asked<'_> {
+    /// What the service is told of the form of the reply: its way, the schema's name, and the schema.
+    fn json(&self) -> Option<(Json, &'static str, Value)> {
+        let schema = self.schema.filter(|_| self.provider.json != Json::Prompt)?;
+        Some((self.provider.json, schema.name, serde_json::from_str(schema.json).ok()?))
+    }
 }
 
 /// Puts a user's fields into a body. Tables are merged, all other values are replaced.

@@ -1,6 +1,7 @@
 //! Ollama's own chat endpoint (<https://github.com/ollama/ollama/blob/main/docs/api.md>).
 
 use super::{Asked, End, Heard, Line, Missing, Wire, seed};
+use crate::Json;
 use serde_json::{Map, Value, json};
 use wayword_core::Role;
 
@@ -18,7 +19,10 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
         options.insert("seed".to_owned(), seed(sampling).into());
     }
     let messages: Vec<Value> = asked.lines.iter().map(message).collect();
-    let body = json!({ "model": asked.model, "messages": messages, "stream": false, "options": options });
+    let mut body = json!({ "model": asked.model, "messages": messages, "stream": false, "options": options });
+    if let Some((way, _, schema)) = asked.json() {
+        body["format"] = if way == Json::Schema { schema } else { "json".into() };
+    }
     Wire { path: "/api/chat".to_owned(), body }
 }
 

@@ -25,7 +25,46 @@ fn conversation() -> Vec<Line> {
 
 fn wire(provider: &Provider, lines: &[Line]) -> Result<Wire, &'static str> {
     let sampling = Sampling { temperature: 0.5, max_tokens: 30, seed: u64::MAX };
-    provider.dialect.to_wire(Asked { provider, model: "m/1", lines, sampling: &sampling })
+    provider.dialect.to_wire(Asked { provider, model: "m/1", lines, sampling: &sampling, schema: None })
+}
+
+const SCHEMA: Schema = Schema {
+    name: "view",
+    json: r#"{"type": "object", "additionalProperties": false, "properties": {"type": {"type": "string"}}}"#,
+};
+
+/// The body of a request whose reply is to be JSON.
+fn body_for_json(provider: &Provider) -> Value {
+    let sampling = Sampling { temperature: 0.0, max_tokens: 30, seed: 0 };
+    let lines = [line(Role::User, "Hi.")];
+    let asked = Asked { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA) };
+    provider.dialect.to_wire(asked).unwrap().body
+}
+
+#[test]
+fn services_that_can_hold_a_model_to_a_form_get_it() {
+    let schema: Value = serde_json::from_str(SCHEMA.json).unwrap();
+    let strict = json!({ "type": "json_schema", "json_schema": { "name": "view", "strict": true, "schema": schema } });
+    assert_eq!(body_for_json(&provider("openai", ""))["response_format"], strict);
+    assert_eq!(body_for_json(&provider("ollama", ""))["format"], schema);
+    assert_eq!(body_for_json(&provider("deepseek", ""))["response_format"], json!({ "type": "json_object" }));
+    let gemini = &body_for_json(&provider("gemini", ""))["generationConfig"];
+    assert_eq!(gemini["responseMimeType"], "application/json");
+    let wanted = json!({ "type": "OBJECT", "properties": { "type": { "type": "STRING" } } });
+    assert_eq!(gemini["responseSchema"], wanted);
+}
+
+#[test]
+fn others_get_the_form_by_the_prompt_alone() {
+    for body in [
+        body_for_json(&provider("server", "")),
+        body_for_json(&provider("anthropic", "")),
+        body_for_json(&provider("openai", "[providers.openai]\njson = \"prompt\"")),
+    ] {
+        assert!(body.get("response_format").is_none() && body.get("format").is_none(), "{body}");
+    }
+    let strict = body_for_json(&provider("server", "[providers.server]\njson = \"schema\""));
+    assert_eq!(strict["response_format"]["type"], "json_schema");
 }
 
 #[test]

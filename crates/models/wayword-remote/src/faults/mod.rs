@@ -166,6 +166,8 @@ fn unsupported(message: &str) -> &'static str {
         " (set omit = [\"temperature\"] under the provider's settings)"
     } else if message.contains("seed") {
         " (set omit = [\"seed\"] under the provider's settings)"
+    } else if ["response_format", "json_schema", "responseschema", "format"].iter().any(|word| message.contains(word)) {
+        " (set json = \"prompt\" under the provider's settings)"
     } else {
         ""
     }

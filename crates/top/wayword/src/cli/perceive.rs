@@ -9,7 +9,8 @@ use std::path::PathBuf;
 #[command(after_long_help = "\
 Examples:
   wayword perceive --platform house --views 100 --llm ollama/qwen3 --see ollama/llava
-      Compare fixed queries, a single request and the dialogue on the same 100 views.
+      Compare fixed queries, a single request, the structured request and the dialogue on the same 100 views, and say
+      which pays.
   wayword perceive --platform matterport --data DATA --see openai/gpt-4.1-mini --perception single --max-usd 1
   wayword perceive --perception dialogue --show 5
       Without a model: ground-truth labels answer, and rules ask and summarise.")]
@@ -29,7 +30,7 @@ pub struct Perceive {
     /// Use only this scene. May be given several times.
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<Vec<String>>,
-    /// Use only this kind of perception. May be given several times. [default: all three]
+    /// Use only this kind of perception. May be given several times. [default: all; a model in process is not asked for JSON]
     #[arg(long)]
     pub perception: Option<Vec<Perception>>,
     /// Ask at most this many questions per view in a dialogue. [default: 9]

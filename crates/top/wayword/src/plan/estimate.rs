@@ -72,6 +72,7 @@ const USUAL_SHARE: f64 = 0.55;
 /// Tokens of a typical reply of each kind.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
+const STRUCTURED_TOKENS: u64 = 350;
 const CAPTION_TOKENS: u64 = 60;
 const CONDENSED_TOKENS: u64 = 25;
 const INSTRUCTION_TOKENS: u64 = 60;
@@ -156,6 +157,9 @@ fn questions(settings: &Settings) -> usize {
         Perception::Dialogue => settings.questions + 1,
         Perception::Fixed => 2,
         Perception::Single => 1,
+        Perception::Structured => 1,
+        // What stays open is not known before; few views leave more than this.
+        Perception::FollowUp => settings.questions.min(2) + 1,
     }
 }
 
@@ -190,7 +194,11 @@ impl Talk {
             if round > 0 {
                 asking.call(&prompts.question(&transcript)?, QUESTION_TOKENS);
             }
-            seeing.call(&prompts.answer(Manner::Chat, TYPICAL_QUESTION, &transcript)?, ANSWER_TOKENS);
+            if round == 0 && settings.perception.is_structured() {
+                seeing.call(&prompts.see(None)?, STRUCTURED_TOKENS);
+            } else {
+                seeing.call(&prompts.answer(Manner::Chat, TYPICAL_QUESTION, &transcript)?, ANSWER_TOKENS);
+            }
             seeing.tokens_in += picture;
             transcript.push(Exchange::new(TYPICAL_QUESTION, TYPICAL_ANSWER));
         }

@@ -111,6 +111,10 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
     let questions = match settings.perception {
         Perception::Dialogue => format!("dialogue, at most {} per view", settings.questions),
         Perception::Fixed => "fixed object and room queries, no dialogue".to_owned(),
+        Perception::Structured => "one structured request per view".to_owned(),
+        Perception::FollowUp => {
+            format!("one structured request per view, then at most {} about what it left open", settings.questions)
+        }
         Perception::Single => "one request for a description, no dialogue".to_owned(),
     };
     let target = match settings.target {

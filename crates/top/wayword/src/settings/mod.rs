@@ -114,13 +114,31 @@ fn is_false(flag: &bool) -> bool {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Perception {
-    /// Question by question, then a summary.
+    /// One request for all that a view shows, as JSON that also says how sure the model is. The default for models
+    /// behind HTTP.
+    Structured,
+    /// The same, then questions about what it left open: the room, and what is only perhaps there.
+    FollowUp,
+    /// Question by question, then a summary. The default for labels and for models in process.
     #[default]
     Dialogue,
     /// Fixed queries for objects and room, without a dialogue: the paper's ablation.
     Fixed,
     /// One request for a description, whose answer is the caption.
     Single,
+}
+
+impl Perception {
+    /// Whether it asks for JSON, which only a model that follows instructions gives.
+    #[must_use]
+    pub fn is_structured(self) -> bool {
+        matches!(self, Self::Structured | Self::FollowUp)
+    }
+
+    /// How a model, or labels, are asked where nobody says.
+    fn of(see: &str) -> Self {
+        if is_model(see) && !is_in_process(see) { Self::Structured } else { Self::Dialogue }
+    }
 }
 
 /// What texts are checked against.
@@ -250,6 +268,7 @@ impl Asked {
         let request = request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
         let (repairs, candidates) = if is_model(&roles.write) { (REPAIRS_OF_MODELS, 1) } else { (REPAIRS, CANDIDATES) };
+        let perception = writing.perception.unwrap_or_else(|| Perception::of(&roles.see));
         let styles = writing.style.filter(|styles| !styles.is_empty());
         Ok(Settings {
             platform: platform.name().to_owned(),
@@ -263,7 +282,7 @@ impl Asked {
             request,
             style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
             frames: writing.frames.map(FrameSelection::from).unwrap_or_default(),
-            perception: writing.perception.unwrap_or_default(),
+            perception,
             questions: writing.questions.unwrap_or(QUESTIONS),
             target: writing.target.unwrap_or_default(),
             repairs: writing.repairs.unwrap_or(repairs),
@@ -341,6 +360,8 @@ impl Settings {
             Perception::Dialogue => Mode::Dialogue { questions: self.questions },
             Perception::Fixed => Mode::Fixed,
             Perception::Single => Mode::Single,
+            Perception::Structured => Mode::Structured { questions: 0 },
+            Perception::FollowUp => Mode::Structured { questions: self.questions },
         }
     }
 }

@@ -4,6 +4,7 @@
 use crate::provider::{Gallery, Heard, Scenery, Script, Thing, barcode};
 use rand::{Rng, SeedableRng, seq::SliceRandom};
 use rand_chacha::ChaCha8Rng;
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 /// Answers questions about the pictures of a gallery, with mistakes now and then. The same question about the same
@@ -23,14 +24,31 @@ pub struct FlawedEye {
     pub contradiction_share: f64,
     /// How often it says no when it is asked whether something is there that is.
     pub blindness_share: f64,
+    /// How often it is not sure of something that is there, where it is asked how sure it is.
+    pub hedge_share: f64,
+    /// The same for its hallucinated objects: models are less sure of those.
+    pub doubt_share: f64,
+    /// Share of the views for which it breaks the form that it is asked for.
+    pub misshapen_share: f64,
 }
 
 impl FlawedEye {
     /// An eye that hallucinates this share of the objects that it names. When it is asked, it admits 70 % of them. It
-    /// misses a tenth of the objects that are there and denies 3 % of them.
+    /// misses a tenth of the objects that are there and denies 3 % of them. Where it says how sure it is, it is not sure
+    /// of a tenth of what is there and of 35 % of what is not, and 2 % of its answers do not have the form.
     #[must_use]
     pub fn new(gallery: Gallery, seed: u64, hallucinated_share: f64) -> Self {
-        Self { gallery, seed, hallucinated_share, miss_share: 0.1, contradiction_share: 0.7, blindness_share: 0.03 }
+        Self {
+            gallery,
+            seed,
+            hallucinated_share,
+            miss_share: 0.1,
+            contradiction_share: 0.7,
+            blindness_share: 0.03,
+            hedge_share: 0.1,
+            doubt_share: 0.35,
+            misshapen_share: 0.02,
+        }
     }
 }
 
@@ -62,6 +80,10 @@ impl Script for FlawedEye {
         let known = barcode::read(picture).and_then(|id| Some((id, self.gallery.scenery(id)?)));
         let (id, scenery) = known.unwrap_or_else(|| dream(picture));
         let text = heard.prompt();
+        if text.contains("as JSON") {
+            let again = text.contains("could not be read");
+            return Look { eye: self, id, scenery: &scenery }.structured(again);
+        }
         let question = text.rsplit("Question:").next().unwrap_or(text).replace("Answer:", "");
         let question = question.rsplit("sentence:").next().unwrap_or_default().trim().to_lowercase();
         Look { eye: self, id, scenery: &scenery }.answer(&question)
@@ -165,6 +187,47 @@ impl Look<'_> {
             [only] => format!("I can see {only}."),
             [before @ .., last] => format!("I can see {} and {last}.", before.join(", ")),
         }
+    }
+
+    /// Everything in the form of the structured request. A view for which it breaks the form is right the second time.
+    fn structured(&self, again: bool) -> String {
+        if !again && self.is(self.eye.misshapen_share, "form") {
+            return self.describe();
+        }
+        let side = |third: u8| ["left", "middle", "right"][usize::from(third.min(2))];
+        let colour = |name: &str| self.scenery.things.iter().find(|thing| thing.name == name)?.colour.clone();
+        let item = |name: &str, third: u8, guessed: bool| {
+            let name = if guessed && self.is(0.3, &format!("or {name}")) {
+                format!("{name} or cabinet")
+            } else {
+                name.to_owned()
+            };
+            json!({
+                "name": name, "colours": colour(&name).into_iter().collect::<Vec<_>>(), "material": "",
+                "side": side(third), "distance": "near", "sure": if guessed { "perhaps" } else { "sure" },
+            })
+        };
+        let seen = self.noticed();
+        let real = seen
+            .iter()
+            .map(|(name, third)| item(name, *third, self.is(self.eye.hedge_share, &format!("hedge {name}"))));
+        let dreamt = self.hallucinated();
+        let dreamt = dreamt
+            .iter()
+            .map(|(name, third)| item(name, *third, self.is(self.eye.doubt_share, &format!("doubt {name}"))));
+        let mut things: Vec<Value> = real.chain(dreamt).collect();
+        things.shuffle(&mut self.rng("order"));
+        let ways: Vec<Value> = seen
+            .iter()
+            .filter(|(name, _)| name.contains("door"))
+            .map(|(name, third)| json!({ "kind": name, "side": side(*third), "leads_to": "unknown" }))
+            .collect();
+        let stands_out: Vec<&str> = seen.first().map(|(name, _)| *name).into_iter().collect();
+        let room = self.scenery.room.as_deref().unwrap_or("unknown");
+        let answer =
+            json!({ "room": room, "room_sure": "sure", "ways_out": ways, "things": things, "stands_out": stands_out });
+        // Models put JSON into a fence now and then.
+        if self.is(0.2, "fence") { format!("```json\n{answer}\n```") } else { answer.to_string() }
     }
 
     fn part(&self, third: u8, lead: &str) -> String {

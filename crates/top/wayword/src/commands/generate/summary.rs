@@ -10,7 +10,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{fmt, path::Path};
-use wayword_core::{Ambiguity, Provenance, Verdict};
+use wayword_core::{Ambiguity, Form, Observation, Provenance, Verdict};
 
 /// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -32,6 +32,12 @@ pub struct Summary {
     /// Why the first of them could not be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_unfollowed: Option<String>,
+    /// Views whose answer did not have the form that was asked for, and whose second answer had it.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub asked_again: usize,
+    /// Views for which no answer had it: the last one was read as words.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub read_as_words: usize,
     /// Instructions, or whole items, that were rejected.
     pub rejected: usize,
     /// Items that failed: something is missing or broken, or the platform or a service was lost. The same command tries
@@ -56,6 +62,11 @@ pub struct Summary {
     pub exit: Exit,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
 pub(super) fn summary(
     folder: &Path,
     run: &RunFolder,
@@ -78,6 +89,7 @@ pub(super) fn summary(
         }
         Ok(())
     })?;
+    let (asked_again, read_as_words) = misshapen(&folder.join(file::WALKS))?;
     let exit = match (&stopped, run.rejected.len() + run.errors.len()) {
         (Some(stop), _) => stop.exit,
         (None, 0) => Exit::Done,
@@ -92,6 +104,8 @@ pub(super) fn summary(
         ambiguous,
         unfollowed,
         why_unfollowed,
+        asked_again,
+        read_as_words,
         rejected: run.rejected.len(),
         errors: run.errors.len(),
         first_loss: match first_failure(&folder.join(file::ERRORS))? {
@@ -104,6 +118,22 @@ pub(super) fn summary(
         stopped: stopped.map(|stop| stop.reason),
         exit,
     })
+}
+
+/// How many views had an answer without the form that was asked for: mended, and never mended.
+fn misshapen(walks: &Path) -> Result<(usize, usize), Error> {
+    let (mut mended, mut broken) = (0, 0);
+    if walks.exists() {
+        lines::each(walks, |line| {
+            let Seen { observations } = line.parse()?;
+            for look in observations.iter().flat_map(|seen| &seen.looks) {
+                mended += usize::from(look.caption.form == Some(Form::Mended));
+                broken += usize::from(look.caption.form == Some(Form::Broken));
+            }
+            Ok(())
+        })?;
+    }
+    Ok((mended, broken))
 }
 
 fn first_failure(errors: &Path) -> Result<Option<String>, Error> {
@@ -134,6 +164,13 @@ struct Told {
     provenance: Provenance,
     #[serde(default)]
     ambiguity: Option<Ambiguity>,
+}
+
+/// The fields of a walk's line that the summary counts.
+#[derive(Deserialize)]
+struct Seen {
+    #[serde(default)]
+    observations: Vec<Observation>,
 }
 
 fn told(provenance: &Provenance) -> String {
@@ -174,6 +211,13 @@ impl fmt::Display for Summary {
         if self.finished_by_rules > 0 {
             let finished = count(self.finished_by_rules, "instruction");
             writeln!(f, "{finished} written by rules, because every text of the model failed a check")?;
+        }
+        if self.asked_again + self.read_as_words > 0 {
+            writeln!(
+                f,
+                "views whose answer lacked the form that was asked for: {} asked for again, {} read as words",
+                self.asked_again, self.read_as_words
+            )?;
         }
         if self.ambiguous > 0 {
             writeln!(f, "ambiguous: {} may mean several places or objects", count(self.ambiguous, "instruction"))?;

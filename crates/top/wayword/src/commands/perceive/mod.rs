@@ -15,7 +15,7 @@ use crate::{
     plan::Plan,
     platforms,
     run::fresh_id,
-    settings::{Job, Perception, Settings},
+    settings::{Job, Perception, Settings, is_in_process},
     team::Team,
 };
 use serde::Serialize;
@@ -46,7 +46,8 @@ pub struct Measured {
 }
 
 /// All ways of asking, the simplest first.
-const WAYS: [Perception; 3] = [Perception::Fixed, Perception::Single, Perception::Dialogue];
+const WAYS: [Perception; 5] =
+    [Perception::Fixed, Perception::Single, Perception::Structured, Perception::FollowUp, Perception::Dialogue];
 
 /// A caption with what was found.
 #[derive(Debug, Serialize)]
@@ -71,7 +72,7 @@ pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
     let job = asked.job()?;
     Calls::ready(&job, output)?;
     let platform = platforms::open(&job.settings)?;
-    let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or(WAYS.to_vec());
+    let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or_else(|| ways(&job.settings));
     let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;
     output.data(&measured, Table(&measured));
     Ok(if measured.rows.iter().all(|row| row.failed == 0) { Exit::Done } else { Exit::WithLoss })
@@ -129,6 +130,12 @@ pub fn perceive(
         output.say(format_args!("models: {}", calls.spent()));
     }
     Ok(measured)
+}
+
+/// The ways of asking that the role can be asked in.
+fn ways(settings: &Settings) -> Vec<Perception> {
+    let in_process = is_in_process(&settings.roles.see);
+    WAYS.into_iter().filter(|way| !(in_process && way.is_structured())).collect()
 }
 
 fn roles(settings: &Settings) -> String {
