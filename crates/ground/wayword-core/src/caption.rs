@@ -24,6 +24,9 @@ pub struct Caption {
     /// Who wrote the text, where the run's summariser did not: it failed, or there was nothing to summarise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
+    /// Whether it was made of an answer in a form: a list of what the view shows, and how sure the witness was of each.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_structured: bool,
     /// What became of the form that was asked for, where an answer did not have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<Form>,

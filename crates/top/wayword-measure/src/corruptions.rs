@@ -161,6 +161,7 @@ mod tests {
                 .collect(),
             knows_things: true,
             level: Some(1),
+            ..FrameEvidence::default()
         };
         let frames = vec![
             frame("hallway", Some(("sofa", -60.0))),

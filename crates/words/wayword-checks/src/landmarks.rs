@@ -8,7 +8,7 @@ use crate::{
 use std::collections::BTreeMap;
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{
-    lexicon::{Class, agree, thing},
+    lexicon::{Class, agree, same_colour, thing},
     reading::{Link, Place, Reading, What},
 };
 
@@ -28,8 +28,9 @@ pub(super) struct Shown {
     pub(super) unknown: Vec<usize>,
 }
 
-/// Checks each place of a text. Whether the object of a task (`object`) is there is left to the check of the task.
-pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<usize>) -> Places {
+/// Checks each place of a text. Whether the object of a task (`object`) is there is left to the check of the task. Where
+/// the witnesses' silence means that the writer made a thing up (`made_up`), it is wrong.
+pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<usize>, made_up: bool) -> Places {
     let (mut findings, mut all_shown) = (Vec::new(), Vec::new());
     let seen = Seen::of(evidence);
     for (at, event) in reading.events.iter().enumerate() {
@@ -39,7 +40,7 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<u
         };
         let is_object = object == Some(at);
         let shown = if is_object { at_the_end(place, evidence) } else { seen.shown(place) };
-        let wrong = if is_object { None } else { presence(place, &shown, evidence) };
+        let wrong = if is_object { None } else { presence(place, &shown, evidence, made_up) };
         findings.extend(
             wrong
                 .into_iter()
@@ -60,9 +61,9 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<u
 }
 
 /// What is wrong with where the text puts a place: it is nowhere along the path, or on another side.
-fn presence(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict, String)> {
+fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) -> Option<(Verdict, String)> {
     if shown.frames.is_empty() {
-        let verdict = absent(place, evidence);
+        let verdict = absent(place, evidence, made_up);
         return Some(match verdict {
             Verdict::Fail => (verdict, format!("no frame of the path shows {:?}", place.name)),
             _ => (verdict, format!("the program cannot check whether there is {:?}", place.name)),
@@ -87,11 +88,9 @@ fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict,
     let told = place.colour.as_ref()?;
     let things =
         shown.frames.iter().flat_map(|at| &evidence.frames[*at].things).filter(|thing| agree(&thing.name, &place.name));
-    let known: Vec<&String> = things.filter_map(|thing| thing.colour.as_ref()).collect();
-    // "the brown chair" for a dark brown one is no mistake.
-    let fits = known.iter().any(|colour| {
-        *colour == told || colour.ends_with(&format!(" {told}")) || told.ends_with(&format!(" {colour}"))
-    });
+    let known: Vec<&String> = things.flat_map(|thing| thing.colour.iter().chain(&thing.more_colours)).collect();
+    // "The brown chair" for a dark brown one is no mistake, nor is "cream" for beige.
+    let fits = known.iter().any(|colour| same_colour(colour, told));
     match (known.is_empty(), fits) {
         (_, true) => None,
         (true, false) if shown.frames.is_empty() => None,
@@ -162,8 +161,12 @@ fn at_the_end(place: &Place, evidence: &Evidence) -> Shown {
 }
 
 /// The verdict where no frame shows a place.
-fn absent(place: &Place, evidence: &Evidence) -> Verdict {
-    let thing_denied = place.is_thing && evidence.denies_thing(&place.name);
+fn absent(place: &Place, evidence: &Evidence, made_up: bool) -> Verdict {
+    let denied = || match made_up {
+        true => evidence.names_no(&place.name),
+        false => evidence.denies_thing(&place.name),
+    };
+    let thing_denied = place.is_thing && denied();
     // A room that the text calls near to something need not be on the path.
     let room_denied = place.is_room && evidence.denies_room(&place.name) && place.link != Link::Beside;
     // A name that may mean a thing or a room fails only where the thing is denied.

@@ -26,11 +26,11 @@ mod world;
 use std::collections::BTreeSet;
 use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
 use wayword_language::{
-    lexicon::{agree, normal},
+    lexicon::{agree, normal, same_colour},
     reading::{Event, Reading, What, read},
 };
 
-pub use evidence::{Building, Distance, Evidence, FrameEvidence, NEAR_M, SeenThing, Source, Surroundings};
+pub use evidence::{Building, Distance, Evidence, FrameEvidence, NEAR_M, Perhaps, SeenThing, Source, Surroundings};
 pub use leak::{SHARED_RUN, shared_run};
 pub use memory::Memory;
 pub use witnesses::{Testimony, lift};
@@ -53,6 +53,8 @@ pub struct Subject<'a> {
     pub turns: Turns,
     /// The language that the text's file names for it, as a tag: "en-IN".
     pub tag: Option<&'a str>,
+    /// Whether the writer saw the pictures, and not only what was said of them.
+    pub writer_sees: bool,
 }
 
 impl<'a> Subject<'a> {
@@ -60,13 +62,31 @@ impl<'a> Subject<'a> {
     #[must_use]
     pub fn closed(evidence: &'a Evidence, style: &'a Style, target: Option<&'a Target>) -> Self {
         let reach = Reach::default();
-        Self { evidence, style, target, world: World::Closed, reach, turns: Turns::default(), tag: None }
+        Self {
+            evidence,
+            style,
+            target,
+            world: World::Closed,
+            reach,
+            turns: Turns::default(),
+            tag: None,
+            writer_sees: false,
+        }
     }
 
     /// A text that somebody else wrote.
     #[must_use]
     pub fn open(evidence: &'a Evidence, style: &'a Style, reach: Reach<'a>) -> Self {
-        Self { evidence, style, target: None, world: World::Open, reach, turns: Turns::default(), tag: None }
+        Self {
+            evidence,
+            style,
+            target: None,
+            world: World::Open,
+            reach,
+            turns: Turns::default(),
+            tag: None,
+            writer_sees: false,
+        }
     }
 }
 
@@ -98,6 +118,11 @@ impl Checked {
 /// Checks a text.
 #[must_use]
 pub fn check(text: &str, subject: Subject<'_>) -> Checked {
+    held(text, subject, false)
+}
+
+/// `from_captions_alone`: the text was written from the captions alone, so that what none of them names was made up.
+fn held(text: &str, subject: Subject<'_>, from_captions_alone: bool) -> Checked {
     let whole = read(text, &names(subject.evidence));
     let reading = whole.clone().claims();
     let mut findings = form::form(text, &subject.style.constraints);
@@ -107,7 +132,7 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
     }
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
-    let places = landmarks::landmarks(&reading, subject.evidence, object);
+    let places = landmarks::landmarks(&reading, subject.evidence, object, from_captions_alone);
     let walk = order::order(&reading, subject.evidence, &places.shown);
     match subject.world {
         World::Closed => {
@@ -127,7 +152,8 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
 /// up any turn, side, storey or distance that the text names, while somebody else may have seen the place.
 #[must_use]
 pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
-    let mut checked = check(text, subject);
+    let from_captions_alone = subject.evidence.source == Source::Captions && !subject.writer_sees;
+    let mut checked = held(text, subject, from_captions_alone);
     if subject.evidence.motion.is_known() {
         return checked;
     }
@@ -152,7 +178,8 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     let alike: Vec<_> = things.iter().filter(|thing| agree(&thing.name, &place.name)).collect();
     let is_meant = |thing: &&&SeenThing| {
         let is_on_side = |side| thing.turn_rad.is_none_or(|turn_rad| sides::lies_on(side, turn_rad));
-        let has_colour = |told| thing.colour.as_ref().is_none_or(|colour| colour == told);
+        let colours = || thing.colour.iter().chain(&thing.more_colours);
+        let has_colour = |told: &String| thing.colour.is_none() || colours().any(|colour| same_colour(colour, told));
         place.side.is_none_or(is_on_side) && place.colour.as_ref().is_none_or(has_colour)
     };
     let meant = alike.iter().filter(is_meant).count();

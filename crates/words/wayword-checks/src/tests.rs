@@ -13,6 +13,7 @@ fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
         things: things.unwrap_or_default().iter().map(seen).collect(),
         knows_things: things.is_some(),
         level: Some(level).filter(|level| *level > 0),
+        ..FrameEvidence::default()
     }
 }
 

@@ -1,7 +1,11 @@
 //! Evidence from captions.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
-use wayword_core::{Look, Observation, Path, Where, Witness};
+use wayword_core::{Form, Look, Observation, Path, Sighting, Where, Witness};
+use wayword_language::lexicon::{agree, kinds, normal};
+
+/// So many things make a caption a list of what a view shows, and not a remark about some of it.
+const OF_A_LIST: usize = 3;
 
 impl Evidence {
     /// Evidence from captions, one observation per frame of the path. `None` where no caption names a room or an
@@ -13,30 +17,61 @@ impl Evidence {
             .iter()
             .zip(observations)
             .map(|(frame, seen)| {
-                // A witness that names the room and no object has looked; one that says nothing may not have.
-                let has_looked = |look: &Look| look.caption.room.is_some() || !look.caption.sightings.is_empty();
-                let knows_things = !seen.looks.is_empty() && seen.looks.iter().all(has_looked);
-                let mut evidence = FrameEvidence { knows_things, ..FrameEvidence::default() };
-                for look in &seen.looks {
-                    evidence.rooms.extend(look.caption.room.clone().filter(|room| !evidence.rooms.contains(room)));
-                    let off_rad = frame.pose.heading.turn_to(look.gaze.heading);
-                    for sighting in &look.caption.sightings {
-                        if sighting.witness == Witness::Seen {
-                            let turn_rad = |place: Where| off_rad + place.turn_rad(look.gaze.horizontal_fov_rad);
-                            evidence.things.push(SeenThing {
-                                name: sighting.name.clone(),
-                                object: None,
-                                colour: sighting.colour.clone(),
-                                turn_rad: sighting.place.map(turn_rad),
-                                ..SeenThing::default()
-                            });
-                        }
-                    }
-                }
-                evidence
+                let off_rad = |look: &Look| frame.pose.heading.turn_to(look.gaze.heading);
+                of_looks(&seen.looks, &off_rad)
             })
             .collect();
-        let known = frames.iter().any(|frame| !frame.rooms.is_empty() || !frame.things.is_empty());
+        let known = frames
+            .iter()
+            .any(|frame| !frame.rooms.is_empty() || !frame.things.is_empty() || !frame.perhaps.things.is_empty());
         known.then(|| Self::of(path, frames, Source::Captions))
     }
+}
+
+fn of_looks(looks: &[Look], off_rad: &dyn Fn(&Look) -> f64) -> FrameEvidence {
+    // A witness that names the room and no object has looked; one that says nothing may not have.
+    let has_looked = |look: &Look| look.caption.room.is_some() || !look.caption.sightings.is_empty();
+    let knows_things = !looks.is_empty() && looks.iter().all(has_looked);
+    let mut evidence = FrameEvidence { knows_things, ..FrameEvidence::default() };
+    evidence.lists_things = knows_things && looks.iter().all(is_list);
+    for look in looks {
+        evidence.rooms.extend(look.caption.room.clone().filter(|room| !evidence.rooms.contains(room)));
+        evidence.perhaps.rooms.extend(look.caption.perhaps_rooms.iter().cloned());
+        evidence.perhaps.rooms.extend(look.caption.ways.iter().filter_map(|way| way.leads_to.clone()));
+        for sighting in &look.caption.sightings {
+            match sighting.witness {
+                Witness::Seen => evidence.things.push(seen_thing(sighting, look, off_rad(look))),
+                Witness::Unsure => evidence.perhaps.things.push(seen_thing(sighting, look, off_rad(look))),
+                Witness::Denied => evidence.denied.push(sighting.name.clone()),
+            }
+        }
+    }
+    // What one view of a frame shows is there, whatever was said of another.
+    let FrameEvidence { things, perhaps, denied, .. } = &mut evidence;
+    let is_named = |name: &str| things.iter().chain(&perhaps.things).any(|thing| agree(&thing.name, name));
+    denied.retain(|name| !is_named(name));
+    evidence
+}
+
+/// Whether a caption lists what its view shows: an answer of the form that was asked for, with several things.
+fn is_list(look: &Look) -> bool {
+    let named = look.caption.sightings.iter().filter(|sighting| sighting.witness != Witness::Denied).count();
+    look.caption.is_structured && look.caption.form != Some(Form::Broken) && named >= OF_A_LIST
+}
+
+fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {
+    let turn_rad = |place: Where| off_rad + place.turn_rad(look.gaze.horizontal_fov_rad);
+    SeenThing {
+        name: sighting.name.clone(),
+        colour: sighting.colour.clone(),
+        more_colours: sighting.more_colours.clone(),
+        turn_rad: sighting.place.map(turn_rad),
+        ..SeenThing::default()
+    }
+}
+
+/// Whether a denial of one name denies another: "no chair" denies a dining chair, but "no dining chair" no chair.
+pub(super) fn denies(denied: &str, name: &str) -> bool {
+    let general = kinds(denied);
+    normal(denied) == normal(name) || kinds(name).contains(&general[0])
 }

@@ -5,6 +5,8 @@ mod from_captions;
 mod from_labels;
 mod surroundings;
 
+use from_captions::denies;
+
 pub use building::Building;
 pub use surroundings::{Distance, NEAR_M, Surroundings};
 
@@ -33,8 +35,23 @@ pub struct FrameEvidence {
     pub things: Vec<SeenThing>,
     /// Whether the objects are known. Where they are not, an empty list of objects says nothing.
     pub knows_things: bool,
+    /// Whether the witness listed all that it noticed. Where it only described the view, its silence says little.
+    pub lists_things: bool,
+    /// What the witnesses were not sure of.
+    pub perhaps: Perhaps,
+    /// Names of objects that were said not to be there.
+    pub denied: Vec<String>,
     /// The storey, the lowest being 1.
     pub level: Option<u32>,
+}
+
+/// What witnesses were not sure of. It makes no text right, and none wrong.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Perhaps {
+    /// Rooms: what the room may be, and what is seen through openings.
+    pub rooms: Vec<String>,
+    /// Objects.
+    pub things: Vec<SeenThing>,
 }
 
 /// An object that is seen from a frame.
@@ -46,12 +63,26 @@ pub struct SeenThing {
     pub object: Option<ObjectId>,
     /// Its colour, where that is known.
     pub colour: Option<String>,
+    /// Its further colours.
+    pub more_colours: Vec<String>,
     /// Its direction from the frame's heading, radians in (-π, π], positive right.
     pub turn_rad: Option<f64>,
     /// Its distance from the eye, metres, where it is known.
     pub distance_m: Option<f64>,
     /// Its centre, metres, world frame, where it is known.
     pub position: Option<DVec3>,
+}
+
+impl FrameEvidence {
+    /// Whether its witness thought of seeing such a thing, without being sure.
+    fn may_show(&self, name: &str) -> bool {
+        self.perhaps.things.iter().any(|thing| agree(&thing.name, name))
+    }
+}
+
+/// Whether nobody overlooks a thing of that name.
+fn stands_out(name: &str) -> bool {
+    thing(name).is_some_and(|thing| thing.salience >= 3)
 }
 
 /// Who vouches for evidence.
@@ -95,16 +126,41 @@ impl Evidence {
     }
 
     /// For a thing that no frame shows: whether it is certainly nowhere along the path. That is so where the objects of
-    /// every frame are known, and the witnesses could have named it.
+    /// every frame are known, and the witnesses could have named it. Captions leave things out, so there it must have
+    /// been denied, or be one that nobody overlooks in lists of what every frame shows.
     #[must_use]
     pub fn denies_thing(&self, name: &str) -> bool {
-        self.frames_without_things().is_empty() && self.could_name(name)
+        let overlooked = || !(stands_out(name) && self.frames.iter().all(|frame| frame.lists_things));
+        self.names_no(name) && (self.source != Source::Captions || self.is_denied(name) || !overlooked())
+    }
+
+    /// For a thing that no frame shows: whether every frame's witnesses spoke and none of them named it, not even as a
+    /// guess, although they could have.
+    #[must_use]
+    pub fn names_no(&self, name: &str) -> bool {
+        self.frames_without_things().is_empty() && self.could_name(name) && !self.may_show(name)
     }
 
     /// The same for the last frame alone.
     #[must_use]
     pub fn denies_thing_at_end(&self, name: &str) -> bool {
-        self.frames.last().is_some_and(|frame| frame.knows_things) && self.could_name(name)
+        let Some(last) = self.frames.last().filter(|last| last.knows_things && self.could_name(name)) else {
+            return false;
+        };
+        let listed = || last.lists_things && !self.may_show(name) && thing(name).is_some();
+        let denied = || last.denied.iter().any(|denied| denies(denied, name));
+        !last.may_show(name) && (self.source != Source::Captions || denied() || listed())
+    }
+
+    /// Whether some witness thought of seeing such a thing, without being sure.
+    #[must_use]
+    pub fn may_show(&self, name: &str) -> bool {
+        self.frames.iter().any(|frame| frame.may_show(name))
+    }
+
+    /// Whether some frame's witness said that there is no such thing.
+    fn is_denied(&self, name: &str) -> bool {
+        self.frames.iter().flat_map(|frame| &frame.denied).any(|denied| denies(denied, name))
     }
 
     /// Whether the witnesses could have named a thing of that name. Most leave out doors and walls: where they name
@@ -125,7 +181,12 @@ impl Evidence {
         match room_name(name) {
             Some("basement") => self.frames.iter().all(|frame| frame.level.is_some_and(|level| level > 1)),
             Some("attic") => false,
-            _ => self.source != Source::Nothing && self.frames_without_room().is_empty(),
+            _ => {
+                let is_perhaps = |room: &String| same_room(room, name);
+                self.source != Source::Nothing
+                    && self.frames_without_room().is_empty()
+                    && !self.frames.iter().flat_map(|frame| &frame.perhaps.rooms).any(is_perhaps)
+            }
         }
     }
 

@@ -23,7 +23,7 @@ fn walked(stops: &[(f64, f64, f64)], frames: Vec<FrameEvidence>) -> (Evidence, P
 
 fn frame(room: &str, things: Vec<SeenThing>) -> FrameEvidence {
     let rooms = if room.is_empty() { Vec::new() } else { vec![room.to_owned()] };
-    FrameEvidence { rooms, things, knows_things: true, level: None }
+    FrameEvidence { rooms, things, knows_things: true, ..FrameEvidence::default() }
 }
 
 fn thing(name: &str, id: Option<&str>, deg: f64) -> SeenThing {

@@ -22,7 +22,7 @@ pub(super) fn caption(seen: Seen, by: &str) -> Caption {
     let room = seen.rooms.first().filter(|_| seen.room_is_sure).cloned();
     let perhaps_rooms = if room.is_some() { Vec::new() } else { seen.rooms };
     let text = text(room.as_deref(), &perhaps_rooms, &sightings, &seen.ways);
-    Caption { text, room, perhaps_rooms, sightings, ways: seen.ways, ..Caption::default() }
+    Caption { text, room, perhaps_rooms, sightings, ways: seen.ways, is_structured: true, ..Caption::default() }
 }
 
 /// A thing that may have several names is seen under none of them for sure.

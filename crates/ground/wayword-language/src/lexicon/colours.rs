@@ -1,0 +1,45 @@
+//! Colours, and which of them people do not keep apart.
+
+use crate::data;
+use std::sync::LazyLock;
+
+static FAMILIES: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
+    data::lines(include_str!("../words/colours.txt")).map(|line| data::names(line).collect()).collect()
+});
+
+/// Whether two colours may be said of one thing: they are equal up to a shade ("dark brown", "brown"), or near each
+/// other (cream and beige).
+#[must_use]
+pub fn same_colour(a: &str, b: &str) -> bool {
+    let (a, b) = (without_shade(a), without_shade(b));
+    a == b || FAMILIES.iter().any(|family| family.contains(&a) && family.contains(&b))
+}
+
+fn without_shade(colour: &str) -> &str {
+    ["dark ", "light ", "pale ", "bright ", "deep "]
+        .iter()
+        .find_map(|shade| colour.strip_prefix(shade))
+        .unwrap_or(colour)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_colours_are_not_kept_apart_and_others_are() {
+        for (a, b) in [
+            ("cream", "beige"),
+            ("turquoise", "teal"),
+            ("grey", "silver"),
+            ("dark brown", "brown"),
+            ("gray", "grey"),
+            ("cream", "white"),
+        ] {
+            assert!(same_colour(a, b) && same_colour(b, a), "{a} and {b}");
+        }
+        for (a, b) in [("red", "blue"), ("white", "black"), ("green", "red"), ("white", "brown")] {
+            assert!(!same_colour(a, b), "{a} and {b}");
+        }
+    }
+}
