@@ -50,6 +50,9 @@ pub struct Planned {
     pub view: View,
 }
 
+/// Talks about views that do not depend on each other: one caption each, in their order.
+pub type Talk<'a> = dyn Fn(&[Planned]) -> Result<Vec<Caption>, ModelError> + 'a;
+
 /// Captions of a path: one observation per frame.
 ///
 /// At the last frame of a central run, if nothing is seen ahead, the walker looks all around. A robot that has arrived
@@ -78,7 +81,7 @@ pub fn observe_with(
     path: &Path,
     selection: FrameSelection,
     observers: Observers<'_>,
-    talk: &dyn Fn(&[Planned]) -> Result<Vec<Caption>, ModelError>,
+    talk: &Talk<'_>,
 ) -> Result<Vec<Observation>, ObserveError> {
     let mut looks: Vec<Vec<Look>> = vec![Vec::new(); path.frames.len()];
     let planned = plan(platform, path, selection)?;

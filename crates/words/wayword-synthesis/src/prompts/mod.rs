@@ -5,6 +5,7 @@
 
 mod bounds;
 mod corrections;
+mod remembered;
 pub(crate) mod trial;
 mod writing;
 

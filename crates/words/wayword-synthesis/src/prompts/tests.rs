@@ -179,6 +179,36 @@ fn what_a_frame_shows_is_listed_and_a_target_that_nobody_saw_is_told_as_such() {
     assert!(prompt.contains("Landmarks: white lamp (left), white bed\n"), "{prompt}");
 }
 
+/// A hallway with a sofa on the left that two frames show, and then a bedroom.
+#[test]
+fn the_prompt_tells_each_thing_and_room_of_the_walk_once() {
+    let mut walk = walk();
+    let looks =
+        [("hallway", Where::Left), ("hallway", Where::Left), ("hallway", Where::Right), ("bedroom", Where::Middle)];
+    for (at, (room, place)) in looks.into_iter().enumerate() {
+        let gaze = Gaze::quarter(walk.path.frames[at].pose.heading);
+        let sofa = Sighting {
+            name: "sofa".into(),
+            witness: Witness::Seen,
+            place: Some(place),
+            colour: Some("grey".into()),
+            several: false,
+            by: "test".into(),
+        };
+        let sightings = if at < 2 { vec![sofa] } else { Vec::new() };
+        let caption = Caption { room: Some(room.into()), sightings, ..Caption::default() };
+        walk.observations[at].looks = vec![Look { gaze, caption }];
+    }
+    let style = built_in("r2r").unwrap();
+    let profile = Profile::measure(&style.references);
+    let prompt = Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &style, &profile, 0)).unwrap();
+    let told = prompt.split("each thing once:").nth(1).unwrap().split("These are reference").next().unwrap();
+    assert!(told.contains("- rooms, in order: hallway (Frames 0 to 2), bedroom (Frame 3)"), "{told}");
+    assert!(told.contains("- between Frame 2 and Frame 3 a door leads from the hallway into the bedroom"), "{told}");
+    assert!(told.contains("- grey sofa: seen from Frames 0 to 1"), "{told}");
+    assert_eq!(told.matches("sofa").count(), 1, "{told}");
+}
+
 #[test]
 fn a_question_without_an_answer_is_not_told_again() {
     let prompts = Prompts::new(&[]).unwrap();

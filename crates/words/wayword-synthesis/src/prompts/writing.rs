@@ -1,6 +1,6 @@
 //! What the writing prompt is filled with.
 
-use super::corrections::reasons;
+use super::{corrections::reasons, remembered::remembered};
 use crate::{walk::Walk, writer::Brief};
 use minijinja::{Value, context};
 use rand::seq::index;
@@ -34,6 +34,7 @@ pub(super) fn context(brief: &Brief<'_>) -> Value {
         pictured,
         complaints,
         overview => overview(&walk.moves),
+        remembered => remembered(&brief.walk.memory()),
         knows_motion => walk.path.motion.is_known(),
         references => references(brief),
         target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| told_target(walk, target)),

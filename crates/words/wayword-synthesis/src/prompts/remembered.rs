@@ -1,0 +1,69 @@
+//! What the writing prompt tells of the memory of a walk: rooms, doors, bends, and things that are seen from several
+//! frames, each once.
+
+use wayword_checks::memory::{Bend, Memory, Opening, Remembered, Stay};
+use wayword_core::Side;
+
+/// Most things that are told.
+const MOST_THINGS: usize = 16;
+/// A thing that is nearer to the end than this is told with its distance from there, metres.
+const NEAR_END_M: f64 = 3.0;
+
+/// One line for each thing that is worth telling.
+pub(super) fn remembered(memory: &Memory) -> Vec<String> {
+    let mut told: Vec<String> = rooms(&memory.stays).into_iter().collect();
+    told.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door));
+    told.extend(memory.bends.iter().filter_map(bend));
+    let things = memory.things.iter().filter_map(|thing| told_thing(memory, thing));
+    told.extend(things.take(MOST_THINGS));
+    told
+}
+
+fn rooms(stays: &[Stay]) -> Option<String> {
+    let told = stays.iter().map(|stay| format!("{} ({})", stay.room, frames(stay.entered, stay.left)));
+    (stays.len() > 1).then(|| format!("rooms, in order: {}", told.collect::<Vec<_>>().join(", ")))
+}
+
+fn door(opening: &Opening) -> String {
+    let Opening { before, behind, from, to, .. } = opening;
+    format!("between Frame {before} and Frame {behind} a door leads from the {from} into the {to}")
+}
+
+/// A bend of several moves, which a text tells as one turn.
+fn bend(bend: &Bend) -> Option<String> {
+    let way = match bend.side() {
+        Side::Left => "to the left",
+        Side::Right => "to the right",
+        Side::Behind | Side::Ahead => return None,
+    };
+    let slight = if bend.is_slight() { "slight " } else { "" };
+    (bend.last > bend.first)
+        .then(|| format!("the turns from {} are one {slight}bend {way}", frames(bend.first, bend.last)))
+}
+
+/// A thing that one passes, that is seen from several frames, or that is near the end.
+fn told_thing(memory: &Memory, thing: &Remembered) -> Option<String> {
+    let end = memory.frames().saturating_sub(1);
+    let at_end = memory.distance_m(thing, end).filter(|distance_m| *distance_m < NEAR_END_M);
+    if thing.passed.is_none() && thing.glimpses.len() < 2 && at_end.is_none() {
+        return None;
+    }
+    let colour = thing.colour.as_ref().filter(|colour| !thing.name.contains(colour.as_str()));
+    let colour = colour.map_or(String::new(), |colour| format!("{colour} "));
+    let mut told = format!("{colour}{}: seen from {}", thing.name, frames(thing.first_seen(), thing.last_seen()));
+    if let Some(passed) = thing.passed {
+        let side = if passed.side == Side::Left { "left" } else { "right" };
+        told += &format!(", passed on the {side} at Frame {}", passed.frame);
+        if let Some((place, all)) = memory.ordinal(thing).filter(|(_, all)| *all > 1) {
+            told += &format!(" (number {place} of {all} on that side)");
+        }
+    }
+    if let Some(distance_m) = at_end {
+        told += &format!(", {distance_m:.1} metres from the end");
+    }
+    Some(told)
+}
+
+fn frames(first: usize, last: usize) -> String {
+    if first == last { format!("Frame {first}") } else { format!("Frames {first} to {last}") }
+}
