@@ -185,6 +185,8 @@ enum What {
     Sweep(sweep::Flags),
     /// Tell generated texts from people's with a plain classifier, cross-validated by building.
     TellApart(tell_apart::Flags),
+    /// Hold texts about generated houses against their plans: the room at the end, what stands there, the target.
+    Houses(texts::houses::Flags),
     /// Measure generated texts: bare turns, lengths, word types, openers, and what they share with other texts.
     Texts(texts::Flags),
 }
@@ -196,6 +198,7 @@ fn main() -> ExitCode {
         What::Found(flags) => flags.judging.json,
         What::TellApart(flags) => flags.json,
         What::Texts(flags) => flags.json,
+        What::Houses(flags) => flags.json,
         _ => false,
     };
     let output = Output::new(is_json, false);
@@ -230,6 +233,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::ReaderFigures(flags) => reader_figures::measure(&flags, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::TellApart(flags) => tell_apart::measure(&flags, output),
+        What::Houses(flags) => texts::houses::measure(&flags, output),
         What::Texts(flags) => texts::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }

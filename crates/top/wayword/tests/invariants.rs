@@ -131,6 +131,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-core",
                 "wayword-follower",
                 "wayword-formats",
+                "wayword-house",
                 "wayword-language",
                 "wayword-ledger",
                 "wayword-metrics",

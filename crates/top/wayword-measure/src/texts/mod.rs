@@ -3,8 +3,10 @@
 
 mod clauses;
 mod copies;
+pub(crate) mod houses;
 mod listener;
 mod names;
+mod rooms;
 mod row;
 mod surface;
 
@@ -14,7 +16,7 @@ use copies::Train;
 use row::Row;
 use serde_json::json;
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 use wayword::{
@@ -23,8 +25,9 @@ use wayword::{
     platforms,
     settings::{Asked, AskedPlatform},
 };
-use wayword_core::Platform;
+use wayword_core::{Platform, SceneId, Survey};
 use wayword_formats::Episode;
+use wayword_world::survey;
 
 /// The flags of `texts`.
 #[derive(Debug, Args)]
@@ -61,8 +64,11 @@ pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     for (name, episodes) in [("generated", Some(&generated)), ("people", people.as_ref())] {
         let Some(episodes) = episodes else { continue };
         let mut rows = rows(episodes, train.as_ref());
+        let surveys =
+            platform.as_deref().map_or_else(|| Ok(BTreeMap::new()), |platform| surveys(platform, episodes))?;
+        rows.extend(rooms::rows(episodes, &surveys));
         if let Some(platform) = &platform {
-            let heard = listener::hear(platform.as_ref(), episodes)?;
+            let heard = listener::hear(platform.as_ref(), &surveys, episodes)?;
             rows.extend(listener::rows(&heard));
             let wrong = heard.iter().filter(|heard| name == "generated" && !heard.is_pinned()).take(flags.show);
             wrong.for_each(|heard| output.say(format!("{}: {}: {}", heard.item, heard.fault(), heard.text)));
@@ -77,6 +83,14 @@ pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
 fn open(platform: String, data: Option<PathBuf>) -> Result<Box<dyn Platform>, Error> {
     let asked = AskedPlatform { platform: Some(platform), data, ..AskedPlatform::default() };
     platforms::open(&Asked::from(asked).resolve()?)
+}
+
+/// The scenes of episodes, those that the platform has.
+fn surveys(platform: &dyn Platform, episodes: &[Episode]) -> Result<BTreeMap<SceneId, Survey>, Error> {
+    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
+    let scenes: BTreeSet<&SceneId> = episodes.iter().map(|episode| &episode.scene).collect();
+    let survey = |scene: &&SceneId| Ok(((*scene).clone(), survey(platform, scene)?));
+    scenes.iter().filter(|scene| there.contains(**scene)).map(survey).collect()
 }
 
 /// People's items that were generated too; all of them where there is none.

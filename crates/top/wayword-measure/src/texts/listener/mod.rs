@@ -1,19 +1,23 @@
 //! Whether a text pins its target down: a listener that has the labels of a building, and looks for the objects that fit
 //! what is said. Its grammar and its geometry are its own.
 
+mod clauses;
+mod denial;
 mod fits;
+mod phrases;
 mod said;
 mod scene;
+mod vocabulary;
 
 use super::row::{Row, share};
 use fits::{Arrival, Listener};
 use scene::Scene;
 use serde::Serialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use wayword::error::Error;
-use wayword_core::{Platform, SceneId};
+use wayword_core::{Platform, SceneId, Survey};
 use wayword_formats::Episode;
-use wayword_world::{path_of, survey};
+use wayword_world::path_of;
 
 /// What a listener makes of a text.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -67,18 +71,21 @@ impl Heard {
     }
 }
 
-/// What a listener makes of the texts of episodes that have a target and a path in a platform's scenes.
-pub(super) fn hear(platform: &dyn Platform, episodes: &[Episode]) -> Result<Vec<Heard>, Error> {
+/// What a listener makes of the texts of episodes that have a target, and a path in a scene that is surveyed.
+pub(super) fn hear(
+    platform: &dyn Platform,
+    surveys: &BTreeMap<SceneId, Survey>,
+    episodes: &[Episode],
+) -> Result<Vec<Heard>, Error> {
     let mut by_scene: BTreeMap<&SceneId, Vec<&Episode>> = BTreeMap::new();
     for episode in episodes.iter().filter(|episode| episode.target_object.is_some()) {
         by_scene.entry(&episode.scene).or_default().push(episode);
     }
-    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
     let mut heard = Vec::new();
-    for (scene, episodes) in by_scene.into_iter().filter(|(scene, _)| there.contains(scene)) {
-        let survey = survey(platform, scene)?;
+    for (scene, episodes) in by_scene {
+        let Some(survey) = surveys.get(scene) else { continue };
         let top_level = survey.viewpoints().iter().filter_map(|viewpoint| viewpoint.level).max();
-        let known = Scene::of(&survey);
+        let known = Scene::of(survey);
         for episode in episodes {
             let path = path_of(platform, &*episode.id, scene, &episode.viewpoints, episode.start_heading, None)?;
             let target = known.objects.iter().position(|object| Some(&object.id) == episode.target_object.as_ref());
@@ -104,11 +111,12 @@ fn one(scene: &Scene, arrival: Arrival, target: usize, text: &str) -> Heard {
     if !heard.is_named {
         return heard;
     }
-    let fitting = listener.fitting();
+    let left = listener.fitting();
+    let fitting = left.objects;
     heard.fitting = fitting.len();
     heard.fits_target = fitting.contains(&target);
     heard.denied = listener.denial(target);
-    heard.has_look = said.has_look || listener.has_unknown();
+    heard.has_look = said.has_look || left.left_out > 0;
     heard.has_distinction =
         heard.has_look || !said.relations.is_empty() || !said.ranks.is_empty() || said.side.is_some();
     heard.fits_namesake = heard.fits_target && !fitting.is_disjoint(&namesakes);
@@ -128,7 +136,6 @@ pub(super) fn rows(heard: &[Heard]) -> Vec<Row> {
         of_all("falsely pinned", &Heard::is_false),
         of_all("  the geometry denies what is said of it", &|heard| heard.denied.is_some()),
         of_all("  another object alone fits", &|heard| heard.denied.is_none() && heard.pins_another()),
-        of_all("nothing fits", &|heard| heard.is_named && heard.fitting == 0),
         of_all("a namesake in view at the end", &|heard| heard.has_namesake),
         with_namesake("  of these, no word tells them apart", &|heard| !heard.has_distinction),
         with_namesake("  of these, the namesake fits too", &|heard| heard.fits_namesake && !heard.has_look),
