@@ -172,7 +172,7 @@ fn picture_tokens(settings: &Settings) -> u64 {
 fn usual_questions(settings: &Settings) -> usize {
     match settings.perception {
         Perception::Dialogue => 1 + (settings.questions as f64 * USUAL_SHARE).round() as usize,
-        Perception::Fixed | Perception::Single => questions(settings),
+        Perception::Fixed | Perception::Single | Perception::Structured | Perception::FollowUp => questions(settings),
     }
 }
 

@@ -188,12 +188,9 @@ fn the_prompt_tells_each_thing_and_room_of_the_walk_once() {
     for (at, (room, place)) in looks.into_iter().enumerate() {
         let gaze = Gaze::quarter(walk.path.frames[at].pose.heading);
         let sofa = Sighting {
-            name: "sofa".into(),
-            witness: Witness::Seen,
             place: Some(place),
             colour: Some("grey".into()),
-            several: false,
-            by: "test".into(),
+            ..Sighting::new("sofa", Witness::Seen, "test")
         };
         let sightings = if at < 2 { vec![sofa] } else { Vec::new() };
         let caption = Caption { room: Some(room.into()), sightings, ..Caption::default() };
@@ -201,7 +198,7 @@ fn the_prompt_tells_each_thing_and_room_of_the_walk_once() {
     }
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let prompt = Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &style, &profile, 0)).unwrap();
+    let prompt = Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &walk.memory(), &style, &profile, 0)).unwrap();
     let told = prompt.split("each thing once:").nth(1).unwrap().split("These are reference").next().unwrap();
     assert!(told.contains("- rooms, in order: hallway (Frames 0 to 2), bedroom (Frame 3)"), "{told}");
     assert!(told.contains("- between Frame 2 and Frame 3 a door leads from the hallway into the bedroom"), "{told}");
