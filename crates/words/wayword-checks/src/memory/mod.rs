@@ -108,7 +108,7 @@ impl Memory {
         let stay = self.stay(passed.frame)?;
         let mut alike: Vec<(f64, &Remembered)> = Vec::new();
         for other in self.things.iter().filter(|other| agree(&other.name, &thing.name)) {
-            let Some(by) = other.passed else { return None };
+            let by = other.passed?;
             other.position?;
             if by.side == passed.side && (stay.entered..=stay.left).contains(&by.frame) {
                 alike.push((by.along_m, other));

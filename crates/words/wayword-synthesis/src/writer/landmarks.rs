@@ -23,7 +23,7 @@ pub(super) struct Landmark {
     pub(super) name: String,
     /// Its colour, where it is known.
     pub(super) colour: Option<String>,
-    /// How many of its name are seen there.
+    /// How many of its name and colour are seen there.
     pub(super) alike: usize,
     /// The side of the walker on which it is from the frame for which it was chosen.
     pub(super) side: Option<Side>,
@@ -146,7 +146,8 @@ impl<'a> Landmarks<'a> {
             None => format!("the {name}"),
         };
         let memory = self.brief.memory;
-        let alike = memory.seen_from(frame).filter(|other| normal(&other.name) == normal(&seen.name)).count();
+        let is_alike = |other: &&Remembered| normal(&other.name) == normal(&seen.name) && other.colour == seen.colour;
+        let alike = memory.seen_from(frame).filter(is_alike).count();
         let passed = seen.passed.map(|passed| (passed.frame, passed.side));
         Landmark { phrase, name, colour: seen.colour.clone(), alike, side: memory.side(seen, frame), passed }
     }

@@ -28,7 +28,7 @@ impl Writer for RulesWriter {
             return the_place(brief, &mut rng);
         }
         let task = telling::ending(brief, &mut rng)?;
-        Ok(telling::the_way(brief, task, &mut rng))
+        Ok(telling::the_way(brief, task.as_ref(), &mut rng))
     }
 }
 

@@ -23,9 +23,9 @@ const LEAST_WORDS: usize = 8;
 const OPTIONAL: u8 = 3;
 
 /// A text that describes the way step by step. `task` is what to do at the end, in words, with the name of its object.
-pub(super) fn the_way(brief: &Brief<'_>, task: Option<(String, String)>, rng: &mut ChaCha8Rng) -> String {
+pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, rng: &mut ChaCha8Rng) -> String {
     let mut landmarks = Landmarks::new(brief);
-    if let Some((_, name)) = &task {
+    if let Some((_, name)) = task {
         landmarks.reserve(name);
     }
     let mut clauses = route::clauses(brief, &mut landmarks, rng);
@@ -40,7 +40,7 @@ pub(super) fn the_way(brief: &Brief<'_>, task: Option<(String, String)>, rng: &m
         let mut told = clauses.clone();
         mend(&mut told, brief);
         let mut phrases: Vec<Phrase> = told.iter().map(|clause| names.phrase(clause, brief, rng)).collect();
-        if let Some((task, _)) = &task {
+        if let Some((task, _)) = task {
             phrases.pop();
             phrases.push(Phrase { text: task.clone(), is_clause: true });
         }
@@ -162,7 +162,16 @@ impl Names<'_> {
         let own = Way::built_in().shapes.get(&clause.kind);
         let shapes = self.way.shapes.get(&clause.kind).or(own);
         let ahead = clause.thing.as_ref().is_none_or(|thing| thing.side == Some(wayword_core::Side::Ahead));
-        let is_room = |shape: &str| clause.room.is_some() || !shape.contains("{r}");
+        // "The room" is no hallway, and nobody leaves a porch by it.
+        let has_walls = clause
+            .room
+            .as_deref()
+            .and_then(room_name)
+            .is_none_or(|room| !matches!(room, "hallway" | "entryway" | "porch" | "balcony" | "outdoor area"));
+        let is_room = |shape: &str| {
+            let names_none = shape.split(' ').any(|word| word == "room");
+            (clause.room.is_some() || !shape.contains("{r}")) && (has_walls || !names_none)
+        };
         let fits = |shape: &&String| suits(shape, motion) && (ahead || !shape.contains("front")) && is_room(shape);
         let all: Vec<(f64, &String)> = shapes
             .into_iter()

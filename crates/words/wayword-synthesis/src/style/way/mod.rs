@@ -38,7 +38,7 @@ pub struct Way {
 }
 
 /// Our own constructions, with shares that were measured on R2R's training split.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 struct BuiltIn {
     /// The words of which shapes may consist.
     words: String,
@@ -48,12 +48,6 @@ struct BuiltIn {
 
 static BUILT_IN: LazyLock<BuiltIn> =
     LazyLock::new(|| toml::from_str(include_str!("../builtin/way.toml")).unwrap_or_default());
-
-impl Default for BuiltIn {
-    fn default() -> Self {
-        Self { words: String::new(), way: Way::default() }
-    }
-}
 
 static ALLOWED: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
 
