@@ -7,6 +7,7 @@
 
 mod align;
 mod coverage;
+mod end;
 mod evidence;
 mod floors;
 mod form;
@@ -132,11 +133,15 @@ fn held(text: &str, subject: Subject<'_>, from_captions_alone: bool) -> Checked 
     }
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
-    let places = landmarks::landmarks(&reading, subject.evidence, object, from_captions_alone);
+    let mut places = landmarks::landmarks(&reading, subject.evidence, object, from_captions_alone);
     let walk = order::order(&reading, subject.evidence, &places.shown);
     match subject.world {
         World::Closed => {
-            findings.extend(places.findings);
+            let end = end::end(&reading, subject.evidence);
+            if !end.is_empty() {
+                places.findings.retain(|finding| finding.verdict != Verdict::Pass);
+            }
+            findings.extend(places.findings.into_iter().chain(end));
             findings.extend(walk.findings);
             findings.extend(floors::floors(&reading, subject.evidence));
         }

@@ -170,7 +170,7 @@ fn who_is_told_to_climb_has_to_climb() {
         passes(text, &by_stairs(1, 2));
         fails(Check::Floors, text, &flat(2));
     }
-    fails(Check::Floors, "Go downstairs. Wait in the hallway.", &flat(1));
+    fails(Check::Floors, "Go downstairs. Wait in the bathroom.", &flat(1));
     let low = walk(flat(1).frames, &[(0.0, 0.3)]);
     passes("Walk up two steps and stop in the bathroom.", &low);
     fails(Check::Floors, "Walk up the stairs and stop in the bathroom.", &low);
@@ -330,4 +330,26 @@ fn an_object_that_the_text_tells_apart_is_one() {
     ] {
         assert_eq!(objects_meant(text, &evidence), objects, "{text}");
     }
+}
+
+#[test]
+fn a_text_stops_at_a_thing_that_is_near_the_end() {
+    let mut path = to_the_bedroom();
+    let at = |path: &mut Evidence, lamp_m: f64| path.frames[2].things[0].distance_m = Some(lamp_m);
+    at(&mut path, 1.8);
+    passes("Walk into the bedroom and stop by the lamp.", &path);
+    at(&mut path, 3.4);
+    fails(Check::Landmarks, "Walk into the bedroom and stop by the lamp.", &path);
+    passes("Walk into the bedroom, past the lamp.", &path);
+    // What is seen on the way, and not where the path ends.
+    fails(Check::Landmarks, "Walk down the hallway and stop at the sofa.", &path);
+}
+
+#[test]
+fn the_room_that_is_the_goal_is_that_of_the_last_frame() {
+    let path = to_the_bedroom();
+    passes("Walk past the sofa and stop in the bedroom.", &path);
+    passes("Walk down the hallway. Turn right and stop by the bed.", &path);
+    fails(Check::Landmarks, "Walk past the sofa and stop in the hallway.", &path);
+    fails(Check::Landmarks, "Go to the hallway and stop by the lamp.", &path);
 }

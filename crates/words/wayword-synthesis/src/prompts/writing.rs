@@ -34,7 +34,7 @@ pub(super) fn context(brief: &Brief<'_>) -> Value {
         pictured,
         complaints,
         overview => overview(&walk.moves),
-        remembered => remembered(&brief.walk.memory()),
+        remembered => remembered(brief.memory),
         knows_motion => walk.path.motion.is_known(),
         references => references(brief),
         target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| told_target(walk, target)),
