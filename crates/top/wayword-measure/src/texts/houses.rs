@@ -7,7 +7,10 @@ use super::{
     side_by_side,
 };
 use clap::Args;
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::{BTreeMap, btree_map::Entry},
+    path::PathBuf,
+};
 use wayword::{error::Error, output::Output, platforms, run::file, settings::Asked};
 use wayword_core::{DVec3, Platform};
 use wayword_formats::jsonl::{self, Record};
@@ -70,11 +73,14 @@ pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
             else {
                 continue;
             };
-            if !houses.contains_key(&seed) {
-                let drawn = HouseScene::new(generate(seed));
-                houses.insert(seed, drawn.map_err(|error| Error::usage(error.to_string(), "give runs over houses"))?);
-            }
-            let held = held(&record, &houses[&seed], platform.as_ref())?;
+            let home = match houses.entry(seed) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => {
+                    let drawn = HouseScene::new(generate(seed));
+                    new.insert(drawn.map_err(|error| Error::usage(error.to_string(), "give runs over houses"))?)
+                }
+            };
+            let held = held(&record, home, platform.as_ref())?;
             styles.entry(record.instruction.style.clone()).or_default().push(held);
         }
     }
