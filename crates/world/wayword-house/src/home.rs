@@ -97,15 +97,18 @@ impl Home {
 
     /// The room in which an eye is. If the eye stands in an opening, it is the room into which it looks.
     pub(super) fn room_seen(&self, eye: DVec3, heading: Heading) -> Option<String> {
-        let house = &self.scene.house;
+        let ahead = DVec3::new(libm::sin(heading.rad()), libm::cos(heading.rad()), 0.0) * 0.5;
+        self.is_in_opening(eye).then(|| self.room_name(eye + ahead)).flatten().or_else(|| self.room_name(eye))
+    }
+
+    /// Whether an eye stands in an opening between two rooms.
+    pub(super) fn is_in_opening(&self, eye: DVec3) -> bool {
         let floor_cm = (eye.z - EYE_M) * 100.0;
         let stands_in = |opening: &Opening| {
             opening.span.thickened(THRESHOLD_CM).holds_m(eye.x, eye.y)
                 && (f64::from(opening.base_cm) - floor_cm).abs() < 50.0
         };
-        let ahead = DVec3::new(libm::sin(heading.rad()), libm::cos(heading.rad()), 0.0) * 0.5;
-        let in_opening = house.openings.iter().any(stands_in);
-        in_opening.then(|| self.room_name(eye + ahead)).flatten().or_else(|| self.room_name(eye))
+        self.scene.house.openings.iter().any(stands_in)
     }
 
     /// Everything visible from a pose. Small pictures are enough, because an object counts by its share of the picture.

@@ -10,12 +10,13 @@ use wayword_world::wander::{Wander, no_such_walk, wander};
 const CROWDED_M: f64 = 0.4;
 /// A way that was found is at most this much longer than the shortest one.
 const GEODESIC_EXCESS: f64 = 1.03;
-/// Largest distance of a target from the last frame, metres.
-const TARGET_REACH_M: f64 = 4.0;
+/// Largest distance of a target from the last frame, to the nearest side of its box along the floor, metres.
+const TARGET_REACH_M: f64 = 2.5;
 
 /// A path whose length fits `request`, with frames at most `interval_m` apart and at every corner.
 ///
-/// Both ends are the places of random viewpoints. The first frame looks along the first move.
+/// Both ends are the places of random viewpoints, the second not in an opening: whoever stands there is in no room. The
+/// target stands in the room of the end. The first frame looks along the first move.
 pub(super) fn path(
     scene: &SceneId,
     home: &Home,
@@ -27,7 +28,9 @@ pub(super) fn path(
         return Err(no_such_walk(scene, request));
     }
     let dice = Dice::new(derive(seed, &["house path"]), &[scene.as_str()]);
-    let mut walker = Walker { home, places: home.standing_places(), dice, interval_m };
+    let places = home.standing_places();
+    let goals = places.iter().copied().filter(|place| !home.is_in_opening(*place + DVec3::Z * EYE_M)).collect();
+    let mut walker = Walker { home, places, goals, dice, interval_m };
     wander(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
 }
 
@@ -35,14 +38,16 @@ pub(super) fn path(
 struct Walker<'a> {
     home: &'a Home,
     places: Vec<DVec3>,
+    /// The places at which a path may end.
+    goals: Vec<DVec3>,
     dice: Dice,
     interval_m: f64,
 }
 
 impl Wander for Walker<'_> {
     fn ends(&mut self) -> Option<(DVec3, DVec3)> {
-        let mut place = || self.places[self.dice.index(self.places.len())];
-        (!self.places.is_empty()).then(|| (place(), place()))
+        let mut one_of = |places: &[DVec3]| places[self.dice.index(places.len())];
+        (!self.goals.is_empty()).then(|| (one_of(&self.places), one_of(&self.goals)))
     }
 
     fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError> {
@@ -97,13 +102,17 @@ fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, Pl
     let twins = |label: &Label| {
         labels.iter().filter(|other| other.name == label.name && other.colour == label.colour).count() - 1
     };
-    let is_furniture = |label: &&Label| {
+    let feet = last.position - DVec3::Z * EYE_M;
+    let room = home.scene.house.room_at(feet.x, feet.y, feet.z);
+    let stands_here = |label: &&Label| {
         let id: Option<u32> = label.object.as_str().parse().ok();
-        id.and_then(|id| home.scene.objects.get(&id)).is_some_and(|object| object.role == Role::Furniture)
+        let object = id.and_then(|id| home.scene.objects.get(&id)).filter(|object| object.role == Role::Furniture);
+        object.is_some_and(|object| {
+            home.scene.house.rooms.get(object.room) == room && off_m(feet, object.bounds_m) <= TARGET_REACH_M
+        })
     };
-    let in_reach = |label: &&Label| label.distance_m.is_some_and(|distance_m| distance_m <= TARGET_REACH_M);
     let is_task_for = |label: &&Label| label.name != "ceiling light" && label.name != "curtain";
-    let near: Vec<&Label> = labels.iter().filter(is_furniture).filter(in_reach).filter(is_task_for).collect();
+    let near: Vec<&Label> = labels.iter().filter(stands_here).filter(is_task_for).collect();
     let alone: Vec<&Label> = near.iter().copied().filter(|label| namesakes(label) == 0).collect();
     let by_colour: Vec<&Label> = near.iter().copied().filter(|label| twins(label) == 0).collect();
     let likely = if alone.is_empty() { by_colour } else { alone };
@@ -114,4 +123,10 @@ fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, Pl
         told_by: Vec::new(),
         has_namesake: namesakes(label) > 0,
     }))
+}
+
+/// How far a box is from somebody who stands there, along the floor, metres.
+fn off_m(feet: DVec3, (low, high): (DVec3, DVec3)) -> f64 {
+    let nearest = feet.clamp(low.with_z(f64::MIN), high.with_z(f64::MAX));
+    (nearest - feet).truncate().length()
 }
