@@ -47,6 +47,35 @@ pub struct Target {
     /// Whether something of the same name is visible at the last frame too.
     #[serde(default)]
     pub has_namesake: bool,
+    /// Ways to describe it to somebody who knows the whole building, best first: the shortest that leave no other object,
+    /// or else those that leave fewest. Empty where nothing is known of the building.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub descriptions: Vec<Description>,
+    /// How many storeys its building has; 0 where that is not known.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub storeys: usize,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference.
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+/// What is said of an object beside its name and the kind of its room.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Description {
+    /// What is true of it.
+    pub by: Vec<Distinction>,
+    /// How many objects of the building fit all of that, the object itself counted.
+    pub leaves: usize,
+}
+
+impl Description {
+    /// Whether it fits one object alone.
+    #[must_use]
+    pub fn pins(&self) -> bool {
+        self.leaves == 1
+    }
 }
 
 /// One way to tell an object from its namesakes.
@@ -73,6 +102,127 @@ pub enum Distinction {
         /// Nearest where true, farthest where false.
         nearest: bool,
     },
+    /// Where it is from an object of this name, as seen from the last frame.
+    Related {
+        /// How they stand to each other.
+        relation: Relation,
+        /// Name of the other.
+        to: String,
+    },
+    /// It stands between two objects of these names.
+    Between {
+        /// One of them.
+        one: String,
+        /// The other.
+        other: String,
+    },
+    /// Its place in the row of its namesakes, as seen from the last frame.
+    InRow {
+        /// Counted from 1.
+        place: usize,
+        /// How many there are.
+        of: usize,
+        /// From the left, or from the right.
+        from: Side,
+    },
+    /// It hangs or stands highest among its namesakes, or lowest.
+    Height {
+        /// Highest where true, lowest where false.
+        highest: bool,
+    },
+    /// Its room is on this storey.
+    Level {
+        /// The lowest is 1.
+        level: u32,
+    },
+    /// Its room lies beside a room of this name.
+    RoomBy {
+        /// The other room.
+        room: String,
+    },
+    /// A thing of this name stands in its room, and in no other room of the kind.
+    RoomWith {
+        /// Name of the thing.
+        thing: String,
+    },
+}
+
+/// How an object stands to another that is near it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Relation {
+    /// Beside it, or close to it.
+    Near,
+    /// Over it.
+    Above,
+    /// Below it.
+    Under,
+    /// Resting on it.
+    On,
+    /// To its left.
+    LeftOf,
+    /// To its right.
+    RightOf,
+}
+
+impl Relation {
+    /// The preposition: "above".
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Near => "near",
+            Self::Above => "above",
+            Self::Under => "under",
+            Self::On => "on",
+            Self::LeftOf => "to the left of",
+            Self::RightOf => "to the right of",
+        }
+    }
+}
+
+impl Distinction {
+    /// Whether it tells which room is meant, and not which object in the room.
+    #[must_use]
+    pub fn is_of_room(&self) -> bool {
+        matches!(self, Self::Level { .. } | Self::RoomBy { .. } | Self::RoomWith { .. })
+    }
+
+    /// What is said of the object, behind "it is": "next to the bed".
+    #[must_use]
+    pub fn predicate(&self) -> String {
+        let side = |side: Side| match side {
+            Side::Ahead => "ahead",
+            Side::Right => "on the right",
+            Side::Behind => "behind",
+            Side::Left => "on the left",
+        };
+        match self {
+            Self::Colour { colour } => colour.clone(),
+            Self::OnSide { side: on } => format!("{} of somebody who arrives", side(*on)),
+            Self::NextTo { neighbour } => format!("next to the {neighbour}"),
+            Self::Range { nearest: true } => "the nearest one".to_owned(),
+            Self::Range { nearest: false } => "the farthest one".to_owned(),
+            Self::Related { relation, to } => format!("{} the {to}", relation.word()),
+            Self::Between { one, other } => format!("between the {one} and the {other}"),
+            Self::InRow { place, of, from } => {
+                let from = if *from == Side::Left { "left" } else { "right" };
+                format!("number {place} of {of} from the {from}")
+            }
+            Self::Height { highest: true } => "the highest one".to_owned(),
+            Self::Height { highest: false } => "the lowest one".to_owned(),
+            Self::Level { level } => format!("on level {level}"),
+            Self::RoomBy { room } => format!("in a room beside the {room}"),
+            Self::RoomWith { thing } => format!("in a room with a {thing}"),
+        }
+    }
+
+    /// Whether it holds only for somebody at the last frame who looks along the path.
+    #[must_use]
+    pub fn needs_pose(&self) -> bool {
+        use Relation::{LeftOf, RightOf};
+        let by_side = matches!(self, Self::Related { relation: LeftOf | RightOf, .. });
+        by_side || matches!(self, Self::OnSide { .. } | Self::Range { .. } | Self::InRow { .. } | Self::Level { .. })
+    }
 }
 
 impl Frame {

@@ -34,7 +34,7 @@ pub enum Check {
     Route,
     /// The program understands what the text says.
     Coverage,
-    /// No run of five words is shared with the references.
+    /// No long run of words is shared with the references, and no shorter one that is not common.
     Leak,
 }
 

@@ -23,7 +23,14 @@ fn path(id: &str, object: Option<&str>) -> wayword_core::Path {
         scene: SceneId::new("house1").unwrap(),
         frames: wayword_core::Path::frames_along(stops, Some(Heading::new(1.0).unwrap())),
         motion: Motion::Known,
-        target: object.map(|object| Target { object, name: "plant".into(), told_by: Vec::new(), has_namesake: false }),
+        target: object.map(|object| Target {
+            object,
+            name: "plant".into(),
+            told_by: Vec::new(),
+            has_namesake: false,
+            descriptions: Vec::new(),
+            storeys: 0,
+        }),
     }
 }
 

@@ -82,7 +82,7 @@ fn table(counts: &Counts) -> String {
 fn open(folder: &Path, output: &Output) -> Result<Run, Error> {
     let settings = settings_of(folder)?;
     let platform = platforms::open(&settings)?;
-    let styles = styles::find(&settings.style, settings.seed)?.into_iter().map(|measured| measured.style).collect();
+    let styles = styles::find(&settings.style)?.into_iter().map(|measured| measured.style).collect();
     let mut records = jsonl::read(&folder.join(file::INSTRUCTIONS))?;
     records.retain(|record| record.instruction.verdict == Verdict::Pass);
     let mut paths: Vec<_> = records.iter().map(|record| &record.path).collect();

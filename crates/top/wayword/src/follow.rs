@@ -16,6 +16,7 @@ use wayword_language::{
     Language,
     reading::{Reading, read},
 };
+use wayword_synthesis::offline::Listing;
 use wayword_world::survey;
 
 /// A scene that was surveyed.
@@ -24,6 +25,8 @@ pub(crate) struct KnownScene {
     survey: Survey,
     /// What is listed in it, for the checks.
     pub(crate) listed: Arc<wayword_checks::Building>,
+    /// The same for whoever describes a target.
+    pub(crate) listing: Listing,
     /// The same for the follower.
     followed: Building,
 }
@@ -44,7 +47,8 @@ impl KnownScenes {
             let survey = survey(platform, scene)?;
             let listed = Arc::new(wayword_checks::Building::of(&survey));
             let followed = Building::of(&survey);
-            Ok(KnownScene { survey, listed, followed })
+            let listing = Listing::of(&survey);
+            Ok(KnownScene { survey, listed, listing, followed })
         })
     }
 }

@@ -16,7 +16,7 @@ use wayword_checks::{Checked, Evidence, Memory, Source};
 use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Motion, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
     observe::{Planned, observe_with, talk_about},
-    offline::distinguish,
+    offline::{around, describe},
     repair::{Follow, Order, Outcome, write_and_repair},
     walk::Walk,
     writer::FramePicture,
@@ -60,7 +60,8 @@ pub fn make(
 ) -> Result<Made, Error> {
     let RunPlatform { platform, data, scenes } = world;
     let world = Remembering::new(platform);
-    let path = path(item, settings, &world)?;
+    let mut path = path(item, settings, &world)?;
+    describe_target(&mut path, platform, scenes)?;
     if let Some(data) = data {
         data.check(platform, &path.scene)?;
     }
@@ -72,14 +73,17 @@ pub fn make(
     };
     let observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
     let walk = Walk::new(path, observations);
-    let evidence = evidence(&walk, &world, settings.evidence)?;
+    let mut evidence = evidence(&walk, &world, settings.evidence)?;
     // Where labels see, the writer remembers all that they list around each frame; a model's captions else.
     let sees_labels = team.observers().answerer.name() == "labels" && evidence.source == Source::Labels;
     let memory = if sees_labels { Memory::of(&evidence, &walk.path) } else { walk.memory() };
-    let scene = match settings.no_route || evidence.source != Source::Labels {
-        true => None,
-        false => Some(scenes.get(platform, &walk.path.scene)?),
+    let scene = match evidence.source {
+        Source::Labels => Some(scenes.get(platform, &walk.path.scene)?),
+        _ => None,
     };
+    if let Some(scene) = &scene {
+        evidence.beyond = scene.listed.beyond(&walk.path);
+    }
     let followed = match scene.as_deref() {
         None if evidence.motion.is_known() => Err("the texts are not checked against labels"),
         None => Err(GOES_UNKNOWN),
@@ -88,13 +92,14 @@ pub fn make(
     let follower = Follower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
     let ahead = ahead(&world, &walk.path)?;
     let shown = if settings.roles.write_sees { shown(&ahead, &settings.roles.write)? } else { Vec::new() };
-    let write = |Measured { style, profile }: &Measured| {
+    let write = |Measured { style, profile, hash }: &Measured| {
         let order = Order {
             walk: &walk,
             memory: &memory,
             evidence: &evidence,
             style,
             profile,
+            style_hash: hash,
             seed: settings.seed,
             repairs: settings.repairs,
             candidates: settings.candidates,
@@ -183,11 +188,20 @@ pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result
     if settings.target == TargetMode::Free {
         path.target = None;
     }
-    if let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) {
-        let around = look_around(world, &path.scene, last)?;
-        distinguish(target, last, &around);
-    }
     Ok(path)
+}
+
+/// Fills in how the target of a path is told from everything else in its building, or from what is around its end where
+/// no more is known.
+fn describe_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), Error> {
+    let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) else { return Ok(()) };
+    let seen = around(last, &look_around(platform, &path.scene, last)?);
+    if !seen.knows(last) {
+        return Ok(());
+    }
+    let scene = scenes.get(platform, &path.scene)?;
+    describe(target, last, if scene.listing.knows(last) { &scene.listing } else { &seen });
+    Ok(())
 }
 
 /// The views around each frame: ahead, right, behind, left; only ahead if the motion is unknown. Pictures may be missing.

@@ -1,10 +1,9 @@
 //! Finds the styles that a run names.
 
 use crate::{error::Error, similar::did_you_mean, text_file};
-use rand::seq::SliceRandom;
 use std::path::Path;
-use wayword_core::{Constraints, Style, rng};
-use wayword_synthesis::style::{Profile, built_in, built_in_names, parse, validated};
+use wayword_core::{Constraints, Style};
+use wayword_synthesis::style::{Profile, built_in, built_in_names, hash, parse, validated};
 
 /// A style with the measures of its reference texts.
 #[derive(Debug, Clone)]
@@ -13,6 +12,8 @@ pub struct Measured {
     pub style: Style,
     /// The measures.
     pub profile: Profile,
+    /// The style's hash, for provenance.
+    pub hash: String,
 }
 
 /// The name of a style as a flag takes it: a built-in style, a TOML file, or NAME=DATASET.
@@ -32,29 +33,27 @@ fn is_toml(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end == "toml")
 }
 
-/// Number of reference texts that are drawn from a dataset: enough to measure, few enough for a prompt.
-const FROM_DATASET: usize = 24;
-
-/// The styles of a run. A name is that of a built-in style, a TOML file, or NAME=DATASET. The last draws reference texts from the
-/// instructions of a dataset (by the seed), and takes the constraints of the built-in style of that name, if there is one.
+/// The styles of a run. A name is that of a built-in style, a TOML file, or NAME=DATASET. The last takes all instructions of a dataset
+/// as reference texts, and the constraints of the built-in style of that name, if there is one.
 ///
 /// # Errors
 /// When one cannot be found or read, or two have one name.
-pub fn find(names: &[String], seed: u64) -> Result<Vec<Measured>, Error> {
+pub fn find(names: &[String]) -> Result<Vec<Measured>, Error> {
     let mut styles: Vec<Measured> = Vec::new();
     for name in names {
-        let style = find_one(name, seed)?;
+        let style = find_one(name)?;
         if styles.iter().any(|other| other.style.name == style.name) {
             return Err(Error::usage(format!("style {} is given twice", style.name), "give each style once"));
         }
-        styles.push(Measured { profile: Profile::measure(&style.references), style });
+        let (profile, hash) = (Profile::measure(&style.references), hash(&style));
+        styles.push(Measured { style, profile, hash });
     }
     Ok(styles)
 }
 
-fn find_one(name: &str, seed: u64) -> Result<Style, Error> {
+fn find_one(name: &str) -> Result<Style, Error> {
     if let Some((name, file)) = name.split_once('=') {
-        return from_dataset(name, Path::new(file), seed);
+        return from_dataset(name, Path::new(file));
     }
     if !is_toml(name) {
         return Ok(built_in(name)?);
@@ -63,13 +62,21 @@ fn find_one(name: &str, seed: u64) -> Result<Style, Error> {
     Ok(parse(name, &text)?)
 }
 
-fn from_dataset(name: &str, file: &Path, seed: u64) -> Result<Style, Error> {
+fn from_dataset(name: &str, file: &Path) -> Result<Style, Error> {
     let episodes = wayword_formats::read(file)?;
-    let mut texts: Vec<String> =
-        episodes.into_iter().flat_map(|episode| episode.instructions).filter(|text| !text.trim().is_empty()).collect();
+    let mut texts: Vec<String> = episodes
+        .into_iter()
+        .flat_map(|episode| episode.instructions)
+        .map(|text| one_line(&text))
+        .filter(|text| !text.is_empty())
+        .collect();
     texts.sort();
     texts.dedup();
-    let (references, _) = texts.partial_shuffle(&mut rng(seed, &["references", name]), FROM_DATASET);
     let constraints = built_in(name).map_or_else(|_| Constraints::default(), |style| style.constraints);
-    Ok(validated(Style { name: name.to_owned(), references: references.to_vec(), constraints })?)
+    Ok(validated(Style { name: name.to_owned(), references: texts, constraints })?)
+}
+
+/// A text on one line.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

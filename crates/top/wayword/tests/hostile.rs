@@ -160,7 +160,7 @@ fn damaged_styles_are_used_or_refused() {
     let quiet = Output::new(true, true);
     for style in [STYLE, COARSE_STYLE] {
         let counts = for_each_damaged(&file, style, |number, bytes| {
-            match styles::find(&settings.style, 0) {
+            match styles::find(&settings.style) {
                 Err(error) => {
                     assert_names(&error, "mine", bytes);
                     false
@@ -371,8 +371,8 @@ fn a_style_or_settings_file_that_is_no_file_is_refused() {
     let building = Building::new();
     let folder: PathBuf = building.path("folder.toml");
     fs::create_dir(&folder).unwrap();
-    assert_names(&styles::find(&[folder.display().to_string()], 0).unwrap_err(), "folder.toml", b"");
+    assert_names(&styles::find(&[folder.display().to_string()]).unwrap_err(), "folder.toml", b"");
     let huge = building.path("huge.toml");
     fs::File::create(&huge).unwrap().set_len(1 << 40).unwrap();
-    assert_names(&styles::find(&[huge.display().to_string()], 0).unwrap_err(), "huge.toml", b"");
+    assert_names(&styles::find(&[huge.display().to_string()]).unwrap_err(), "huge.toml", b"");
 }

@@ -172,7 +172,13 @@ mod tests {
     fn walk(turns_deg: &[f64]) -> Evidence {
         let step = |deg: &f64| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: 0.0 };
         let moves = turns_deg.iter().map(step).collect();
-        Evidence { frames: Vec::new(), moves, motion: Motion::Known, source: Source::Nothing }
+        Evidence {
+            frames: Vec::new(),
+            moves,
+            motion: Motion::Known,
+            source: Source::Nothing,
+            beyond: crate::Beyond::default(),
+        }
     }
 
     /// Tries every mapping of the steps, without any bound.

@@ -8,7 +8,7 @@ use crate::{
 use std::collections::BTreeMap;
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{
-    lexicon::{Class, agree, same_colour, thing},
+    lexicon::{Class, agree, same_colour, same_room, thing},
     reading::{Link, Place, Reading, What},
 };
 
@@ -62,6 +62,9 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<u
 
 /// What is wrong with where the text puts a place: it is nowhere along the path, or on another side.
 fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) -> Option<(Verdict, String)> {
+    if shown.frames.is_empty() && is_beyond(place, evidence) {
+        return None;
+    }
     if shown.frames.is_empty() {
         let verdict = absent(place, evidence, made_up);
         return Some(match verdict {
@@ -76,6 +79,15 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) ->
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
     let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
     Some((wrong_unless_elsewhere(shown), reason))
+}
+
+/// Whether a text names a room beside the one at the end, or a thing in it, only to tell which room or thing it means.
+fn is_beyond(place: &Place, evidence: &Evidence) -> bool {
+    let tells_which = matches!(place.link, Link::Beside | Link::Within) && place.side.is_none();
+    let beyond = &evidence.beyond;
+    let is_room = || place.is_room && beyond.rooms.iter().any(|room| same_room(room, &place.name));
+    let is_thing = || place.is_thing && beyond.things.iter().any(|thing| agree(thing, &place.name));
+    tells_which && (is_room() || is_thing())
 }
 
 /// The verdict on a place that is wrong wherever it is seen. It may still be right where it is not known what is seen.

@@ -1,19 +1,115 @@
 //! Words copied from the reference texts.
 
-use super::{finding, pass};
-use std::collections::BTreeSet;
+use super::{Subject, finding, pass};
+use std::{
+    collections::{BTreeSet, HashMap, HashSet, hash_map::DefaultHasher},
+    hash::{Hash, Hasher},
+};
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{
-    reading::vocabulary::STOCK,
+    lexicon::{agree, normal, room_name, same_room},
+    reading::vocabulary::{STOCK, TURNING, WALKING, ordinal_or_number},
     text::{Token, tokens},
 };
 
-/// A run of this many words that a text shares with a reference is a copy, unless it is a stock phrase ("at the end of
-/// the"): one that has only words that every text needs.
-pub const SHARED_RUN: usize = 5;
+/// This many words in a row that are in a reference too are a copy.
+pub const LONG_RUN: usize = 10;
+/// So are this many, where they speak of something that is not this text's own matter, and where fewer than
+/// [`FORMULA`] references hold them.
+pub const SHARED_RUN: usize = 6;
+/// What this many references say is nobody's own.
+pub const FORMULA: u8 = 3;
+/// A run that our own writer avoids where it can, though it may be a formula.
+const AVOIDED_RUN: usize = 8;
 
-pub(super) fn leak(text: &str, references: &[String]) -> Finding {
-    match shared_run(text, references) {
+/// The runs of words of a style's reference texts, indexed once for all texts.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Copies {
+    /// How many references hold a run of [`SHARED_RUN`] words, up to [`FORMULA`].
+    shared: HashMap<u64, u8>,
+    avoided: HashSet<u64>,
+    long: HashSet<u64>,
+}
+
+/// What a text is about. Words for it are its own, whoever used them before.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Matter<'a> {
+    /// The name of its target.
+    pub target: Option<&'a str>,
+    /// The rooms where it ends.
+    pub rooms: &'a [String],
+}
+
+impl Copies {
+    /// Indexes reference texts.
+    #[must_use]
+    pub fn of(references: &[String]) -> Self {
+        let mut copies = Self::default();
+        for reference in references {
+            let words = word_tokens(reference);
+            let runs = |length: usize| words.windows(length).map(key);
+            for run in runs(SHARED_RUN).collect::<BTreeSet<u64>>() {
+                let count = copies.shared.entry(run).or_default();
+                *count = (*count + 1).min(FORMULA);
+            }
+            copies.avoided.extend(runs(AVOIDED_RUN));
+            copies.long.extend(runs(LONG_RUN));
+        }
+        copies
+    }
+
+    /// The byte range of the first run of a text that is copied.
+    #[must_use]
+    pub fn copied(&self, text: &str, matter: Matter<'_>) -> Option<[usize; 2]> {
+        let words = word_tokens(text);
+        let says_something = |run: &[Token]| run.iter().any(|token| !STOCK.contains(&token.word.as_str()));
+        let is_long = |run: &&[Token]| says_something(run) && self.long.contains(&key(run));
+        let is_shared = |run: &&[Token]| {
+            let count = self.shared.get(&key(run)).copied().unwrap_or_default();
+            (1..FORMULA).contains(&count) && run.iter().any(|token| is_content(&token.word, matter))
+        };
+        let run = words.windows(LONG_RUN).find(is_long).or_else(|| words.windows(SHARED_RUN).find(is_shared))?;
+        Some([run[0].span[0], run[run.len() - 1].span[1]])
+    }
+
+    /// Whether a text shares eight words in a row with a reference.
+    #[must_use]
+    pub fn shares_much(&self, text: &str) -> bool {
+        word_tokens(text).windows(AVOIDED_RUN).any(|run| self.avoided.contains(&key(run)))
+    }
+}
+
+fn word_tokens(text: &str) -> Vec<Token> {
+    tokens(text).into_iter().filter(Token::is_word).collect()
+}
+
+fn key(run: &[Token]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    run.iter().for_each(|token| token.word.hash(&mut hasher));
+    hasher.finish()
+}
+
+/// Whether a word speaks of something other than the way, a storey, and the matter of the text.
+fn is_content(word: &str, matter: Matter<'_>) -> bool {
+    let is_of_way = STOCK.contains(&word) || WALKING.contains(&word) || TURNING.contains(&word);
+    let is_of_storey = matches!(word, "level" | "floor" | "storey" | "story" | "upstairs" | "downstairs");
+    let is_part = |name: &str| normal(name).split(' ').any(|part| part == normal(word));
+    let is_target = || matter.target.is_some_and(|target| is_part(target) || agree(target, word));
+    let is_room = || {
+        let is_word_of = |room: &String| is_part(room) || room_name(word).is_some() && same_room(room, word);
+        word == "room" || matter.rooms.iter().any(is_word_of)
+    };
+    !(is_of_way || is_of_storey || ordinal_or_number(word) || is_target() || is_room())
+}
+
+pub(super) fn leak(text: &str, subject: Subject<'_>) -> Finding {
+    let rooms = subject.evidence.frames.last().map_or(&[][..], |frame| &frame.rooms);
+    let matter = Matter { target: subject.target.map(|target| target.name.as_str()), rooms };
+    let copied = match subject.copies {
+        Some(copies) => copies.copied(text, matter),
+        None => Copies::of(&subject.style.references).copied(text, matter),
+    };
+    match copied {
         None => pass(Check::Leak),
         Some(span) => {
             let reason = format!("{:?} is in a reference text too", &text[span[0]..span[1]]);
@@ -22,43 +118,48 @@ pub(super) fn leak(text: &str, references: &[String]) -> Finding {
     }
 }
 
-/// The byte range of the first run of [`SHARED_RUN`] words that a text shares with any of the references and that is no stock
-/// phrase.
-#[must_use]
-pub fn shared_run(text: &str, references: &[String]) -> Option<[usize; 2]> {
-    let word_tokens = |text: &str| tokens(text).into_iter().filter(Token::is_word).collect::<Vec<_>>();
-    let run = |run: &[Token]| run.iter().map(|token| token.word.clone()).collect::<Vec<_>>();
-    let known: BTreeSet<Vec<String>> = references
-        .iter()
-        .flat_map(|reference| word_tokens(reference).windows(SHARED_RUN).map(run).collect::<Vec<_>>())
-        .collect();
-    let words = word_tokens(text);
-    let says_something = |words: &[Token]| words.iter().any(|token| !STOCK.contains(&token.word.as_str()));
-    let shared = words.windows(SHARED_RUN).find(|words| says_something(words) && known.contains(&run(words)))?;
-    Some([shared[0].span[0], shared[SHARED_RUN - 1].span[1]])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn five_words_in_a_row_are_a_copy_and_four_are_not() {
-        let references = vec!["Walk past the old oak table, then stop.".to_owned()];
-        let text = "Now walk past the old oak door";
-        assert_eq!(shared_run(text, &references).map(|span| &text[span[0]..span[1]]), Some("walk past the old oak"));
-        assert_eq!(shared_run("walk past the old door", &references), None);
-        assert!(shared_run("the old oak table then", &references).is_some());
+    fn copied<'a>(text: &'a str, references: &[&str], matter: Matter<'_>) -> Option<&'a str> {
+        let references: Vec<String> = references.iter().map(|text| (*text).to_owned()).collect();
+        Copies::of(&references).copied(text, matter).map(|[from, to]| &text[from..to])
     }
 
     #[test]
-    fn a_stock_phrase_of_function_words_is_no_copy_and_one_with_content_is() {
-        let references = vec!["Wait at the end of the hallway, to the left of the oak door.".to_owned()];
-        for text in ["Stop at the end of the rug.", "Stop to the left of the bed.", "It is at the end of the."] {
-            assert_eq!(shared_run(text, &references), None, "{text}");
-        }
-        let text = "Stop at the end of the hallway.";
-        let copied = shared_run(text, &references).map(|span| &text[span[0]..span[1]]);
-        assert_eq!(copied, Some("the end of the hallway"));
+    fn six_words_in_a_row_are_a_copy_and_five_are_not() {
+        let references = ["Walk past the old oak table, then stop."];
+        let none = Matter::default();
+        assert_eq!(copied("Now walk past the old oak table", &references, none), Some("walk past the old oak table"));
+        assert_eq!(copied("Walk past the old oak door", &references, none), None);
+    }
+
+    #[test]
+    fn what_a_text_is_about_is_its_own() {
+        let references = ["Go to the pantry on level 2 and salt the ham"];
+        let rooms = ["pantry".to_owned()];
+        let own = Matter { target: Some("ham"), rooms: &rooms };
+        let text = "Go to the pantry on level 2 and eat";
+        assert_eq!(copied(text, &references, own), None);
+        assert_eq!(copied(text, &references, Matter::default()), Some("Go to the pantry on level"));
+    }
+
+    #[test]
+    fn what_three_references_say_is_a_formula_up_to_ten_words() {
+        let text = "polish the brass rail beside the oak bench near the altar";
+        let one = text.to_owned();
+        let others = ["polish the brass rail beside the cat", "do polish the brass rail beside the dog"];
+        assert!(
+            copied("polish the brass rail beside the fox", &[&one, others[0], others[1]], Matter::default()).is_none()
+        );
+        assert!(copied("polish the brass rail beside the fox", &[&one, others[0]], Matter::default()).is_some());
+        assert!(copied(text, &[&one, &one, &one, &one], Matter::default()).is_some());
+    }
+
+    #[test]
+    fn a_stock_phrase_of_function_words_is_no_copy() {
+        let references = ["It is at the end of the one on the left."];
+        assert_eq!(copied("It is at the end of the rug", &references, Matter::default()), None);
     }
 }

@@ -31,8 +31,10 @@ use wayword_language::{
     reading::{Event, Reading, What, read},
 };
 
-pub use evidence::{Building, Distance, Evidence, FrameEvidence, NEAR_M, Perhaps, SeenThing, Source, Surroundings};
-pub use leak::{SHARED_RUN, shared_run};
+pub use evidence::{
+    Beyond, Building, Distance, Evidence, FrameEvidence, NEAR_M, Perhaps, SeenThing, Source, Surroundings,
+};
+pub use leak::{Copies, FORMULA, LONG_RUN, Matter, SHARED_RUN};
 pub use memory::Memory;
 pub use witnesses::{Testimony, lift};
 pub use world::{Reach, Turns, World};
@@ -56,6 +58,8 @@ pub struct Subject<'a> {
     pub tag: Option<&'a str>,
     /// Whether the writer saw the pictures, and not only what was said of them.
     pub writer_sees: bool,
+    /// The index of the style's reference texts; where there is none, it is made for each text.
+    pub copies: Option<&'a Copies>,
 }
 
 impl<'a> Subject<'a> {
@@ -72,7 +76,14 @@ impl<'a> Subject<'a> {
             turns: Turns::default(),
             tag: None,
             writer_sees: false,
+            copies: None,
         }
+    }
+
+    /// The same, with the index of the style's reference texts.
+    #[must_use]
+    pub fn with_copies(self, copies: &'a Copies) -> Self {
+        Self { copies: Some(copies), ..self }
     }
 
     /// A text that somebody else wrote.
@@ -87,6 +98,7 @@ impl<'a> Subject<'a> {
             turns: Turns::default(),
             tag: None,
             writer_sees: false,
+            copies: None,
         }
     }
 }
@@ -148,7 +160,7 @@ fn held(text: &str, subject: Subject<'_>, from_captions_alone: bool) -> Checked 
         World::Open => findings.extend(open::open(text, &whole, &reading, subject)),
     }
     findings.extend(coverage::coverage(&reading, reading.language.or_tagged(subject.tag)));
-    findings.push(leak::leak(text, &subject.style.references));
+    findings.push(leak::leak(text, subject));
     findings.sort_by_key(|finding| finding.check);
     Checked { mentions: mentions(&reading, &walk.frames), findings, world: subject.world }
 }

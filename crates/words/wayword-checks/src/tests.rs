@@ -22,7 +22,13 @@ fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
     let step = |(deg, rise_m): &(f64, f64)| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: *rise_m };
     let knows = frames.iter().any(|frame| !frame.rooms.is_empty() || frame.knows_things);
     let source = if knows { Source::Labels } else { Source::Nothing };
-    Evidence { frames, moves: moves.iter().map(step).collect(), motion: Motion::Known, source }
+    Evidence {
+        frames,
+        moves: moves.iter().map(step).collect(),
+        motion: Motion::Known,
+        source,
+        beyond: crate::Beyond::default(),
+    }
 }
 
 /// Through the hallway past a sofa, and right into the bedroom with a lamp and a bed.

@@ -47,9 +47,8 @@ impl Walk {
         if !path.motion.is_known() {
             path.frames.iter_mut().for_each(|frame| frame.level = None);
             if let Some(target) = &mut path.target {
-                let needs_no_pose =
-                    |by: &Distinction| !matches!(by, Distinction::OnSide { .. } | Distinction::Range { .. });
-                target.told_by.retain(needs_no_pose);
+                target.told_by.retain(|by| !by.needs_pose());
+                target.descriptions.retain(|description| !description.by.iter().any(Distinction::needs_pose));
             }
         }
         Self { moves: path.moves(), path, observations }

@@ -122,6 +122,8 @@ fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, Pl
         name: label.name.clone(),
         told_by: Vec::new(),
         has_namesake: namesakes(label) > 0,
+        descriptions: Vec::new(),
+        storeys: 0,
     }))
 }
 

@@ -92,7 +92,14 @@ fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
     let in_reach = |label: &&Label| label.distance_m.is_some_and(|distance_m| distance_m <= TARGET_REACH_M);
     let likely: Vec<&Label> = labels.iter().filter(in_reach).filter(is_alone).collect();
     let chosen = (!likely.is_empty()).then(|| likely[dice.random_range(0..likely.len())])?;
-    Some(Target { object: chosen.object.clone(), name: chosen.name.clone(), told_by: Vec::new(), has_namesake: false })
+    Some(Target {
+        object: chosen.object.clone(),
+        name: chosen.name.clone(),
+        told_by: Vec::new(),
+        has_namesake: false,
+        descriptions: Vec::new(),
+        storeys: 0,
+    })
 }
 
 /// Refuses a frame whose position is not finite or too far out.

@@ -57,5 +57,12 @@ pub fn target(
     };
     let around = labels_around(platform, scene, last)?;
     let has_namesake = around.iter().any(|label| label.object != *object && label.name == name);
-    Ok(Some(Target { object: object.clone(), name, told_by: Vec::new(), has_namesake }))
+    Ok(Some(Target {
+        object: object.clone(),
+        name,
+        told_by: Vec::new(),
+        has_namesake,
+        descriptions: Vec::new(),
+        storeys: 0,
+    }))
 }

@@ -87,6 +87,8 @@ pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
         name: chosen.name.clone(),
         told_by: Vec::new(),
         has_namesake: has_namesake(chosen),
+        descriptions: Vec::new(),
+        storeys: 0,
     })
 }
 

@@ -100,7 +100,14 @@ mod tests {
 
         fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError> {
             let object = ObjectId::new("1").unwrap();
-            let target = Target { object, name: "chair".into(), told_by: Vec::new(), has_namesake: false };
+            let target = Target {
+                object,
+                name: "chair".into(),
+                told_by: Vec::new(),
+                has_namesake: false,
+                descriptions: Vec::new(),
+                storeys: 0,
+            };
             Ok((self.seen)(last.pose.position.x as usize).then_some(target))
         }
 

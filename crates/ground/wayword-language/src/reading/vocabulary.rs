@@ -29,3 +29,9 @@ pub(super) fn floor_number(word: &str) -> Option<u32> {
     let in_words = || NUMBERS.iter().zip(1..).find(|(words, _)| words.contains(&word)).map(|(_, number)| number);
     digits.parse().ok().filter(|number| (1..1000).contains(number)).or_else(in_words)
 }
+
+/// Whether a word is a number or an ordinal, as in the name of a storey.
+#[must_use]
+pub fn ordinal_or_number(word: &str) -> bool {
+    floor_number(word).is_some()
+}

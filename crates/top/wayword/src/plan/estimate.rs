@@ -217,7 +217,7 @@ fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path:
     let memory = walk.memory();
     let mut load = Load::default();
     let pictures = if settings.roles.write_sees { path.frames.len().min(pipeline::MOST_SHOWN) as u64 } else { 0 };
-    for Measured { style, profile } in styles {
+    for Measured { style, profile, .. } in styles {
         let earlier: Vec<String> = (0..settings.per_path).map(|_| TYPICAL_INSTRUCTION.to_owned()).collect();
         for number in 0..settings.per_path {
             let brief =

@@ -10,11 +10,10 @@ use crate::{
 };
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use wayword_synthesis::style;
 
 pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, String>, Error> {
     let mut inputs: BTreeMap<String, String> =
-        styles.iter().map(|Measured { style, .. }| (format!("style {}", style.name), style::hash(style))).collect();
+        styles.iter().map(|Measured { style, hash, .. }| (format!("style {}", style.name), hash.clone())).collect();
     if let Some(file) = &job.settings.episodes {
         inputs.insert("episodes".into(), hash_of_file(file)?);
     }

@@ -50,7 +50,7 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// When a style cannot be read, there are no such paths, two share a name, or a model is not known.
     pub fn writing(job: &'a Job, platform: &'a dyn Platform) -> Result<Self, Error> {
-        let styles = styles::find(&job.settings.style, job.settings.seed)?;
+        let styles = styles::find(&job.settings.style)?;
         let items = items(&job.settings, platform)?;
         check_names(&items)?;
         Ok(Self { job, platform, items, styles, models: Models::of(job)? })

@@ -4,7 +4,7 @@ use super::{
     frames::{FrameView, frames},
     map::{MapView, RADIUS},
     pictures::Pictures,
-    places::{Places, anchor, side_words},
+    places::{Places, anchor},
     records::ItemRecord,
     texts::{TextView, texts},
 };
@@ -72,20 +72,11 @@ fn levels(levels: impl Iterator<Item = u32> + Clone) -> Option<String> {
 }
 
 fn target_words(target: &Target) -> String {
-    let told: Vec<String> = target.told_by.iter().take(3).map(distinction).collect();
+    let told: Vec<String> = target.told_by.iter().take(3).map(Distinction::predicate).collect();
     let name = &target.name;
     match (told.is_empty(), target.has_namesake) {
         (true, false) => name.clone(),
         (true, true) => format!("{name} (one of several)"),
         (false, _) => format!("{name} ({})", told.join(", ")),
-    }
-}
-
-fn distinction(distinction: &Distinction) -> String {
-    match distinction {
-        Distinction::Colour { colour } => format!("the {colour} one"),
-        Distinction::OnSide { side } => format!("the one {}", side_words(*side)),
-        Distinction::NextTo { neighbour } => format!("the one next to the {neighbour}"),
-        Distinction::Range { nearest } => if *nearest { "the nearest" } else { "the farthest" }.to_owned(),
     }
 }

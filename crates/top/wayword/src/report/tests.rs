@@ -21,6 +21,8 @@ fn path(id: &str) -> WalkPath {
         name: "lamp".into(),
         told_by: vec![],
         has_namesake: true,
+        descriptions: Vec::new(),
+        storeys: 0,
     };
     WalkPath {
         id: id.into(),

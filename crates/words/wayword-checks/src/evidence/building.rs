@@ -1,7 +1,8 @@
 //! What is listed in a building, sorted by name.
 
+use super::Beyond;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DVec3, Label, ObjectId, Survey, ViewpointId, survey::Surveyed};
+use wayword_core::{DVec3, Label, ObjectId, Path, Survey, ViewpointId, survey::Surveyed};
 use wayword_language::lexicon::{Class, kinds, room_name, thing};
 
 /// An object belongs to the nearest viewpoint if that is no farther off, metres.
@@ -87,6 +88,27 @@ impl Building {
             places: viewpoints.iter().enumerate().map(|(at, viewpoint)| (viewpoint.id.clone(), at)).collect(),
             listing: viewpoints.iter().filter(lists).count(),
         }
+    }
+
+    /// What is known of the end of a path beyond what its frames show.
+    #[must_use]
+    pub fn beyond(&self, path: &Path) -> Beyond {
+        let last = path.frames.last().and_then(|frame| self.places.get(frame.viewpoint.as_ref()?));
+        let Some(last) = last.copied() else { return Beyond::default() };
+        let (mut room, mut open, mut rooms) = (BTreeSet::from([last]), vec![last], BTreeSet::new());
+        while let Some(at) = open.pop() {
+            for other in &self.viewpoints[at].neighbours {
+                let name = &self.viewpoints[*other].room;
+                if *name != self.viewpoints[last].room {
+                    rooms.extend(name.clone());
+                } else if room.insert(*other) {
+                    open.push(*other);
+                }
+            }
+        }
+        let is_there = |name: &&Name| name.spots.iter().any(|spot| !spot.beside.is_disjoint(&room));
+        let things = self.names.iter().filter(is_there).filter_map(|name| name.kinds.first().cloned());
+        Beyond { rooms: rooms.into_iter().collect(), things: things.collect() }
     }
 
     /// Whether the platform lists neither objects nor rooms there.

@@ -24,6 +24,17 @@ pub struct Evidence {
     pub motion: Motion,
     /// Who vouches for it.
     pub source: Source,
+    /// What is known of the end beyond what a frame shows.
+    pub beyond: Beyond,
+}
+
+/// What is known of the end of a path beyond what its frames show: a text may tell the room by it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Beyond {
+    /// The names of the rooms beside the one at the end.
+    pub rooms: Vec<String>,
+    /// The names of the things that stand in it.
+    pub things: Vec<String>,
 }
 
 /// What is known to be seen from one frame, all around.
@@ -116,7 +127,7 @@ impl Evidence {
         for (evidence, frame) in frames.iter_mut().zip(&path.frames) {
             evidence.level = frame.level.filter(|_| path.motion.is_known());
         }
-        Self { frames, moves: path.moves(), motion: path.motion, source }
+        Self { frames, moves: path.moves(), motion: path.motion, source, beyond: Beyond::default() }
     }
 
     /// Evidence of a path without labels and captions: only turns and storeys can be checked.

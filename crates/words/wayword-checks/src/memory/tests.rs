@@ -1,5 +1,5 @@
 use super::*;
-use crate::{FrameEvidence, SeenThing, Source};
+use crate::{Beyond, FrameEvidence, SeenThing, Source};
 use wayword_core::{Climb, Frame, Motion, ObjectId, Pose, SceneId};
 
 /// A path along points over the floor, with the evidence of its frames: its room, and its things.
@@ -17,7 +17,13 @@ fn walked(stops: &[(f64, f64, f64)], frames: Vec<FrameEvidence>) -> (Evidence, P
         motion: Motion::Known,
         target: None,
     };
-    let evidence = Evidence { frames, moves: path.moves(), motion: path.motion, source: Source::Labels };
+    let evidence = Evidence {
+        frames,
+        moves: path.moves(),
+        motion: path.motion,
+        source: Source::Labels,
+        beyond: Beyond::default(),
+    };
     (evidence, path)
 }
 
@@ -142,7 +148,13 @@ fn of_an_unknown_motion_only_the_order_stays() {
         motion: Motion::Unknown,
         target: None,
     };
-    let evidence = Evidence { frames, moves: Vec::new(), motion: Motion::Unknown, source: Source::Captions };
+    let evidence = Evidence {
+        frames,
+        moves: Vec::new(),
+        motion: Motion::Unknown,
+        source: Source::Captions,
+        beyond: Beyond::default(),
+    };
     let memory = Memory::of(&evidence, &path);
     assert_eq!(memory.things.len(), 1);
     assert_eq!((memory.things[0].position, memory.things[0].passed, memory.bends.len()), (None, None, 0));

@@ -1,8 +1,10 @@
-//! What needs no model: answers from ground-truth labels, and rules for how a target differs from others of its name.
+//! What needs no model: answers from ground-truth labels, and rules for how a target differs from everything else.
 
+mod describe;
 mod distinguish;
 mod labels;
 mod listed;
 
-pub use distinguish::distinguish;
+pub use describe::{Listing, describe};
+pub use distinguish::around;
 pub use labels::Labels;

@@ -30,6 +30,8 @@ fn walk() -> Walk {
         name: "lamp".into(),
         told_by: vec![Distinction::NextTo { neighbour: "bed".into() }],
         has_namesake: true,
+        descriptions: Vec::new(),
+        storeys: 0,
     };
     let path =
         Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: Some(target) };

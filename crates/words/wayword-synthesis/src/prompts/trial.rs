@@ -42,8 +42,14 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
 /// A walk from a hallway into a bedroom.
 pub(crate) fn walk(motion: Motion) -> Option<Walk> {
     let stop = |y: f64| Stop { position: DVec3::new(0.0, y, 1.5), viewpoint: None, level: None };
-    let target =
-        Target { object: ObjectId::new("1").ok()?, name: "lamp".to_owned(), told_by: Vec::new(), has_namesake: false };
+    let target = Target {
+        object: ObjectId::new("1").ok()?,
+        name: "lamp".to_owned(),
+        told_by: Vec::new(),
+        has_namesake: false,
+        descriptions: Vec::new(),
+        storeys: 0,
+    };
     let path = Path {
         id: "trial".to_owned(),
         scene: SceneId::new("trial").ok()?,

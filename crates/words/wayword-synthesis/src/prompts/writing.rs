@@ -4,7 +4,7 @@ use super::{corrections::reasons, remembered::remembered};
 use crate::{walk::Walk, writer::Brief};
 use minijinja::{Value, context};
 use rand::seq::index;
-use wayword_core::{Climb, Distinction, Move, Side, Target, Turn, rng};
+use wayword_core::{Climb, Move, Side, Target, Turn, rng};
 use wayword_language::{lexicon::agree, text::word_count};
 
 /// Most reference texts of a prompt. A style may have thousands, and more examples do not make a text more alike.
@@ -149,21 +149,7 @@ fn overview(moves: &[Move]) -> Vec<String> {
 }
 
 fn told_target(walk: &Walk, target: &Target) -> String {
-    let told_by = target.told_by.first().map(|told_by| match told_by {
-        Distinction::Colour { colour } => format!("it is {colour}"),
-        Distinction::OnSide { side } => {
-            let side = match side {
-                Side::Ahead => "ahead",
-                Side::Right => "on the right",
-                Side::Behind => "behind",
-                Side::Left => "on the left",
-            };
-            format!("it is {side} of somebody who arrives")
-        }
-        Distinction::NextTo { neighbour } => format!("it is next to the {neighbour}"),
-        Distinction::Range { nearest: true } => "it is the nearest one".to_owned(),
-        Distinction::Range { nearest: false } => "it is the farthest one".to_owned(),
-    });
+    let told_by = target.told_by.first().map(|told_by| format!("it is {}", told_by.predicate()));
     match told_by.filter(|_| target.has_namesake) {
         Some(told_by) => format!("{} (others like it are visible; {told_by})", target.name),
         None if !walk.describes_target() => {

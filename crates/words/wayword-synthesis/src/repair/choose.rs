@@ -110,6 +110,7 @@ mod tests {
             evidence: &evidence,
             style: &style,
             profile: &profile,
+            style_hash: "",
             seed: 0,
             repairs: 0,
             candidates: u32::try_from(texts.len()).unwrap(),

@@ -5,7 +5,7 @@ mod choose;
 use crate::{
     dialogue::Mode,
     observe::Observers,
-    style::{Profile, hash},
+    style::Profile,
     walk::Walk,
     writer::{Brief, Complaint, FramePicture, RulesWriter, WriteError, Writer},
 };
@@ -26,6 +26,8 @@ pub struct Order<'a> {
     pub style: &'a Style,
     /// What the style's references are like.
     pub profile: &'a Profile,
+    /// The style's hash, for provenance.
+    pub style_hash: &'a str,
     /// The run's seed.
     pub seed: u64,
     /// How often a text that failed is written again, at most.
@@ -165,7 +167,8 @@ fn unusable(text: String, reason: String) -> Complaint {
 
 fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
-    let mut checked = check_own(&text, Subject::closed(order.evidence, order.style, target));
+    let mut checked =
+        check_own(&text, Subject::closed(order.evidence, order.style, target).with_copies(&order.profile.copies));
     // A text that failed is written again, wherever it leads.
     let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);
     let ambiguity = follower.map(|follower| follower.follow(&text, &mut checked));
@@ -207,7 +210,7 @@ fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, r
         writer: writer.name().to_owned(),
         checked_against: order.evidence.source.name().to_owned(),
         seed: order.seed,
-        style_hash: hash(order.style),
+        style_hash: order.style_hash.to_owned(),
         prompts_hash: observers.prompts_hash.map(str::to_owned),
         repairs,
         finished_for: None,

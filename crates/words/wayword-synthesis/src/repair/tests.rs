@@ -85,6 +85,7 @@ fn outcome_against(
         evidence,
         style: &style,
         profile: &profile,
+        style_hash: "",
         seed: 0,
         repairs,
         candidates: 1,
@@ -204,6 +205,7 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
                     evidence: &evidence,
                     style: &style,
                     profile: &profile,
+                    style_hash: "",
                     seed,
                     repairs: 0,
                     candidates: 1,
@@ -251,6 +253,7 @@ fn a_text_that_the_walk_already_has_is_written_again() {
             evidence,
             style,
             profile,
+            style_hash: "",
             seed: 0,
             repairs: 8,
             candidates: 1,
@@ -324,7 +327,7 @@ proptest! {
         let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
-            let order = Order { walk: &walk, memory: &walk.memory(), evidence: &evidence, style: &style, profile: &profile, seed, repairs: 8, candidates: 1, follower: None, earlier: &[], pictures: &[] };
+            let order = Order { walk: &walk, memory: &walk.memory(), evidence: &evidence, style: &style, profile: &profile, style_hash: "", seed, repairs: 8, candidates: 1, follower: None, earlier: &[], pictures: &[] };
             let writers = Writers { writer: &RulesWriter, finisher: None };
             let text = match write_and_repair(writers, observers, order).unwrap() {
                 Outcome::Accepted(instruction) => instruction.text,

@@ -1,18 +1,24 @@
 //! Styles: the built-in ones, a user's own, and what reference texts of a style are like.
 
+mod measure;
 mod profile;
 pub mod way;
+mod wording;
 
 use sha2::{Digest, Sha256};
 use wayword_core::Style;
 
 pub use profile::Profile;
+pub use wording::{Shares, Wording};
 
 const BUILT_IN: [(&str, &str); 2] =
     [("r2r", include_str!("builtin/r2r.toml")), ("reverie", include_str!("builtin/reverie.toml"))];
 
+/// How people word a place: our constructions, with their shares.
+const PLACE: &str = include_str!("builtin/place.toml");
+
 /// Most reference texts of a style, and most bytes of each.
-const MOST_REFERENCES: usize = 1000;
+const MOST_REFERENCES: usize = 100_000;
 const MOST_BYTES: usize = 4000;
 
 /// Why a style cannot be used.
@@ -58,6 +64,11 @@ pub fn built_in(name: &str) -> Result<Style, StyleError> {
     parse(name, text)
 }
 
+/// The tables of the built-in wording. Its file is part of the program, and a test reads it.
+fn parse_wording() -> std::collections::BTreeMap<String, Shares> {
+    toml::from_str(PLACE).unwrap_or_default()
+}
+
 /// A style from the text of a TOML file; errors show `name`.
 ///
 /// # Errors
@@ -101,7 +112,7 @@ pub fn hash(style: &Style) -> String {
 mod tests {
     use super::*;
     use std::collections::BTreeSet;
-    use wayword_checks::shared_run;
+    use wayword_checks::{Copies, Matter};
     use wayword_language::{
         reading::read,
         text::{sentence_count, word_count},
@@ -123,7 +134,8 @@ mod tests {
         for name in built_in_names() {
             let style = built_in(name).unwrap();
             for (at, text) in style.references.iter().enumerate() {
-                assert_eq!(shared_run(text, &style.references[at + 1..]), None, "{text}");
+                let others = Copies::of(&style.references[at + 1..]);
+                assert_eq!(others.copied(text, Matter::default()), None, "{text}");
             }
         }
     }
@@ -147,6 +159,8 @@ mod tests {
         assert_eq!(empty, Err(StyleError::NoReferences("x.toml".into())));
         let long = format!("name = \"x\"\nreferences = [\"{}\"]", "a".repeat(4001));
         let long = parse("x.toml", &long).unwrap_err().to_string();
-        assert!(long.starts_with("style x.toml has more than 1000 reference texts, or one of more than 4000 bytes: "));
+        assert!(
+            long.starts_with("style x.toml has more than 100000 reference texts, or one of more than 4000 bytes: ")
+        );
     }
 }

@@ -1,8 +1,9 @@
 //! What the reference texts of a style are like: the parameters of the rules writer.
 
-use super::way::Way;
+use super::{measure::measure, way::Way, wording::Wording};
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
+use wayword_checks::Copies;
 use wayword_language::{
     reading::{What, read},
     text::{sentence_count, word_count},
@@ -28,6 +29,11 @@ pub struct Profile {
     /// How they tell a way.
     #[serde(skip)]
     pub way: Way,
+    /// How they word a place and a task.
+    pub wording: Wording,
+    /// The runs of words that no text may copy.
+    #[serde(skip)]
+    pub copies: Arc<Copies>,
 }
 
 impl Profile {
@@ -55,6 +61,8 @@ impl Profile {
             floors: share(&|at| readings[at].events.iter().any(|event| matches!(event.what, What::Floor(_)))),
             full_stops: share(&|at| texts[at].trim_end().ends_with(['.', '!'])),
             way: Way::measure(texts.iter().map(|text| text.as_str()).zip(&readings)),
+            wording: measure(texts.iter().map(|text| text.as_str()).zip(&readings)),
+            copies: Arc::new(Copies::of(references)),
         }
     }
 

@@ -44,14 +44,6 @@ pub(super) fn drawn(values: &[usize], rng: &mut ChaCha8Rng) -> usize {
     if values.is_empty() { 1 } else { values[rng.random_range(0..values.len())] }
 }
 
-/// A storey in words: "level 2", "the second floor".
-pub(super) fn level_phrase(level: u32, rng: &mut ChaCha8Rng) -> String {
-    match ordinal(level).filter(|_| rng.random_bool(0.5)) {
-        Some(ordinal) => format!("the {ordinal} floor"),
-        None => format!("level {level}"),
-    }
-}
-
 /// The ordinal of a storey.
 pub(super) fn ordinal(level: u32) -> Option<&'static str> {
     ["first", "second", "third", "fourth", "fifth"].get(level.checked_sub(1)? as usize).copied()

@@ -1,121 +1,136 @@
 //! A text that names the place at the end, and what to do there.
+//!
+//! Several drafts are made by the shares of the style's wording. The one is kept that says surely which object is meant,
+//! copies nobody, and comes nearest to a length that is drawn from the references.
+
+mod object;
+mod room;
 
 use super::{
     Brief, WriteError,
     landmarks::Landmarks,
-    phrases::{self, drawn, fill, level_phrase, ordinal, pick, the, unbent},
+    phrases::{self, drawn, fill, pick, the, unbent},
     route::{last_climb, stands_still, usable_room},
     rules::{join, sentence_target, sentences},
-    telling::ending,
+    task,
 };
+use object::Said;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use room::Goal;
+use wayword_checks::Matter;
 use wayword_core::Climb;
-use wayword_language::{
-    lexicon::room_name,
-    text::{capital, word_count},
-};
+use wayword_language::text::{capital, word_count};
 
-const GO: &[&str] = &[
-    "go to {r}",
-    "head to {r}",
-    "walk to {r}",
-    "enter {r}",
-    "make your way to {r}",
-    "go into {r}",
-    "proceed to {r}",
-    "head over to {r}",
-    "go over to {r}",
-    "walk into {r}",
-    "head into {r}",
-    "move to {r}",
-    "come to {r}",
-    "walk over to {r}",
-    "step into {r}",
-    "go on to {r}",
-];
-const GO_BY: &[&str] = &[
-    "go past {l} to {r}",
-    "walk past {l} into {r}",
-    "head past {l} to {r}",
-    "pass {l} to enter {r}",
-    "go by {l} into {r}",
-];
+/// How many drafts are made of a text.
+const DRAFTS: usize = 36;
+/// In how many texts the target must be pinned down, where it can be. The others say as much as people do.
+const SURE: f64 = 0.9;
+/// Over 1, the verb that people use most for a thing is drawn more often than they do.
+const SHARP: f64 = 1.4;
 
 /// A text that names the place at the end, and what to do there.
 pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
+    let walk = brief.walk;
+    let last = walk.path.frames.len() - 1;
+    // A target is there to be asked for, where the style asks for anything.
+    let asks = brief.style.constraints.ends_in_task
+        || brief.profile.tasks >= 0.5 && walk.path.target.is_some()
+        || rng.random_bool(brief.profile.tasks.clamp(0.0, 1.0));
+    let Some(room) = walk.room(last).filter(|_| asks && !stands_still(walk)) else {
+        return bare(brief, asks, rng);
+    };
+    let rooms = [room.to_owned()];
+    let object = Said::of(brief, rng)?;
+    let goal = Goal::new(brief, room);
+    let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
+    let words = drawn(&brief.profile.words, rng).min(limit.saturating_sub(1));
+    let plan = Plan::draw(brief, &goal, words, rng);
+    let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
+    let drafts = (0..DRAFTS).map(|_| {
+        let text = draft(brief, &goal, &object, plan, rng);
+        let off = word_count(&text).abs_diff(words) as f64;
+        let too_long = if word_count(&text) < limit { 0.0 } else { 1000.0 };
+        let copies = &brief.profile.copies;
+        let matter = Matter { target: Some(&object.name), rooms: &rooms };
+        let is_copied = if copies.copied(&text, matter).is_some() { 1000.0 } else { 0.0 };
+        let is_shared = if copies.shares_much(&text) { 100.0 } else { 0.0 };
+        (off + too_long + is_copied + is_shared, text)
+    });
+    let (_, text) = drafts.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+    Ok(format!("{}{}", capital(&text), if full_stop { "." } else { "" }))
+}
+
+/// What is decided of a text before it is drafted, so that the choice among drafts does not change the style's shares.
+#[derive(Clone, Copy)]
+struct Plan<'a> {
+    order: &'a str,
+    opener: &'a str,
+    names_level: bool,
+    is_sure: bool,
+    /// How much more it says than it needs, to be long enough.
+    more: usize,
+    please: bool,
+}
+
+/// From so many words on, a text says one thing more than it needs, or two.
+const LONG: [usize; 2] = [18, 23];
+
+impl<'a> Plan<'a> {
+    fn draw(brief: &'a Brief<'_>, goal: &Goal<'a>, words: usize, rng: &mut ChaCha8Rng) -> Self {
+        let wording = &brief.profile.wording;
+        Self {
+            order: wording.draw_sharply("order", SHARP, rng, |_| true).unwrap_or("move"),
+            opener: goal.opener(rng),
+            names_level: goal.names_level(rng),
+            is_sure: rng.random_bool(SURE),
+            more: LONG.iter().filter(|long| words >= **long).count(),
+            please: rng.random_bool(wording.share("please")),
+        }
+    }
+}
+
+/// One way to put the text, in lower case and without a full stop.
+fn draft(brief: &Brief<'_>, goal: &Goal<'_>, object: &Said<'_>, plan: Plan<'_>, rng: &mut ChaCha8Rng) -> String {
+    let wording = &brief.profile.wording;
+    let by = object.description(wording, plan.is_sure, plan.more, rng);
+    let place = goal.phrase(&by, plan.names_level, rng);
+    let verb = wording.verb(&object.name, SHARP, rng);
+    let task = task::done(verb, &object.phrase(&by, wording, rng));
+    let text = match plan.order {
+        "task" => format!("{task} {} {place}", goal.preposition(verb, rng)),
+        "in" => format!("{} {place} {task}", goal.preposition("", rng)),
+        _ => format!("{} {place} and {task}", plan.opener),
+    };
+    if plan.please { format!("please {text}") } else { text }
+}
+
+/// A text without a task, or to an end whose room has no name.
+fn bare(brief: &Brief<'_>, asks: bool, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
     let mut landmarks = Landmarks::new(brief);
-    let task = ending(brief, rng)?;
+    let task = if asks { Some(task::task(brief, rng)?) } else { None };
     if let Some((_, name)) = &task {
         landmarks.reserve(name);
     }
-    let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-    let words = drawn(&brief.profile.words, rng).min(limit.saturating_sub(1));
-    let task_words = task.as_ref().map_or(0, |(task, _)| word_count(task) + 1);
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
-    let fits = |text: &str| word_count(text) + task_words <= words.max(task_words + 5).min(limit.saturating_sub(1));
-    let options = goals(brief, &mut landmarks, rng);
-    // The richest description that fits. The first is the barest, and is used where none fits.
-    let goal = options.iter().rev().find(|text| fits(text)).or(options.first()).cloned().unwrap_or_default();
-    let count = sentence_target(brief, rng);
-    let phrases: Vec<String> = match task {
-        Some((task, _)) => vec![goal, task],
-        None => vec![goal],
-    };
-    Ok(if count > 1 {
-        sentences(&phrases, count, full_stop, rng)
-    } else {
-        let text = if phrases.len() > 1 && rng.random_bool(0.8) { phrases.join(" and ") } else { join(&phrases, rng) };
-        format!("{}{}", capital(&text), if full_stop { "." } else { "" })
-    })
-}
-
-/// Ways to name the end of the walk, from the barest to the richest.
-fn goals(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<String> {
     let walk = brief.walk;
-    let last = walk.path.frames.len() - 1;
-    let room = walk.room(last).and_then(usable_room);
-    if stands_still(walk) {
-        return vec![phrases::stay_phrase(room.as_deref(), rng)];
-    }
-    let Some(room) = room else { return vec![without_room(brief, landmarks, rng)] };
-    let go = pick(rng, GO);
-    let mut options = vec![fill(go, &[("{r}", &the(&room))])];
-    let level = walk.path.frames[last].level.filter(|_| rng.random_bool(brief.profile.floors.clamp(0.0, 1.0)));
-    let placed = level.map_or_else(|| the(&room), |level| on_level(&room, level, rng));
-    options.push(fill(go, &[("{r}", &placed)]));
-    let before = (0..last).rev().filter_map(|at| walk.room(at)).find(|other| room_name(other) != room_name(&room));
-    let detail = match rng.random_range(0..10) {
-        0..=2 => landmarks
-            .choose(last, 2, rng)
-            .map(|landmark| fill(go, &[("{r}", &format!("{placed} with {}", landmark.phrase))])),
-        3..=4 => before.map(|other| {
-            fill(
-                go,
-                &[(
-                    "{r}",
-                    &format!("{placed} {} {}", pick(rng, &["next to", "by", "off", "near", "beyond"]), the(other)),
-                )],
-            )
-        }),
-        5..=6 => {
-            let frame = rng.random_range(0..last.max(1));
-            landmarks
-                .choose(frame, 2, rng)
-                .map(|landmark| fill(pick(rng, GO_BY), &[("{l}", &landmark.phrase), ("{r}", &placed)]))
+    let room = walk.room(walk.path.frames.len() - 1).and_then(usable_room);
+    let goal = match &room {
+        _ if stands_still(walk) => phrases::stay_phrase(room.as_deref(), rng),
+        Some(room) => {
+            let goal = Goal::new(brief, room);
+            let names_level = goal.names_level(rng);
+            format!("{} {}", goal.opener(rng), goal.phrase(&[], names_level, rng))
         }
-        _ => None,
+        None => without_room(brief, &mut landmarks, rng),
     };
-    options.extend(detail);
-    options
-}
-
-fn on_level(room: &str, level: u32, rng: &mut ChaCha8Rng) -> String {
-    match (rng.random_range(0..4), ordinal(level)) {
-        (0, Some(ordinal)) => format!("the {ordinal} floor {room}"),
-        (1, _) => format!("the level {level} {room}"),
-        _ => format!("the {room} on {}", level_phrase(level, rng)),
+    let phrases: Vec<String> = [goal].into_iter().chain(task.map(|(task, _)| task)).collect();
+    let count = sentence_target(brief, rng);
+    if count > 1 {
+        return Ok(sentences(&phrases, count, full_stop, rng));
     }
+    let text = if phrases.len() > 1 { phrases.join(" and ") } else { join(&phrases, rng) };
+    Ok(format!("{}{}", capital(&text), if full_stop { "." } else { "" }))
 }
 
 /// The way to an end whose room has no name.

@@ -77,7 +77,7 @@ pub struct How<'a> {
 pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &Output) -> Result<CheckReport, Error> {
     let platform = platforms::open(settings)?;
     let calibration = how.calibration.map(|file| calibration::read(file, platform.name())).transpose()?;
-    let held = Held::to(how.style, settings.seed)?;
+    let held = Held::to(how.style)?;
     let walks = walks(file, platform.as_ref())?;
     let checking = Checking {
         platform: platform.as_ref(),
@@ -133,11 +133,13 @@ impl Checking<'_> {
         let Self { platform, how, .. } = *self;
         let world = Remembering::new(platform);
         let views = panoramas(&world, &walk.path)?;
-        let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
-        let world_of = |text: &Text| world_of(text, how.world, platform.name(), evidence.source);
+        let mut evidence =
+            Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let source = evidence.source;
+        let world_of = |text: &Text| world_of(text, how.world, platform.name(), source);
         let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
-        let is_surveyed = some_are_open || !how.without_route;
-        let scene = is_surveyed.then(|| self.scenes.get(platform, &walk.path.scene)).transpose()?;
+        let scene = Some(self.scenes.get(platform, &walk.path.scene)?);
+        evidence.beyond = scene.as_ref().map(|scene| scene.listed.beyond(&walk.path)).unwrap_or_default();
         let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
         let reach = Reach { surroundings: around.as_ref(), calibration: self.calibration };
         let followed = (!how.without_route).then(|| Followed::new(scene.as_deref(), &walk.path, &evidence));
@@ -157,7 +159,8 @@ impl Checking<'_> {
                 World::Open => Subject::open(&evidence, style, reach),
             };
             let turns = told.as_ref().map_or(Turns::NotJudged("the text is not followed"), |told| told.turns);
-            let mut checked = check(&text.words, Subject { tag: text.tag.as_deref(), turns, ..subject });
+            let mut checked =
+                check(&text.words, Subject { tag: text.tag.as_deref(), turns, copies: self.held.copies(), ..subject });
             if let Some(told) = &told {
                 told.add_to(&mut checked);
             }

@@ -1,0 +1,238 @@
+//! What is listed in a building, by object: where each stands, in which room, and from where it is seen.
+
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{DMat3, DVec3, Frame, Heading, Label, ObjectId, Survey, ViewpointId};
+use wayword_language::lexicon::{Class, kinds, thing};
+
+/// Every object that the platform lists in a building, or around one frame.
+#[derive(Debug, Clone, Default)]
+pub struct Listing {
+    pub(super) objects: Vec<Object>,
+    pub(super) places: Vec<Place>,
+    pub(super) rooms: Vec<Room>,
+    /// How many storeys there are.
+    pub(super) storeys: usize,
+    by_id: BTreeMap<ObjectId, usize>,
+    place_of: BTreeMap<ViewpointId, usize>,
+}
+
+/// An object.
+#[derive(Debug, Clone)]
+pub(super) struct Object {
+    pub(super) name: String,
+    kinds: Vec<String>,
+    pub(super) class: Class,
+    pub(super) salience: u8,
+    pub(super) colour: Option<String>,
+    /// Its centre, metres, world frame.
+    pub(super) position: Option<DVec3>,
+    /// The rooms in which it may be.
+    pub(super) rooms: Vec<usize>,
+    pub(super) level: Option<u32>,
+}
+
+/// A viewpoint, with what is seen from it.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    pub(super) eye: DVec3,
+    pub(super) room: usize,
+    level: Option<u32>,
+    pub(super) sights: Vec<Sight>,
+}
+
+/// An object as it is seen from a viewpoint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sight {
+    pub(super) object: usize,
+    pub(super) heading: Heading,
+    elevation_rad: f64,
+    pub(super) distance_m: Option<f64>,
+}
+
+/// Viewpoints of one name that hang together.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Room {
+    pub(super) name: Option<String>,
+    /// Names of the rooms beside it.
+    pub(super) beside: BTreeSet<String>,
+    /// The objects that are certainly in it.
+    pub(super) things: Vec<usize>,
+}
+
+/// An object may be in the room of each viewpoint that is not farther from it than this many times the nearest one.
+const ALSO_IN: f64 = 1.3;
+
+impl Object {
+    /// Whether somebody may call both by one name.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        other.kinds.contains(&self.kinds[0]) || self.kinds.contains(&other.kinds[0])
+    }
+
+    /// What it is called most precisely.
+    pub(super) fn kind(&self) -> &str {
+        &self.kinds[0]
+    }
+}
+
+impl Listing {
+    /// What a survey lists.
+    #[must_use]
+    pub fn of(survey: &Survey) -> Self {
+        let mut listing = Self::default();
+        let room_of = rooms(survey);
+        listing.rooms = vec![Room::default(); room_of.iter().max().map_or(0, |last| last + 1)];
+        for (at, viewpoint) in survey.viewpoints().iter().enumerate() {
+            let room = &mut listing.rooms[room_of[at]];
+            room.name.clone_from(&viewpoint.known.room);
+            let others = viewpoint.neighbours.iter().filter(|other| room_of[**other] != room_of[at]);
+            room.beside.extend(others.filter_map(|other| survey.viewpoints()[*other].known.room.clone()));
+            let labels = viewpoint.known.things.iter().flatten();
+            listing.place_of.insert(viewpoint.id.clone(), at);
+            listing.add_place(viewpoint.position, room_of[at], viewpoint.level, labels);
+        }
+        listing.locate();
+        listing
+    }
+
+    /// What is listed around one frame, where no more is known.
+    #[must_use]
+    pub fn around<'a>(frame: &Frame, labels: impl Iterator<Item = &'a Label>) -> Self {
+        let mut listing = Self { rooms: vec![Room::default()], ..Self::default() };
+        listing.add_place(frame.pose.position, 0, frame.level, labels);
+        listing.place_of.extend(frame.viewpoint.clone().map(|id| (id, 0)));
+        listing.locate();
+        listing
+    }
+
+    pub(super) fn object(&self, id: &ObjectId) -> Option<usize> {
+        self.by_id.get(id).copied()
+    }
+
+    /// The place of a frame. Where its viewpoint is not known, there is one place at most.
+    pub(super) fn place(&self, frame: &Frame) -> Option<usize> {
+        let only = || (self.places.len() == 1).then_some(0);
+        frame.viewpoint.as_ref().and_then(|id| self.place_of.get(id).copied()).or_else(only)
+    }
+
+    /// Whether the place of a frame is listed, with something in view.
+    #[must_use]
+    pub fn knows(&self, frame: &Frame) -> bool {
+        self.place(frame).is_some_and(|place| !self.places[place].sights.is_empty())
+    }
+
+    /// The names of the rooms beside the one of a frame, and of the things that stand in it.
+    #[must_use]
+    pub fn beyond(&self, frame: &Frame) -> (Vec<String>, Vec<String>) {
+        let Some(place) = self.place(frame) else { return Default::default() };
+        let room = &self.rooms[self.places[place].room];
+        let things = room.things.iter().map(|object| self.objects[*object].name.clone());
+        (room.beside.iter().cloned().collect(), things.collect())
+    }
+
+    fn add_place<'a>(&mut self, eye: DVec3, room: usize, level: Option<u32>, labels: impl Iterator<Item = &'a Label>) {
+        let mut sights: Vec<Sight> = Vec::new();
+        for label in labels {
+            let object = self.add_object(label);
+            // Views of one panorama may show an object twice.
+            if !sights.iter().any(|sight| sight.object == object) {
+                let (heading, elevation_rad) = (label.heading, label.elevation_rad);
+                sights.push(Sight { object, heading, elevation_rad, distance_m: label.distance_m });
+            }
+        }
+        self.places.push(Place { eye, room, level, sights });
+    }
+
+    fn add_object(&mut self, label: &Label) -> usize {
+        if let Some(at) = self.by_id.get(&label.object) {
+            return *at;
+        }
+        let (class, salience) = thing(&label.name).map_or((Class::Unknown, 0), |thing| (thing.class, thing.salience));
+        self.objects.push(Object {
+            name: label.name.clone(),
+            kinds: kinds(&label.name),
+            class,
+            salience,
+            colour: label.colour.clone(),
+            position: label.position,
+            rooms: Vec::new(),
+            level: None,
+        });
+        self.by_id.insert(label.object.clone(), self.objects.len() - 1);
+        self.objects.len() - 1
+    }
+
+    /// Finds where objects without a position are, and in which room each is.
+    fn locate(&mut self) {
+        let mut seen: Vec<Vec<(usize, Sight)>> = vec![Vec::new(); self.objects.len()];
+        for (at, place) in self.places.iter().enumerate() {
+            place.sights.iter().for_each(|sight| seen[sight.object].push((at, *sight)));
+        }
+        let levels: BTreeSet<u32> = self.places.iter().filter_map(|place| place.level).collect();
+        self.storeys = levels.len();
+        for (object, seen) in seen.iter().enumerate() {
+            let rays: Vec<(DVec3, DVec3)> =
+                seen.iter().map(|(at, sight)| (self.places[*at].eye, direction(sight))).collect();
+            let position = self.objects[object].position.or_else(|| meeting(&rays));
+            let how_far = |at: usize| position.map_or(0.0, |position| self.places[at].eye.distance(position));
+            let nearest = seen.iter().map(|(at, _)| *at).min_by(|a, b| how_far(*a).total_cmp(&how_far(*b)));
+            let Some(nearest) = nearest else { continue };
+            let near = seen.iter().map(|(at, _)| *at).filter(|at| how_far(*at) <= ALSO_IN * how_far(nearest));
+            let rooms: BTreeSet<usize> = near.map(|at| self.places[at].room).collect();
+            self.rooms[self.places[nearest].room].things.push(object);
+            let level = self.places[nearest].level;
+            let found = &mut self.objects[object];
+            (found.position, found.level, found.rooms) = (position, level, rooms.into_iter().collect());
+        }
+    }
+}
+
+fn direction(sight: &Sight) -> DVec3 {
+    let (up, along) = libm::sincos(sight.elevation_rad);
+    sight.heading.direction() * along + DVec3::Z * up
+}
+
+/// The point that is nearest to all rays (origin and direction), where at least two cross clearly.
+fn meeting(rays: &[(DVec3, DVec3)]) -> Option<DVec3> {
+    let crosses = |a: &DVec3, b: &DVec3| a.cross(*b).length() > 0.25;
+    rays.iter().find(|(_, way)| crosses(way, &rays[0].1))?;
+    let (mut matrix, mut vector) = (DMat3::ZERO, DVec3::ZERO);
+    for (origin, way) in rays {
+        let outer = DMat3::from_cols(*way * way.x, *way * way.y, *way * way.z);
+        let part = DMat3::IDENTITY - outer;
+        matrix += part;
+        vector += part * *origin;
+    }
+    let point = matrix.inverse() * vector;
+    // A point behind an eye is no meeting.
+    let is_ahead = |(origin, way): &(DVec3, DVec3)| (point - *origin).dot(*way) > 0.0;
+    (point.is_finite() && rays.iter().all(is_ahead)).then_some(point)
+}
+
+/// For each viewpoint, the number of its room: neighbours of one name and storey are in one room.
+fn rooms(survey: &Survey) -> Vec<usize> {
+    let viewpoints = survey.viewpoints();
+    let is_one = |a: usize, b: usize| {
+        let (a, b) = (&viewpoints[a], &viewpoints[b]);
+        let names = (a.known.room.as_deref(), b.known.room.as_deref());
+        a.level == b.level && matches!(names, (Some(a), Some(b)) if a == b)
+    };
+    let mut room_of = vec![usize::MAX; viewpoints.len()];
+    let mut count = 0;
+    for first in 0..viewpoints.len() {
+        if room_of[first] != usize::MAX {
+            continue;
+        }
+        let mut open = vec![first];
+        room_of[first] = count;
+        while let Some(at) = open.pop() {
+            for other in &viewpoints[at].neighbours {
+                if room_of[*other] == usize::MAX && is_one(at, *other) {
+                    room_of[*other] = count;
+                    open.push(*other);
+                }
+            }
+        }
+        count += 1;
+    }
+    room_of
+}

@@ -1,0 +1,140 @@
+//! Describes a target so that nothing else in its building fits: what is said beside its name and the kind of its room.
+//!
+//! All subsets of up to three properties are tried, after Dale and Reiter (1995): the shortest that leave no rival are
+//! kept, and, where none does, those that leave fewest.
+
+mod listing;
+mod properties;
+mod superlatives;
+
+pub use listing::Listing;
+
+use properties::{Property, Scene};
+use wayword_core::{Description, Distinction, Frame, Target};
+
+/// Most descriptions that are kept of a target.
+const MOST_KEPT: usize = 32;
+/// Most properties that are put together, the cheapest first.
+const MOST_PROPERTIES: usize = 36;
+/// What a superlative costs where there are more of its kind than one sees at the end.
+const UNCLEAR: f64 = 1.2;
+/// What it costs to say a second thing of the object.
+const SECOND: f64 = 1.0;
+/// What a property costs that is not needed to leave the target alone.
+const IDLE: f64 = 1.0;
+
+/// Fills in how a target can be described: to somebody at the last frame, who sees its namesakes there, and to
+/// somebody who knows the building. Nothing is filled in where the target is not listed.
+pub fn describe(target: &mut Target, last: &Frame, listing: &Listing) {
+    let (Some(own), Some(place)) = (listing.object(&target.object), listing.place(last)) else { return };
+    let place = &listing.places[place];
+    let scene = Scene::new(listing, last, place, own);
+    let mut properties = scene.properties();
+    properties.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    properties.truncate(MOST_PROPERTIES);
+    let namesakes: Vec<bool> = scene.rivals.iter().map(|rival| scene.sight(*rival).is_some()).collect();
+    target.has_namesake = namesakes.contains(&true);
+    target.told_by = told_by(&scene, &properties, &namesakes);
+    target.descriptions = search(&scene, &properties);
+    target.storeys = listing.storeys;
+}
+
+/// The single properties that no namesake in view has, the cheapest first.
+fn told_by(scene: &Scene<'_>, properties: &[Property], namesakes: &[bool]) -> Vec<Distinction> {
+    let tells = |property: &&Property| {
+        !property.told.is_of_room() && !property.fits.iter().zip(namesakes).any(|(fits, in_view)| *fits && *in_view)
+    };
+    let mut told: Vec<(f64, Distinction)> =
+        properties.iter().filter(tells).map(|property| (property.cost, property.told.clone())).collect();
+    if namesakes.contains(&true) {
+        told.extend(scene.superlatives(namesakes));
+    }
+    told.sort_by(|a, b| a.0.total_cmp(&b.0));
+    told.into_iter().map(|(_, told)| told).collect()
+}
+
+/// A description in the making.
+struct Found {
+    cost: f64,
+    description: Description,
+}
+
+fn search(scene: &Scene<'_>, properties: &[Property]) -> Vec<Description> {
+    let base = scene.rivals_in_kind();
+    let mut found: Vec<Found> = Vec::new();
+    add(scene, &[], &base, &mut found);
+    for (first, a) in properties.iter().enumerate() {
+        let left = and(&base, &a.fits);
+        add(scene, &[a], &left, &mut found);
+        for (second, b) in properties.iter().enumerate().skip(first + 1) {
+            let left = and(&left, &b.fits);
+            add(scene, &[a, b], &left, &mut found);
+            if !left.contains(&true) {
+                continue;
+            }
+            for c in &properties[second + 1..] {
+                let left = and(&left, &c.fits);
+                if !left.contains(&true) {
+                    push(&[a, b, c], 0, None, &mut found);
+                }
+            }
+        }
+    }
+    best(found)
+}
+
+fn and(a: &[bool], b: &[bool]) -> Vec<bool> {
+    a.iter().zip(b).map(|(a, b)| *a && *b).collect()
+}
+
+/// Adds the properties, alone and with what tells the target from the namesakes in view. Of things that nobody sees at
+/// the end, none is the leftmost, so those are left out then; that costs more, because it is less clear.
+fn add(scene: &Scene<'_>, by: &[&Property], left: &[bool], found: &mut Vec<Found>) {
+    let count = |left: &[bool]| left.iter().filter(|left| **left).count();
+    push(by, count(left), None, found);
+    let in_view: Vec<bool> =
+        left.iter().zip(&scene.rivals).map(|(left, rival)| *left && scene.sight(*rival).is_some()).collect();
+    if in_view.contains(&true) {
+        let unclear = if count(left) > count(&in_view) { UNCLEAR } else { 0.0 };
+        for (cost, superlative) in scene.superlatives(&in_view) {
+            push(by, 0, Some((cost + unclear, superlative)), found);
+        }
+    }
+}
+
+fn push(by: &[&Property], rest: usize, superlative: Option<(f64, Distinction)>, found: &mut Vec<Found>) {
+    let cost = by.iter().map(|property| property.cost).sum::<f64>() + superlative.as_ref().map_or(0.0, |of| of.0);
+    // Two things to say of the object, and two of its room, are enough.
+    let of_room = by.iter().filter(|property| property.told.is_of_room()).count();
+    if of_room > 2 || by.len() + usize::from(superlative.is_some()) - of_room > 2 {
+        return;
+    }
+    let of_object = |told: &&&Property| !told.told.is_of_room() && !matches!(told.told, Distinction::Colour { .. });
+    let more = by.iter().filter(of_object).count() + usize::from(superlative.is_some());
+    let has_side = by.iter().any(|property| matches!(property.told, Distinction::OnSide { .. }));
+    // "The lamp by the sofa on the left": nobody knows what is on the left.
+    if has_side && more > 1 {
+        return;
+    }
+    let cost = cost + if more > 1 { SECOND } else { 0.0 };
+    let told = by.iter().map(|property| property.told.clone()).chain(superlative.map(|of| of.1));
+    found.push(Found { cost, description: Description { by: told.collect(), leaves: rest + 1 } });
+}
+
+/// The cheapest that pin the target; where none does, those that leave fewest.
+fn best(mut found: Vec<Found>) -> Vec<Description> {
+    let least = found.iter().map(|found| found.description.leaves).min().unwrap_or(1);
+    found.retain(|found| found.description.leaves == least);
+    found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut kept: Vec<Found> = Vec::new();
+    for mut one in found {
+        let holds = |other: &Found| other.description.by.iter().all(|by| one.description.by.contains(by));
+        if kept.iter().any(holds) {
+            one.cost += IDLE;
+        }
+        kept.push(one);
+    }
+    kept.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    kept.truncate(MOST_KEPT);
+    kept.into_iter().map(|found| found.description).collect()
+}

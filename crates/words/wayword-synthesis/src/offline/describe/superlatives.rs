@@ -1,0 +1,64 @@
+//! What the target is among its namesakes in view: the leftmost, the nearest, the highest.
+
+use super::properties::Scene;
+use wayword_core::{Distinction, Side};
+
+/// Least angle between the target and the next in a row, degrees.
+const APART_DEG: f64 = 5.0;
+/// The widest row, degrees: of things all around, none is the leftmost.
+const WIDEST_DEG: f64 = 150.0;
+/// The nearest has to be nearer than this share of the distance of the next.
+const CLEARLY: f64 = 0.75;
+/// The highest has to be higher than the next by this, metres.
+const HIGHER_M: f64 = 0.3;
+/// The longest row in which people count.
+const LONGEST_ROW: usize = 5;
+
+impl Scene<'_> {
+    /// The superlatives that hold clearly of the target among itself and the given rivals, each with its cost.
+    pub(super) fn superlatives(&self, among: &[bool]) -> Vec<(f64, Distinction)> {
+        let others: Vec<usize> =
+            self.rivals.iter().zip(among).filter(|(_, among)| **among).map(|(rival, _)| *rival).collect();
+        self.in_row(&others).into_iter().chain(self.range(&others)).chain(self.height(&others)).collect()
+    }
+
+    fn in_row(&self, others: &[usize]) -> Option<(f64, Distinction)> {
+        let own = self.turn_rad(self.target)?.to_degrees();
+        let turns: Option<Vec<f64>> = others.iter().map(|other| Some(self.turn_rad(*other)?.to_degrees())).collect();
+        let turns = turns?;
+        let all = || turns.iter().copied().chain([own]);
+        let (first, last) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+        // A row behind the walker's back has no left end that everybody agrees on.
+        let is_clear = last - first <= WIDEST_DEG && first > -165.0 && last < 165.0;
+        if !is_clear || turns.iter().any(|turn| (turn - own).abs() < APART_DEG) {
+            return None;
+        }
+        let left = turns.iter().filter(|turn| **turn < own).count();
+        let (of, right) = (turns.len() + 1, turns.len() - left);
+        let (place, from) = if left <= right { (left + 1, Side::Left) } else { (right + 1, Side::Right) };
+        let cost = match (place, of) {
+            (1, _) => 1.7,
+            _ if of > LONGEST_ROW => return None,
+            _ => 2.3,
+        };
+        Some((cost, Distinction::InRow { place, of, from }))
+    }
+
+    fn range(&self, others: &[usize]) -> Option<(f64, Distinction)> {
+        let own_m = self.distance_m(self.target)?;
+        let others: Option<Vec<f64>> = others.iter().map(|other| self.distance_m(*other)).collect();
+        let others = others?;
+        let nearest = others.iter().all(|other_m| own_m < CLEARLY * other_m);
+        let furthest = others.iter().all(|other_m| own_m * CLEARLY > *other_m);
+        (nearest || furthest).then_some((2.0, Distinction::Range { nearest }))
+    }
+
+    fn height(&self, others: &[usize]) -> Option<(f64, Distinction)> {
+        let own_m = self.object(self.target).position?.z;
+        let others: Option<Vec<f64>> = others.iter().map(|other| Some(self.object(*other).position?.z)).collect();
+        let others = others?;
+        let highest = others.iter().all(|other_m| own_m > other_m + HIGHER_M);
+        let lowest = others.iter().all(|other_m| own_m + HIGHER_M < *other_m);
+        (highest || lowest).then_some((1.8, Distinction::Height { highest }))
+    }
+}

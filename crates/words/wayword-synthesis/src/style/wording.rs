@@ -1,0 +1,158 @@
+//! How people word a place and a task, as shares of constructions that are ours.
+//!
+//! The constructions and the shares of the built-in style are in `builtin/reverie.toml`. Every other style is measured:
+//! its references say how often each construction is used, and the built-in shares fill in where they say little.
+
+use super::parse_wording;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use std::{collections::BTreeMap, sync::LazyLock};
+use wayword_language::lexicon::{Class, kinds, thing};
+
+/// A group of constructions with their shares.
+pub type Shares = BTreeMap<String, f64>;
+
+/// The built-in shares.
+static BUILT_IN: LazyLock<Wording> = LazyLock::new(|| Wording { tables: parse_wording() });
+
+/// How a style words a place and a task.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct Wording {
+    pub(super) tables: BTreeMap<String, Shares>,
+}
+
+/// How many references the built-in shares count for, beside those of a style.
+const PRIOR: f64 = 12.0;
+
+impl Wording {
+    /// The built-in shares.
+    #[must_use]
+    pub fn built_in() -> &'static Self {
+        &BUILT_IN
+    }
+
+    /// Shares from counts in `texts` references, smoothed by the built-in shares. Tables of verbs are kept as counted.
+    pub(super) fn smoothed(counts: BTreeMap<String, Shares>, texts: f64) -> Self {
+        let mut tables = BUILT_IN.tables.clone();
+        for (name, shares) in &mut tables {
+            let Some(counted) = counts.get(name) else { continue };
+            if name == "share" {
+                // Each of these is a share of all references by itself.
+                for (key, share) in shares.iter_mut() {
+                    let seen = counted.get(key).copied().unwrap_or_default();
+                    *share = (seen + PRIOR * *share) / (texts + PRIOR);
+                }
+                continue;
+            }
+            let all: f64 = counted.values().sum();
+            let built_in: f64 = shares.values().sum::<f64>().max(1e-9);
+            for (key, share) in shares.iter_mut() {
+                let seen = counted.get(key).copied().unwrap_or_default();
+                *share = (seen + PRIOR * *share / built_in) / (all + PRIOR);
+            }
+        }
+        for (name, counted) in counts {
+            if name.starts_with(VERBS) || name.starts_with(ROOMS) {
+                let known = tables.entry(name).or_default();
+                let all: f64 = known.values().sum::<f64>().max(1.0);
+                known.values_mut().for_each(|share| *share *= PRIOR / all);
+                counted.into_iter().for_each(|(key, count)| *known.entry(key).or_default() += count);
+            }
+        }
+        Self { tables }
+    }
+
+    /// A share of all texts.
+    #[must_use]
+    pub fn share(&self, name: &str) -> f64 {
+        let share = self.tables.get("share").and_then(|shares| shares.get(name)).copied();
+        share.unwrap_or_default().clamp(0.0, 1.0)
+    }
+
+    /// The constructions of a table with their shares.
+    #[must_use]
+    pub fn table(&self, name: &str) -> &Shares {
+        static NONE: Shares = Shares::new();
+        self.tables.get(name).unwrap_or(&NONE)
+    }
+
+    /// One construction of a table, by a power of its share.
+    pub fn draw_sharply<'a>(
+        &'a self,
+        name: &str,
+        sharp: f64,
+        rng: &mut ChaCha8Rng,
+        may: impl Fn(&str) -> bool,
+    ) -> Option<&'a str> {
+        let options = self.table(name).iter().filter(|(key, _)| may(key));
+        drawn(options.map(|(key, share)| (key.as_str(), share.powf(sharp))), rng)
+    }
+
+    /// One construction of a table, by its share, among those that may be used.
+    pub fn draw<'a>(&'a self, name: &str, rng: &mut ChaCha8Rng, may: impl Fn(&str) -> bool) -> Option<&'a str> {
+        drawn(self.table(name).iter().filter(|(key, _)| may(key)).map(|(key, share)| (key.as_str(), *share)), rng)
+    }
+
+    /// What to do with a thing: `{o}` stands for it. `sharp` over 1 prefers what is said most.
+    pub fn verb(&self, name: &str, sharp: f64, rng: &mut ChaCha8Rng) -> &str {
+        let own = self.verbs_of(name);
+        drawn(own.into_iter().map(|(key, count)| (key, count.powf(sharp))), rng).unwrap_or("look at {o}")
+    }
+
+    /// The verbs for a thing: those for its own kind, or, where there are few, with those for its class.
+    fn verbs_of(&self, name: &str) -> Vec<(&str, f64)> {
+        let mut found: BTreeMap<&str, f64> = BTreeMap::new();
+        let mut enough = 0.0;
+        let class = thing(name).map_or(Class::Unknown, |thing| thing.class);
+        let tables = kinds(name).into_iter().map(|kind| verbs_of_kind(&kind)).chain([verbs_of_class(class)]);
+        for table in tables {
+            let shares = self.table(&table);
+            let all: f64 = shares.values().sum();
+            // The general fills in for what the special lacks of a fair number.
+            let weight = if enough >= ENOUGH { break } else { (ENOUGH - enough) / all.max(ENOUGH) };
+            let weight = if enough == 0.0 { 1.0 } else { weight };
+            shares.iter().for_each(|(key, count)| *found.entry(key).or_default() += count * weight);
+            enough += all * weight;
+        }
+        // "Wipe down the stairs" reads as a climb.
+        let climbs = |verb: &str| verb.split(' ').any(|word| matches!(word, "up" | "down"));
+        found.retain(|verb, _| class != Class::Stairs || !climbs(verb));
+        found.into_iter().collect()
+    }
+
+    /// The word for a room or a thing, by how often people use it.
+    pub fn called<'a>(&'a self, name: &'a str, rng: &mut ChaCha8Rng) -> &'a str {
+        drawn(self.table(&format!("{ROOMS}{name}")).iter().map(|(key, share)| (key.as_str(), *share)), rng)
+            .unwrap_or(name)
+    }
+}
+
+/// The prefix of the tables of verbs, before the name of a kind or a class.
+pub(super) const VERBS: &str = "do ";
+/// The prefix of the tables of words for rooms and things.
+pub(super) const ROOMS: &str = "call ";
+/// So many tasks on one kind of thing say well enough what people do with it.
+const ENOUGH: f64 = 30.0;
+
+/// The table of verbs of a kind of thing.
+pub(super) fn verbs_of_kind(kind: &str) -> String {
+    format!("{VERBS}{kind}")
+}
+
+/// The table of verbs of a class.
+pub(super) fn verbs_of_class(class: Class) -> String {
+    format!("{VERBS}class {class:?}").to_lowercase()
+}
+
+fn drawn<'a>(options: impl Iterator<Item = (&'a str, f64)>, rng: &mut ChaCha8Rng) -> Option<&'a str> {
+    let options: Vec<(&str, f64)> = options.filter(|(_, share)| *share > 0.0).collect();
+    let all: f64 = options.iter().map(|(_, share)| share).sum();
+    let mut rest = rng.random_range(0.0..1.0) * all;
+    for (key, share) in &options {
+        rest -= share;
+        if rest < 0.0 {
+            return Some(key);
+        }
+    }
+    options.last().map(|(key, _)| *key)
+}

@@ -1,0 +1,186 @@
+//! The object of the task, in words: its name, and what tells it from everything else.
+
+use crate::{
+    style::Wording,
+    writer::{Brief, WriteError, phrases::ordinal, task::free_object},
+};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
+use wayword_core::{Description, Distinction, Relation, Side};
+
+/// The object, with all that can be said of it.
+pub(super) struct Said<'a> {
+    pub(super) name: String,
+    /// What it is called in this text.
+    called: String,
+    descriptions: &'a [Description],
+    told_by: &'a [Distinction],
+    has_namesake: bool,
+}
+
+impl<'a> Said<'a> {
+    pub(super) fn of(brief: &Brief<'a>, rng: &mut ChaCha8Rng) -> Result<Self, WriteError> {
+        let walk = brief.walk;
+        let wording = &brief.profile.wording;
+        Ok(match &walk.path.target {
+            Some(target) => Self {
+                name: target.name.clone(),
+                called: wording.called(&target.name, rng).to_owned(),
+                descriptions: &target.descriptions,
+                told_by: &target.told_by,
+                has_namesake: target.has_namesake,
+            },
+            None => {
+                let name = free_object(brief, rng).ok_or(WriteError::NoObject)?;
+                Self { called: name.clone(), name, descriptions: &[], told_by: &[], has_namesake: false }
+            }
+        })
+    }
+
+    /// What is said of the object beside its name: by the shares of the style, among what pins it down, or, where it need
+    /// not be sure, among everything. `more` asks for a longer one.
+    pub(super) fn description(
+        &self,
+        wording: &Wording,
+        is_sure: bool,
+        more: usize,
+        rng: &mut ChaCha8Rng,
+    ) -> Vec<&'a Distinction> {
+        let all: Vec<&[Distinction]> = if self.descriptions.is_empty() {
+            self.told_by.iter().map(std::slice::from_ref).collect()
+        } else {
+            self.descriptions.iter().map(|description| description.by.as_slice()).collect()
+        };
+        let mut by: Vec<&Distinction> = if is_sure { draw(&all, wording, rng).iter().collect() } else { Vec::new() };
+        // What else is true of it makes it no less clear, if it is of another kind.
+        let said_of = |by: &[&Distinction], of: &dyn Fn(&Distinction) -> bool| by.iter().any(|by| of(by));
+        let extra = if is_sure { more } else { more.max(usize::from(rng.random_bool(wording.share("object")))) };
+        for _ in 0..extra {
+            let has_object = said_of(&by, &|by| !by.is_of_room());
+            let has_by = said_of(&by, &|by| matches!(by, Distinction::RoomBy { .. }));
+            let has_with = said_of(&by, &|by| matches!(by, Distinction::RoomWith { .. }));
+            let adds = |other: &&Distinction| match other {
+                Distinction::RoomBy { .. } => !has_by,
+                Distinction::RoomWith { .. } => !has_with,
+                Distinction::Related { .. } | Distinction::NextTo { .. } => !has_object,
+                _ => false,
+            };
+            let others = all.iter().flat_map(|by| by.iter()).filter(adds).map(std::slice::from_ref);
+            by.extend(draw(&others.collect::<Vec<_>>(), wording, rng));
+        }
+        if self.has_namesake && !said_of(&by, &|by| !by.is_of_room()) {
+            let told: Vec<&[Distinction]> = self.told_by.iter().map(std::slice::from_ref).collect();
+            by.extend(draw(&told, wording, rng));
+        }
+        by
+    }
+
+    /// The object with its article.
+    pub(super) fn phrase(&self, by: &[&Distinction], wording: &Wording, rng: &mut ChaCha8Rng) -> String {
+        let of_object = by.iter().filter(|by| !by.is_of_room());
+        let (mut phrase, mut behind) = (format!("the {}", self.called), Vec::new());
+        for by in of_object {
+            match *by {
+                Distinction::Colour { colour } => phrase = phrase.replacen("the ", &format!("the {colour} "), 1),
+                Distinction::InRow { .. } | Distinction::Range { .. } | Distinction::Height { .. } => {
+                    phrase = superlative(by, &self.called, wording, rng).unwrap_or(phrase);
+                }
+                _ => behind.extend(relation(by, wording, rng)),
+            }
+        }
+        let link = wording.draw("link", rng, |link| link != "located" && link != "that's" || behind.len() == 1);
+        if let (Some(first), Some(link)) = (behind.first_mut(), link.filter(|link| !link.is_empty())) {
+            *first = format!("{link} {first}");
+        }
+        std::iter::once(phrase).chain(behind).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// One of several descriptions. People choose first which kinds of thing to say; of those of one kind, the cheaper.
+fn draw<'a>(all: &[&'a [Distinction]], wording: &Wording, rng: &mut ChaCha8Rng) -> &'a [Distinction] {
+    let mut of_kind: BTreeMap<Vec<&str>, Vec<&'a [Distinction]>> = BTreeMap::new();
+    for by in all {
+        of_kind.entry(by.iter().map(table).collect()).or_default().push(by);
+    }
+    let kinds: Vec<&Vec<&[Distinction]>> = of_kind.values().collect();
+    let weights: Vec<f64> = kinds.iter().map(|kind| likelihood(kind[0], wording)).collect();
+    let Some(kind) = weighed(&weights, rng) else { return &[] };
+    let cheaper: Vec<f64> = (0..kinds[kind].len()).map(|at| 0.88_f64.powi(at as i32)).collect();
+    weighed(&cheaper, rng).map_or(&[], |at| kinds[kind][at])
+}
+
+/// A place in a list, by the weights there.
+fn weighed(weights: &[f64], rng: &mut ChaCha8Rng) -> Option<usize> {
+    let mut rest = rng.random_range(0.0..1.0) * weights.iter().sum::<f64>();
+    let found = weights.iter().position(|weight| {
+        rest -= weight;
+        rest < 0.0
+    });
+    found.or(weights.len().checked_sub(1))
+}
+
+/// How likely people of the style say just this of an object and its room.
+fn likelihood(by: &[Distinction], wording: &Wording) -> f64 {
+    let told = wording.table("told");
+    let all: f64 = told.values().sum::<f64>().max(1e-9);
+    let share = |table: &str| told.get(table).copied().unwrap_or(0.5) / all;
+    let odds = |name: &str| wording.share(name) / (1.0 - wording.share(name)).max(0.05);
+    let one = |by: &Distinction| match by {
+        Distinction::Level { .. } => odds("level").max(0.5),
+        Distinction::RoomBy { .. } => odds("room by"),
+        Distinction::RoomWith { .. } => odds("room with") * 0.5,
+        _ => odds("object") * share(table(by)) * 3.0,
+    };
+    by.iter().map(one).product()
+}
+
+/// The table of constructions for what is said of an object.
+fn table(by: &Distinction) -> &'static str {
+    match by {
+        Distinction::NextTo { .. } => "closest",
+        Distinction::Related { relation: Relation::Near, .. } => "near",
+        Distinction::Related { relation: Relation::Above, .. } => "above",
+        Distinction::Related { relation: Relation::Under, .. } => "under",
+        Distinction::Related { relation: Relation::On, .. } => "on",
+        Distinction::Related { relation: Relation::LeftOf, .. } => "left",
+        Distinction::Related { relation: Relation::RightOf, .. } => "right",
+        Distinction::Between { .. } => "between",
+        Distinction::OnSide { .. } => "side",
+        Distinction::InRow { place: 1, .. } => "row first",
+        Distinction::InRow { place: 2, of: 3, .. } | Distinction::InRow { place: 3, of: 5, .. } => "middle",
+        Distinction::InRow { .. } => "row",
+        Distinction::Range { nearest: true } => "nearest",
+        Distinction::Range { nearest: false } => "furthest",
+        Distinction::Height { highest: true } => "highest",
+        Distinction::Height { highest: false } => "lowest",
+        Distinction::Colour { .. } => "colour",
+        Distinction::Level { .. } => "level",
+        Distinction::RoomBy { .. } => "room by",
+        Distinction::RoomWith { .. } => "room with",
+    }
+}
+
+fn superlative(by: &Distinction, name: &str, wording: &Wording, rng: &mut ChaCha8Rng) -> Option<String> {
+    let way = wording.draw(table(by), rng, |_| true)?;
+    let (place, is_right) = match by {
+        Distinction::InRow { place, from, .. } => (*place as u32, *from == Side::Right),
+        _ => (1, false),
+    };
+    let way = way.replace("{th}", ordinal(place)?);
+    let way = if is_right { way.replace("leftmost", "rightmost").replace("left", "right") } else { way };
+    Some(way.replace("{o}", name))
+}
+
+fn relation(by: &Distinction, wording: &Wording, rng: &mut ChaCha8Rng) -> Option<String> {
+    let way = wording.draw(table(by), rng, |_| true)?;
+    Some(match by {
+        Distinction::NextTo { neighbour: to } | Distinction::Related { to, .. } => {
+            way.replace("{x}", wording.called(to, rng))
+        }
+        Distinction::Between { one, other } => way.replace("{x}", one).replace("{y}", other),
+        Distinction::OnSide { side: Side::Right } => way.replace("left", "right"),
+        Distinction::OnSide { side: Side::Left } => way.to_owned(),
+        _ => return None,
+    })
+}

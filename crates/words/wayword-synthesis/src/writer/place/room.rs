@@ -1,0 +1,105 @@
+//! The room at the end, in words: its name, its storey, and what else tells which one it is.
+
+use super::SHARP;
+use crate::{
+    style::Wording,
+    writer::{Brief, phrases::ordinal, route::last_climb},
+};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeSet;
+use wayword_core::{Climb, Distinction};
+use wayword_language::lexicon::{room_name, with_article};
+
+/// The room where a path ends.
+pub(super) struct Goal<'a> {
+    wording: &'a Wording,
+    room: &'a str,
+    level: Option<u32>,
+    climb: Option<Climb>,
+    /// How likely it is that the storey is said where nothing asks for it.
+    names_level: f64,
+}
+
+/// How much oftener than on average a text names the storey, beside those that need it to be clear, where it changes along the path, where the building has
+/// several, and where it has one.
+const BY_NEED: [f64; 3] = [1.6, 0.95, 0.25];
+
+impl<'a> Goal<'a> {
+    pub(super) fn new(brief: &Brief<'a>, room: &'a str) -> Self {
+        let path = &brief.walk.path;
+        let levels: BTreeSet<u32> = path.frames.iter().filter_map(|frame| frame.level).collect();
+        let need = match path.target.as_ref().map_or(0, |target| target.storeys) {
+            _ if levels.len() > 1 => BY_NEED[0],
+            0 => 1.0,
+            1 => BY_NEED[2],
+            _ => BY_NEED[1],
+        };
+        let wording = &brief.profile.wording;
+        let names_level = (wording.share("level") * need).clamp(0.0, 0.97);
+        let level = path.frames.last().and_then(|frame| frame.level);
+        Self { wording, room, level, climb: last_climb(brief.walk), names_level }
+    }
+
+    /// Whether the storey is said where nothing asks for it.
+    pub(super) fn names_level(&self, rng: &mut ChaCha8Rng) -> bool {
+        rng.random_bool(self.names_level)
+    }
+
+    /// "Go to", "proceed to": up or down only where the path goes there.
+    pub(super) fn opener(&self, rng: &mut ChaCha8Rng) -> &'a str {
+        let fits = |opener: &str| {
+            let holds = |word: &str| opener.split(' ').any(|part| part == word);
+            match self.climb {
+                _ if holds("into") || holds("enter") => room_name(self.room) != Some("stairs"),
+                Some(Climb::Up) => !holds("down") && !holds("downstairs"),
+                Some(Climb::Down) => !holds("up") && !holds("upstairs"),
+                _ => !["up", "down", "upstairs", "downstairs"].iter().any(|word| holds(word)),
+            }
+        };
+        self.wording.draw_sharply("opener", SHARP, rng, fits).unwrap_or("go to")
+    }
+
+    /// "In", "from", "on": before the room, behind a task.
+    pub(super) fn preposition(&self, verb: &str, rng: &mut ChaCha8Rng) -> &'static str {
+        let takes = ["bring", "grab", "fetch", "take", "get", "remove"].iter().any(|take| verb.starts_with(take));
+        match room_name(self.room) {
+            _ if takes && rng.random_bool(0.5) => "from",
+            Some("porch" | "balcony" | "stairs") => "on",
+            _ => "in",
+        }
+    }
+
+    /// The room with its article and with what of a description is about rooms.
+    pub(super) fn phrase(&self, by: &[&Distinction], names_level: bool, rng: &mut ChaCha8Rng) -> String {
+        let must = by.iter().any(|by| matches!(by, Distinction::Level { .. }));
+        let level = self.level.filter(|_| must || names_level);
+        let room = self.wording.called(self.room, rng);
+        let qualifiers: Vec<String> = by.iter().filter_map(|by| self.qualifier(by, rng)).collect();
+        let Some(level) = level else { return join(&[format!("the {room}")], &qualifiers) };
+        let has_ordinal = |way: &str| ordinal(level).is_some() || !way.contains("{th}");
+        let way = self.wording.draw("level", rng, has_ordinal).unwrap_or("the {r} on level {n}");
+        let filled = way.replace("{n}", &level.to_string()).replace("{th}", ordinal(level).unwrap_or_default());
+        // "The bathroom next to the hall on level 2": the storey may stand at the end.
+        let is_last = filled.starts_with("the {r} ") && rng.random_bool(0.35);
+        if is_last && !qualifiers.is_empty() {
+            let level = filled.trim_start_matches("the {r} ").to_owned();
+            return join(&[format!("the {room}")], &[qualifiers, vec![level]].concat());
+        }
+        join(&[filled.replace("{r}", room)], &qualifiers)
+    }
+
+    fn qualifier(&self, by: &Distinction, rng: &mut ChaCha8Rng) -> Option<String> {
+        let (table, name) = match by {
+            Distinction::RoomBy { room } => ("room by", self.wording.called(room, rng).to_owned()),
+            Distinction::RoomWith { thing } => ("room with", self.wording.called(thing, rng).to_owned()),
+            _ => return None,
+        };
+        let way = self.wording.draw(table, rng, |_| true)?;
+        Some(way.replace("a {x}", &with_article(&name)).replace("{x}", &name))
+    }
+}
+
+fn join(first: &[String], others: &[String]) -> String {
+    [first, others].concat().join(" ")
+}
