@@ -2,6 +2,7 @@
 
 mod budget;
 mod calls;
+mod claims;
 mod corrupt;
 mod corrupt_people;
 mod corruptions;
@@ -96,6 +97,9 @@ enum What {
         #[arg(long, default_value_t = 0.15)]
         hallucinated: f64,
     },
+    /// Hold true and false claims about paths against labels and against the captions of a flawed eye, and count what the
+    /// checks refuse and what they catch.
+    Claims(claims::Flags),
     /// Fit the weights that say how much the silence of labels says about a claim, on people's texts.
     FitEvidence {
         /// Folder of Matterport3D's and REVERIE's data.
@@ -225,6 +229,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Provider(flags) => provider::serve(&flags, output),
         What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
         What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
+        What::Claims(flags) => claims::measure(&flags, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
         What::People(flags) => people::measure(flags, output),

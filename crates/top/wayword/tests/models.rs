@@ -18,7 +18,7 @@ use wayword_testkit::provider::{
 #[test]
 fn models_play_every_role_and_say_so() {
     let stage = Stage::new(cast());
-    let ran = stage.generate("run", &["--paths", "6", "--record", "calls.jsonl", "--json"]);
+    let ran = stage.generate("run", &["--paths", "6", "--record", "calls.jsonl", "--perception", "dialogue", "--json"]);
     let summary = ran.json();
     assert_eq!((ran.code, summary["errors"].as_u64()), (Some(0), Some(0)), "{ran:?}");
     assert_eq!(summary["passed"], 6, "{ran:?}");
@@ -90,7 +90,7 @@ fn a_storm_is_weathered_and_every_item_ends() {
     faults.trickle = std::time::Duration::from_secs(2);
     let behaviour = Behaviour { faults, ..cast() };
     let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..behaviour });
-    let args = ["--paths", "12", "--concurrency", "16", "--timeout-s", "1", "--json"];
+    let args = ["--paths", "12", "--concurrency", "16", "--timeout-s", "1", "--perception", "dialogue", "--json"];
     let ran = stage.generate("run", &args);
     let summary = ran.json();
     let ended = ["passed", "unverified", "rejected", "errors"].map(|fate| summary[fate].as_u64().unwrap());
@@ -448,18 +448,44 @@ fn perception_is_measured_in_each_way_of_asking() {
     let measured = run(&mut stage.command("perceive", &["--views", "12", "--json"])).json();
     let rows = measured["rows"].as_array().unwrap();
     let ways: Vec<&str> = rows.iter().map(|row| row["perception"].as_str().unwrap()).collect();
-    assert_eq!(ways, ["fixed", "single", "dialogue"]);
+    assert_eq!(ways, ["fixed", "single", "structured", "follow_up", "dialogue"]);
     let calls: Vec<f64> = rows.iter().map(|row| row["calls_per_view"].as_f64().unwrap()).collect();
-    assert!(calls[0] == 2.0 && calls[1] == 1.0 && calls[2] > 4.0, "{calls:?}");
+    assert!(calls[0] == 2.0 && calls[1] == 1.0 && calls[4] > 4.0, "{calls:?}");
+    assert!(calls[2] <= 1.3 && calls[3] >= calls[2], "{calls:?}");
+    let said = run(&mut stage.command("perceive", &["--views", "12"])).out;
+    assert!(said.contains(" pays: F1 of objects"), "{said}");
     let labels =
         stage.building.wayword(&["perceive", "--platform", "matterport", "--data", "data", "--views", "12", "--json"]);
     let rows = labels.json();
-    assert_eq!(rows["rows"][2]["hallucination_rate"], 0.0, "ground-truth labels hallucinate nothing: {rows}");
+    assert_eq!(rows["rows"][4]["hallucination_rate"], 0.0, "ground-truth labels hallucinate nothing: {rows}");
     let episodes = format!("episodes = '{}'\n", common::EPISODES);
     stage.building.write("run.toml", format!("platform = 'matterport'\ndata = 'data'\n{episodes}"));
     let shown = |args: &[&str]| stage.building.wayword(&[&["perceive", "--show", "4", "--views", "4"], args].concat());
     let by_flags = shown(&["--platform", "matterport", "--data", "data", "--episodes", common::EPISODES]);
     assert_eq!(shown(&["--config", "run.toml"]).out, by_flags.out, "the file's episodes are looked along");
+}
+
+/// One call a view, two an instruction at most, and a view is talked about once for every run.
+#[test]
+fn by_default_a_view_costs_one_call() {
+    let stage = Stage::new(cast());
+    let run = |name: &str, more: &[&str]| {
+        let ran = stage.generate(name, &[&["--paths", "6", "--style", "r2r", "--json"], more].concat());
+        assert!(ran.code == Some(0), "{ran:?}");
+        ran.json()
+    };
+    let summary = run("run", &[]);
+    let provenance = &stage.building.records("run")[0].instruction.provenance;
+    assert_eq!(provenance.asker, "one structured request");
+    let walks = stage.building.lines("run/walks.jsonl");
+    let observations = || walks.iter().flat_map(|walk| walk["observations"].as_array().unwrap());
+    let views = observations().map(|seen| seen["looks"].as_array().unwrap().len()).sum::<usize>();
+    let calls = summary["spent"]["answered"].as_u64().unwrap() as f64;
+    assert!(calls <= 1.3 * views as f64 + 2.0 * 6.0, "{calls} calls for {views} views");
+    assert!(observations().any(|seen| seen["looks"][0]["caption"]["is_structured"] == true));
+    let again = run("again", &["--seed", "0", "--style", "reverie"]);
+    let new = again["spent"]["answered"].as_u64().unwrap();
+    assert!(new <= 4 * 6, "{new} calls, though every view was talked about before");
 }
 
 #[test]

@@ -78,7 +78,9 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) ->
     }
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
     let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
-    Some((wrong_unless_elsewhere(shown), reason))
+    // Captions miss things, so one may stand on the other side too. Who wrote from them cannot know of it.
+    let may_be_missed = evidence.source == Source::Captions && !made_up;
+    Some((if may_be_missed { Verdict::Unverified } else { wrong_unless_elsewhere(shown) }, reason))
 }
 
 /// Whether a text names a room beside the one at the end, or a thing in it, only to tell which room or thing it means.

@@ -7,10 +7,10 @@
 
 mod align;
 mod coverage;
-mod end;
 mod evidence;
 mod floors;
 mod form;
+mod goal;
 mod landmarks;
 mod leak;
 mod made_up;
@@ -145,15 +145,14 @@ fn held(text: &str, subject: Subject<'_>, from_captions_alone: bool) -> Checked 
     }
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
-    let mut places = landmarks::landmarks(&reading, subject.evidence, object, from_captions_alone);
+    let places = landmarks::landmarks(&reading, subject.evidence, object, from_captions_alone);
     let walk = order::order(&reading, subject.evidence, &places.shown);
     match subject.world {
         World::Closed => {
-            let end = end::end(&reading, subject.evidence);
-            if !end.is_empty() {
-                places.findings.retain(|finding| finding.verdict != Verdict::Pass);
+            findings.extend(places.findings);
+            if let Some(wrong) = goal::goal(&reading, subject.evidence, object) {
+                add_worse(&mut findings, wrong);
             }
-            findings.extend(places.findings.into_iter().chain(end));
             findings.extend(walk.findings);
             findings.extend(floors::floors(&reading, subject.evidence));
         }
@@ -253,6 +252,16 @@ impl Checked {
         }
         self.findings.sort_by_key(|finding| finding.check);
     }
+}
+
+/// Adds what a second look at the same check found, unless it was found before.
+fn add_worse(findings: &mut Vec<Finding>, wrong: Finding) {
+    let is_same = |other: &Finding| other.check == wrong.check && other.span == wrong.span;
+    if findings.iter().any(|other| is_same(other) && other.verdict >= wrong.verdict) {
+        return;
+    }
+    findings.retain(|other| other.check != wrong.check || (other.verdict != Verdict::Pass && !is_same(other)));
+    findings.push(wrong);
 }
 
 /// A check that found nothing wrong.

@@ -1,11 +1,9 @@
 //! Evidence from captions.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
+use std::collections::BTreeSet;
 use wayword_core::{Form, Look, Observation, Path, Sighting, Where, Witness};
 use wayword_language::lexicon::{agree, kinds, normal};
-
-/// So many things make a caption a list of what a view shows, and not a remark about some of it.
-const OF_A_LIST: usize = 3;
 
 impl Evidence {
     /// Evidence from captions, one observation per frame of the path. `None` where no caption names a room or an
@@ -21,10 +19,31 @@ impl Evidence {
                 of_looks(&seen.looks, &off_rad)
             })
             .collect();
+        let mut frames = frames;
+        doubt(&mut frames);
         let known = frames
             .iter()
             .any(|frame| !frame.rooms.is_empty() || !frame.things.is_empty() || !frame.perhaps.things.is_empty());
         known.then(|| Self::of(path, frames, Source::Captions))
+    }
+}
+
+/// A name of which witnesses were unsure at least as often as they were sure is only perhaps there, wherever it was named.
+fn doubt(frames: &mut [FrameEvidence]) {
+    let count = |of: fn(&FrameEvidence) -> &Vec<SeenThing>, frames: &[FrameEvidence], name: &str| {
+        frames.iter().filter(|frame| of(frame).iter().any(|thing| normal(&thing.name) == name)).count()
+    };
+    let names: BTreeSet<String> =
+        frames.iter().flat_map(|frame| &frame.perhaps.things).map(|thing| normal(&thing.name)).collect();
+    let is_doubtful = |name: &String| {
+        count(|frame| &frame.perhaps.things, frames, name) >= count(|frame| &frame.things, frames, name)
+    };
+    let doubtful: BTreeSet<String> = names.into_iter().filter(is_doubtful).collect();
+    for frame in frames {
+        let (doubted, sure) = frame.things.drain(..).partition(|thing| doubtful.contains(&normal(&thing.name)));
+        frame.things = sure;
+        let mut doubted: Vec<SeenThing> = doubted;
+        frame.perhaps.things.append(&mut doubted);
     }
 }
 
@@ -53,10 +72,10 @@ fn of_looks(looks: &[Look], off_rad: &dyn Fn(&Look) -> f64) -> FrameEvidence {
     evidence
 }
 
-/// Whether a caption lists what its view shows: an answer of the form that was asked for, with several things.
+/// Whether a caption lists what its view shows: an answer of the form that was asked for, with something in it.
 fn is_list(look: &Look) -> bool {
-    let named = look.caption.sightings.iter().filter(|sighting| sighting.witness != Witness::Denied).count();
-    look.caption.is_structured && look.caption.form != Some(Form::Broken) && named >= OF_A_LIST
+    let names_something = look.caption.sightings.iter().any(|sighting| sighting.witness != Witness::Denied);
+    look.caption.is_structured && look.caption.form != Some(Form::Broken) && names_something
 }
 
 fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {

@@ -86,7 +86,7 @@ pub struct SeenThing {
 
 impl FrameEvidence {
     /// Whether its witness thought of seeing such a thing, without being sure.
-    fn may_show(&self, name: &str) -> bool {
+    pub(crate) fn may_show(&self, name: &str) -> bool {
         self.perhaps.things.iter().any(|thing| agree(&thing.name, name))
     }
 }

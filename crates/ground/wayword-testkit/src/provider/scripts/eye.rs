@@ -35,7 +35,7 @@ pub struct FlawedEye {
 impl FlawedEye {
     /// An eye that hallucinates this share of the objects that it names. When it is asked, it admits 70 % of them. It
     /// misses a tenth of the objects that are there and denies 3 % of them. Where it says how sure it is, it is not sure
-    /// of a tenth of what is there and of 35 % of what is not, and 2 % of its answers do not have the form.
+    /// of a tenth of what is there and of 45 % of what is not, and 2 % of its answers do not have the form.
     #[must_use]
     pub fn new(gallery: Gallery, seed: u64, hallucinated_share: f64) -> Self {
         Self {
@@ -46,7 +46,7 @@ impl FlawedEye {
             contradiction_share: 0.7,
             blindness_share: 0.03,
             hedge_share: 0.1,
-            doubt_share: 0.35,
+            doubt_share: 0.45,
             misshapen_share: 0.02,
         }
     }

@@ -3,7 +3,7 @@
 use super::{
     Told,
     mentions::{Mention, mentions},
-    phrases::{Wanted, bare_colour, first_colour, place_phrases},
+    phrases::{Wanted, bare_colour, colour_at, first_colour, place_phrases},
     polarity::{Polarity, is_unsure, polarity_of},
     question::{Asked, asked},
 };
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use wayword_core::{Exchange, Sighting, Where, Witness};
 use wayword_language::{
     answers::FREE_SPEECH,
-    lexicon::{COUNTS, agree, normal, singular, thing, without_article},
+    lexicon::{COUNTS, agree, is_thing, normal, singular, thing, without_article},
 };
 
 /// Everything that an exchange says of objects, as `by` says it.
@@ -235,7 +235,24 @@ fn item(words: &str, place: Where) -> Option<Sighting> {
         return None;
     }
     let name = if several { singular(name) } else { without_article(name).to_owned() };
-    Some(Sighting { place: Some(place), several, ..sighting(&name, Witness::Seen) })
+    let (colour, name) = apart(&name);
+    Some(Sighting { place: Some(place), several, colour, ..sighting(name, Witness::Seen) })
+}
+
+/// The colour of a name and what it belongs to, where that is a thing: "tall grey armchair" is a grey armchair.
+fn apart(name: &str) -> (Option<String>, &str) {
+    if is_thing(&normal(name)) {
+        return (None, name);
+    }
+    let words: Vec<&str> = name.split(' ').collect();
+    let starts = name.match_indices(' ').map(|(at, _)| at + 1);
+    let starts: Vec<usize> = std::iter::once(0).chain(starts).collect();
+    let found = (0..words.len()).find_map(|at| {
+        let (colour, length) = colour_at(&words[at..])?;
+        let rest = &name[*starts.get(at + length)?..];
+        is_thing(&normal(rest)).then_some((Some(colour), rest))
+    });
+    found.unwrap_or((None, name))
 }
 
 #[cfg(test)]

@@ -7,11 +7,11 @@ use super::{
 use std::{collections::BTreeSet, ops::Range};
 use wayword_core::{Where, Witness};
 use wayword_language::{
-    answers::{BRINGS_IN, NO_OBJECTS, NUMBERS, OTHERS, PERCEIVING, TELLS_NOTHING},
+    answers::{BRINGS_IN, MATERIALS, NO_OBJECTS, NUMBERS, OTHERS, PERCEIVING, QUALITIES, TELLS_NOTHING},
     lexicon::{agree, normal, says_several, singular, thing},
     reading::{
         What, read,
-        vocabulary::{ABSTRACT, BREAKERS},
+        vocabulary::{ABSTRACT, BREAKERS, COLOURS},
     },
     text::{Token, tokens},
 };
@@ -29,6 +29,8 @@ pub(in crate::dialogue) struct Mention {
     pub(in crate::dialogue) several: bool,
     /// The word before it without articles and adjectives: "to", "of" ...
     pub(in crate::dialogue) before: String,
+    /// Whether it is said to be seen through a door.
+    pub(in crate::dialogue) is_beyond: bool,
 }
 
 /// Longest name that counts as one, bytes.
@@ -92,6 +94,7 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Me
             place: places[at],
             several: !denied && (plural || is_counted(words, range.start)),
             before: before(words, range.start).to_owned(),
+            is_beyond: is_beyond(words, range),
         });
     }
 }
@@ -134,6 +137,22 @@ fn which<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
         .last();
     let Some(from) = from.filter(|from| *from > 0 && begins(words[from - 1])) else { return Vec::new() };
     words[from..noun.start].iter().filter(|word| !TELLS_NOTHING.contains(word)).copied().collect()
+}
+
+/// "Through the doorway a bedroom", "a kitchen beyond the open door": what is named is behind it.
+fn is_beyond(words: &[&str], noun: &Range<usize>) -> bool {
+    let is_opening = |word: &&str| {
+        matches!(
+            *word,
+            "door" | "doors" | "doorway" | "doorways" | "opening" | "archway" | "arch" | "window" | "entrance"
+        )
+    };
+    let through = |at: usize| {
+        matches!(words[at], "through" | "beyond" | "behind" | "past")
+            && words[at + 1..].iter().take(5).any(|word| is_opening(&word))
+    };
+    let behind = words[noun.end..].iter().take(6).take_while(|word| !matches!(**word, "," | "with" | "and")).count();
+    (noun.start.saturating_sub(8)..noun.start).chain(noun.end..noun.end + behind).any(through)
 }
 
 /// The last word before a noun that is neither an article nor an adjective of a few.
@@ -229,6 +248,28 @@ fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>)
 /// "The picture shows", "in this photo", "a picture of a kitchen": the view itself, not something on a wall of it.
 fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
     let single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph");
+    let filled = |word: &str| {
+        matches!(
+            word,
+            "fills"
+                | "fill"
+                | "filling"
+                | "dominates"
+                | "dominate"
+                | "occupies"
+                | "occupy"
+                | "crosses"
+                | "frames"
+                | "of"
+                | "in"
+                | "across"
+                | "throughout"
+                | "within"
+        )
+    };
+    if single && from > 1 && matches!(words[from - 1], "the" | "this") && filled(words[from - 2]) {
+        return true;
+    }
     let word = |at: usize| words.get(at).copied().unwrap_or("");
     let before = if from > 0 { word(from - 1) } else { "" };
     let hangs = matches!(word(to), "on" | "above" | "over" | "hanging" | "hangs" | "frame" | "frames");
@@ -257,6 +298,10 @@ fn is_manner_of_speaking(words: &[&str], from: usize, to: usize) -> bool {
     }
     match (words[from], words.get(to).copied().unwrap_or("")) {
         ("decor", _) => true,
+        // "The wall steps forward."
+        ("steps" | "step", "forward" | "back" | "backward" | "down" | "up" | "out" | "in" | "away" | "aside") => true,
+        // "A light wooden floor."
+        ("light", next) if MATERIALS.contains(&next) || QUALITIES.contains(&next) || COLOURS.contains(&next) => true,
         ("range" | "shade" | "shades" | "case" | "cover" | "scale" | "stage", "of") => true,
         ("light", next) => {
             matches!(
@@ -275,7 +320,9 @@ fn is_brought_in(words: &[&str], from: usize, to: usize) -> bool {
     let start = (0..from).rev().find(|at| matches!(words[*at], "." | "!" | "?" | ";")).map_or(0, |at| at + 1);
     let indefinite = from > 0 && matches!(words[from - 1], "a" | "an");
     let stays = |word: &str| !NO_OBJECTS.contains(&normal(word).as_str()) && !word.ends_with("ing") && word != "shows";
+    let is_quality = QUALITIES.contains(&head.as_str()) || MATERIALS.contains(&head.as_str());
     indefinite
+        && !is_quality
         && to - from <= 3
         && words[from..to].iter().all(|word| stays(word))
         && !ABSTRACT.contains(&head.as_str())

@@ -174,6 +174,7 @@ fn first_named(text: &str, ambiguous: bool) -> Option<String> {
         mention.is_room
             && (ambiguous || !mention.is_thing)
             && mention.witness != Witness::Denied
+            && !mention.is_beyond
             && !ELSEWHERE.contains(&mention.before.as_str())
     });
     found.map(|mention| mention.name).filter(|name| name.len() <= MOST_BYTES)

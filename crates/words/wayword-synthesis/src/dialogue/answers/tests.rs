@@ -411,3 +411,49 @@ proptest! {
         room(&[Exchange::new(question, answer)]);
     }
 }
+
+#[test]
+fn ways_of_speaking_leave_no_ghosts() {
+    check(
+        OPENING,
+        &[
+            ("There is a bed with a soft, blotchy pattern on the wall.", "+ bed"),
+            ("The wall steps forward next to a sofa.", "+ sofa"),
+            ("There is a light wooden floor and a lamp.", "+ lamp"),
+            ("A grey sofa fills the picture.", "+ grey sofa"),
+            ("A sofa fills most of the picture and a lamp stands on the left.", "+ sofa, + lamp left"),
+            ("I can see a box. There is nothing besides the box.", "+ box"),
+            ("There are no chairs besides the box on the left.", "- chair, + box left"),
+        ],
+    );
+}
+
+#[test]
+fn long_noun_phrases_are_read_whole() {
+    check(
+        OPENING,
+        &[
+            ("There are two tall grey armchairs on the left.", "+ grey armchair left several"),
+            ("The large flat-screen television on the wall is off.", "+ television"),
+            ("I see a row of kitchen cabinets on the right.", "+ kitchen cabinet right several"),
+            ("Two tall grey armchairs and a low round table.", "+ grey armchair several, + round table"),
+        ],
+    );
+}
+
+#[test]
+fn the_room_is_the_one_that_one_stands_in() {
+    let room_of = |question: &str, answer: &str| room(&[Exchange::new(question, answer)]);
+    for (answer, wanted) in [
+        ("A hallway leading to a kitchen.", Some("hallway")),
+        ("Through the doorway a bedroom can be seen.", None),
+        ("Through the doorway a bedroom can be seen. This is a hallway.", Some("hallway")),
+        ("I see a kitchen through the open door, and a sofa.", None),
+        ("A living room with a view into the kitchen.", Some("living room")),
+        ("This is a hallway, with a bathroom visible beyond the door.", Some("hallway")),
+    ] {
+        for question in [OPENING, "Which room is this?"] {
+            assert_eq!(room_of(question, answer).as_deref(), wanted, "{question} {answer}");
+        }
+    }
+}
