@@ -77,7 +77,7 @@ fn ask(provider: &Provider) -> TcpStream {
 }
 
 #[test]
-fn every_dialect_wants_its_key_and_counts_its_words() {
+fn every_dialect_wants_its_key_and_counts_its_tokens() {
     let provider = provider(Faults::default());
     for (dialect, path, header, body) in requests() {
         let base = provider.base_url(dialect);
@@ -96,7 +96,7 @@ fn every_dialect_wants_its_key_and_counts_its_words() {
             Dialect::Ollama => ("/prompt_eval_count", "/eval_count", "/done_reason"),
         };
         assert_eq!(answer.pointer(tokens_in), Some(&json!(1)), "{dialect:?}");
-        assert_eq!(answer.pointer(tokens_out), Some(&json!(6)), "{dialect:?}");
+        assert_eq!(answer.pointer(tokens_out), Some(&json!(7)), "{dialect:?}");
         let finish = answer.pointer(finish).unwrap().as_str().unwrap().to_lowercase();
         assert!(["stop", "end_turn"].contains(&finish.as_str()), "{dialect:?}: {finish}");
     }
