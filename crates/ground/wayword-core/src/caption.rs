@@ -186,7 +186,7 @@ impl Exchange {
     }
 }
 
-/// What is wrong with an answer that cannot be used (all of these are known of BLIP-2: ChatCaptioner #4 and #7).
+/// What is wrong with an answer that cannot be used (the first four are known of BLIP-2: ChatCaptioner #4 and #7).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Trouble {
@@ -200,6 +200,8 @@ pub enum Trouble {
     Repeat,
     /// It does not have the form that was asked for.
     Form,
+    /// It is no answer but a refusal.
+    Refusal,
 }
 
 /// A question about a view, with what was said before.

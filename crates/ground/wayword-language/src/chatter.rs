@@ -2,6 +2,6 @@
 
 crate::data::lists! {
     "words/chatter.txt";
-    words: ANNOUNCED;
-    phrases: AGREEING, ANNOUNCING, PARTING, REFUSING;
+    words: ANNOUNCED, BARE_REFUSAL;
+    phrases: AGREEING, ANNOUNCING, PARTING, REFUSING, UNHELPING;
 }

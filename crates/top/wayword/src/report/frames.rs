@@ -131,6 +131,7 @@ fn exchange_view(exchange: &Exchange) -> ExchangeView {
             Trouble::Loop => "the first answer repeated itself",
             Trouble::Repeat => "the first answer was the one to an earlier question",
             Trouble::Form => "the first answer did not have the form that was asked for",
+            Trouble::Refusal => "the first answer was a refusal",
         }),
     }
 }

@@ -117,7 +117,8 @@ pub enum Perception {
     /// One request for all that a view shows, as JSON that also says how sure the model is. The default for models
     /// behind HTTP.
     Structured,
-    /// The same, then questions about what it left open: the room, and what is only perhaps there.
+    /// The same, then questions about what it left open: the room, and what is only perhaps there. They are asked at the
+    /// same time.
     FollowUp,
     /// Question by question, then a summary. The default for labels and for models in process.
     #[default]

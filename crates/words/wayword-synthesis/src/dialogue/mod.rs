@@ -19,6 +19,7 @@ pub use faults::{CaptionFault, caption_faults};
 pub use questions::RulesAsker;
 pub use summary::RulesSummariser;
 pub(crate) use summary::caption_of;
+pub(crate) use trouble::{refuses, rephrased};
 
 /// The fixed first request of a dialogue (ChatCaptioner opens every dialogue with a request for a description).
 pub const OPENING: &str = "Describe in detail what you see.";
@@ -277,6 +278,7 @@ mod tests {
             ("  ", Trouble::Empty),
             ("What colour is the bed?", Trouble::Echo),
             ("the bed the bed the bed the bed", Trouble::Loop),
+            ("I'm sorry, but I can't assist with that.", Trouble::Refusal),
             ("There is a large bed beside a tall window.", Trouble::Repeat),
         ] {
             let (asked, exchange) = asked_twice(&[bad, "It is red."]);

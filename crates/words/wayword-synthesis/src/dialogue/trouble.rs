@@ -1,7 +1,10 @@
 //! Answers that cannot be used, and how such a question is asked again.
 
 use wayword_core::{Exchange, Trouble};
-use wayword_language::text::words;
+use wayword_language::{
+    chatter::{BARE_REFUSAL, REFUSING, UNHELPING},
+    text::words,
+};
 
 /// Longest phrase, in words, of an answer that repeats itself.
 const LOOP_WORDS: usize = 8;
@@ -10,11 +13,16 @@ const LOOP_TIMES: usize = 3;
 /// Fewer words than this may well be the answer to two questions ("They are made of wood").
 const REPEAT_WORDS: usize = 6;
 
+/// How many words of an answer tell whether it is a refusal.
+const REFUSAL_WORDS: usize = 40;
+
 /// Why an answer cannot be used, where it cannot.
 pub(super) fn trouble(question: &str, answer: &str, before: &[Exchange]) -> Option<Trouble> {
-    let said = words(answer);
+    let said = words(&answer.replace('’', "'"));
     if said.is_empty() {
         Some(Trouble::Empty)
+    } else if is_refusal(&said) {
+        Some(Trouble::Refusal)
     } else if is_echo(&words(question), &said) {
         Some(Trouble::Echo)
     } else if is_loop(&said) {
@@ -24,8 +32,26 @@ pub(super) fn trouble(question: &str, answer: &str, before: &[Exchange]) -> Opti
     }
 }
 
+/// Whether a model refuses to look, instead of answering. "Sorry, I can't see a bed" is an answer.
+pub(crate) fn refuses(answer: &str) -> bool {
+    is_refusal(&words(&answer.replace('’', "'")))
+}
+
+fn is_refusal(said: &[String]) -> bool {
+    let begins = REFUSING.iter().any(|phrase| is_at(said, 0, phrase));
+    let looked_at = &said[..said.len().min(REFUSAL_WORDS)];
+    let declines = |at| UNHELPING.iter().any(|phrase| is_at(looked_at, at, phrase));
+    let is_bare = || said.iter().all(|word| BARE_REFUSAL.contains(&word.as_str()));
+    begins && ((0..looked_at.len()).any(declines) || is_bare())
+}
+
+/// Whether a phrase stands at this place.
+fn is_at(said: &[String], at: usize, phrase: &[&str]) -> bool {
+    said.len() >= at + phrase.len() && said[at..].iter().zip(phrase).all(|(said, word)| said == word)
+}
+
 /// The question once more, in other words.
-pub(super) fn rephrased(question: &str) -> String {
+pub(crate) fn rephrased(question: &str) -> String {
     if question == super::OPENING {
         return "Look at the picture again and say in one sentence which room and which objects it shows.".to_owned();
     }
@@ -90,6 +116,18 @@ mod tests {
             ("a chair, a table, a lamp and a rug", None),
             ("there is a tall lamp on the left", Some(Trouble::Repeat)),
             ("It is red.", None),
+            ("I'm sorry, but I can't help with that.", Some(Trouble::Refusal)),
+            ("I’m sorry, I cannot assist with identifying what this shows.", Some(Trouble::Refusal)),
+            ("As an AI, I do not have the ability to view images.", Some(Trouble::Refusal)),
+            ("I'm sorry.", Some(Trouble::Refusal)),
+            ("I'm sorry, but I can't.", Some(Trouble::Refusal)),
+            ("Sorry, I can't see a sofa anywhere in this room.", None),
+            ("I am not able to tell the colour of the sofa from here.", None),
+            ("I don't have a clear look at the sofa, but it seems red.", None),
+            ("A sorry-looking red sofa.", None),
+            ("Sorry, no.", None),
+            ("I can't see one.", None),
+            ("I cannot tell.", None),
         ] {
             assert_eq!(of(answer), wanted, "{answer}");
         }

@@ -2,13 +2,18 @@
 
 use super::{PERCEPTION_SEED, clean::whole_sentences};
 use crate::{
+    dialogue::rephrased,
     prompts::{Manner, Prompts},
     seeing::complaint,
 };
 use std::sync::Arc;
-use wayword_core::{Answer, AnswerForm, Answerer, Ask, LanguageModel, Message, ModelError, Request, Sampling};
+use wayword_core::{
+    Answer, AnswerForm, Answerer, Ask, Finish, LanguageModel, Message, ModelError, Reply, Request, Sampling,
+};
 
-/// Puts questions about a view's picture to a language model that sees.
+/// Puts questions about a view's picture to a language model that sees. An answer in words that is cut off is asked for
+/// once more, shorter; of the second one the whole sentences are taken. Who asks sees to refusals and to JSON that is cut
+/// off.
 #[derive(Clone)]
 pub struct ModelAnswerer {
     model: Arc<dyn LanguageModel>,
@@ -42,6 +47,19 @@ impl ModelAnswerer {
         let message = Message::about(text, vec![image]);
         Ok(Request { messages: vec![message], sampling, replicate: 0, schema })
     }
+
+    /// One reply per question, in their order.
+    fn replies(&self, asks: &[Ask<'_>]) -> Vec<Result<Reply, ModelError>> {
+        let requests: Vec<Result<Request, ModelError>> = asks.iter().map(|ask| self.request(ask)).collect();
+        let good: Vec<Request> = requests.iter().filter_map(|request| request.as_ref().ok().cloned()).collect();
+        let mut replies = if good.is_empty() { Vec::new() } else { self.model.complete(&good) }.into_iter();
+        let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it gave no answer".to_owned() };
+        let reply = |request: Result<Request, ModelError>| {
+            request?;
+            replies.next().unwrap_or_else(|| Err(lost()))
+        };
+        requests.into_iter().map(reply).collect()
+    }
 }
 
 impl Answerer for ModelAnswerer {
@@ -50,15 +68,23 @@ impl Answerer for ModelAnswerer {
     }
 
     fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
-        let requests: Vec<Result<Request, ModelError>> = asks.iter().map(|ask| self.request(ask)).collect();
-        let good: Vec<Request> = requests.iter().filter_map(|request| request.as_ref().ok().cloned()).collect();
-        let mut replies = self.model.complete(&good).into_iter();
-        let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it gave no answer".to_owned() };
-        let answer = |request: Result<Request, ModelError>| {
-            let is_json = request?.schema.is_some();
-            let reply = replies.next().unwrap_or_else(|| Err(lost()))?;
-            Ok(if is_json { reply.text } else { whole_sentences(&reply).to_owned() })
+        let mut replies = self.replies(asks);
+        let is_cut = |(ask, reply): (&Ask<'_>, &Result<Reply, ModelError>)| {
+            ask.answer == AnswerForm::Words && reply.as_ref().is_ok_and(|reply| reply.finish == Finish::Length)
         };
-        requests.into_iter().map(answer).collect()
+        let cut: Vec<usize> = (0..asks.len()).filter(|&at| is_cut((&asks[at], &replies[at]))).collect();
+        let shorter: Vec<String> = cut.iter().map(|&at| rephrased(asks[at].question)).collect();
+        let again: Vec<Ask<'_>> =
+            cut.iter().zip(&shorter).map(|(&at, question)| Ask { question, ..asks[at] }).collect();
+        for (&at, reply) in cut.iter().zip(self.replies(&again)) {
+            replies[at] = reply;
+        }
+        let text = |(reply, ask): (Result<Reply, ModelError>, &Ask<'_>)| {
+            reply.map(|reply| match ask.answer {
+                AnswerForm::Words => whole_sentences(&reply).to_owned(),
+                AnswerForm::Json(_) => reply.text,
+            })
+        };
+        replies.into_iter().zip(asks).map(text).collect()
     }
 }

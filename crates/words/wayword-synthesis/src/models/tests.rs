@@ -101,9 +101,9 @@ fn a_model_asks_with_the_dialogue_so_far() {
 }
 
 #[test]
-fn a_model_is_shown_the_picture_and_one_that_was_cut_off_keeps_whole_sentences() {
-    let cut = Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length };
-    let model = Scripted::with(vec![Ok(cut)]);
+fn a_model_is_shown_the_picture_and_asked_again_where_it_is_cut_off() {
+    let cut = || Ok(Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length });
+    let model = Scripted::with(vec![cut(), cut()]);
     let eye = ModelAnswerer::new(model.clone(), prompts(), Manner::Chat);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
     let view = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, Some(image.clone()), None);
@@ -112,7 +112,9 @@ fn a_model_is_shown_the_picture_and_one_that_was_cut_off_keeps_whole_sentences()
     let answers = eye.answer(&[ask(&blind), ask(&view)]);
     assert!(matches!(&answers[0], Err(ModelError::NothingToSee { .. })));
     assert_eq!(answers[1].as_deref(), Ok("A bed."));
-    assert_eq!(model.heard.lock().unwrap()[0].messages[0].images, [image]);
+    let heard = model.heard.lock().unwrap();
+    assert_eq!((heard.len(), &heard[0].messages[0].images[0], &heard[1].messages[0].images[0]), (2, &image, &image));
+    assert!(heard[1].messages[0].text.contains("say in one sentence"), "{}", heard[1].messages[0].text);
 }
 
 #[test]

@@ -12,7 +12,7 @@ mod tests;
 mod told;
 
 use crate::{
-    dialogue::{OPENING, RulesSummariser, Summariser, room, sightings},
+    dialogue::{OPENING, RulesSummariser, Summariser, refuses, rephrased, room, sightings},
     observe::{Observers, unanswered},
 };
 use wayword_core::{AnswerForm, Ask, Caption, Exchange, Form, ModelError, Schema, Sighting, Trouble, View, Witness};
@@ -42,14 +42,15 @@ pub(crate) fn complaint(question: &str) -> Option<&str> {
 pub(crate) fn see(view: &View, observers: Observers<'_>, questions: usize) -> Result<Caption, ModelError> {
     let by = observers.answerer.name();
     let mut transcript = Vec::new();
-    let first = ask(view, REQUEST, &transcript, AnswerForm::Json(SCHEMA), observers)?;
+    let first = ask(view, REQUEST, observers)?;
     transcript.push(Exchange::new(REQUEST, kept(&first)));
     let (seen, form) = match read::read(&first, false) {
         Ok(seen) => (Some(seen), None),
         Err(fault) => {
             let question = format!("{AGAIN}{fault}");
-            let second = ask(view, &question, &transcript, AnswerForm::Json(SCHEMA), observers)?;
-            transcript.push(Exchange { question, answer: kept(&second), trouble: Some(Trouble::Form) });
+            let second = ask(view, &question, observers)?;
+            let trouble = if refuses(&first) { Trouble::Refusal } else { Trouble::Form };
+            transcript.push(Exchange { question, answer: kept(&second), trouble: Some(trouble) });
             match read::read(&second, false) {
                 Ok(seen) => (Some(seen), Some(Form::Mended)),
                 // What was complete before it was cut off is better than nothing.
@@ -59,36 +60,53 @@ pub(crate) fn see(view: &View, observers: Observers<'_>, questions: usize) -> Re
     };
     let Some(seen) = seen else { return Ok(Caption { form, ..as_words(transcript, by)? }) };
     let mut caption = told::caption(seen, by);
-    for question in open_questions(&caption).into_iter().take(questions) {
-        let answer = ask(view, &question, &transcript, AnswerForm::Words, observers)?;
-        let exchange = Exchange::new(question, kept(&answer));
+    for exchange in settled(view, open_questions(&caption).into_iter().take(questions).collect(), observers)? {
         settle(&mut caption, &exchange, by);
         transcript.push(exchange);
     }
     Ok(Caption { transcript, form, ..caption })
 }
 
-fn ask(
-    view: &View,
-    question: &str,
-    history: &[Exchange],
-    answer: AnswerForm,
-    observers: Observers<'_>,
-) -> Result<String, ModelError> {
-    // The question about the form says what was wrong, and the whole wrong answer would only be repeated. JSON among
-    // the answers would make a model answer the next question in JSON.
-    let history = if matches!(answer, AnswerForm::Json(_)) { &[] } else { &history[1..] };
-    let ask = Ask { view, question, history, answer };
+/// Asks for the form. The question says what was wrong before; the whole wrong answer would only be repeated.
+fn ask(view: &View, question: &str, observers: Observers<'_>) -> Result<String, ModelError> {
+    let ask = Ask { view, question, history: &[], answer: AnswerForm::Json(SCHEMA) };
     observers.answerer.answer(&[ask]).pop().unwrap_or_else(|| Err(unanswered(observers.answerer)))
+}
+
+/// The answers to questions about what stays open. They do not depend on each other, so they are asked at the same time;
+/// those that are refused once more, in other words.
+fn settled(view: &View, questions: Vec<String>, observers: Observers<'_>) -> Result<Vec<Exchange>, ModelError> {
+    let answers = in_words(view, &questions, observers)?;
+    let is_refused: Vec<bool> = answers.iter().map(|answer| refuses(answer)).collect();
+    let refused = questions.iter().zip(&is_refused).filter(|(_, refused)| **refused);
+    let again: Vec<String> = refused.map(|(question, _)| rephrased(question)).collect();
+    let mut second = in_words(view, &again, observers)?.into_iter();
+    let exchange = |((question, first), is_refused): ((String, String), bool)| {
+        let answer = if is_refused { second.next().filter(|answer| !refuses(answer)) } else { Some(first) };
+        let trouble = is_refused.then_some(Trouble::Refusal);
+        Exchange { question, answer: kept(&answer.unwrap_or_default()), trouble }
+    };
+    Ok(questions.into_iter().zip(answers).zip(is_refused).map(exchange).collect())
+}
+
+fn in_words(view: &View, questions: &[String], observers: Observers<'_>) -> Result<Vec<String>, ModelError> {
+    if questions.is_empty() {
+        return Ok(Vec::new());
+    }
+    let asks: Vec<Ask<'_>> =
+        questions.iter().map(|question| Ask { view, question, history: &[], answer: AnswerForm::Words }).collect();
+    let mut answers = observers.answerer.answer(&asks).into_iter();
+    asks.iter().map(|_| answers.next().unwrap_or_else(|| Err(unanswered(observers.answerer)))).collect()
 }
 
 fn kept(answer: &str) -> String {
     answer[..answer.floor_char_boundary(MOST_KEPT)].to_owned()
 }
 
-/// The caption of an answer that does not have the form: what it says in words, if anything.
+/// The caption of an answer that does not have the form: what it says in words, if anything. A refusal says nothing.
 fn as_words(transcript: Vec<Exchange>, by: &str) -> Result<Caption, ModelError> {
     let said = transcript.last().map_or("", |last| last.answer.as_str());
+    let said = if refuses(said) { "" } else { said };
     let caption = RulesSummariser.sum_up(&[Exchange::new(OPENING, said)], by)?;
     Ok(Caption { transcript, ..caption })
 }

@@ -122,7 +122,8 @@ fn an_answer_that_breaks_the_form_is_asked_for_once_more() {
         let (caption, asked) = seen(&[bad, GOOD], 0);
         assert_eq!((asked.len(), caption.form), (2, Some(Form::Mended)), "{bad}");
         assert!(complaint(&asked[1]).is_some_and(|why| !why.is_empty()), "{asked:?}");
-        assert_eq!(caption.transcript[1].trouble, Some(Trouble::Form));
+        let trouble = if bad.starts_with("I'm sorry") { Trouble::Refusal } else { Trouble::Form };
+        assert_eq!(caption.transcript[1].trouble, Some(trouble));
         assert_eq!(caption.transcript[0].answer, bad);
     }
 }
@@ -134,6 +135,7 @@ fn an_answer_that_breaks_it_twice_is_read_as_words() {
     assert_eq!(of(&caption, "table").colour.as_deref(), Some("red"));
     let (refused, _) = seen(&["I'm sorry, I can't assist with that."; 2], 0);
     assert_eq!((refused.form, refused.sightings.len(), refused.room), (Some(Form::Broken), 0, None));
+    assert_eq!(refused.text, "A place.");
 }
 
 #[test]
@@ -166,6 +168,19 @@ fn what_stays_open_is_asked_only_where_that_is_wanted() {
     assert_eq!(of(&caption, "piano").witness, Witness::Seen);
     assert_eq!(of(&caption, "harp").witness, Witness::Denied);
     assert_eq!(caption.text, "A music room with a sofa and a piano.");
+}
+
+#[test]
+fn a_question_that_is_refused_is_asked_once_more_and_a_second_refusal_settles_nothing() {
+    let open =
+        r#"{"room": "hall", "things": [{"name": "piano", "sure": "perhaps"}, {"name": "harp", "sure": "perhaps"}]}"#;
+    let no = "I'm sorry, but I can't help with that.";
+    let (caption, asked) = seen(&[open, no, no, "Yes, there is.", no], 3);
+    assert_eq!(asked.len(), 5);
+    assert!(asked[3].ends_with("Is there a piano?") && asked[3].starts_with("Look again"), "{asked:?}");
+    assert_eq!((of(&caption, "piano").witness, of(&caption, "harp").witness), (Witness::Seen, Witness::Unsure));
+    let told: Vec<_> = caption.transcript[1..].iter().map(|one| (one.answer.as_str(), one.trouble)).collect();
+    assert_eq!(told, [("Yes, there is.", Some(Trouble::Refusal)), ("", Some(Trouble::Refusal))]);
 }
 
 #[test]
