@@ -51,6 +51,8 @@ fn models_play_every_role_and_say_so() {
         "server/eye",
         "--base-url",
         base,
+        "--perception",
+        "dialogue",
         "--out",
         "again",
     ];
@@ -470,7 +472,7 @@ fn perception_is_measured_in_each_way_of_asking() {
 fn by_default_a_view_costs_one_call() {
     let stage = Stage::new(cast());
     let run = |name: &str, more: &[&str]| {
-        let ran = stage.generate(name, &[&["--paths", "6", "--style", "r2r", "--json"], more].concat());
+        let ran = stage.generate(name, &[&["--paths", "6", "--json"], more].concat());
         assert!(ran.code == Some(0), "{ran:?}");
         ran.json()
     };
@@ -483,7 +485,7 @@ fn by_default_a_view_costs_one_call() {
     let calls = summary["spent"]["answered"].as_u64().unwrap() as f64;
     assert!(calls <= 1.3 * views as f64 + 2.0 * 6.0, "{calls} calls for {views} views");
     assert!(observations().any(|seen| seen["looks"][0]["caption"]["is_structured"] == true));
-    let again = run("again", &["--seed", "0", "--style", "reverie"]);
+    let again = run("again", &["--repairs", "1"]);
     let new = again["spent"]["answered"].as_u64().unwrap();
     assert!(new <= 4 * 6, "{new} calls, though every view was talked about before");
 }

@@ -71,8 +71,7 @@ pub fn observe(
     })
 }
 
-/// The same, where the caller says how views are talked about: `talk` gets views that do not depend on each other, and
-/// returns one caption each, in their order.
+/// The same, where the caller says how views are talked about.
 ///
 /// # Errors
 /// When the platform gives no view, or a question is not answered.

@@ -160,7 +160,8 @@ fn looked_at(known: &Known) -> Vec<(usize, &str, Option<Side>)> {
                 let off_rad = look.gaze.heading.turn_to(frame.pose.heading.turned(turn_rad));
                 off_rad.abs() < look.gaze.horizontal_fov_rad / 2.0
             });
-            let side = (turn_rad.abs() > 0.4).then(|| if turn_rad < 0.0 { Side::Left } else { Side::Right });
+            let side = if turn_rad < 0.0 { Side::Left } else { Side::Right };
+            let side = (turn_rad.abs() > 0.4).then_some(side);
             if is_in_view {
                 found.push((at, thing.name.as_str(), side));
             }

@@ -72,10 +72,9 @@ fn of_looks(looks: &[Look], off_rad: &dyn Fn(&Look) -> f64) -> FrameEvidence {
     evidence
 }
 
-/// Whether a caption lists what its view shows: an answer of the form that was asked for, with something in it.
+/// Whether a caption lists what its view shows: it is made of an answer of the form that was asked for.
 fn is_list(look: &Look) -> bool {
-    let names_something = look.caption.sightings.iter().any(|sighting| sighting.witness != Witness::Denied);
-    look.caption.is_structured && look.caption.form != Some(Form::Broken) && names_something
+    look.caption.is_structured && look.caption.form != Some(Form::Broken)
 }
 
 fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {
@@ -93,4 +92,92 @@ fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {
 pub(super) fn denies(denied: &str, name: &str) -> bool {
     let general = kinds(denied);
     normal(denied) == normal(name) || kinds(name).contains(&general[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Subject, check, check_own};
+    use wayword_core::{Caption, Check, Constraints, DVec3, Gaze, Motion, SceneId, Style, Verdict, path::Stop};
+
+    /// A path straight ahead, with these captions of its frames.
+    fn evidence(captions: Vec<Caption>) -> Evidence {
+        let stop = |at: usize| Stop { position: DVec3::new(0.0, 2.0 * at as f64, 1.5), viewpoint: None, level: None };
+        let frames = Path::frames_along((0..captions.len()).map(stop).collect(), None);
+        let seen = frames.iter().zip(captions).map(|(frame, caption)| Observation {
+            looks: vec![Look { gaze: Gaze::quarter(frame.pose.heading), caption }],
+            ..Observation::default()
+        });
+        let seen: Vec<Observation> = seen.collect();
+        let path =
+            Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: None };
+        Evidence::from_captions(&path, &seen).unwrap()
+    }
+
+    fn listed(room: &str, things: &[(&str, Witness)]) -> Caption {
+        let sighting = |(name, witness): &(&str, Witness)| Sighting::new(*name, *witness, "test");
+        let sightings = things.iter().map(sighting).collect();
+        Caption { room: Some(room.into()), sightings, is_structured: true, ..Caption::default() }
+    }
+
+    fn known() -> Evidence {
+        use Witness::{Denied, Seen, Unsure};
+        let cream = Sighting { colour: Some("cream".into()), ..Sighting::new("rug", Seen, "test") };
+        let mut hall = listed("hallway", &[("bench", Seen), ("lamp", Unsure), ("vase", Denied)]);
+        hall.sightings.push(cream);
+        evidence(vec![
+            hall,
+            listed("hallway", &[("plant", Seen), ("mirror", Seen)]),
+            listed("kitchen", &[("stove", Seen), ("table", Unsure), ("table", Denied)]),
+        ])
+    }
+
+    fn places(text: &str, own: bool) -> Verdict {
+        let style = Style { name: "s".into(), references: Vec::new(), constraints: Constraints::default() };
+        let evidence = known();
+        let subject = Subject::closed(&evidence, &style, None);
+        let checked = if own { check_own(text, subject) } else { check(text, subject) };
+        let of_places = checked.findings.iter().filter(|finding| finding.check == Check::Landmarks);
+        of_places.map(|finding| finding.verdict).max().unwrap()
+    }
+
+    #[test]
+    fn doubt_and_silence_make_nothing_wrong_and_denials_do() {
+        for (text, wanted) in [
+            ("Walk past the bench.", Verdict::Pass),
+            ("Walk past the lamp.", Verdict::Unverified),
+            // It was named as a guess and denied in the same frame.
+            ("Walk past the table.", Verdict::Unverified),
+            ("Walk past the clock.", Verdict::Unverified),
+            ("Walk past the vase.", Verdict::Fail),
+            // Nobody overlooks one in lists of every frame.
+            ("Walk past the sofa.", Verdict::Fail),
+            ("Walk past the beige rug.", Verdict::Pass),
+            ("Walk past the black rug.", Verdict::Fail),
+        ] {
+            assert_eq!(places(text, false), wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn who_wrote_from_captions_may_not_add_to_them() {
+        assert_eq!(places("Walk past the clock.", true), Verdict::Fail);
+        assert_eq!(places("Walk past the lamp.", true), Verdict::Unverified);
+    }
+
+    #[test]
+    fn a_text_ends_where_what_it_stops_at_is_seen() {
+        for (text, wanted) in [
+            ("Stop next to the stove.", Verdict::Pass),
+            ("Stop next to the plant.", Verdict::Pass),
+            ("Stop next to the bench.", Verdict::Fail),
+            ("Stop next to the clock.", Verdict::Fail),
+            ("Stop next to the table.", Verdict::Unverified),
+            ("Stop in the kitchen.", Verdict::Pass),
+            ("Stop in the bedroom.", Verdict::Fail),
+            ("Walk past the bench and stop in the kitchen.", Verdict::Pass),
+        ] {
+            assert_eq!(places(text, false), wanted, "{text}");
+        }
+    }
 }

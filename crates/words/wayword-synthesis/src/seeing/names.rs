@@ -63,9 +63,7 @@ fn one_name(words: &[&str], named: &mut Named) -> Option<String> {
             named.several = true;
             words = &rest[1..];
             continue;
-        } else if !(is_quality(first) || rest.is_empty()) {
-            break;
-        } else if rest.is_empty() {
+        } else if !is_quality(first) || rest.is_empty() {
             break;
         }
         words = rest;

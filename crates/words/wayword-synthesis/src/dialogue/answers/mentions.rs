@@ -141,15 +141,15 @@ fn which<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
 
 /// "Through the doorway a bedroom", "a kitchen beyond the open door": what is named is behind it.
 fn is_beyond(words: &[&str], noun: &Range<usize>) -> bool {
-    let is_opening = |word: &&str| {
+    let is_opening = |word: &str| {
         matches!(
-            *word,
+            word,
             "door" | "doors" | "doorway" | "doorways" | "opening" | "archway" | "arch" | "window" | "entrance"
         )
     };
     let through = |at: usize| {
         matches!(words[at], "through" | "beyond" | "behind" | "past")
-            && words[at + 1..].iter().take(5).any(|word| is_opening(&word))
+            && words[at + 1..].iter().take(5).any(|word| is_opening(word))
     };
     let behind = words[noun.end..].iter().take(6).take_while(|word| !matches!(**word, "," | "with" | "and")).count();
     (noun.start.saturating_sub(8)..noun.start).chain(noun.end..noun.end + behind).any(through)
