@@ -1,6 +1,6 @@
 //! Finds out why a model cannot be used, without asking it.
 
-use crate::{ConfigError, Services, base_url::BaseUrl, endpoint::Endpoint};
+use crate::{ConfigError, RemoteModel, Services, base_url::BaseUrl, endpoint::Endpoint};
 use std::{
     io,
     net::{SocketAddr, TcpStream, ToSocketAddrs},
@@ -26,8 +26,7 @@ impl Services {
         if self.is_reached_directly(endpoint) { lets_in(endpoint) } else { Ok(()) }
     }
 
-    /// Refuses a model that is to be shown pictures, if its provider takes none. Whether a single model takes pictures is
-    /// not known before it is asked; `doctor` shows it one.
+    /// Refuses a model that is to be shown pictures, if its provider takes none. Makes no connection.
     ///
     /// # Errors
     /// When it takes no pictures, or there is no such provider.
@@ -39,6 +38,26 @@ impl Services {
         }
         let problem = format!("{name} cannot be shown pictures, because {} takes none", provider.name);
         let hint = "name a model that sees, behind a chat endpoint; or leave the pictures out".to_owned();
+        Err(ConfigError::NotReady { problem, hint })
+    }
+
+    /// Refuses a model that is to be shown pictures, if its service says that it does not see. Ollama says so. Of other
+    /// services it is not known before the model is asked; `doctor` shows it a picture.
+    ///
+    /// # Errors
+    /// When it does not see, or there is no such provider.
+    pub fn sees(&self, name: &str) -> Result<(), ConfigError> {
+        let model = self.model(name)?;
+        if !self.is_reached_directly(&model.endpoint) || describes_sight(&model) != Some(false) {
+            return Ok(());
+        }
+        let provider = &model.endpoint.provider.name;
+        let problem =
+            format!("{name} cannot be shown pictures: {provider} does not list vision among what this model can do");
+        let hint = format!(
+            "name a model that sees, as in {provider}/qwen2.5vl; `{provider} show {}` lists what it can do",
+            model.model()
+        );
         Err(ConfigError::NotReady { problem, hint })
     }
 
@@ -56,6 +75,15 @@ impl Services {
         let is_near = provider.local || self.has_own_address(&provider.name);
         provider.base_url.loopback || (is_near && Proxy::try_from_env().is_none())
     }
+}
+
+/// Whether a model sees, by its service; `None` where the service does not say or does not answer.
+fn describes_sight(model: &RemoteModel) -> Option<bool> {
+    let dialect = model.endpoint.provider.dialect;
+    let wire = dialect.to_describe(model.model())?;
+    let received = model.endpoint.post(&wire, wire.body.to_string().as_bytes()).ok()?;
+    let body = received.body.ok().filter(|_| (200..300).contains(&received.status))?;
+    dialect.describes_sight(&serde_json::from_slice(&body).ok()?)
 }
 
 fn lets_in(endpoint: &Endpoint) -> Result<(), ConfigError> {

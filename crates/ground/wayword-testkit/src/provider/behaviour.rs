@@ -1,7 +1,11 @@
 //! How a provider behaves.
 
 use super::{Faults, Rate};
-use std::{collections::BTreeMap, sync::Arc, time::Duration};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+    time::Duration,
+};
 use wayword_core::Role;
 
 /// How a provider behaves. It has no `Debug`, because it holds a key.
@@ -9,6 +13,8 @@ use wayword_core::Role;
 pub struct Behaviour {
     /// The script of each model, by name. Any other name is answered with 404.
     pub scripts: BTreeMap<String, Arc<dyn Script>>,
+    /// Which of them do not see, as Ollama says of them.
+    pub blind: BTreeSet<String>,
     /// The time from a request to its answer or fault. A request is refused at once for its key or its rate.
     pub latency: Duration,
     /// What goes wrong.

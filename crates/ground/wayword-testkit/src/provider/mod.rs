@@ -64,7 +64,7 @@ impl Provider {
         format!("http://{}{}", self.address, dialect.base_path())
     }
 
-    /// How many requests have come so far, of all kinds but the lists of models.
+    /// How many requests have come so far, of all kinds but the lists of models and what one can do.
     #[must_use]
     pub fn requests(&self) -> u64 {
         self.shared.tally().received

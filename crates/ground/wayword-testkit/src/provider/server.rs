@@ -3,7 +3,7 @@
 use super::{
     Behaviour, Dialect, Heard, Log,
     dialect::{End, Said, Wrong},
-    misdeed::{Misdeed, json, key_of},
+    misdeed::{self, Misdeed, key_of},
     rate::Bucket,
     wire::{Door, Line},
 };
@@ -15,6 +15,7 @@ use axum::{
     response::Response,
     routing::{MethodRouter, get, post},
 };
+use serde_json::{Value, json};
 use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     time::Instant,
@@ -51,6 +52,7 @@ pub(super) async fn serve(listener: TcpListener, shared: Arc<Shared>) {
         .route("/v1/completions", asked(Dialect::Completions))
         .route("/v1/messages", asked(Dialect::Anthropic))
         .route("/api/chat", asked(Dialect::Ollama))
+        .route("/api/show", post(show))
         .route("/v1beta/models/{action}", asked_of_gemini())
         .route("/v1/models", list(Dialect::OpenAi))
         .route("/v1beta/models", list(Dialect::Gemini))
@@ -83,6 +85,18 @@ fn asked_of_gemini() -> MethodRouter<Arc<Shared>> {
     )
 }
 
+/// What a model can do, as Ollama says it.
+async fn show(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
+    let asked: Value = serde_json::from_slice(&body).unwrap_or_default();
+    let model = asked["model"].as_str().unwrap_or_default();
+    if !shared.behaviour.scripts.contains_key(model) {
+        return Dialect::Ollama.refuse(Wrong::Model, "There is no such model.");
+    }
+    let capabilities =
+        if shared.behaviour.blind.contains(model) { vec!["completion"] } else { vec!["completion", "vision"] };
+    misdeed::json(&json!({ "capabilities": capabilities }))
+}
+
 fn list(dialect: Dialect) -> MethodRouter<Arc<Shared>> {
     get(move |State(shared): State<Arc<Shared>>, headers: HeaderMap| async move {
         // OpenAI's and Anthropic's lists have one address.
@@ -91,7 +105,7 @@ fn list(dialect: Dialect) -> MethodRouter<Arc<Shared>> {
             return dialect.refuse(Wrong::Key, "The API key is not valid.");
         }
         let names: Vec<&str> = shared.behaviour.scripts.keys().map(String::as_str).collect();
-        json(&dialect.models(&names))
+        misdeed::json(&dialect.models(&names))
     })
 }
 
@@ -131,7 +145,7 @@ impl Shared {
         match self.behaviour.faults.of(self.behaviour.seed, index, request, nth) {
             None => {
                 self.tally().answer(request);
-                json(&arrival.dialect.answer(&said))
+                misdeed::json(&arrival.dialect.answer(&said))
             }
             Some(fault) => {
                 *self.tally().faults.entry(fault).or_default() += 1;

@@ -167,6 +167,16 @@ impl Dialect {
         }
     }
 
+    /// The request that says what a model can do, for services that have one.
+    pub(crate) fn to_describe(self, model: &str) -> Option<Wire> {
+        (self == Self::Ollama).then(|| ollama::to_describe(model))
+    }
+
+    /// Whether a model takes pictures, by its service's description of it; `None` where that does not say.
+    pub(crate) fn describes_sight(self, body: &Value) -> Option<bool> {
+        if self == Self::Ollama { ollama::describes_sight(body) } else { None }
+    }
+
     /// The models in the service's list.
     pub(crate) fn models(self, body: &Value) -> Option<Vec<&str>> {
         let (list, name) = match self {

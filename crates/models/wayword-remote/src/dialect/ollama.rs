@@ -47,3 +47,14 @@ pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
     let tokens = |field: &str| body.get(field)?.as_u64();
     Ok(Heard { text: text.to_owned(), end, tokens_in: tokens("prompt_eval_count"), tokens_out: tokens("eval_count") })
 }
+
+/// Asks what a model can do.
+pub(super) fn to_describe(model: &str) -> Wire {
+    Wire { path: "/api/show".to_owned(), body: json!({ "model": model }) }
+}
+
+/// Whether `vision` is among a model's capabilities. Servers before 0.6.4 do not list them.
+pub(super) fn describes_sight(body: &Value) -> Option<bool> {
+    let capabilities = body.get("capabilities")?.as_array()?;
+    Some(capabilities.iter().any(|capability| capability.as_str() == Some("vision")))
+}

@@ -67,9 +67,7 @@ impl Calls {
         };
         let priced = |name: &str| Ok((name.to_owned(), price(name)?));
         let prices = settings.roles.models().into_iter().map(priced).collect::<Result<_, Error>>()?;
-        if settings.roles.write_sees {
-            services.takes_pictures(&settings.roles.write)?;
-        }
+        settings.roles.shown_pictures().into_iter().try_for_each(|name| services.takes_pictures(name))?;
         if let Some(recording) = &service.replay {
             File::open(recording).map_err(Error::io(recording, "read the recording"))?;
         } else if !settings.roles.models().is_empty() {

@@ -12,7 +12,8 @@ use wayword_remote::{ConfigError, Services};
 
 impl Calls {
     /// Refuses what [`Calls::rehearse`] refuses, templates that cannot be used, and models that cannot be asked:
-    /// because the key is missing, nothing listens at the port, or files are missing and cannot be fetched. A model of
+    /// because the key is missing, nothing listens at the port, files are missing and cannot be fetched, or the
+    /// model is to be shown pictures and does not see. A model of
     /// which the ledger has answers is not refused for a key or a port, because it may never be asked.
     ///
     /// # Errors
@@ -36,6 +37,7 @@ impl Calls {
             remote
                 .iter()
                 .try_for_each(|name| services.ready(name).or_else(|error| kept(job, &services, name, error)))?;
+            job.settings.roles.shown_pictures().into_iter().try_for_each(|name| services.sees(name))?;
         }
         if !local.is_empty() {
             let files = Local::open(job, nowhere, output)?;

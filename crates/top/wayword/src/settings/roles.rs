@@ -212,6 +212,14 @@ impl Roles {
         }
         models
     }
+
+    /// The models over HTTP that are shown pictures, each once.
+    #[must_use]
+    pub fn shown_pictures(&self) -> Vec<&str> {
+        let writer = Some(&self.write).filter(|name| self.write_sees && **name != self.see);
+        let shown = std::iter::once(&self.see).chain(writer).map(String::as_str);
+        shown.filter(|name| is_model(name) && !is_in_process(name)).collect()
+    }
 }
 
 /// Whether a model runs in process: its name begins with `hf/`.
