@@ -69,6 +69,8 @@ const TYPICAL_INSTRUCTION: &str = "Walk past the grey sofa and turn left at the 
 /// The share of its follow-up questions that a dialogue asks on average, because it ends where two answers bring nothing
 /// new.
 const USUAL_SHARE: f64 = 0.55;
+/// Questions that a structured answer leaves open, for each hundred views. The scripted eye leaves about as many.
+const OPEN_PER_HUNDRED_VIEWS: u64 = 60;
 /// Tokens of a typical reply of each kind.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
@@ -113,10 +115,16 @@ impl Estimate {
         let talk = Talk::of(&prompts, settings)?;
         let roles = &settings.roles;
         let dialogue = settings.has_dialogue();
+        let open = if settings.perception == Perception::FollowUp {
+            views.len() as u64 * OPEN_PER_HUNDRED_VIEWS / 100
+        } else {
+            0
+        };
+        let seeing = talk.seeing.times(estimate.views as u64).plus(talk.settling.times(open));
         let summing = talk.summing.times(estimate.views as u64).plus(talk.condensing.times(panoramas));
         for (role, model, load, takes_part) in [
             ("asks", &roles.ask, talk.asking.times(estimate.views as u64), dialogue),
-            ("sees", &roles.see, talk.seeing.times(estimate.views as u64), true),
+            ("sees", &roles.see, seeing, true),
             ("summarises", &roles.summarise, summing, dialogue),
             ("writes", &roles.write, writing, true),
         ] {
@@ -158,8 +166,7 @@ fn questions(settings: &Settings) -> usize {
         Perception::Fixed => 2,
         Perception::Single => 1,
         Perception::Structured => 1,
-        // What stays open is not known before; few views leave more than this.
-        Perception::FollowUp => settings.questions.min(2) + 1,
+        Perception::FollowUp => settings.questions + 1,
     }
 }
 
@@ -172,7 +179,8 @@ fn picture_tokens(settings: &Settings) -> u64 {
 fn usual_questions(settings: &Settings) -> usize {
     match settings.perception {
         Perception::Dialogue => 1 + (settings.questions as f64 * USUAL_SHARE).round() as usize,
-        Perception::Fixed | Perception::Single | Perception::Structured | Perception::FollowUp => questions(settings),
+        Perception::Fixed | Perception::Single | Perception::Structured => questions(settings),
+        Perception::FollowUp => 1,
     }
 }
 
@@ -180,6 +188,8 @@ fn usual_questions(settings: &Settings) -> usize {
 struct Talk {
     asking: Load,
     seeing: Load,
+    /// One question about what a structured answer left open.
+    settling: Load,
     summing: Load,
     condensing: Load,
 }
@@ -202,11 +212,14 @@ impl Talk {
             seeing.tokens_in += picture;
             transcript.push(Exchange::new(TYPICAL_QUESTION, TYPICAL_ANSWER));
         }
+        let mut settling = Load::default();
+        settling.call(&prompts.answer(Manner::Chat, TYPICAL_QUESTION, &[])?, ANSWER_TOKENS);
+        settling.tokens_in += picture;
         let (mut summing, mut condensing) = (Load::default(), Load::default());
         summing.call(&prompts.summary(&transcript, &[], &[])?, CAPTION_TOKENS);
         let around = [("ahead", TYPICAL_CAPTION); 4];
         condensing.call(&prompts.condense(&around, 20, &[])?, CONDENSED_TOKENS);
-        Ok(Self { asking, seeing, summing, condensing })
+        Ok(Self { asking, seeing, settling, summing, condensing })
     }
 }
 
