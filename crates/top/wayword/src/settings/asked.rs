@@ -136,10 +136,12 @@ writing:
         /// At each frame, describe the view along the heading, or all four views. [default: central]
         #[arg(long)]
         pub frames: Option<Frames>,
-        /// How a view is described: question by question, with fixed queries, or with a single request. [default: dialogue]
+        /// How a view is described: with one request for JSON (structured, and follow-up with questions about what stays open),
+        /// question by question, with fixed queries, or with one request for a description. [default: structured for models over
+        /// HTTP, dialogue for labels and models in process]
         #[arg(long)]
         pub perception: Option<Perception>,
-        /// Ask at most this many questions per view. [default: 9]
+        /// Ask at most this many questions per view, with --perception dialogue or follow-up. [default: 9]
         #[arg(long, value_name = "N")]
         pub questions: Option<usize>,
         /// The target of the task at the end: given by the episode or path, or chosen by the writer. [default: given]
