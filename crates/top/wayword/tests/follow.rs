@@ -199,12 +199,13 @@ fn records_of_older_versions_are_read_without_it() {
     assert!(refused.refused().contains("ambiguity"));
 }
 
-/// Turns of 55 degrees or more are told in the order of the path. Slight ones may be told between them.
+/// What is told of turns are turns of the path, in their order. Most turns of 55 degrees or more are told; one at the
+/// start, or one that a room or stairs tell, may be left out ("leave the hall", "go down the stairs").
 #[test]
-fn every_real_turn_is_told_once_and_in_order() {
+fn turns_are_told_in_order_and_most_real_ones_are() {
     let building = Building::new();
     building.generate("run", &["--paths", "40", "--style", "r2r"]);
-    let mut turns = 0;
+    let (mut turns, mut told_turns) = (0, 0);
     for record in building.records("run") {
         let text = &record.instruction.text;
         let words = record.instruction.mentions.iter().filter(|mention| mention.kind == MentionKind::Turn);
@@ -214,16 +215,24 @@ fn every_real_turn_is_told_once_and_in_order() {
             words if words.contains("right") => Some(Side::Right),
             _ => None,
         });
-        let bend = |turn: Turn| Some((turn.side()?, matches!(turn, Turn::Left | Turn::Right)));
-        let bends: Vec<(Side, bool)> = record.path.moves().iter().filter_map(|step| bend(step.turn())).collect();
         let told: Vec<Side> = told.collect();
-        let mut left = told.iter();
-        let real: Vec<Side> = bends.iter().filter(|(_, is_real)| *is_real).map(|(side, _)| *side).collect();
-        assert!(real.iter().all(|side| left.any(|told| told == side)), "{text}: {bends:?}");
-        assert!(told.len() <= bends.len(), "{text}: {bends:?}");
+        let moves = record.path.moves();
+        // A turn may be told of a bend of several moves.
+        let bends = moves.iter().filter(|step| step.turn_rad.to_degrees().abs() >= 10.0);
+        let mut bends = bends.map(|step| if step.turn_rad > 0.0 { Side::Right } else { Side::Left });
+        assert!(told.iter().all(|side| bends.any(|bend| bend == *side)), "{text}: {moves:?}");
+        let real: Vec<Side> = moves
+            .iter()
+            .map(|step| step.turn())
+            .filter(|turn| matches!(turn, Turn::Left | Turn::Right))
+            .filter_map(Turn::side)
+            .collect();
+        let count = |sides: &[Side], side| sides.iter().filter(|other| **other == side).count();
+        told_turns +=
+            [Side::Left, Side::Right].map(|side| count(&told, side).min(count(&real, side))).iter().sum::<usize>();
         turns += real.len();
     }
-    assert!(turns > 20, "{turns}");
+    assert!(turns > 20 && 10 * told_turns >= 6 * turns, "{told_turns} of {turns}");
 }
 
 #[test]

@@ -12,7 +12,9 @@ use wayword_core::rng;
 
 const FILES: [&str; 4] = ["config.toml", "walks.jsonl", "instructions.jsonl", "rejected.jsonl"];
 /// Without repairs some texts are rejected, so that every file grows.
-const RUN: &[&str] = &["--paths", "1600", "--hops", "3..7", "--repairs", "0", "--seed", "11"];
+/// Ambiguous texts are rejected, so that there are rejected ones.
+const RUN: &[&str] =
+    &["--paths", "1600", "--hops", "3..7", "--repairs", "0", "--candidates", "1", "--reject-ambiguous", "--seed", "11"];
 const KILLS: usize = 20;
 
 fn contents(run: &Path) -> Vec<Vec<u8>> {
