@@ -43,6 +43,8 @@ fn models_play_every_role_and_say_so() {
     let config: toml::Table = fs::read_to_string(stage.building.path("run/config.toml")).unwrap().parse().unwrap();
     let base = config["roles"]["base_url"].as_str().unwrap();
     let rest = [
+        "--perception",
+        "dialogue",
         "--evidence",
         "captions",
         "--llm",
