@@ -135,7 +135,7 @@ pub(super) fn corrupt(
         Corruption::ReferenceCopied => {
             let reference = style.references.choose(rng)?.trim_end_matches('.');
             let words: Vec<&str> = reference.split(' ').collect();
-            let length = rng.random_range(5..=7).min(words.len());
+            let length = rng.random_range(10..=12).min(words.len());
             let start = rng.random_range(0..=words.len() - length);
             let run = words[start..start + length].join(" ").replace(". ", " ");
             Some(format!("{run}, {text}"))

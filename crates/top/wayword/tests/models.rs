@@ -53,8 +53,6 @@ fn models_play_every_role_and_say_so() {
         "server/eye",
         "--base-url",
         base,
-        "--perception",
-        "dialogue",
         "--out",
         "again",
     ];
