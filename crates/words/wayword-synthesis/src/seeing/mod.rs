@@ -1,6 +1,6 @@
 //! One structured request about a view: the room, the ways out, the things, and how sure the model is of each.
 //!
-//! Models that can talk answer it in one call. [`read`] reads the answer as far as it can be understood, [`told`] makes a
+//! Models that can talk answer it in one call. `read` reads the answer as far as it can be understood, `told` makes a
 //! caption of it by rules. An answer that cannot be read is asked for once more, with what was wrong, and then read as
 //! words like any description.
 
