@@ -137,12 +137,13 @@ impl Names<'_> {
         let side = clause.side.map_or("", side_word);
         let thing = clause.thing.as_ref().map(|thing| {
             let name = self.thing(&thing.name, rng);
-            let name = match thing.alike {
+            let name = thing.colour.as_ref().map_or(name.clone(), |colour| format!("{colour} {name}"));
+            match thing.alike {
+                // "The two gold lamps".
                 2 if rng.random_bool(0.3) => counted(2, &name),
                 2.. if rng.random_bool(0.6) => plural(&name),
                 _ => name,
-            };
-            thing.colour.as_ref().map_or(name.clone(), |colour| format!("{colour} {name}"))
+            }
         });
         let mut room = |room: Option<&String>| room.map(|room| self.room(room, rng)).unwrap_or_default();
         let (room, from) = (room(clause.room.as_ref()), room(clause.from.as_ref()));
