@@ -112,6 +112,13 @@ impl Heading {
     pub fn direction(self) -> DVec3 {
         DVec3::new(libm::sin(self.0), libm::cos(self.0), 0.0)
     }
+
+    /// The unit vector along this heading, raised by an elevation, radians.
+    #[must_use]
+    pub fn raised(self, elevation_rad: f64) -> DVec3 {
+        let (up, along) = libm::sincos(elevation_rad);
+        self.direction() * along + DVec3::Z * up
+    }
 }
 
 impl TryFrom<f64> for Heading {

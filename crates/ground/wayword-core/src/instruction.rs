@@ -85,7 +85,7 @@ pub struct Provenance {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<Chosen>,
     /// Whether a target was given that nobody saw from the last frame: the writer knew its name alone.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub target_undescribed: bool,
 }
 
@@ -108,9 +108,4 @@ pub enum ChosenBy {
     Follower,
     /// The checks alone, because no text can be followed.
     Checks,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
-fn is_false(flag: &bool) -> bool {
-    !*flag
 }

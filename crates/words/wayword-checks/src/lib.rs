@@ -89,17 +89,7 @@ impl<'a> Subject<'a> {
     /// A text that somebody else wrote.
     #[must_use]
     pub fn open(evidence: &'a Evidence, style: &'a Style, reach: Reach<'a>) -> Self {
-        Self {
-            evidence,
-            style,
-            target: None,
-            world: World::Open,
-            reach,
-            turns: Turns::default(),
-            tag: None,
-            writer_sees: false,
-            copies: None,
-        }
+        Self { world: World::Open, reach, ..Self::closed(evidence, style, None) }
     }
 }
 

@@ -10,7 +10,7 @@ impl Evidence {
     /// object.
     #[must_use]
     pub fn from_captions(path: &Path, observations: &[Observation]) -> Option<Self> {
-        let frames: Vec<FrameEvidence> = path
+        let mut frames: Vec<FrameEvidence> = path
             .frames
             .iter()
             .zip(observations)
@@ -19,7 +19,6 @@ impl Evidence {
                 of_looks(&seen.looks, &off_rad)
             })
             .collect();
-        let mut frames = frames;
         doubt(&mut frames);
         let known = frames
             .iter()

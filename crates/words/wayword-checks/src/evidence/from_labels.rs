@@ -33,6 +33,5 @@ impl Evidence {
 
 /// Where a label's object is, from its direction and distance.
 fn placed(label: &Label, eye: DVec3) -> Option<DVec3> {
-    let (up, along) = (libm::sin(label.elevation_rad), libm::cos(label.elevation_rad));
-    Some(eye + (label.heading.direction() * along + DVec3::Z * up) * label.distance_m?)
+    Some(eye + label.heading.raised(label.elevation_rad) * label.distance_m?)
 }

@@ -34,8 +34,6 @@ pub struct Memory {
     eyes: Vec<DVec3>,
     /// The heading at each frame, before the turn of its move.
     headings: Vec<Heading>,
-    /// The number of frames.
-    frames: usize,
 }
 
 impl Memory {
@@ -54,7 +52,6 @@ impl Memory {
             things: things::things(evidence, &eyes, &headings),
             bends: ways::bends(&evidence.moves),
             flights: ways::flights(evidence),
-            frames: path.frames.len(),
             stays,
             openings,
             eyes,
@@ -65,7 +62,7 @@ impl Memory {
     /// The number of frames of the walk.
     #[must_use]
     pub fn frames(&self) -> usize {
-        self.frames
+        self.headings.len()
     }
 
     /// The room in which a frame lies.

@@ -120,15 +120,6 @@ impl Listing {
         self.place(frame).is_some_and(|place| !self.places[place].sights.is_empty())
     }
 
-    /// The names of the rooms beside the one of a frame, and of the things that stand in it.
-    #[must_use]
-    pub fn beyond(&self, frame: &Frame) -> (Vec<String>, Vec<String>) {
-        let Some(place) = self.place(frame) else { return Default::default() };
-        let room = &self.rooms[self.places[place].room];
-        let things = room.things.iter().map(|object| self.objects[*object].name.clone());
-        (room.beside.iter().cloned().collect(), things.collect())
-    }
-
     fn add_place<'a>(&mut self, eye: DVec3, room: usize, level: Option<u32>, labels: impl Iterator<Item = &'a Label>) {
         let mut sights: Vec<Sight> = Vec::new();
         for label in labels {
@@ -170,8 +161,10 @@ impl Listing {
         let levels: BTreeSet<u32> = self.places.iter().filter_map(|place| place.level).collect();
         self.storeys = levels.len();
         for (object, seen) in seen.iter().enumerate() {
-            let rays: Vec<(DVec3, DVec3)> =
-                seen.iter().map(|(at, sight)| (self.places[*at].eye, direction(sight))).collect();
+            let rays: Vec<(DVec3, DVec3)> = seen
+                .iter()
+                .map(|(at, sight)| (self.places[*at].eye, sight.heading.raised(sight.elevation_rad)))
+                .collect();
             let position = self.objects[object].position.or_else(|| meeting(&rays));
             let how_far = |at: usize| position.map_or(0.0, |position| self.places[at].eye.distance(position));
             let nearest = seen.iter().map(|(at, _)| *at).min_by(|a, b| how_far(*a).total_cmp(&how_far(*b)));
@@ -184,11 +177,6 @@ impl Listing {
             (found.position, found.level, found.rooms) = (position, level, rooms.into_iter().collect());
         }
     }
-}
-
-fn direction(sight: &Sight) -> DVec3 {
-    let (up, along) = libm::sincos(sight.elevation_rad);
-    sight.heading.direction() * along + DVec3::Z * up
 }
 
 /// The point that is nearest to all rays (origin and direction), where at least two cross clearly.
