@@ -148,19 +148,19 @@ impl Checking<'_> {
         let testimony = |text: &Text| (hears && text.made.is_none()).then(|| Testimony::of(&text.words, &evidence));
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
         let checked = walk.texts.iter().zip(&testimonies).map(|(text, own)| {
-            let style = self.held.style_of(text);
+            let known = self.held.style_of(text);
             let told = followed.as_ref().map(|followed| match followed {
                 Ok(followed) => followed.follow(&text.words, text.tag.as_deref()),
                 Err(why) => Told::unknown(why),
             });
             // People name a target as they like, so any object of the final viewpoint is accepted.
             let subject = match world_of(text) {
-                World::Closed => Subject::closed(&evidence, style, None),
-                World::Open => Subject::open(&evidence, style, reach),
+                World::Closed => Subject::closed(&evidence, &known.style, None),
+                World::Open => Subject::open(&evidence, &known.style, reach),
             };
             let turns = told.as_ref().map_or(Turns::NotJudged("the text is not followed"), |told| told.turns);
-            let mut checked =
-                check(&text.words, Subject { tag: text.tag.as_deref(), turns, copies: self.held.copies(), ..subject });
+            let subject = Subject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
+            let mut checked = check(&text.words, subject);
             if let Some(told) = &told {
                 told.add_to(&mut checked);
             }

@@ -59,7 +59,7 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: How<'_>) -> Resu
         }
         for Wanted { text, .. } in mine {
             held.count(&text, &mut report);
-            let style = held.style_of(&text);
+            let known = held.style_of(&text);
             let target = walk.path.target.as_ref();
             // Where labels were the evidence, the captions show less than what the texts were written from.
             let is_closed = match how.world {
@@ -68,12 +68,13 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: How<'_>) -> Resu
                 AskedWorld::Auto => captions_were_evidence,
             };
             let subject = if is_closed {
-                Subject::closed(&evidence, style, target)
+                Subject::closed(&evidence, &known.style, target)
             } else {
-                Subject::open(&evidence, style, Reach::default())
+                Subject::open(&evidence, &known.style, Reach::default())
             };
             let turns = Turns::NotJudged("without the platform the text is not followed");
-            let checked = check_own(&text.words, Subject { tag: text.tag.as_deref(), turns, ..subject });
+            let subject = Subject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
+            let checked = check_own(&text.words, subject);
             found.push((text.at, CheckedText::of(&text, &checked), checked.findings));
         }
         Ok(())
