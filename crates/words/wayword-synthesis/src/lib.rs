@@ -12,4 +12,5 @@ pub mod repair;
 pub mod seeing;
 pub mod style;
 pub mod walk;
+mod weighed;
 pub mod writer;

@@ -40,7 +40,7 @@ pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Orde
 /// The text that is kept, and what chose it. A text whose checks all pass goes before one with something unverified.
 fn best(accepted: Vec<Instruction>, order: Order<'_>) -> (Option<Instruction>, ChosenBy) {
     let verdict = accepted.iter().map(|instruction| instruction.verdict).min().unwrap_or(Verdict::Pass);
-    let mut alike = accepted.into_iter().filter(|instruction| instruction.verdict == verdict).peekable();
+    let mut alike = accepted.into_iter().filter(|instruction| instruction.verdict == verdict);
     let Some(follower) = order.follower.filter(|_| order.candidates > 1) else {
         return (alike.next(), ChosenBy::Checks);
     };
@@ -75,7 +75,7 @@ mod tests {
         offline::Labels,
         repair::{
             Follow,
-            tests::{GOOD, Scripted, walk},
+            tests::{GOOD, Scripted, order, walk},
         },
         style::{Profile, built_in},
     };
@@ -104,20 +104,9 @@ mod tests {
         let evidence = walk.evidence().unwrap();
         let style = built_in("r2r").unwrap();
         let profile = Profile::measure(&style.references);
-        let order = Order {
-            walk: &walk,
-            memory: &walk.memory(),
-            evidence: &evidence,
-            style: &style,
-            profile: &profile,
-            style_hash: "",
-            seed: 0,
-            repairs: 0,
-            candidates: u32::try_from(texts.len()).unwrap(),
-            follower,
-            earlier: &[],
-            pictures: &[],
-        };
+        let memory = walk.memory();
+        let candidates = u32::try_from(texts.len()).unwrap();
+        let order = Order { repairs: 0, candidates, follower, ..order(&walk, &memory, &evidence, &style, &profile) };
         let asker = RulesAsker::default();
         let observers = Observers {
             asker: &asker,

@@ -59,6 +59,30 @@ fn along(places: &[(f64, f64)], things: &[&str]) -> Walk {
     Walk::new(path, observations)
 }
 
+/// An order for a walk with nothing asked beyond a single text.
+pub(super) fn order<'a>(
+    walk: &'a Walk,
+    memory: &'a Memory,
+    evidence: &'a Evidence,
+    style: &'a Style,
+    profile: &'a Profile,
+) -> Order<'a> {
+    Order {
+        walk,
+        memory,
+        evidence,
+        style,
+        profile,
+        style_hash: "",
+        seed: 0,
+        repairs: 8,
+        candidates: 1,
+        follower: None,
+        earlier: &[],
+        pictures: &[],
+    }
+}
+
 fn outcome(
     texts: Vec<Result<String, WriteError>>,
     finisher: bool,
@@ -79,20 +103,8 @@ fn outcome_against(
 ) -> (Result<Outcome, ModelError>, Vec<usize>) {
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
-    let order = Order {
-        walk,
-        memory: &walk.memory(),
-        evidence,
-        style: &style,
-        profile: &profile,
-        style_hash: "",
-        seed: 0,
-        repairs,
-        candidates: 1,
-        follower: None,
-        earlier: &[],
-        pictures: &[],
-    };
+    let memory = walk.memory();
+    let order = Order { repairs, ..order(walk, &memory, evidence, &style, &profile) };
     let asker = RulesAsker::default();
     let observers = Observers {
         asker: &asker,
@@ -199,20 +211,8 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
             for seed in 0..40 {
-                let order = Order {
-                    walk: &walk,
-                    memory: &walk.memory(),
-                    evidence: &evidence,
-                    style: &style,
-                    profile: &profile,
-                    style_hash: "",
-                    seed,
-                    repairs: 0,
-                    candidates: 1,
-                    follower: None,
-                    earlier: &[],
-                    pictures: &[],
-                };
+                let memory = walk.memory();
+                let order = Order { seed, repairs: 0, ..order(&walk, &memory, &evidence, &style, &profile) };
                 let writers = Writers { writer: &RulesWriter, finisher: None };
                 let outcome = write_and_repair(writers, observers, order).unwrap();
                 let Outcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
@@ -246,21 +246,7 @@ fn a_text_that_the_walk_already_has_is_written_again() {
         prompts_hash: None,
     };
     let write = |writer: &dyn Writer, earlier: &[String]| {
-        let (walk, memory, evidence, style, profile) = (&walk, &memory, &evidence, &style, &profile);
-        let order = Order {
-            walk,
-            memory,
-            evidence,
-            style,
-            profile,
-            style_hash: "",
-            seed: 0,
-            repairs: 8,
-            candidates: 1,
-            follower: None,
-            earlier,
-            pictures: &[],
-        };
+        let order = Order { earlier, ..order(&walk, &memory, &evidence, &style, &profile) };
         match write_and_repair(Writers { writer, finisher: None }, observers, order).unwrap() {
             Outcome::Accepted(instruction) => instruction,
             rejected => panic!("{rejected:?}"),
@@ -327,7 +313,8 @@ proptest! {
         let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
-            let order = Order { walk: &walk, memory: &walk.memory(), evidence: &evidence, style: &style, profile: &profile, style_hash: "", seed, repairs: 8, candidates: 1, follower: None, earlier: &[], pictures: &[] };
+            let memory = walk.memory();
+            let order = Order { seed, ..order(&walk, &memory, &evidence, &style, &profile) };
             let writers = Writers { writer: &RulesWriter, finisher: None };
             let text = match write_and_repair(writers, observers, order).unwrap() {
                 Outcome::Accepted(instruction) => instruction.text,

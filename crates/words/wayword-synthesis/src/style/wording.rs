@@ -4,7 +4,7 @@
 //! its references say how often each construction is used, and the built-in shares fill in where they say little.
 
 use super::parse_wording;
-use rand::Rng;
+use crate::weighed::weighed;
 use rand_chacha::ChaCha8Rng;
 use std::{collections::BTreeMap, sync::LazyLock};
 use wayword_language::lexicon::{Class, kinds, thing};
@@ -146,13 +146,6 @@ pub(super) fn verbs_of_class(class: Class) -> String {
 
 fn drawn<'a>(options: impl Iterator<Item = (&'a str, f64)>, rng: &mut ChaCha8Rng) -> Option<&'a str> {
     let options: Vec<(&str, f64)> = options.filter(|(_, share)| *share > 0.0).collect();
-    let all: f64 = options.iter().map(|(_, share)| share).sum();
-    let mut rest = rng.random_range(0.0..1.0) * all;
-    for (key, share) in &options {
-        rest -= share;
-        if rest < 0.0 {
-            return Some(key);
-        }
-    }
-    options.last().map(|(key, _)| *key)
+    let shares: Vec<f64> = options.iter().map(|(_, share)| *share).collect();
+    weighed(&shares, rng).map(|at| options[at].0)
 }

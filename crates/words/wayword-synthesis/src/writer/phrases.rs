@@ -1,5 +1,6 @@
 //! Words that the writers of ways and places share. `{s}` is a side, `{l}` a landmark, `{r}` a room.
 
+use crate::weighed::weighed;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::Motion;
@@ -25,18 +26,11 @@ pub(super) fn the(room: &str) -> String {
 
 /// One of several by their weights; `None` where none has any.
 pub(super) fn draw<T: Clone>(of: &[(f64, T)], rng: &mut ChaCha8Rng) -> Option<T> {
-    let total: f64 = of.iter().map(|(weight, _)| weight.max(0.0)).sum();
-    if total <= 0.0 {
-        return None;
-    }
-    let mut left = rng.random_range(0.0..total);
-    for (weight, value) in of.iter().filter(|(weight, _)| *weight > 0.0) {
-        left -= weight;
-        if left < 0.0 {
-            return Some(value.clone());
-        }
-    }
-    of.iter().rfind(|(weight, _)| *weight > 0.0).map(|(_, value)| value.clone())
+    let some: Vec<&(f64, T)> = of.iter().filter(|(weight, _)| *weight > 0.0).collect();
+    let weights: Vec<f64> = some.iter().map(|(weight, _)| *weight).collect();
+    // Where nothing can be drawn, no random number is used up.
+    let at = if weights.is_empty() { None } else { weighed(&weights, rng) };
+    at.map(|at| some[at].1.clone())
 }
 
 /// One of several measures, by chance.

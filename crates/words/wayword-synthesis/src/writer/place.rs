@@ -11,7 +11,6 @@ use super::{
     landmarks::Landmarks,
     phrases::{self, drawn, fill, pick, the, unbent},
     route::{last_climb, stands_still, usable_room},
-    rules::{join, sentence_target, sentences},
     task,
 };
 use object::Said;
@@ -161,4 +160,37 @@ fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaC
             pick(rng, &unbent(&["go straight ahead", "walk on to the end", "keep going"], walk.path.motion)).to_owned()
         }
     }
+}
+
+fn sentence_target(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> usize {
+    let constraints = &brief.style.constraints;
+    let least = constraints.min_sentences.unwrap_or(1);
+    drawn(&brief.profile.sentences, rng).clamp(least, constraints.max_sentences.unwrap_or(usize::MAX).max(least))
+}
+
+/// Phrases as sentences, shared out evenly, in their order.
+fn sentences(phrases: &[String], count: usize, full_stop: bool, rng: &mut ChaCha8Rng) -> String {
+    let count = count.clamp(1, phrases.len().max(1));
+    let bounds: Vec<usize> = (0..=count).map(|at| at * phrases.len() / count).collect();
+    let parts: Vec<String> = bounds.windows(2).map(|pair| capital(&join(&phrases[pair[0]..pair[1]], rng))).collect();
+    let mut text = parts.join(". ");
+    if full_stop || count > 1 {
+        text.push('.');
+    }
+    text
+}
+
+/// Phrases as one sentence without its full stop. Where a phrase has an "and" of its own, "then" joins them.
+fn join(phrases: &[String], rng: &mut ChaCha8Rng) -> String {
+    let Some((last, before)) = phrases.split_last() else { return String::new() };
+    if before.is_empty() {
+        return last.clone();
+    }
+    let has_and = phrases.iter().any(|phrase| phrase.contains(" and "));
+    let link = if has_and {
+        pick(rng, &[", then ", ", and then "])
+    } else {
+        pick(rng, &[" and ", ", then ", " and then ", " and "])
+    };
+    format!("{}{link}{last}", before.join(", "))
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     style::Wording,
+    weighed::weighed,
     writer::{Brief, WriteError, phrases::ordinal, task::free_object},
 };
 use rand::Rng;
@@ -108,16 +109,6 @@ fn draw<'a>(all: &[&'a [Distinction]], wording: &Wording, rng: &mut ChaCha8Rng) 
     let Some(kind) = weighed(&weights, rng) else { return &[] };
     let cheaper: Vec<f64> = (0..kinds[kind].len()).map(|at| 0.88_f64.powi(at as i32)).collect();
     weighed(&cheaper, rng).map_or(&[], |at| kinds[kind][at])
-}
-
-/// A place in a list, by the weights there.
-fn weighed(weights: &[f64], rng: &mut ChaCha8Rng) -> Option<usize> {
-    let mut rest = rng.random_range(0.0..1.0) * weights.iter().sum::<f64>();
-    let found = weights.iter().position(|weight| {
-        rest -= weight;
-        rest < 0.0
-    });
-    found.or(weights.len().checked_sub(1))
 }
 
 /// How likely people of the style say just this of an object and its room.
