@@ -51,6 +51,9 @@ pub struct Target {
     /// or else those that leave fewest. Empty where nothing is known of the building.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub descriptions: Vec<Description>,
+    /// Whether it certainly hangs on a wall.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub hangs: bool,
     /// How many storeys its building has; 0 where that is not known.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub storeys: usize,
@@ -185,6 +188,19 @@ impl Distinction {
     #[must_use]
     pub fn is_of_room(&self) -> bool {
         matches!(self, Self::Level { .. } | Self::RoomBy { .. } | Self::RoomWith { .. })
+    }
+
+    /// The rooms and things that it names beside the object.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let (one, other) = match self {
+            Self::NextTo { neighbour: name }
+            | Self::Related { to: name, .. }
+            | Self::RoomBy { room: name }
+            | Self::RoomWith { thing: name } => (Some(name), None),
+            Self::Between { one, other } => (Some(one), Some(other)),
+            _ => (None, None),
+        };
+        one.into_iter().chain(other).map(String::as_str)
     }
 
     /// What is said of the object, behind "it is": "next to the bed".

@@ -10,6 +10,9 @@ pub struct Style {
     pub name: String,
     /// Texts in this style. The writer imitates their shape and may not copy them.
     pub references: Vec<String>,
+    /// How many words its texts have: a writer draws from these. Where there are none, the references say it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub words: Vec<usize>,
     /// What a text of this style must keep to.
     #[serde(default)]
     pub constraints: Constraints,

@@ -29,6 +29,7 @@ fn path(id: &str, object: Option<&str>) -> wayword_core::Path {
             told_by: Vec::new(),
             has_namesake: false,
             descriptions: Vec::new(),
+            hangs: false,
             storeys: 0,
         }),
     }

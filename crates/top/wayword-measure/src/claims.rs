@@ -107,7 +107,12 @@ fn job(stage: &Stage, flags: &Flags) -> Result<Job, Error> {
 
 fn counted(known: &[Known], flags: &Flags) -> (Counts, Vec<String>) {
     let names = made::Names::of(known);
-    let style = Style { name: "claims".to_owned(), references: Vec::new(), constraints: Constraints::default() };
+    let style = Style {
+        name: "claims".to_owned(),
+        references: Vec::new(),
+        words: Vec::new(),
+        constraints: Constraints::default(),
+    };
     let mut counts = Counts::new();
     let mut shown: BTreeMap<(&str, Kind), usize> = BTreeMap::new();
     let mut wrong = Vec::new();

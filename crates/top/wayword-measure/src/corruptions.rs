@@ -136,7 +136,7 @@ mod tests {
     /// A run of that one record, with what is known of its path.
     fn run(evidence: Evidence) -> Run {
         let references = vec!["Head through the archway and wait near the tall window.".to_owned()];
-        let style = Style { name: "mine".into(), references, constraints: Constraints::default() };
+        let style = Style { name: "mine".into(), references, words: Vec::new(), constraints: Constraints::default() };
         let names = ["sofa", "lamp", "table"].map(str::to_owned).into();
         Run {
             styles: vec![style],

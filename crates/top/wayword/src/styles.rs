@@ -45,7 +45,7 @@ pub fn find(names: &[String]) -> Result<Vec<Measured>, Error> {
         if styles.iter().any(|other| other.style.name == style.name) {
             return Err(Error::usage(format!("style {} is given twice", style.name), "give each style once"));
         }
-        let (profile, hash) = (Profile::measure(&style.references), hash(&style));
+        let (profile, hash) = (Profile::of(&style), hash(&style));
         styles.push(Measured { style, profile, hash });
     }
     Ok(styles)
@@ -73,7 +73,7 @@ fn from_dataset(name: &str, file: &Path) -> Result<Style, Error> {
     texts.sort();
     texts.dedup();
     let constraints = built_in(name).map_or_else(|_| Constraints::default(), |style| style.constraints);
-    Ok(validated(Style { name: name.to_owned(), references: texts, constraints })?)
+    Ok(validated(Style { name: name.to_owned(), references: texts, words: Vec::new(), constraints })?)
 }
 
 /// A text on one line.

@@ -123,6 +123,7 @@ fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, Pl
         told_by: Vec::new(),
         has_namesake: namesakes(label) > 0,
         descriptions: Vec::new(),
+        hangs: false,
         storeys: 0,
     }))
 }

@@ -98,6 +98,7 @@ fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
         told_by: Vec::new(),
         has_namesake: false,
         descriptions: Vec::new(),
+        hangs: false,
         storeys: 0,
     })
 }

@@ -63,6 +63,7 @@ pub fn target(
         told_by: Vec::new(),
         has_namesake,
         descriptions: Vec::new(),
+        hangs: false,
         storeys: 0,
     }))
 }

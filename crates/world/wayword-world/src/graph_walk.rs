@@ -88,6 +88,7 @@ pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
         told_by: Vec::new(),
         has_namesake: has_namesake(chosen),
         descriptions: Vec::new(),
+        hangs: false,
         storeys: 0,
     })
 }

@@ -106,6 +106,7 @@ mod tests {
                 told_by: Vec::new(),
                 has_namesake: false,
                 descriptions: Vec::new(),
+                hangs: false,
                 storeys: 0,
             };
             Ok((self.seen)(last.pose.position.x as usize).then_some(target))

@@ -22,6 +22,7 @@ fn path(id: &str) -> WalkPath {
         told_by: vec![],
         has_namesake: true,
         descriptions: Vec::new(),
+        hangs: false,
         storeys: 0,
     };
     WalkPath {

@@ -132,7 +132,8 @@ mod tests {
     }
 
     fn places(text: &str, own: bool) -> Verdict {
-        let style = Style { name: "s".into(), references: Vec::new(), constraints: Constraints::default() };
+        let style =
+            Style { name: "s".into(), references: Vec::new(), words: Vec::new(), constraints: Constraints::default() };
         let evidence = known();
         let subject = Subject::closed(&evidence, &style, None);
         let checked = if own { check_own(text, subject) } else { check(text, subject) };

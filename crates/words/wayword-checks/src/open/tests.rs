@@ -86,7 +86,7 @@ fn path(from: usize, to: usize) -> (Path, Evidence, Surroundings) {
 }
 
 fn any() -> Style {
-    Style { name: "any".into(), references: Vec::new(), constraints: Constraints::default() }
+    Style { name: "any".into(), references: Vec::new(), words: Vec::new(), constraints: Constraints::default() }
 }
 
 /// The verdict on a text about the path between two viewpoints, with the checks that have it.

@@ -31,6 +31,7 @@ fn walk() -> Walk {
         told_by: vec![Distinction::NextTo { neighbour: "bed".into() }],
         has_namesake: true,
         descriptions: Vec::new(),
+        hangs: false,
         storeys: 0,
     };
     let path =

@@ -27,7 +27,7 @@ pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     let Ok(style) = built_in("r2r") else { return Ok(()) };
     let finding = Finding { check: Check::Form, verdict: Verdict::Fail, reason: "too long".to_owned(), span: None };
     let complaints = [Complaint { text: "Go.".to_owned(), findings: vec![finding] }];
-    let profile = Profile::measure(&style.references);
+    let profile = Profile::of(&style);
     for walk in [Motion::Known, Motion::Unknown].into_iter().filter_map(walk) {
         let earlier = ["Go on.".to_owned()];
         prompts.write(&Brief {
@@ -48,6 +48,7 @@ pub(crate) fn walk(motion: Motion) -> Option<Walk> {
         told_by: Vec::new(),
         has_namesake: false,
         descriptions: Vec::new(),
+        hangs: false,
         storeys: 0,
     };
     let path = Path {

@@ -103,7 +103,7 @@ mod tests {
         let walk = walk();
         let evidence = walk.evidence().unwrap();
         let style = built_in("r2r").unwrap();
-        let profile = Profile::measure(&style.references);
+        let profile = Profile::of(&style);
         let memory = walk.memory();
         let candidates = u32::try_from(texts.len()).unwrap();
         let order = Order { repairs: 0, candidates, follower, ..order(&walk, &memory, &evidence, &style, &profile) };

@@ -1,27 +1,25 @@
 //! Counts in reference texts how people word a place and a task.
 
-use super::wording::{ROOMS, Shares, Wording, verbs_of_class, verbs_of_kind};
-use std::collections::{BTreeMap, BTreeSet};
+use super::{
+    names, verbs,
+    wording::{Shares, Wording},
+};
+use std::collections::BTreeMap;
 use wayword_language::{
-    lexicon::{kinds, room_name, thing},
+    lexicon::room_name,
     reading::{
-        Reading, What, ordinal, read,
+        Reading, ordinal,
         vocabulary::{DETERMINERS, WALKING},
     },
     text::words,
 };
 
-/// A verb is taken from references that use it at least so often for one kind of thing.
-const LEAST_USES: f64 = 3.0;
-/// And for things of one class, in this share of their tasks.
-const LEAST_SHARE: f64 = 0.01;
-
 /// Counts of constructions, by table.
 #[derive(Default)]
-struct Counts(BTreeMap<String, Shares>);
+pub(super) struct Counts(pub(super) BTreeMap<String, Shares>);
 
 impl Counts {
-    fn add(&mut self, table: &str, key: &str) {
+    pub(super) fn add(&mut self, table: &str, key: &str) {
         *self.0.entry(table.to_owned()).or_default().entry(key.to_owned()).or_default() += 1.0;
     }
 }
@@ -33,7 +31,7 @@ pub(super) fn measure<'a>(texts: impl Iterator<Item = (&'a str, &'a Reading)>) -
         number += 1.0;
         count(text, reading, &mut counts);
     }
-    retain_common_verbs(&mut counts);
+    verbs::retain_common_verbs(&mut counts);
     Wording::smoothed(counts.0, number)
 }
 
@@ -65,27 +63,49 @@ fn count(text: &str, reading: &Reading, counts: &mut Counts) {
         counts.add("level", key);
         counts.add("share", "level");
     }
+    object(&parts.task, counts);
+    if let Some(key) = first_of(known.table("wall"), &parts.task) {
+        counts.add("wall", key);
+        counts.add("share", "wall");
+    }
+    if all.starts_with(" please ") {
+        counts.add("share", "please");
+    }
+    verbs::verb(&words, reading, counts);
+    names::names(reading, counts);
+}
+
+/// What can be said of an object, by table.
+const OF_OBJECT: [&str; 16] = [
+    "closest",
+    "near",
+    "above",
+    "under",
+    "on",
+    "left",
+    "right",
+    "between",
+    "side",
+    "row first",
+    "row",
+    "middle",
+    "nearest",
+    "furthest",
+    "highest",
+    "lowest",
+];
+
+/// Counts what a task says of its object.
+fn object(task: &str, counts: &mut Counts) {
+    let known = Wording::built_in();
+    let task = storeys(task).unwrap_or_else(|| task.to_owned());
+    // "The top of the table" and "to the left of the sofa" say nothing of a row.
+    let parts_of = ["left", "right", "left side", "right side", "top", "bottom", "middle"];
+    let whole = parts_of.iter().fold(task.clone(), |text, part| text.replace(&format!(" {part} of "), " "));
     let mut told = false;
-    for table in [
-        "closest",
-        "near",
-        "above",
-        "under",
-        "on",
-        "left",
-        "right",
-        "between",
-        "side",
-        "row first",
-        "row last",
-        "row",
-        "middle",
-        "nearest",
-        "furthest",
-        "highest",
-        "lowest",
-    ] {
-        if let Some(key) = first_of(known.table(table), &storeys(&parts.task).unwrap_or_else(|| parts.task.clone())) {
+    for table in OF_OBJECT {
+        let text = if matches!(table, "side" | "middle" | "highest" | "lowest") { &whole } else { &task };
+        if let Some(key) = first_of(known.table(table), text) {
             counts.add(table, key);
             counts.add("told", table);
             told = true;
@@ -93,17 +113,10 @@ fn count(text: &str, reading: &Reading, counts: &mut Counts) {
     }
     if told {
         counts.add("share", "object");
-    }
-    if told {
         let links = known.table("link").keys().filter(|link| !link.is_empty());
-        let said = links.filter(|link| parts.task.contains(&format!(" {link} "))).max_by_key(|link| link.len());
+        let said = links.filter(|link| task.contains(&format!(" {link} "))).max_by_key(|link| link.len());
         counts.add("link", said.map_or("", String::as_str));
     }
-    if all.starts_with(" please ") {
-        counts.add("share", "please");
-    }
-    verb(&words, reading, counts);
-    rooms(reading, counts);
 }
 
 /// The construction of a table whose own words a text holds; of several, the one with the most words of its own.
@@ -191,105 +204,76 @@ fn opener(words: &[String], counts: &mut Counts) {
     }
 }
 
-/// What is done, with `{o}` for the object.
-fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
-    let Some(task) = &reading.task else { return };
-    let Some(What::Place(place)) = task.object.map(|at| &reading.events[at].what) else { return };
-    let Some(kind) = thing(&place.name) else { return };
-    let Some(at) = words.iter().rposition(|word| *word == task.verb) else { return };
-    let Some(end) =
-        (at + 1..words.len().min(at + 5)).find(|at| DETERMINERS.contains(&words[*at].as_str()) && words[*at] != "that")
-    else {
-        return;
-    };
-    let said = &words[at..end];
-    let is_plain = said.len() <= 3 && said.iter().all(|word| word.chars().all(char::is_alphabetic) && word.len() > 1);
-    if !is_plain
-        || WALKING.contains(&task.verb.as_str())
-            && !matches!(
-                task.verb.as_str(),
-                "get" | "bring" | "pick" | "take" | "turn" | "pull" | "move" | "make" | "sit" | "push"
-            )
-    {
-        return;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::style::Profile;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use std::collections::BTreeSet;
+    use wayword_language::reading::{What, read};
+
+    #[test]
+    fn references_say_how_often_a_construction_is_used() {
+        let rooms = ["pantry", "nursery", "chapel", "cellar", "attic"];
+        let texts: Vec<String> = (0..200)
+            .map(|at| {
+                format!(
+                    "Proceed to the {} on level {} and shake out the rug beside the sofa",
+                    rooms[at % 5],
+                    at % 3 + 1
+                )
+            })
+            .collect();
+        let wording = Profile::measure(&texts).wording;
+        assert!(wording.table("opener")["proceed to"] > 0.9, "{:?}", wording.table("opener"));
+        assert!(wording.share("level") > 0.9 && wording.share("room with") < 0.1);
+        assert!(wording.table("near")["beside the {x}"] > 0.9, "{:?}", wording.table("near"));
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let verbs: BTreeSet<&str> = (0..50).map(|_| wording.verb("rug", 1.0, &mut rng)).collect();
+        assert!(verbs.contains("shake out {o}"), "{verbs:?}");
     }
-    // "Turn the light on": the particle stands behind the object.
-    let noun = place.name.rsplit(' ').next().unwrap_or_default();
-    let behind = words[end..].iter().position(|word| word == noun).map(|noun| end + noun + 1);
-    let particle = behind.and_then(|at| Some((words.get(at)?, words.get(at + 1))));
-    let mut key = format!("{} {{o}}", said.join(" "));
-    if let Some((particle @ ("on" | "off" | "out" | "up" | "down"), next)) =
-        particle.map(|(word, next)| (word.as_str(), next))
-    {
-        let is_last = next.is_none_or(|next| matches!(next.as_str(), "in" | "and" | "from"));
-        if is_last && said.len() == 1 {
-            key = format!("{key} {particle}");
+
+    #[test]
+    fn the_reader_understands_every_construction() {
+        let built_in = Wording::built_in();
+        let understood = |text: &str, object: &str| {
+            let reading = read(text, &BTreeSet::new());
+            let at = reading.task.as_ref().and_then(|task| task.object);
+            let is_object = at.is_some_and(
+                |at| matches!(&reading.events[at].what, What::Place(place) if place.name.ends_with(object)),
+            );
+            is_object && reading.clauses.iter().all(|clause| clause.understood || clause.span[0] == clause.span[1])
+        };
+        let fill =
+            |way: &str| way.replace("{x}", "sofa").replace("{y}", "sink").replace("{th}", "second").replace("{n}", "2");
+        for table in OF_OBJECT {
+            for way in built_in.table(table).keys().map(|way| fill(way)) {
+                let object = if way.contains("{o}") { way.replace("{o}", "lamp") } else { format!("the lamp {way}") };
+                let text = format!("Go to the kitchen and clean {object}");
+                assert!(understood(&text, "lamp"), "{text}");
+            }
+        }
+        for (table, shares) in ["opener", "level", "room by", "room with"].map(|table| (table, built_in.table(table))) {
+            for way in shares.keys().map(|way| fill(way)) {
+                let text = match table {
+                    "opener" => format!("{way} the kitchen and clean the lamp"),
+                    "level" => format!("Go to {} and clean the lamp", way.replace("{r}", "kitchen")),
+                    _ => format!("Go to the kitchen {way} and clean the lamp"),
+                };
+                assert!(understood(&text, "lamp"), "{text}");
+            }
         }
     }
-    kinds(kind.name).iter().for_each(|kind| counts.add(&verbs_of_kind(kind), &key));
-    counts.add(&verbs_of_class(kind.class), &key);
-}
 
-/// Keeps the verbs that several references use, and that the reader takes for a task on the thing.
-fn retain_common_verbs(counts: &mut Counts) {
-    for (table, verbs) in &mut counts.0 {
-        let Some(of) = table.strip_prefix(super::wording::VERBS) else { continue };
-        let all: f64 = verbs.values().sum();
-        let least = if of.starts_with("class ") { (all * LEAST_SHARE).max(LEAST_USES) } else { LEAST_USES };
-        let object = if of.starts_with("class ") { "lamp" } else { of };
-        verbs.retain(|verb, count| *count >= least && is_read(verb, object));
-    }
-}
-
-/// Whether the reader takes a verb for a task, and understands all of it.
-fn is_read(verb: &str, object: &str) -> bool {
-    let text = format!("Go to the kitchen and {}", verb.replace("{o}", &format!("the {object}")));
-    let reading = read(&text, &BTreeSet::new());
-    let has_object = reading.task.as_ref().is_some_and(|task| task.object.is_some());
-    has_object && reading.clauses.iter().all(|clause| clause.understood || clause.span[0] == clause.span[1])
-}
-
-/// Names of one room or thing that say no more of it than its usual name.
-const CALLED: &[&[&str]] = &[
-    &["hallway", "hall", "corridor"],
-    &["entryway", "foyer", "lobby"],
-    &["porch", "deck", "patio", "terrace"],
-    &["laundry room", "laundryroom"],
-    &["family room", "familyroom"],
-    &["meeting room", "meetingroom", "conference room"],
-    &["stairs", "staircase", "stairway"],
-    &["office", "study"],
-    &["bathroom", "restroom"],
-    &["garage"],
-    &["outdoor area", "yard", "courtyard", "patio"],
-    &["gym", "workout room", "exercise room"],
-    &["game room", "rec room"],
-    &["sofa", "couch"],
-    &["counter", "countertop", "counter top"],
-    &["trash can", "trash bin", "bin", "garbage can", "trashcan"],
-    &["nightstand", "night stand", "bedside table"],
-    &["tv", "television"],
-    &["faucet", "tap"],
-    &["bookshelf", "bookcase"],
-    &["refrigerator", "fridge"],
-    &["bathtub", "tub", "bath tub"],
-    &["washing machine", "washer"],
-    &["curtain", "drape"],
-    &["potted plant", "plant"],
-    &["side table", "end table"],
-    &["desk chair", "office chair"],
-];
-
-/// The names that mean a room or thing and no more.
-fn called(name: &str) -> Option<&'static [&'static str]> {
-    CALLED.iter().find(|names| names.contains(&name)).copied()
-}
-
-fn rooms(reading: &Reading, counts: &mut Counts) {
-    for event in &reading.events {
-        let What::Place(place) = &event.what else { continue };
-        for name in called(&place.name).into_iter().flatten() {
-            counts.add(&format!("{ROOMS}{name}"), &place.name);
+    #[test]
+    fn no_share_of_the_built_in_wording_is_missing() {
+        let built_in = Wording::built_in();
+        for table in
+            OF_OBJECT.iter().chain(&["order", "opener", "level", "room by", "room with", "told", "link", "wall"])
+        {
+            assert!(!built_in.table(table).is_empty(), "{table}");
         }
+        assert!(OF_OBJECT.iter().all(|table| built_in.table("told").contains_key(*table)));
     }
 }

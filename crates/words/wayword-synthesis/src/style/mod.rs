@@ -1,7 +1,9 @@
 //! Styles: the built-in ones, a user's own, and what reference texts of a style are like.
 
 mod measure;
+mod names;
 mod profile;
+mod verbs;
 pub mod way;
 mod wording;
 

@@ -4,6 +4,7 @@ use super::{measure::measure, way::Way, wording::Wording};
 use serde::Serialize;
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_checks::Copies;
+use wayword_core::Style;
 use wayword_language::{
     reading::{What, read},
     text::{sentence_count, word_count},
@@ -37,6 +38,13 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// Measures the references of a style. What it says of itself in numbers goes before.
+    #[must_use]
+    pub fn of(style: &Style) -> Self {
+        let measured = Self::measure(&style.references);
+        if style.words.is_empty() { measured } else { Self { words: style.words.clone(), ..measured } }
+    }
+
     /// Measures texts; at least one has to have a word.
     #[must_use]
     pub fn measure(references: &[String]) -> Self {
@@ -77,6 +85,14 @@ impl Profile {
 mod tests {
     use super::*;
     use crate::style::built_in;
+
+    #[test]
+    fn a_style_that_says_how_long_its_texts_are_goes_before_its_references() {
+        let style = Style { words: vec![5, 7], ..built_in("r2r").unwrap() };
+        assert_eq!(Profile::of(&style).words, [5, 7]);
+        let style = built_in("r2r").unwrap();
+        assert_eq!(Profile::of(&style).words, Profile::measure(&style.references).words);
+    }
 
     #[test]
     fn the_built_in_styles_measure_as_what_they_are() {

@@ -69,6 +69,18 @@ impl Wording {
         share.unwrap_or_default().clamp(0.0, 1.0)
     }
 
+    /// Over 1, what people say most is drawn more often than they say it.
+    #[must_use]
+    pub fn sharp(&self) -> f64 {
+        self.tables.get("choice").and_then(|choice| choice.get("sharp")).copied().unwrap_or(1.0).clamp(0.0, 10.0)
+    }
+
+    /// In how many texts the target has to be pinned down, where it can be. The others say as much as people do.
+    #[must_use]
+    pub fn sure(&self) -> f64 {
+        self.tables.get("choice").and_then(|choice| choice.get("sure")).copied().unwrap_or(1.0).clamp(0.0, 1.0)
+    }
+
     /// The constructions of a table with their shares.
     #[must_use]
     pub fn table(&self, name: &str) -> &Shares {
@@ -77,15 +89,9 @@ impl Wording {
     }
 
     /// One construction of a table, by a power of its share.
-    pub fn draw_sharply<'a>(
-        &'a self,
-        name: &str,
-        sharp: f64,
-        rng: &mut ChaCha8Rng,
-        may: impl Fn(&str) -> bool,
-    ) -> Option<&'a str> {
+    pub fn draw_sharply<'a>(&'a self, name: &str, rng: &mut ChaCha8Rng, may: impl Fn(&str) -> bool) -> Option<&'a str> {
         let options = self.table(name).iter().filter(|(key, _)| may(key));
-        drawn(options.map(|(key, share)| (key.as_str(), share.powf(sharp))), rng)
+        drawn(options.map(|(key, share)| (key.as_str(), share.powf(self.sharp()))), rng)
     }
 
     /// One construction of a table, by its share, among those that may be used.

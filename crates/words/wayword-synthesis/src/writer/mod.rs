@@ -1,6 +1,7 @@
 //! Writing: what a writer gets, and the writer that works by rules.
 
 mod landmarks;
+mod object;
 mod phrases;
 mod place;
 mod route;
@@ -11,7 +12,7 @@ mod telling;
 use crate::{style::Profile, walk::Walk};
 use std::sync::Arc;
 use wayword_checks::Memory;
-use wayword_core::{Finding, Image, ModelError, Style};
+use wayword_core::{Finding, Image, ModelError, Style, rng};
 
 pub use rules::RulesWriter;
 
@@ -64,6 +65,12 @@ impl<'a> Brief<'a> {
     #[must_use]
     pub fn new(walk: &'a Walk, memory: &'a Memory, style: &'a Style, profile: &'a Profile, seed: u64) -> Self {
         Self { walk, memory, style, profile, seed, candidate: 0, complaints: &[], earlier: &[], pictures: &[] }
+    }
+
+    /// How many words the text should have. All candidates for a walk share it, so that the choice among them does not
+    /// change how long the style's texts are.
+    fn length(&self) -> usize {
+        phrases::drawn(&self.profile.words, &mut rng(self.seed, &["length", &self.style.name, &self.walk.path.id]))
     }
 }
 

@@ -3,17 +3,16 @@
 //! Several drafts are made by the shares of the style's wording. The one is kept that says surely which object is meant,
 //! copies nobody, and comes nearest to a length that is drawn from the references.
 
-mod object;
 mod room;
 
 use super::{
     Brief, WriteError,
     landmarks::Landmarks,
+    object::Said,
     phrases::{self, drawn, fill, pick, the, unbent},
     route::{last_climb, stands_still, usable_room},
     task,
 };
-use object::Said;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use room::Goal;
@@ -21,12 +20,12 @@ use wayword_checks::Matter;
 use wayword_core::Climb;
 use wayword_language::text::{capital, word_count};
 
-/// How many drafts are made of a text.
-const DRAFTS: usize = 36;
-/// In how many texts the target must be pinned down, where it can be. The others say as much as people do.
-const SURE: f64 = 0.9;
-/// Over 1, the verb that people use most for a thing is drawn more often than they do.
-const SHARP: f64 = 1.4;
+/// How many drafts are made of a text, and how often at most it is planned.
+const DRAFTS: usize = 30;
+const PLANS: usize = 4;
+/// Faults of a draft, as words by which its length is off.
+const NEVER: f64 = 1000.0;
+const RATHER_NOT: f64 = 100.0;
 
 /// A text that names the place at the end, and what to do there.
 pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
@@ -43,20 +42,30 @@ pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<Strin
     let object = Said::of(brief, rng)?;
     let goal = Goal::new(brief, room);
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-    let words = drawn(&brief.profile.words, rng).min(limit.saturating_sub(1));
-    let plan = Plan::draw(brief, &goal, words, rng);
+    let words = brief.length().min(limit.saturating_sub(1));
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
-    let drafts = (0..DRAFTS).map(|_| {
-        let text = draft(brief, &goal, &object, plan, rng);
-        let off = word_count(&text).abs_diff(words) as f64;
-        let too_long = if word_count(&text) < limit { 0.0 } else { 1000.0 };
-        let copies = &brief.profile.copies;
-        let matter = Matter { target: Some(&object.name), rooms: &rooms };
-        let is_copied = if copies.copied(&text, matter).is_some() { 1000.0 } else { 0.0 };
-        let is_shared = if copies.shares_much(&text) { 100.0 } else { 0.0 };
-        (off + too_long + is_copied + is_shared, text)
-    });
-    let (_, text) = drafts.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+    let matter = Matter { target: Some(&object.name), rooms: &rooms };
+    let copies = &brief.profile.copies;
+    let mut best: Option<(f64, String)> = None;
+    // Where every draft has words in a row that a reference has too, it is planned again.
+    for _ in 0..PLANS {
+        let plan = Plan::draw(brief, &goal, words, rng);
+        for _ in 0..DRAFTS {
+            let text = draft(brief, &goal, &object, plan, rng);
+            let count = word_count(&text);
+            let is_copied = if copies.copied(&text, matter).is_some() { NEVER } else { 0.0 };
+            let is_shared = if copies.shares_much(&text) { RATHER_NOT } else { 0.0 };
+            let too_long = if count < limit { 0.0 } else { NEVER };
+            let fault = count.abs_diff(words) as f64 + is_copied + is_shared + too_long;
+            if best.as_ref().is_none_or(|(least, _)| fault < *least) {
+                best = Some((fault, text));
+            }
+        }
+        if best.as_ref().is_some_and(|(fault, _)| *fault < RATHER_NOT) {
+            break;
+        }
+    }
+    let text = best.map(|(_, text)| text).unwrap_or_default();
     Ok(format!("{}{}", capital(&text), if full_stop { "." } else { "" }))
 }
 
@@ -72,17 +81,19 @@ struct Plan<'a> {
     please: bool,
 }
 
-/// From so many words on, a text says one thing more than it needs, or two.
-const LONG: [usize; 2] = [18, 23];
+/// A text of fewer words need not pin its target down.
+const SHORT: usize = 9;
+/// From so many words on, a text says one thing more than it needs, or two, or three.
+const LONG: [usize; 3] = [16, 20, 25];
 
 impl<'a> Plan<'a> {
     fn draw(brief: &'a Brief<'_>, goal: &Goal<'a>, words: usize, rng: &mut ChaCha8Rng) -> Self {
         let wording = &brief.profile.wording;
         Self {
-            order: wording.draw_sharply("order", SHARP, rng, |_| true).unwrap_or("move"),
+            order: wording.draw_sharply("order", rng, |_| true).unwrap_or("move"),
             opener: goal.opener(rng),
-            names_level: goal.names_level(rng),
-            is_sure: rng.random_bool(SURE),
+            names_level: goal.names_level(rng) || words >= LONG[2] && goal.is_one_of_several(),
+            is_sure: words >= SHORT && rng.random_bool(wording.sure()),
             more: LONG.iter().filter(|long| words >= **long).count(),
             please: rng.random_bool(wording.share("please")),
         }
@@ -94,7 +105,7 @@ fn draft(brief: &Brief<'_>, goal: &Goal<'_>, object: &Said<'_>, plan: Plan<'_>, 
     let wording = &brief.profile.wording;
     let by = object.description(wording, plan.is_sure, plan.more, rng);
     let place = goal.phrase(&by, plan.names_level, rng);
-    let verb = wording.verb(&object.name, SHARP, rng);
+    let verb = wording.verb(&object.name, wording.sharp(), rng);
     let task = task::done(verb, &object.phrase(&by, wording, rng));
     let text = match plan.order {
         "task" => format!("{task} {} {place}", goal.preposition(verb, rng)),

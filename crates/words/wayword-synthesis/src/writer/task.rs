@@ -1,35 +1,17 @@
 //! The closing task: what one can do with a thing.
 
-use super::{
-    Brief, WriteError,
-    phrases::{pick, the},
-    route::side_word,
-};
+use super::{Brief, WriteError, object::Said};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use wayword_core::{Distinction, Side, Verdict};
+use wayword_core::Verdict;
 use wayword_language::lexicon::{Class, agree, normal, thing};
 
 /// The task of a text, and the name of its object.
 pub(super) fn task(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<(String, String), WriteError> {
-    let (name, object) = match &brief.walk.path.target {
-        Some(target) => {
-            let told_by = target.told_by.get(rng.random_range(0..target.told_by.len().max(1)));
-            let must = target.has_namesake && !target.told_by.is_empty();
-            let told_by = if must {
-                target.told_by.first().filter(|_| rng.random_bool(0.7)).or(told_by)
-            } else {
-                told_by.filter(|_| rng.random_bool(0.3))
-            };
-            (target.name.clone(), told_by.map_or_else(|| the(&target.name), |told_by| told(&target.name, told_by, rng)))
-        }
-        None => {
-            let name = free_object(brief, rng).ok_or(WriteError::NoObject)?;
-            let object = the(&name);
-            (name, object)
-        }
-    };
-    Ok((done(brief.profile.wording.verb(&name, 1.0, rng), &object), name))
+    let object = Said::of(brief, rng)?;
+    let wording = &brief.profile.wording;
+    let phrase = object.phrase(&object.in_view(wording, rng), wording, rng);
+    Ok((done(wording.verb(&object.name, 1.0, rng), &phrase), object.name))
 }
 
 /// What is done with an object. A particle stands behind a short object only: "turn the lamp on", "turn on the lamp by
@@ -38,28 +20,6 @@ pub(super) fn done(verb: &str, object: &str) -> String {
     match verb.split_once(" {o} ") {
         Some((verb, particle)) if object.split(' ').count() > 3 => format!("{verb} {particle} {object}"),
         _ => verb.replace("{o}", object),
-    }
-}
-
-/// A thing with what sets it apart from others of its name.
-fn told(name: &str, told_by: &Distinction, rng: &mut ChaCha8Rng) -> String {
-    match told_by {
-        Distinction::Colour { colour } => format!("the {colour} {name}"),
-        Distinction::OnSide { side: side @ (Side::Left | Side::Right) } => {
-            format!("the {name} {} {}", pick(rng, &["on your", "on the", "to your"]), side_word(*side))
-        }
-        Distinction::OnSide { .. } => the(name),
-        Distinction::NextTo { neighbour } => {
-            format!("the {name} {} the {neighbour}", pick(rng, &["next to", "by", "near", "beside", "closest to"]))
-        }
-        Distinction::Range { nearest: true } => {
-            pick(rng, &["the nearest {n}", "the {n} nearest to you", "the {n} closest to you", "the closest {n}"])
-                .replace("{n}", name)
-        }
-        Distinction::Range { nearest: false } => {
-            pick(rng, &["the farthest {n}", "the {n} farthest from you"]).replace("{n}", name)
-        }
-        _ => the(name),
     }
 }
 

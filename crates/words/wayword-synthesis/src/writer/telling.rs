@@ -3,7 +3,7 @@
 use super::{
     Brief,
     landmarks::Landmarks,
-    phrases::{draw, drawn, fill, stay_phrase},
+    phrases::{draw, fill, stay_phrase},
     route::{self, Clause, KEPT, side_word, stands_still, suits, usable_room},
     task,
 };
@@ -29,7 +29,7 @@ pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, rng: &
         landmarks.reserve(name);
     }
     let mut clauses = route::clauses(brief, &mut landmarks, rng);
-    let words = drawn(&brief.profile.words, rng).max(LEAST_WORDS);
+    let words = brief.length().max(LEAST_WORDS);
     while clauses.iter().map(|clause| length(clause.kind)).sum::<usize>() > words && drop_least(&mut clauses, OPTIONAL)
     {
     }

@@ -50,7 +50,12 @@ impl Held {
         let given = style.map(|name| styles::find(&[name.to_owned()])).transpose()?;
         let given = given.and_then(|mut styles| styles.pop()).map(Known::from);
         let known = built_in_names().into_iter().map(|name| built_in(name).map(Known::of)).collect::<Result<_, _>>()?;
-        let any = Style { name: "any".into(), references: Vec::new(), constraints: Constraints::default() };
+        let any = Style {
+            name: "any".into(),
+            references: Vec::new(),
+            words: Vec::new(),
+            constraints: Constraints::default(),
+        };
         Ok(Self { given, known, sole: None, any: Known::of(any) })
     }
 

@@ -5,7 +5,10 @@
 
 mod listing;
 mod properties;
+mod relations;
 mod superlatives;
+#[cfg(test)]
+mod tests;
 
 pub use listing::Listing;
 
@@ -36,6 +39,7 @@ pub fn describe(target: &mut Target, last: &Frame, listing: &Listing) {
     target.has_namesake = namesakes.contains(&true);
     target.told_by = told_by(&scene, &properties, &namesakes);
     target.descriptions = search(&scene, &properties);
+    target.hangs = scene.hangs();
     target.storeys = listing.storeys;
 }
 
@@ -48,6 +52,21 @@ fn told_by(scene: &Scene<'_>, properties: &[Property], namesakes: &[bool]) -> Ve
         properties.iter().filter(tells).map(|property| (property.cost, property.told.clone())).collect();
     if namesakes.contains(&true) {
         told.extend(scene.superlatives(namesakes));
+    }
+    // Who hears "on the right" looks for the only one there.
+    let is_clear = |told: &Distinction| !told.is_of_room() && !matches!(told, Distinction::OnSide { .. });
+    if told.is_empty() {
+        // Nothing tells it from all of them: what tells it from most is better than nothing.
+        let count = |fits: &[bool]| fits.iter().zip(namesakes).filter(|(fits, in_view)| **fits && **in_view).count();
+        let all = namesakes.iter().filter(|in_view| **in_view).count();
+        let of_object = properties.iter().filter(|property| is_clear(&property.told) && count(&property.fits) < all);
+        told.extend(of_object.map(|property| (count(&property.fits) as f64, property.told.clone())));
+    }
+    if told.is_empty() {
+        // What is true of all of them still says where to look.
+        let is_said = |told: &Distinction| is_clear(told) || !told.is_of_room() && scene.is_outermost();
+        let of_object = properties.iter().filter(|property| is_said(&property.told));
+        told.extend(of_object.map(|property| (property.cost, property.told.clone())));
     }
     told.sort_by(|a, b| a.0.total_cmp(&b.0));
     told.into_iter().map(|(_, told)| told).collect()
@@ -80,6 +99,11 @@ fn search(scene: &Scene<'_>, properties: &[Property]) -> Vec<Description> {
             }
         }
     }
+    // Of several on a side, "the one on the left" is the leftmost.
+    if !scene.is_outermost() {
+        let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
+        found.retain(|found| found.description.leaves == 1 || !found.description.by.iter().any(is_side));
+    }
     best(found)
 }
 
@@ -107,6 +131,12 @@ fn push(by: &[&Property], rest: usize, superlative: Option<(f64, Distinction)>, 
     // Two things to say of the object, and two of its room, are enough.
     let of_room = by.iter().filter(|property| property.told.is_of_room()).count();
     if of_room > 2 || by.len() + usize::from(superlative.is_some()) - of_room > 2 {
+        return;
+    }
+    // Nothing is said of one thing twice.
+    let names = |at: usize| by[at].told.names();
+    let repeats = (1..by.len()).any(|at| names(at).any(|name| (0..at).any(|before| names(before).any(|o| o == name))));
+    if repeats {
         return;
     }
     let of_object = |told: &&&Property| !told.told.is_of_room() && !matches!(told.told, Distinction::Colour { .. });

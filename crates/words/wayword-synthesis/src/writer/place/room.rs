@@ -1,6 +1,5 @@
 //! The room at the end, in words: its name, its storey, and what else tells which one it is.
 
-use super::SHARP;
 use crate::{
     style::Wording,
     writer::{Brief, phrases::ordinal, route::last_climb},
@@ -19,17 +18,20 @@ pub(super) struct Goal<'a> {
     climb: Option<Climb>,
     /// How likely it is that the storey is said where nothing asks for it.
     names_level: f64,
+    /// How many storeys the building has; 0 where that is not known.
+    storeys: usize,
 }
 
 /// How much oftener than on average a text names the storey, beside those that need it to be clear, where it changes along the path, where the building has
 /// several, and where it has one.
-const BY_NEED: [f64; 3] = [1.6, 0.95, 0.25];
+const BY_NEED: [f64; 3] = [1.5, 0.75, 0.2];
 
 impl<'a> Goal<'a> {
     pub(super) fn new(brief: &Brief<'a>, room: &'a str) -> Self {
         let path = &brief.walk.path;
         let levels: BTreeSet<u32> = path.frames.iter().filter_map(|frame| frame.level).collect();
-        let need = match path.target.as_ref().map_or(0, |target| target.storeys) {
+        let storeys = path.target.as_ref().map_or(0, |target| target.storeys);
+        let need = match storeys {
             _ if levels.len() > 1 => BY_NEED[0],
             0 => 1.0,
             1 => BY_NEED[2],
@@ -38,12 +40,17 @@ impl<'a> Goal<'a> {
         let wording = &brief.profile.wording;
         let names_level = (wording.share("level") * need).clamp(0.0, 0.97);
         let level = path.frames.last().and_then(|frame| frame.level);
-        Self { wording, room, level, climb: last_climb(brief.walk), names_level }
+        Self { wording, room, level, climb: last_climb(brief.walk), names_level, storeys }
     }
 
     /// Whether the storey is said where nothing asks for it.
     pub(super) fn names_level(&self, rng: &mut ChaCha8Rng) -> bool {
         rng.random_bool(self.names_level)
+    }
+
+    /// Whether the building is known to have another storey.
+    pub(super) fn is_one_of_several(&self) -> bool {
+        self.storeys > 1
     }
 
     /// "Go to", "proceed to": up or down only where the path goes there.
@@ -57,7 +64,7 @@ impl<'a> Goal<'a> {
                 _ => !["up", "down", "upstairs", "downstairs"].iter().any(|word| holds(word)),
             }
         };
-        self.wording.draw_sharply("opener", SHARP, rng, fits).unwrap_or("go to")
+        self.wording.draw_sharply("opener", rng, fits).unwrap_or("go to")
     }
 
     /// "In", "from", "on": before the room, behind a task.

@@ -9,6 +9,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use wayword_core::{Description, Distinction, Relation, Side};
+use wayword_language::lexicon::{agree, is_plural};
 
 /// The object, with all that can be said of it.
 pub(super) struct Said<'a> {
@@ -18,7 +19,11 @@ pub(super) struct Said<'a> {
     descriptions: &'a [Description],
     told_by: &'a [Distinction],
     has_namesake: bool,
+    hangs: bool,
 }
+
+/// How much oftener "on the wall" is said of things that hang there than of all.
+const OF_HANGING: f64 = 10.0;
 
 impl<'a> Said<'a> {
     pub(super) fn of(brief: &Brief<'a>, rng: &mut ChaCha8Rng) -> Result<Self, WriteError> {
@@ -31,10 +36,11 @@ impl<'a> Said<'a> {
                 descriptions: &target.descriptions,
                 told_by: &target.told_by,
                 has_namesake: target.has_namesake,
+                hangs: target.hangs,
             },
             None => {
                 let name = free_object(brief, rng).ok_or(WriteError::NoObject)?;
-                Self { called: name.clone(), name, descriptions: &[], told_by: &[], has_namesake: false }
+                Self { called: name.clone(), name, descriptions: &[], told_by: &[], has_namesake: false, hangs: false }
             }
         })
     }
@@ -58,23 +64,32 @@ impl<'a> Said<'a> {
         let said_of = |by: &[&Distinction], of: &dyn Fn(&Distinction) -> bool| by.iter().any(|by| of(by));
         let extra = if is_sure { more } else { more.max(usize::from(rng.random_bool(wording.share("object")))) };
         for _ in 0..extra {
-            let has_object = said_of(&by, &|by| !by.is_of_room());
+            let of_object = by.iter().filter(|by| !by.is_of_room()).count();
             let has_by = said_of(&by, &|by| matches!(by, Distinction::RoomBy { .. }));
             let has_with = said_of(&by, &|by| matches!(by, Distinction::RoomWith { .. }));
+            let repeats =
+                |other: &Distinction| by.iter().any(|by| by.names().any(|name| other.names().any(|o| agree(o, name))));
             let adds = |other: &&Distinction| match other {
+                _ if repeats(other) => false,
                 Distinction::RoomBy { .. } => !has_by,
                 Distinction::RoomWith { .. } => !has_with,
-                Distinction::Related { .. } | Distinction::NextTo { .. } => !has_object,
+                Distinction::Related { .. } | Distinction::NextTo { .. } => of_object < 1 + usize::from(extra > 1),
                 _ => false,
             };
             let others = all.iter().flat_map(|by| by.iter()).filter(adds).map(std::slice::from_ref);
             by.extend(draw(&others.collect::<Vec<_>>(), wording, rng));
         }
         if self.has_namesake && !said_of(&by, &|by| !by.is_of_room()) {
-            let told: Vec<&[Distinction]> = self.told_by.iter().map(std::slice::from_ref).collect();
-            by.extend(draw(&told, wording, rng));
+            by.extend(self.in_view(wording, rng));
         }
         by
+    }
+
+    /// What tells the object from its namesakes where the path ends; of an only one, something as often as people say it.
+    pub(super) fn in_view(&self, wording: &Wording, rng: &mut ChaCha8Rng) -> Vec<&'a Distinction> {
+        let says = self.has_namesake || rng.random_bool(wording.share("object"));
+        let told: Vec<&[Distinction]> = self.told_by.iter().map(std::slice::from_ref).collect();
+        draw(if says { &told } else { &[] }, wording, rng).iter().collect()
     }
 
     /// The object with its article.
@@ -90,8 +105,16 @@ impl<'a> Said<'a> {
                 _ => behind.extend(relation(by, wording, rng)),
             }
         }
+        let is_on = by.iter().any(|by| matches!(by, Distinction::Related { relation: Relation::On, .. }));
+        if self.hangs && !is_on && rng.random_bool((wording.share("wall") * OF_HANGING).min(0.6)) {
+            behind.insert(0, wording.draw("wall", rng, |_| true).unwrap_or("on the wall").to_owned());
+        }
         let link = wording.draw("link", rng, |link| link != "located" && link != "that's" || behind.len() == 1);
         if let (Some(first), Some(link)) = (behind.first_mut(), link.filter(|link| !link.is_empty())) {
+            let link = match link.split_once(['\'', ' ']) {
+                Some((that, "s" | "is")) if is_plural(&self.called) => format!("{that} are"),
+                _ => link.to_owned(),
+            };
             *first = format!("{link} {first}");
         }
         std::iter::once(phrase).chain(behind).collect::<Vec<_>>().join(" ")
@@ -107,7 +130,7 @@ fn draw<'a>(all: &[&'a [Distinction]], wording: &Wording, rng: &mut ChaCha8Rng) 
     let kinds: Vec<&Vec<&[Distinction]>> = of_kind.values().collect();
     let weights: Vec<f64> = kinds.iter().map(|kind| likelihood(kind[0], wording)).collect();
     let Some(kind) = weighed(&weights, rng) else { return &[] };
-    let cheaper: Vec<f64> = (0..kinds[kind].len()).map(|at| 0.88_f64.powi(at as i32)).collect();
+    let cheaper: Vec<f64> = (0..kinds[kind].len()).map(|at| 0.94_f64.powi(at as i32)).collect();
     weighed(&cheaper, rng).map_or(&[], |at| kinds[kind][at])
 }
 
@@ -118,9 +141,12 @@ fn likelihood(by: &[Distinction], wording: &Wording) -> f64 {
     let share = |table: &str| told.get(table).copied().unwrap_or(0.5) / all;
     let odds = |name: &str| wording.share(name) / (1.0 - wording.share(name)).max(0.05);
     let one = |by: &Distinction| match by {
-        Distinction::Level { .. } => odds("level").max(0.5),
-        Distinction::RoomBy { .. } => odds("room by"),
-        Distinction::RoomWith { .. } => odds("room with") * 0.5,
+        Distinction::Level { .. } => odds("level").max(0.4) * 0.8,
+        Distinction::RoomBy { .. } => odds("room by") * 0.6,
+        Distinction::RoomWith { .. } => odds("room with") * 0.25,
+        Distinction::OnSide { .. } => odds("object") * share("side") * 2.0,
+        // Near something are most things: of the descriptions that pin a target down, most have it.
+        Distinction::Related { relation: Relation::Near, .. } => odds("object") * share("near") * 1.2,
         _ => odds("object") * share(table(by)) * 3.0,
     };
     by.iter().map(one).product()

@@ -1,0 +1,163 @@
+//! A made-up building: two bedrooms side by side, each with a bed, and a hallway before them.
+
+use super::{Listing, describe};
+use wayword_core::{
+    DVec3, Description, Distinction, Frame, Heading, Label, ObjectId, Pose, Survey, Target, ViewpointGraph,
+    ViewpointId, graph::GraphError, survey::Known,
+};
+
+/// A viewpoint: its name, where it is, its room, and the things that are seen there (id, name, where they are).
+type Spot<'a> = (&'a str, DVec3, &'a str, &'a [(&'a str, &'a str, DVec3)]);
+
+fn id(name: &str) -> ViewpointId {
+    ViewpointId::new(name).unwrap()
+}
+
+fn survey(spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> Survey {
+    let mut graph = ViewpointGraph::default();
+    for (name, eye, ..) in spots {
+        graph.add(id(name), *eye, Some(1)).unwrap();
+    }
+    for (a, b) in joined {
+        graph.join(&id(a), &id(b)).unwrap();
+    }
+    let known = |place: &ViewpointId, eye: DVec3| {
+        let (.., room, things) = spots.iter().find(|spot| id(spot.0) == *place).unwrap();
+        let label = |(object, name, position): &(&str, &str, DVec3)| Label {
+            object: ObjectId::new(*object).unwrap(),
+            name: (*name).to_owned(),
+            heading: Heading::towards(eye, *position).unwrap(),
+            elevation_rad: libm::atan2(position.z - eye.z, position.truncate().distance(eye.truncate())),
+            box_px: None,
+            distance_m: None,
+            position: has_positions.then_some(*position),
+            colour: None,
+        };
+        let things = Some(things.iter().map(label).collect());
+        Ok::<_, GraphError>(Known { room: Some((*room).to_owned()), things })
+    };
+    Survey::of(&graph, known).unwrap()
+}
+
+const LEFT: DVec3 = DVec3::new(-1.0, 3.0, 1.0);
+const RIGHT: DVec3 = DVec3::new(1.0, 3.0, 1.0);
+
+fn described(target: &str, spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> Target {
+    let survey = survey(spots, joined, has_positions);
+    let (place, eye, _, things) = spots[0];
+    let frame = Frame { pose: Pose::level(eye, Heading::NORTH), viewpoint: Some(id(place)), level: Some(1) };
+    let name = things.iter().find(|thing| thing.0 == target).unwrap().1.to_owned();
+    let mut target = Target {
+        object: ObjectId::new(target).unwrap(),
+        name,
+        told_by: Vec::new(),
+        has_namesake: false,
+        descriptions: Vec::new(),
+        hangs: false,
+        storeys: 0,
+    };
+    describe(&mut target, &frame, &Listing::of(&survey));
+    target
+}
+
+const EYE: DVec3 = DVec3::new(0.0, 0.0, 1.5);
+const FAR: DVec3 = DVec3::new(20.0, 0.0, 1.5);
+
+#[test]
+fn the_only_one_needs_no_more_than_its_name() {
+    let lamp = described("1", &[("a", EYE, "bedroom", &[("1", "lamp", LEFT)])], &[], true);
+    assert_eq!(lamp.descriptions.first(), Some(&Description { by: vec![], leaves: 1 }));
+    assert!(!lamp.has_namesake && lamp.told_by.is_empty());
+}
+
+#[test]
+fn a_neighbour_tells_one_of_two_and_a_row_does() {
+    let sofa = ("3", "sofa", LEFT + DVec3::new(0.0, 0.6, 0.0));
+    let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), sofa];
+    let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
+    assert!(lamp.has_namesake && lamp.descriptions.iter().all(Description::pins), "{lamp:?}");
+    let says = |by: &Distinction| lamp.descriptions.iter().any(|description| description.by == [by.clone()]);
+    assert!(says(&Distinction::NextTo { neighbour: "sofa".into() }));
+    assert!(says(&Distinction::InRow { place: 1, of: 2, from: wayword_core::Side::Left }));
+    assert!(!lamp.descriptions.iter().any(|description| description.by.is_empty()));
+}
+
+#[test]
+fn what_hardly_holds_is_not_said() {
+    // Both lamps are about as near to the sofa, and about as far to the left.
+    let things = [("1", "lamp", LEFT), ("2", "lamp", LEFT + DVec3::new(0.1, 0.0, 0.0)), ("3", "sofa", RIGHT)];
+    let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
+    assert!(lamp.told_by.is_empty(), "{lamp:?}");
+    assert!(lamp.descriptions.iter().all(|description| description.leaves == 2), "{lamp:?}");
+}
+
+#[test]
+fn names_that_mean_the_same_are_rivals() {
+    let things = [("1", "picture", LEFT), ("2", "painting", RIGHT)];
+    let picture = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
+    assert!(picture.has_namesake && picture.descriptions.iter().all(|description| !description.by.is_empty()));
+}
+
+#[test]
+fn the_room_is_told_by_what_lies_beside_it() {
+    let other = [("2", "lamp", FAR + DVec3::X)];
+    let spots: [Spot<'_>; 3] = [
+        ("a", EYE, "bedroom", &[("1", "lamp", LEFT)]),
+        ("b", FAR, "bedroom", &other),
+        ("c", EYE - DVec3::Y * 3.0, "bathroom", &[]),
+    ];
+    let lamp = described("1", &spots, &[("a", "c")], true);
+    let by_bathroom = Distinction::RoomBy { room: "bathroom".into() };
+    assert!(lamp.descriptions.iter().any(|description| description.by == [by_bathroom.clone()] && description.pins()));
+}
+
+#[test]
+fn without_positions_things_are_found_where_rays_meet() {
+    let sofa = ("3", "sofa", LEFT + DVec3::new(0.0, 0.6, 0.0));
+    let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), sofa];
+    let spots: [Spot<'_>; 2] = [("a", EYE, "bedroom", &things), ("b", EYE + DVec3::X * 3.0, "bedroom", &things)];
+    let lamp = described("1", &spots, &[("a", "b")], false);
+    let next_to = Distinction::NextTo { neighbour: "sofa".into() };
+    assert!(lamp.descriptions.iter().any(|description| description.by == [next_to.clone()]), "{lamp:?}");
+}
+
+#[test]
+fn the_one_on_the_left_is_the_outermost_of_several() {
+    let (near, far) = (DVec3::new(-2.0, 2.0, 1.0), DVec3::new(-3.0, 0.5, 1.0));
+    let says_side = |target: &str| {
+        let pillows = [("1", "pillow", near), ("2", "pillow", far)];
+        let other = [("3", "pillow", FAR + DVec3::X)];
+        // Beds are told apart by nothing else: the other bedroom is the same.
+        let spots: [Spot<'_>; 2] = [("a", EYE, "bedroom", &pillows), ("b", FAR, "bedroom", &other)];
+        let pillow = described(target, &spots, &[], true);
+        let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
+        pillow.descriptions.iter().any(|description| !description.pins() && description.by.iter().any(is_side))
+            || pillow.told_by.iter().any(is_side)
+    };
+    assert!(!says_side("1"), "the other one is farther to the left");
+}
+
+#[test]
+fn what_labels_leave_out_at_the_end_is_still_on_a_side() {
+    // The second chair is in the room, but only listed where the first is not seen.
+    let (one, other) = (DVec3::new(-2.0, 1.0, 1.0), DVec3::new(-4.0, 1.0, 1.0));
+    let (here, there) = ([("1", "chair", one)], [("2", "chair", other)]);
+    let spots: [Spot<'_>; 2] = [("a", EYE, "kitchen", &here), ("b", EYE - DVec3::X * 4.0, "kitchen", &there)];
+    let chair = described("1", &spots, &[("a", "b")], true);
+    let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
+    assert!(!chair.descriptions.iter().any(|description| description.by.iter().any(is_side)), "{chair:?}");
+}
+
+#[test]
+fn nothing_is_said_of_one_thing_twice() {
+    let shelf = ("3", "shelf", LEFT + DVec3::Z * 0.6);
+    let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), shelf];
+    let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
+    for description in &lamp.descriptions {
+        let names: Vec<&str> = description.by.iter().flat_map(Distinction::names).collect();
+        assert!(names.len() < 2 || names[0] != names[1], "{description:?}");
+    }
+    assert!(
+        lamp.descriptions.iter().any(|description| description.by.iter().any(|by| by.names().next() == Some("shelf")))
+    );
+}

@@ -1,0 +1,83 @@
+//! What people do with things: verbs from the tasks of reference texts.
+
+use super::{
+    measure::Counts,
+    wording::{VERBS, verbs_of_class, verbs_of_kind},
+};
+use std::collections::BTreeSet;
+use wayword_language::{
+    lexicon::{kinds, thing},
+    reading::{
+        Reading, What, read,
+        vocabulary::{DETERMINERS, WALKING},
+    },
+};
+
+/// A verb is taken from references that use it at least so often for one kind of thing.
+const LEAST_USES: f64 = 3.0;
+/// Words that may stand between a verb and its object.
+const PARTICLES: [&str; 14] =
+    ["me", "on", "off", "up", "down", "out", "in", "away", "over", "at", "into", "inside", "under", "back"];
+/// And for things of one class, in this share of their tasks.
+const LEAST_SHARE: f64 = 0.01;
+
+/// What is done, with `{o}` for the object.
+pub(super) fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
+    let Some(task) = &reading.task else { return };
+    let Some(What::Place(place)) = task.object.map(|at| &reading.events[at].what) else { return };
+    let Some(kind) = thing(&place.name) else { return };
+    let Some(at) = words.iter().rposition(|word| *word == task.verb) else { return };
+    let Some(end) =
+        (at + 1..words.len().min(at + 5)).find(|at| DETERMINERS.contains(&words[*at].as_str()) && words[*at] != "that")
+    else {
+        return;
+    };
+    let said = &words[at..end];
+    let is_plain = said.len() <= 3
+        && said[0].len() > 1
+        && said[0].chars().all(char::is_alphabetic)
+        && said[1..].iter().all(|word| PARTICLES.contains(&word.as_str()));
+    if !is_plain
+        || WALKING.contains(&task.verb.as_str())
+            && !matches!(
+                task.verb.as_str(),
+                "get" | "bring" | "pick" | "take" | "turn" | "pull" | "move" | "make" | "sit" | "push"
+            )
+    {
+        return;
+    }
+    // "Turn the light on": the particle stands behind the object.
+    let noun = place.name.rsplit(' ').next().unwrap_or_default();
+    let behind = words[end..].iter().position(|word| word == noun).map(|noun| end + noun + 1);
+    let particle = behind.and_then(|at| Some((words.get(at)?, words.get(at + 1))));
+    let mut key = format!("{} {{o}}", said.join(" "));
+    if let Some((particle @ ("on" | "off" | "out" | "up" | "down"), next)) =
+        particle.map(|(word, next)| (word.as_str(), next))
+    {
+        let is_last = next.is_none_or(|next| matches!(next.as_str(), "in" | "and" | "from"));
+        if is_last && said.len() == 1 {
+            key = format!("{key} {particle}");
+        }
+    }
+    kinds(kind.name).iter().for_each(|kind| counts.add(&verbs_of_kind(kind), &key));
+    counts.add(&verbs_of_class(kind.class), &key);
+}
+
+/// Keeps the verbs that several references use, and that the reader takes for a task on the thing.
+pub(super) fn retain_common_verbs(counts: &mut Counts) {
+    for (table, verbs) in &mut counts.0 {
+        let Some(of) = table.strip_prefix(VERBS) else { continue };
+        let all: f64 = verbs.values().sum();
+        let least = if of.starts_with("class ") { (all * LEAST_SHARE).max(LEAST_USES) } else { LEAST_USES };
+        let object = if of.starts_with("class ") { "lamp" } else { of };
+        verbs.retain(|verb, count| *count >= least && is_read(verb, object));
+    }
+}
+
+/// Whether the reader takes a verb for a task, and understands all of it.
+fn is_read(verb: &str, object: &str) -> bool {
+    let text = format!("Go to the kitchen and {}", verb.replace("{o}", &format!("the {object}")));
+    let reading = read(&text, &BTreeSet::new());
+    let has_object = reading.task.as_ref().is_some_and(|task| task.object.is_some());
+    has_object && reading.clauses.iter().all(|clause| clause.understood || clause.span[0] == clause.span[1])
+}
