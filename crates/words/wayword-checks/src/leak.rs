@@ -75,7 +75,15 @@ impl Copies {
     /// Whether a text shares eight words in a row with a reference.
     #[must_use]
     pub fn shares_much(&self, text: &str) -> bool {
-        word_tokens(text).windows(AVOIDED_RUN).any(|run| self.avoided.contains(&key(run)))
+        self.much(text).is_some()
+    }
+
+    /// The byte range of the first eight words in a row that a text shares with a reference.
+    #[must_use]
+    pub fn much(&self, text: &str) -> Option<[usize; 2]> {
+        let words = word_tokens(text);
+        let run = words.windows(AVOIDED_RUN).find(|run| self.avoided.contains(&key(run)))?;
+        Some([run[0].span[0], run[AVOIDED_RUN - 1].span[1]])
     }
 }
 

@@ -5,7 +5,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_checks::memory::Remembered;
 use wayword_core::{Side, Verdict};
-use wayword_language::lexicon::{Class, agree, is_fabric, is_room, normal, thing};
+use wayword_language::lexicon::{Class, Thing, agree, is_fabric, is_room, normal, plural, thing};
 
 /// Chooses landmarks, each kind of thing once in a text.
 pub(super) struct Landmarks<'a> {
@@ -27,8 +27,12 @@ pub(super) struct Landmark {
     pub(super) alike: usize,
     /// The side of the walker on which it is from the frame for which it was chosen.
     pub(super) side: Option<Side>,
+    /// Whether it lies before somebody who arrives at that frame, as far as is known.
+    pub(super) in_front: bool,
     /// The side on which one passes it, and from which frame.
     pub(super) passed: Option<(usize, Side)>,
+    /// The name of another thing beside it, told with it: "the table and chairs".
+    pub(super) with: Option<String>,
 }
 
 /// A landmark is said at a frame that is no farther from it than this, metres.
@@ -36,8 +40,19 @@ const NEAR_M: f64 = 2.5;
 /// One stops at a thing that is no farther than this, metres.
 const STOP_M: f64 = 1.9;
 
-/// How much it counts that a style's texts name a thing often, for the root of how often.
-const MENTIONED: f64 = 0.06;
+/// What lies no farther to a side than this is in front of one, radians.
+const IN_FRONT_RAD: f64 = 1.1;
+/// What it counts that one stops in front of a thing.
+const IN_FRONT: f64 = 1.5;
+/// Things that are told together are no farther apart, metres.
+const BESIDE_M: f64 = 1.5;
+
+/// How much it counts that a style's texts name a thing often, for the logarithm of how often.
+const MENTIONED: f64 = 0.7;
+/// How much it counts that a thing is easy to see.
+const SALIENT: f64 = 0.8;
+/// A bed is near within this of its middle more than other things, metres, and what one sits on or eats at within half of it.
+const WIDE_M: f64 = 1.2;
 /// How much is left to chance.
 const CHANCE: f64 = 1.5;
 /// How often much more is.
@@ -89,7 +104,8 @@ impl<'a> Landmarks<'a> {
             .filter(|seen| is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, to));
         // Now and then anything will do, so that texts differ.
         let chance = if rng.random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
-        let scored = told.map(|seen| (self.score(seen, frame) + rng.random_range(0.0..chance), seen));
+        let ahead = |seen: &Remembered| if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
+        let scored = told.map(|seen| (self.score(seen, frame) + ahead(seen) + rng.random_range(0.0..chance), seen));
         let (_, best) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
         self.used.push(normal(&best.name));
         Some(self.landmark(best, frame))
@@ -104,6 +120,26 @@ impl<'a> Landmarks<'a> {
         Some(self.landmark(best, frame))
     }
 
+    /// Another thing beside a landmark, which is used then, too.
+    pub(super) fn beside(&mut self, landmark: &Landmark, frame: usize, to: Use) -> Option<String> {
+        let memory = self.brief.memory;
+        let is_landmark = |seen: &&Remembered| seen.name == landmark.name && self.fits(seen, frame, to);
+        let place = memory.seen_from(frame).filter(is_landmark).find_map(|seen| seen.position)?;
+        let beside = memory.seen_from(frame).filter(|seen| {
+            let is_beside = seen.position.is_some_and(|other| other.distance(place) <= BESIDE_M);
+            let is_other = !agree(&seen.name, &landmark.name) && seen.colour.is_none();
+            is_beside
+                && is_other
+                && is_tellable(&seen.name, 1)
+                && self.is_free(&seen.name)
+                && self.fits(seen, frame, to)
+        });
+        let best = beside.max_by(|a, b| self.score(a, frame).total_cmp(&self.score(b, frame)))?;
+        let alike = memory.seen_from(frame).filter(|other| normal(&other.name) == normal(&best.name)).count();
+        self.used.push(normal(&best.name));
+        Some(if alike > 1 { plural(&best.name) } else { best.name.clone() })
+    }
+
     /// Keeps a landmark's name from being used again.
     pub(super) fn take(&mut self, landmark: Landmark) -> Landmark {
         self.used.push(normal(&landmark.name));
@@ -112,7 +148,12 @@ impl<'a> Landmarks<'a> {
 
     fn fits(&self, seen: &Remembered, frame: usize, to: Use) -> bool {
         let memory = self.brief.memory;
-        let most_m = if to == Use::Stop { STOP_M } else { NEAR_M };
+        let wide_m = match thing(&seen.name).map(|thing| thing.class) {
+            Some(Class::Bed) => WIDE_M,
+            Some(Class::Seat | Class::Surface) => WIDE_M / 2.0,
+            _ => 0.0,
+        };
+        let most_m = if to == Use::Stop { STOP_M } else { NEAR_M + wide_m };
         let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
         let side = memory.side(seen, frame);
         let is_there = match to {
@@ -132,8 +173,8 @@ impl<'a> Landmarks<'a> {
         let alike = || memory.things.iter().filter(|other| agree(&other.name, &seen.name));
         let elsewhere = alike().filter(|other| other.glimpse(frame).is_none()).count();
         let earlier = alike().filter(|other| other.first_seen() < frame);
-        let on_wall = known.is_some_and(|thing| thing.class == Class::WallArt);
-        salience * 1.5 - f64::from(u8::from(on_wall)) + mentions.sqrt() * MENTIONED
+        let on_wall = known.is_some_and(|thing| matches!(thing.class, Class::WallArt | Class::Glass));
+        salience * SALIENT - f64::from(u8::from(on_wall)) + mentions.ln_1p() * MENTIONED
             - far_m * 0.5
             - elsewhere.min(5) as f64 * 0.6
             - earlier.count().min(3) as f64 * 0.5
@@ -149,7 +190,16 @@ impl<'a> Landmarks<'a> {
         let is_alike = |other: &&Remembered| normal(&other.name) == normal(&seen.name) && other.colour == seen.colour;
         let alike = memory.seen_from(frame).filter(is_alike).count();
         let passed = seen.passed.map(|passed| (passed.frame, passed.side));
-        Landmark { phrase, name, colour: seen.colour.clone(), alike, side: memory.side(seen, frame), passed }
+        Landmark {
+            in_front: is_in_front(seen, frame),
+            phrase,
+            name,
+            colour: seen.colour.clone(),
+            alike,
+            side: memory.side(seen, frame),
+            passed,
+            with: None,
+        }
     }
 }
 
@@ -157,7 +207,16 @@ impl<'a> Landmarks<'a> {
 fn is_tellable(name: &str, salience: u8) -> bool {
     let plain =
         name.len() <= 30 && name.chars().all(|c| c.is_alphabetic() || c == ' ' || c == '-') && !name.contains(" and ");
-    let is_fixed = |class: Class| matches!(class, Class::Door | Class::Stairs);
-    let tells = thing(name).is_some_and(|thing| thing.salience >= salience && !is_fixed(thing.class));
+    let is_fixed = |class: Class| matches!(class, Class::Door | Class::Stairs | Class::Switch);
+    // Lamps are landmarks, and lights are everywhere.
+    let is_faint = |thing: &Thing| thing.salience == 1 && thing.class == Class::Light;
+    let tells =
+        thing(name).is_some_and(|thing| thing.salience >= salience && !is_fixed(thing.class) && !is_faint(thing));
     plain && !is_room(&normal(name)) && !is_fabric(name) && tells
+}
+
+/// Whether a thing lies before somebody who arrives at a frame, as far as is known.
+fn is_in_front(seen: &Remembered, frame: usize) -> bool {
+    let turn_rad = seen.glimpse(frame).and_then(|glimpse| glimpse.turn_rad);
+    turn_rad.is_none_or(|turn_rad| turn_rad.abs() < IN_FRONT_RAD)
 }

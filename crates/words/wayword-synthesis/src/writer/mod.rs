@@ -1,6 +1,8 @@
 //! Writing: what a writer gets, and the writer that works by rules.
 
+mod draft;
 mod landmarks;
+mod naming;
 mod object;
 mod phrases;
 mod place;

@@ -31,6 +31,7 @@ pub enum Kind {
     Enter,
     EnterOnSide,
     EnterThroughDoor,
+    EnterWith,
     ThroughDoor,
     DoorOnSide,
     ToDoor,
@@ -49,9 +50,24 @@ pub enum Kind {
     StopAtIn,
     StopIn,
     StopInDoorway,
+    StopInDoorwayOf,
     StopAtTop,
     StopAtBottom,
     Stop,
+}
+
+impl Kind {
+    /// Whether it is a turn of which nothing else is said.
+    #[must_use]
+    pub fn is_bare_turn(self) -> bool {
+        matches!(self, Self::Turn | Self::TurnSlightly | Self::TurnAround)
+    }
+
+    /// Whether it may be followed by how far one goes.
+    #[must_use]
+    pub fn goes_on(self) -> bool {
+        matches!(self, Self::Straight | Self::Along | Self::Pass | Self::PassOnSide)
+    }
 }
 
 /// What one goes through between rooms, by whatever name.
@@ -166,11 +182,19 @@ impl<'a> Parts<'a> {
                 }
             }
             ([], [], []) => (self.onward && !at_end).then_some(Kind::Straight),
+            ([], [(thing, _)], []) if has(&["room"]) && has(&["with"]) => {
+                let enters = has(&["enter", "into"]) && !has(&["through", "past"]);
+                (enters && thing.going.is_none() && thing.side.is_none() && !at_end).then_some(Kind::EnterWith)
+            }
             ([], [], [door]) if !at_end => Self::by_door(door),
             ([], [(thing, _)], []) => Self::by_thing(thing, at_end),
             ([(room, _)], [], [door]) if room.going == Some(Going::Leaving) => {
                 let through = matches!(door.going, Some(Going::Through)) && door.side.is_none();
                 (through && !at_end).then_some(Kind::LeaveByDoor)
+            }
+            ([(room, _)], [(thing, _)], []) if has(&["with"]) => {
+                let enters = room.going == Some(Going::Entering) && room.side.is_none();
+                (enters && thing.going.is_none() && thing.side.is_none() && !at_end).then_some(Kind::EnterWith)
             }
             ([(room, _)], [(thing, _)], []) => {
                 let passes = thing.going == Some(Going::Past) && thing.side.is_none();
@@ -252,6 +276,10 @@ impl<'a> Parts<'a> {
                 (is_by && is_in).then_some(Kind::StopAtIn)
             }
             ([], [], [door]) => (door.side.is_none() && door.going.is_none()).then_some(Kind::StopInDoorway),
+            ([(room, _)], [], [door]) => {
+                let is_still = door.side.is_none() && door.going.is_none() && room.side.is_none();
+                (is_still && matches!(room.going, None | Some(Going::Towards))).then_some(Kind::StopInDoorwayOf)
+            }
             ([(room, _)], [], []) => {
                 let is_in = matches!(room.going, None | Some(Going::Entering | Going::Until));
                 (is_in && matches!(room.link, Link::Within | Link::Goal)).then_some(Kind::StopIn)

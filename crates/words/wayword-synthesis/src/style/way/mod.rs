@@ -7,7 +7,7 @@ mod shapes;
 mod tests;
 
 pub use kind::Kind;
-pub use shapes::Joint;
+pub use shapes::{Joint, is_until};
 
 use serde::{Deserialize, Serialize};
 use std::{
@@ -29,6 +29,8 @@ pub struct Way {
     pub kinds: BTreeMap<Kind, f64>,
     /// What joins a clause to the one before it.
     pub joints: BTreeMap<Joint, f64>,
+    /// The same behind a turn of which nothing else is said.
+    pub turn_joints: BTreeMap<Joint, f64>,
     /// The same for the clause that tells to stop.
     pub stop_joints: BTreeMap<Joint, f64>,
     /// The names of each room, by its usual name.
@@ -73,9 +75,15 @@ impl Way {
 
     fn add(&mut self, text: &str, reading: &Reading) {
         let mut seen = BTreeSet::new();
+        let mut after_turn = false;
         for clause in shapes::told(text, reading, &ALLOWED) {
-            let joints = if clause.stops { &mut self.stop_joints } else { &mut self.joints };
-            if clause.joint != Joint::Start {
+            let joints = match () {
+                () if clause.stops => &mut self.stop_joints,
+                () if after_turn => &mut self.turn_joints,
+                () => &mut self.joints,
+            };
+            after_turn = clause.kind.is_some_and(Kind::is_bare_turn);
+            if !matches!(clause.joint, Joint::Start | Joint::Run) {
                 *joints.entry(clause.joint).or_default() += 1.0;
             }
             if let Some(kind) = clause.kind {
@@ -129,8 +137,15 @@ impl Way {
             if told.values().sum::<f64>() < ENOUGH {
                 *told = shapes.clone();
             }
+            // This is read as one with the clause before it, so that no clause of the texts shows it.
+            let until = shapes.iter().filter(|(shape, _)| is_until(shape));
+            told.extend(until.map(|(shape, texts)| (shape.clone(), *texts)));
         }
-        for (told, own) in [(&mut self.joints, &own.joints), (&mut self.stop_joints, &own.stop_joints)] {
+        for (told, own) in [
+            (&mut self.joints, &own.joints),
+            (&mut self.turn_joints, &own.turn_joints),
+            (&mut self.stop_joints, &own.stop_joints),
+        ] {
             if told.values().sum::<f64>() < ENOUGH {
                 *told = own.clone();
             }

@@ -36,6 +36,8 @@ pub enum Joint {
     CommaAnd,
     CommaThen,
     Then,
+    /// "Walk straight until you reach the sofa".
+    Run,
 }
 
 impl Joint {
@@ -52,6 +54,7 @@ impl Joint {
             Self::CommaAnd => ", and ",
             Self::CommaThen => ", then ",
             Self::Then => " then ",
+            Self::Run => " ",
         }
     }
 
@@ -82,7 +85,12 @@ pub(super) fn told(text: &str, reading: &Reading, allowed: &BTreeSet<&str>) -> V
         if links == words.len() {
             continue;
         }
-        let joint = if is_first { Joint::Start } else { joint(&pending) };
+        let runs_on = words[links].word == "until" && pending.iter().all(|part| part.trim().is_empty());
+        let joint = match () {
+            () if is_first => Joint::Start,
+            () if runs_on => Joint::Run,
+            () => joint(&pending),
+        };
         (is_first, pending) = (false, Vec::new());
         let events: Vec<&Event> = reading.events.iter().filter(|event| event.clause == number).collect();
         let stops = events.iter().any(|event| event.what == What::Stop);
@@ -165,9 +173,10 @@ fn is_whole(kind: Kind, shape: &str) -> bool {
         Kind::TurnIn | Kind::TurnInto | Kind::TurnOut | Kind::TurnAtEnd => (s, l, r, a, p) == (1, 0, 1, 0, 0),
         // "The room" stands for its name.
         Kind::Enter | Kind::Leave | Kind::Through | Kind::StopIn => (s, l, a, p) == (0, 0, 0, 0) && r <= 1,
-        Kind::LeaveByDoor | Kind::EnterThroughDoor | Kind::Along | Kind::AlongToEnd => {
+        Kind::LeaveByDoor | Kind::EnterThroughDoor | Kind::StopInDoorwayOf | Kind::Along | Kind::AlongToEnd => {
             (s, l, r, a, p) == (0, 0, 1, 0, 0)
         }
+        Kind::EnterWith => (s, l, a, p) == (0, 1, 0, 0) && r <= 1,
         Kind::LeaveEnter => (s, l, r, a, p) == (0, 0, 1, 1, 0),
         Kind::Pass | Kind::To | Kind::StopAt => (s, l, r, a, p) == (0, 1, 0, 0, 0),
         Kind::EnterOnSide => (s, l, r, a, p) == (0, 0, 1, 0, 1),
@@ -176,16 +185,21 @@ fn is_whole(kind: Kind, shape: &str) -> bool {
         Kind::PassOnSide => (s, l, r, a, p) == (0, 1, 0, 0, 1),
         _ => (s, l, r, a, p) == (0, 0, 0, 0, 0),
     };
-    fits && is_english(shape)
+    let may_run = !is_until(shape) || matches!(kind, Kind::To | Kind::ToDoor);
+    fits && may_run && is_english(shape)
 }
 
 /// Words with which no clause ends.
 const DANGLING: &[&str] = &["the", "a", "an", "of", "to", "your", "on", "in", "at"];
 /// Words with which no clause of its own begins.
-const FRAGMENTS: &[&str] = &[
-    "down", "past", "into", "through", "once", "until", "when", "out", "{s}", "up", "across", "along", "the", "on",
-    "off",
-];
+const FRAGMENTS: &[&str] =
+    &["down", "past", "into", "through", "once", "when", "out", "{s}", "up", "across", "along", "the", "on", "off"];
+
+/// Whether a shape says how far one goes on: it follows a clause that does not say it.
+#[must_use]
+pub fn is_until(shape: &str) -> bool {
+    shape.starts_with("until ")
+}
 
 /// Whether a shape is a clause of its own, with an article before each name, and says no more than its kind: "next"
 /// and "front" only stand in "next to" and "in front of", and nothing is in a thing.

@@ -1,0 +1,188 @@
+//! The clauses of a way in words: their shapes, and one name for each room and thing.
+
+use super::{
+    Brief,
+    phrases::{draw, fill, stay_phrase},
+    route::{Clause, side_word, stands_still, suits},
+};
+use crate::style::way::{Kind, Way, is_until};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
+use wayword_core::Motion;
+use wayword_language::lexicon::{counted, plural, room_name, thing};
+
+/// A clause in words.
+pub(super) struct Phrase {
+    pub(super) text: String,
+    /// Whether it begins with its verb, so that "and" begins a clause before it.
+    pub(super) is_clause: bool,
+}
+
+/// What the place of a clause in its text asks of its shape.
+#[derive(Clone, Copy)]
+struct Needs {
+    motion: Motion,
+    /// Whether it has to name its room.
+    names_room: bool,
+    /// Whether it may say how far the clause before it goes.
+    may_run: bool,
+}
+
+/// The names that a text gives to rooms and things: one for each.
+pub(super) struct Names<'a> {
+    way: &'a Way,
+    chosen: BTreeMap<String, String>,
+}
+
+impl<'a> Names<'a> {
+    pub(super) fn of(way: &'a Way) -> Self {
+        Self { way, chosen: BTreeMap::new() }
+    }
+
+    /// One of the clauses of a text in words.
+    pub(super) fn phrase(&mut self, told: &[Clause], at: usize, brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Phrase {
+        let clause = &told[at];
+        if clause.kind == Kind::Straight && stands_still(brief.walk) {
+            return Phrase { text: stay_phrase(None, rng), is_clause: true };
+        }
+        let motion = brief.walk.path.motion;
+        let follows = at.checked_sub(1).is_some_and(|before| told[before].kind.goes_on());
+        let needs = Needs { motion, names_room: has_to_name(told, at, brief), may_run: follows };
+        let shape = self.shape(clause, needs, rng);
+        let side = clause.side.map_or("", side_word);
+        let thing = clause.thing.as_ref().map(|thing| {
+            let name = self.thing(&thing.name, rng);
+            let name = thing.colour.as_ref().map_or(name.clone(), |colour| format!("{colour} {name}"));
+            let name = match thing.alike {
+                // "The two gold lamps".
+                2 if rng.random_bool(0.3) => counted(2, &name),
+                2.. if rng.random_bool(0.6) => plural(&name),
+                _ => name,
+            };
+            thing.with.as_ref().map_or(name.clone(), |other| format!("{name} and {other}"))
+        });
+        let mut room = |room: Option<&String>| room.map(|room| self.room(room, rng)).unwrap_or_default();
+        let (room, from) = (room(clause.room.as_ref()), room(clause.from.as_ref()));
+        let gaps = [
+            ("{s}", side),
+            ("{p}", side),
+            ("{l}", thing.as_deref().unwrap_or_default()),
+            ("{r}", room.as_str()),
+            ("{a}", from.as_str()),
+        ];
+        let is_clause = !["in", "at", "with"].contains(&shape.split(' ').next().unwrap_or_default());
+        Phrase { text: fill(&shape, &gaps), is_clause }
+    }
+
+    /// A shape of the clause's kind, by its share.
+    fn shape(&self, clause: &Clause, needs: Needs, rng: &mut ChaCha8Rng) -> String {
+        let own = Way::built_in().shapes.get(&clause.kind);
+        let shapes = self.way.shapes.get(&clause.kind).or(own);
+        let ahead = clause.thing.as_ref().is_none_or(|thing| thing.in_front);
+        // "The room" is no hallway, and nobody leaves a porch by it.
+        let has_walls = clause
+            .room
+            .as_deref()
+            .and_then(room_name)
+            .is_none_or(|room| !matches!(room, "hallway" | "entryway" | "porch" | "balcony" | "outdoor area"));
+        let is_room = |shape: &str| {
+            let names_none = shape.split(' ').any(|word| word == "room");
+            (clause.room.is_some() || !shape.contains("{r}")) && ((has_walls && !needs.names_room) || !names_none)
+        };
+        let fits = |shape: &&String| {
+            suits(shape, needs.motion)
+                && (ahead || !shape.contains("front"))
+                && is_room(shape)
+                && (needs.may_run || !is_until(shape))
+        };
+        let all: Vec<(f64, &String)> = shapes
+            .into_iter()
+            .flatten()
+            .filter(|(shape, _)| fits(shape))
+            .map(|(shape, count)| (*count, shape))
+            .collect();
+        draw(&all, rng).cloned().unwrap_or_else(|| plain(clause.kind).to_owned())
+    }
+
+    fn room(&mut self, room: &str, rng: &mut ChaCha8Rng) -> String {
+        self.name(room, room_name(room).and_then(|usual| self.way.rooms.get(usual)), rng)
+    }
+
+    /// A label that says more than the usual name ("round table") often stays as it is.
+    fn thing(&mut self, name: &str, rng: &mut ChaCha8Rng) -> String {
+        let names = thing(name).and_then(|thing| self.way.things.get(thing.name));
+        let says_more = names.is_some_and(|names| !names.contains_key(name));
+        let names = names.filter(|_| !says_more || rng.random_bool(0.4));
+        self.name(name, names, rng)
+    }
+
+    fn name(&mut self, name: &str, names: Option<&BTreeMap<String, f64>>, rng: &mut ChaCha8Rng) -> String {
+        if let Some(chosen) = self.chosen.get(name) {
+            return chosen.clone();
+        }
+        let all: Vec<(f64, &String)> = names.into_iter().flatten().map(|(name, count)| (*count, name)).collect();
+        let chosen = draw(&all, rng).cloned().unwrap_or_else(|| name.to_owned());
+        self.chosen.insert(name.to_owned(), chosen.clone());
+        chosen
+    }
+}
+
+/// Whether a clause has to name its room, because it is "the room" to nobody: it is the end's, or it is told of later, or
+/// nothing named it before.
+fn has_to_name(told: &[Clause], at: usize, brief: &Brief<'_>) -> bool {
+    let Some(room) = &told[at].room else { return false };
+    let speaks_of_it = |clause: &Clause| clause.room.as_ref() == Some(room) || clause.from.as_ref() == Some(room);
+    let (before, after) = (told[..at].iter().any(speaks_of_it), told[at + 1..].iter().any(speaks_of_it));
+    match told[at].kind {
+        Kind::Leave | Kind::LeaveByDoor => at > 0 && !before,
+        Kind::StopIn => !before,
+        // What stands in it tells which it is.
+        Kind::EnterWith => after,
+        _ => after || brief.memory.room(brief.memory.frames().saturating_sub(1)) == Some(room),
+    }
+}
+
+/// The words of a kind where no shape fits.
+fn plain(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Straight => "keep going",
+        Kind::StopAt => "stop by the {l}",
+        Kind::Pass | Kind::PassOnSide | Kind::To => "go past the {l}",
+        Kind::StopIn => "stop there",
+        _ => "keep on",
+    }
+}
+
+/// About how many words the clauses of each kind have.
+pub(super) struct Lengths<'a> {
+    way: &'a Way,
+    known: BTreeMap<Kind, f64>,
+}
+
+/// Words that join a clause to the one before, in the mean.
+const JOINT_WORDS: f64 = 0.6;
+
+impl<'a> Lengths<'a> {
+    pub(super) fn of(way: &'a Way) -> Self {
+        Self { way, known: BTreeMap::new() }
+    }
+
+    pub(super) fn sum(&mut self, clauses: &[Clause]) -> f64 {
+        let pairs = clauses.iter().filter(|clause| clause.thing.as_ref().is_some_and(|thing| thing.with.is_some()));
+        let more = JOINT_WORDS * clauses.len().saturating_sub(1) as f64 + 2.0 * pairs.count() as f64;
+        clauses.iter().map(|clause| self.words(clause.kind)).sum::<f64>() + more
+    }
+
+    fn words(&mut self, kind: Kind) -> f64 {
+        *self.known.entry(kind).or_insert_with(|| {
+            let shapes = self.way.shapes.get(&kind).or(Way::built_in().shapes.get(&kind));
+            let (mut words, mut texts) = (0.0, 0.0);
+            for (shape, count) in shapes.into_iter().flatten() {
+                words += count * shape.split(' ').count() as f64;
+                texts += count;
+            }
+            if texts > 0.0 { words / texts } else { 3.0 }
+        })
+    }
+}

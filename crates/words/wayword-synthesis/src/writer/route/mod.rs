@@ -1,0 +1,187 @@
+//! What there is to say about a path, clause by clause: each turn has its place, and rooms are entered before they are
+//! left.
+
+pub(super) mod fill;
+mod onward;
+mod rooms;
+mod stop;
+mod turns;
+
+use super::{
+    Brief,
+    landmarks::{Landmark, Landmarks},
+};
+use crate::{style::way::Kind, walk::Walk};
+use rand_chacha::ChaCha8Rng;
+use wayword_checks::memory::{Flight, Memory};
+use wayword_core::{Climb, Motion, Side, motion};
+use wayword_language::lexicon::room_name;
+
+/// A clause to be said.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Clause {
+    /// What it says.
+    pub(super) kind: Kind,
+    /// The frame at which it is said.
+    pub(super) at: usize,
+    /// The side of its turn, or of its door or room.
+    pub(super) side: Option<Side>,
+    /// Its thing.
+    pub(super) thing: Option<Landmark>,
+    /// Its room.
+    pub(super) room: Option<String>,
+    /// The room that it leaves.
+    pub(super) from: Option<String>,
+    /// How much it matters: [`KEPT`] is never left out.
+    pub(super) weight: u8,
+}
+
+/// Weight of what is never left out.
+pub(super) const KEPT: u8 = 4;
+/// Weight of turns, climbs and the last room.
+const MAIN: u8 = 3;
+/// Weight of landmarks and of rooms on the way.
+const SIDE: u8 = 2;
+/// Weight of what says that one goes on.
+const FILLER: u8 = 1;
+
+/// Least salience of a landmark on the way.
+const WALKED_PAST: u8 = 2;
+/// Least salience of one that is stopped at.
+const STOPPED_AT: u8 = 1;
+/// A hop longer than this is worth a clause, metres.
+const LONG_M: f64 = 3.0;
+/// One stops in a doorway where the hop through it is no longer than this, metres.
+const DOORWAY_M: f64 = 2.2;
+
+impl Clause {
+    fn new(kind: Kind, at: usize, weight: u8) -> Self {
+        Self { kind, at, side: None, thing: None, room: None, from: None, weight }
+    }
+
+    fn to(mut self, side: Side) -> Self {
+        self.side = Some(side);
+        self
+    }
+
+    fn by(mut self, thing: Landmark) -> Self {
+        self.thing = Some(thing);
+        self
+    }
+
+    fn room(mut self, room: &str) -> Self {
+        self.room = Some(room.to_owned());
+        self
+    }
+
+    fn from(mut self, room: &str) -> Self {
+        self.from = Some(room.to_owned());
+        self
+    }
+
+    /// Whether it is a turn without a place.
+    pub(super) fn is_bare(&self) -> bool {
+        self.kind.is_bare_turn()
+    }
+}
+
+/// The clauses of a path, the stop last.
+pub(super) fn clauses(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Clause> {
+    let memory = brief.memory;
+    let here = memory.room(0).and_then(usable_room);
+    let mut planner = Planner { brief, memory, landmarks, rng, clauses: Vec::new(), here, along: false };
+    if !stands_still(brief.walk) {
+        planner.way();
+    }
+    if planner.clauses.is_empty() {
+        planner.clauses.push(Clause::new(Kind::Straight, 0, MAIN));
+    }
+    planner.stop();
+    planner.clauses
+}
+
+struct Planner<'a, 'b, 'c> {
+    brief: &'a Brief<'a>,
+    memory: &'a Memory,
+    landmarks: &'b mut Landmarks<'c>,
+    rng: &'b mut ChaCha8Rng,
+    clauses: Vec<Clause>,
+    /// The room in which the text has the walker now, where it says so.
+    here: Option<String>,
+    /// Whether the text has told to go along the hallway in which one is.
+    along: bool,
+}
+
+impl Planner<'_, '_, '_> {
+    fn way(&mut self) {
+        let last = self.memory.frames().saturating_sub(1);
+        let mut at = self.leave_at_once().unwrap_or(0);
+        while at < last {
+            let bend = self.memory.bends.iter().find(|bend| bend.first == at).copied();
+            let opening = self.memory.openings.iter().find(|opening| opening.before == at);
+            if let Some(flight) = self.memory.flights.iter().find(|flight| flight.from == at) {
+                if let Some(bend) = bend {
+                    self.turn(bend);
+                }
+                self.climb(*flight);
+                at = flight.to;
+                continue;
+            }
+            match (bend, opening) {
+                (Some(bend), Some(opening)) => self.turn_and_change(bend, opening),
+                (Some(bend), None) => {
+                    self.turn(bend);
+                    self.onwards(at);
+                }
+                (None, Some(opening)) => self.change(opening),
+                (None, None) => self.onwards(at),
+            }
+            at += 1;
+        }
+    }
+
+    fn count(&self, kind: Kind) -> f64 {
+        self.brief.profile.way.count(kind)
+    }
+
+    fn push(&mut self, clause: Clause) {
+        self.clauses.push(clause);
+    }
+
+    /// The text has the walker in a room now.
+    fn enter(&mut self, room: Option<&str>) {
+        self.here = room.map(str::to_owned);
+        self.along = false;
+    }
+
+    fn climb(&mut self, flight: Flight) {
+        let kind = if flight.climb == Climb::Up { Kind::Up } else { Kind::Down };
+        self.push(Clause::new(kind, flight.from, MAIN));
+        self.enter(None);
+    }
+}
+
+/// Whether a path goes nowhere, as one with a single viewpoint does.
+pub(super) fn stands_still(walk: &Walk) -> bool {
+    !walk.path.motion.goes_anywhere(&walk.moves, walk.path.frames.len())
+}
+
+/// Which way the last flight of stairs of a path goes.
+pub(super) fn last_climb(walk: &Walk) -> Option<Climb> {
+    (0..walk.moves.len()).rev().find_map(|at| motion::flight(&walk.moves, at)).map(|(_, climb)| climb)
+}
+
+/// A room that one can walk into; stairs are climbed instead.
+pub(super) fn usable_room(name: &str) -> Option<String> {
+    (room_name(name) != Some("stairs")).then(|| name.to_owned())
+}
+
+/// Whether a shape may be said of a motion: where it is unknown, none says "straight".
+pub(super) fn suits(shape: &str, motion: Motion) -> bool {
+    motion.is_known() || !["straight", "forward", "ahead"].iter().any(|word| shape.contains(word))
+}
+
+/// The word for a side.
+pub(super) fn side_word(side: Side) -> &'static str {
+    if side == Side::Left { "left" } else { "right" }
+}

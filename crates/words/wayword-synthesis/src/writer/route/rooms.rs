@@ -1,0 +1,187 @@
+//! From one room into another.
+
+use super::{Clause, MAIN, Planner, SIDE, WALKED_PAST, usable_room};
+use crate::{
+    style::way::Kind,
+    writer::{landmarks::Use, phrases::draw},
+};
+use rand::Rng;
+use wayword_checks::memory::{Bend, Opening};
+use wayword_core::{Side, motion};
+use wayword_language::lexicon::room_name;
+
+/// A room is left soon where the path leaves it within so many hops.
+const LEFT_SOON: usize = 2;
+/// How often a text begins with that.
+const LEFT_AT_ONCE: f64 = 0.6;
+
+impl Planner<'_, '_, '_> {
+    /// Many texts begin with leaving the room of the start, however one turns before that. The frame from which the
+    /// way goes on.
+    pub(super) fn leave_at_once(&mut self) -> Option<usize> {
+        let opening = self.memory.openings.first().filter(|opening| opening.before <= LEFT_SOON)?;
+        let from = usable_room(&opening.from).filter(|from| self.here.as_ref() == Some(from))?;
+        let is_hall = room_name(&from) == Some("hallway");
+        if is_hall || !self.rng.random_bool(LEFT_AT_ONCE) {
+            return None;
+        }
+        let to = usable_room(&opening.to);
+        let mut kinds = vec![(self.count(Kind::Leave), Kind::Leave)];
+        if to.is_some() {
+            kinds.push((self.count(Kind::LeaveEnter) * 2.0, Kind::LeaveEnter));
+        }
+        if opening.has_door {
+            kinds.push((self.count(Kind::LeaveByDoor) * 8.0, Kind::LeaveByDoor));
+            kinds.push((self.count(Kind::ThroughDoor), Kind::ThroughDoor));
+        }
+        let kind = draw(&kinds, self.rng)?;
+        let mut clause = Clause::new(kind, opening.before, MAIN);
+        match kind {
+            Kind::LeaveEnter => clause = clause.from(&from).room(&opening.to),
+            Kind::ThroughDoor => {}
+            _ => clause = clause.from(&from).room(&from),
+        }
+        self.push(clause);
+        self.enter(to.as_deref().filter(|_| kind == Kind::LeaveEnter));
+        Some(opening.behind)
+    }
+
+    /// Into another room, with the turn before it, if any.
+    pub(super) fn change(&mut self, opening: &Opening) {
+        let at = opening.before;
+        let to = usable_room(&opening.to);
+        let from = usable_room(&opening.from).filter(|from| self.here.as_ref() == Some(from));
+        let mut kinds: Vec<(f64, Kind)> = Vec::new();
+        let mut near = None;
+        let next = self.memory.openings.iter().find(|next| next.before >= opening.behind);
+        let is_last = next.is_none();
+        if to.is_some() {
+            let is_hall = room_name(&opening.to) == Some("hallway");
+            let share = if is_last { 1.5 } else { 0.5 } * if is_hall { 0.4 } else { 1.0 };
+            kinds.push((self.count(Kind::Enter) * share, Kind::Enter));
+            if let Some(thing) = self.landmarks.peek(at, WALKED_PAST).filter(|_| at > 0) {
+                kinds.push((self.count(Kind::PassEnter) * 5.0, Kind::PassEnter));
+                near = Some(thing);
+            }
+            let is_crossed = next.is_some_and(|next| next.before <= opening.behind + 1);
+            if is_crossed {
+                kinds.push((self.count(Kind::Through) * 1.5, Kind::Through));
+            }
+        }
+        if from.is_some() {
+            kinds.push((self.count(Kind::Leave) * if is_last { 0.3 } else { 1.0 }, Kind::Leave));
+            if to.is_some() {
+                kinds.push((self.count(Kind::LeaveEnter) * 1.5, Kind::LeaveEnter));
+            }
+        }
+        if opening.has_door {
+            kinds.push((self.count(Kind::ThroughDoor) * if is_last { 2.0 } else { 4.0 }, Kind::ThroughDoor));
+            kinds.push((self.count(Kind::ToDoor) * 1.5, Kind::ToDoor));
+            if from.is_some() {
+                kinds.push((self.count(Kind::LeaveByDoor) * 2.0, Kind::LeaveByDoor));
+            }
+            if to.is_some() {
+                kinds.push((self.count(Kind::EnterThroughDoor) * 3.0, Kind::EnterThroughDoor));
+            }
+        }
+        let hall = usable_room(&opening.from).filter(|room| room_name(room) == Some("hallway"));
+        if hall.is_some() && !self.along && self.is_end_of_hall(opening) {
+            kinds.push((self.count(Kind::AlongToEnd) * 8.0, Kind::AlongToEnd));
+        }
+        let Some(kind) = draw(&kinds, self.rng) else {
+            self.enter(None);
+            return;
+        };
+        let weight = if is_last || at == 0 { MAIN } else { SIDE };
+        let mut clause = Clause::new(kind, at, weight);
+        match kind {
+            Kind::Leave | Kind::LeaveByDoor => clause = clause.from(&opening.from).room(&opening.from),
+            Kind::ThroughDoor | Kind::ToDoor => {}
+            Kind::AlongToEnd => clause = clause.room(&opening.from),
+            Kind::PassEnter => {
+                clause.thing = near.map(|thing| self.landmarks.take(thing));
+                clause = clause.from(&opening.from).room(&opening.to);
+            }
+            _ => clause = clause.from(&opening.from).room(&opening.to),
+        }
+        self.push(clause);
+        if kind == Kind::AlongToEnd {
+            self.along = true;
+            self.here = usable_room(&opening.from);
+            return self.change(opening);
+        }
+        if kind == Kind::ToDoor {
+            let kinds = [(1.0, Kind::ThroughDoor), (if to.is_some() { 2.0 } else { 0.0 }, Kind::Enter)];
+            let kind = draw(&kinds, self.rng).unwrap_or(Kind::ThroughDoor);
+            if kind == Kind::Enter {
+                self.push(Clause::new(kind, at, weight).from(&opening.from).room(&opening.to));
+                return self.enter(to.as_deref());
+            }
+        }
+        let told = !matches!(kind, Kind::Leave | Kind::LeaveByDoor | Kind::ThroughDoor | Kind::ToDoor);
+        self.enter(to.as_deref().filter(|_| told));
+    }
+
+    /// Whether a hallway ends where the walk leaves it: it went straight along it, and straight on into the room behind.
+    fn is_end_of_hall(&self, opening: &Opening) -> bool {
+        let stay = self.memory.stay(opening.before);
+        let is_walked = stay.is_some_and(|stay| stay.left > stay.entered);
+        let is_straight = |at: usize| {
+            self.brief.walk.moves.get(at).is_some_and(|step| step.turn_rad.to_degrees().abs() < motion::SLIGHT_DEG)
+        };
+        is_walked && opening.before > 0 && is_straight(opening.before)
+    }
+
+    pub(super) fn turn_and_change(&mut self, bend: Bend, opening: &Opening) {
+        let (at, side) = (bend.first, bend.side());
+        let to = usable_room(&opening.to);
+        let can_leave = usable_room(&opening.from).is_some_and(|from| self.here == Some(from));
+        if side == Side::Behind {
+            self.push(Clause::new(Kind::TurnAround, at, MAIN));
+            return self.change(opening);
+        }
+        // Who leaves the room of the start needs no turn; nor does a slight one.
+        let is_implied = at == 0 && can_leave && self.rng.random_bool(0.7);
+        if is_implied || (bend.is_slight() && self.rng.random_bool(0.6)) {
+            return self.change(opening);
+        }
+        let mut kinds: Vec<(f64, Kind)> = Vec::new();
+        if to.is_some() {
+            kinds.push((self.count(Kind::TurnInto) * 1.5, Kind::TurnInto));
+            kinds.push((self.count(Kind::EnterOnSide) * 1.5, Kind::EnterOnSide));
+        }
+        if opening.has_door {
+            kinds.push((self.count(Kind::DoorOnSide) * 4.0, Kind::DoorOnSide));
+            kinds.push((self.count(Kind::TurnThroughDoor) * 3.0, Kind::TurnThroughDoor));
+        }
+        if can_leave {
+            kinds.push((self.count(Kind::TurnOut) * 2.0, Kind::TurnOut));
+            kinds.push((self.count(Kind::Leave) * 0.15, Kind::Leave));
+        }
+        kinds.push((self.count(Kind::TurnAt) * 1.5, Kind::TurnAt));
+        match draw(&kinds, self.rng) {
+            Some(Kind::Leave) => {
+                self.push(Clause::new(Kind::Turn, at, MAIN).to(side));
+                self.push(Clause::new(Kind::Leave, at, MAIN).from(&opening.from).room(&opening.from));
+                self.enter(None);
+            }
+            Some(Kind::TurnAt) => {
+                match self.landmarks.find(at, WALKED_PAST, Use::Here, self.rng).filter(|_| at > 0) {
+                    Some(thing) => self.push(Clause::new(Kind::TurnAt, at, MAIN).to(side).by(thing)),
+                    None => self.push(Clause::new(Kind::Turn, at, MAIN).to(side)),
+                }
+                self.change(opening);
+            }
+            Some(Kind::TurnOut) => {
+                self.push(Clause::new(Kind::TurnOut, at, MAIN).to(side).room(&opening.from).from(&opening.from));
+                self.enter(None);
+            }
+            Some(kind) => {
+                let told = !matches!(kind, Kind::DoorOnSide | Kind::TurnThroughDoor);
+                self.push(Clause::new(kind, at, MAIN).to(side).room(&opening.to));
+                self.enter(to.as_deref().filter(|_| told));
+            }
+            None => self.change(opening),
+        }
+    }
+}
