@@ -6,8 +6,8 @@ use wayword_core::{Chosen, ChosenBy, Instruction, ModelError, Verdict};
 use wayword_language::text::word_count;
 
 /// What a word costs against the chance to arrive, natural logs: of two texts that lead there as surely, the shorter is
-/// kept, and ten words more have to make it a tenth likelier.
-const COST_OF_A_WORD: f64 = 0.01;
+/// kept, and ten words more have to make it a twentieth likelier.
+const COST_OF_A_WORD: f64 = 0.005;
 
 /// The texts of one writer, each with its repairs; the best of them is kept.
 pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {

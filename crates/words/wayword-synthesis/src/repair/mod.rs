@@ -167,8 +167,8 @@ fn unusable(text: String, reason: String) -> Complaint {
 
 fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
-    let mut checked =
-        check_own(&text, Subject::closed(order.evidence, order.style, target).with_copies(&order.profile.copies));
+    let subject = Subject::closed(order.evidence, order.style, target).with_copies(&order.profile.copies);
+    let mut checked = check_own(&text, Subject { writer_sees: !order.pictures.is_empty(), ..subject });
     // A text that failed is written again, wherever it leads.
     let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);
     let ambiguity = follower.map(|follower| follower.follow(&text, &mut checked));

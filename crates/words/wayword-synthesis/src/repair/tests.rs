@@ -6,9 +6,9 @@ use crate::{
     writer::RulesWriter,
 };
 use proptest::prelude::*;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use wayword_core::{
-    Caption, DVec3, Gaze, Look, Motion, Observation, Path, SceneId, Sighting, Where, Witness, path::Stop,
+    Caption, DVec3, Gaze, Image, Look, Motion, Observation, Path, SceneId, Sighting, Where, Witness, path::Stop,
 };
 
 /// A writer that gives prepared texts in their order, and counts the complaints that it gets.
@@ -262,6 +262,25 @@ fn a_text_that_the_walk_already_has_is_written_again() {
         assert!(!texts.contains(&text), "{text}");
         texts.push(text);
     }
+}
+
+#[test]
+fn a_writer_that_sees_the_pictures_may_name_what_no_caption_does() {
+    let (walk, style) = (walk(), built_in("r2r").unwrap());
+    let (evidence, memory) = (walk.evidence().unwrap(), walk.memory());
+    let profile = Profile::of(&style);
+    let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
+    let asker = RulesAsker::default();
+    let (answerer, summariser) = (&Labels::default(), &RulesSummariser);
+    let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
+    let is_accepted = |pictures: &[FramePicture]| {
+        let order = Order { repairs: 0, pictures, ..order(&walk, &memory, &evidence, &style, &profile) };
+        let writer = Scripted::new(vec![said("Walk past the sofa to the piano and turn right. Stop at the sink.")]);
+        let outcome = write_and_repair(Writers { writer: &writer, finisher: None }, observers, order).unwrap();
+        matches!(outcome, Outcome::Accepted(instruction) if instruction.verdict == Verdict::Unverified)
+    };
+    assert!(!is_accepted(&[]));
+    assert!(is_accepted(&[FramePicture { frame: 0, image }]));
 }
 
 /// The same pictures as a video shows them: in their order, and without poses.
