@@ -57,7 +57,7 @@ pub use platform::{PathRequest, Platform, PlatformError};
 pub use pose::Pose;
 pub use recent::Recent;
 pub use seed::rng;
-pub use style::{Constraints, Style};
+pub use style::{Choice, Constraints, Style};
 pub use survey::{Placed, Survey, Surveyed};
 pub use verdict::{Check, Finding, Verdict};
 pub use view::{Gaze, GroundTruth, View};

@@ -3,19 +3,39 @@
 use serde::{Deserialize, Serialize};
 
 /// A kind of instruction: reference texts that show it, and the rules for every text of this kind.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Style {
     /// Its name, as `--style` takes it.
     pub name: String,
     /// Texts in this style. The writer imitates their shape and may not copy them.
+    #[serde(default)]
     pub references: Vec<String>,
     /// How many words its texts have: a writer draws from these. Where there are none, the references say it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub words: Vec<usize>,
+    /// What a writer by rules chooses by, beside how people of the style word things.
+    #[serde(default, skip_serializing_if = "Choice::is_open")]
+    pub choice: Choice,
     /// What a text of this style must keep to.
     #[serde(default)]
     pub constraints: Constraints,
+}
+
+/// What no reference says. A field that is `None` is left to the program.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Choice {
+    /// In which share of texts the target is described until nothing else fits, 0 to 1. The others say as much as people do.
+    pub sure: Option<f64>,
+    /// By which power of their share wordings are drawn, 0 to 10. At 1 as people do; above it, the commonest oftener.
+    pub sharp: Option<f64>,
+}
+
+impl Choice {
+    fn is_open(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// Rules that a text can be checked against. A field that is `None` or false demands nothing.

@@ -18,7 +18,7 @@ use wayword::{
     team::Team,
 };
 use wayword_checks::{Evidence, Subject, check};
-use wayword_core::{Check, Constraints, Observation, Style, Verdict, rng};
+use wayword_core::{Check, Observation, Style, Verdict, rng};
 use wayword_synthesis::{observe::observe, walk::Walk};
 
 /// What is measured.
@@ -107,12 +107,7 @@ fn job(stage: &Stage, flags: &Flags) -> Result<Job, Error> {
 
 fn counted(known: &[Known], flags: &Flags) -> (Counts, Vec<String>) {
     let names = made::Names::of(known);
-    let style = Style {
-        name: "claims".to_owned(),
-        references: Vec::new(),
-        words: Vec::new(),
-        constraints: Constraints::default(),
-    };
+    let style = Style { name: "claims".to_owned(), ..Style::default() };
     let mut counts = Counts::new();
     let mut shown: BTreeMap<(&str, Kind), usize> = BTreeMap::new();
     let mut wrong = Vec::new();

@@ -124,7 +124,7 @@ mod tests {
     use crate::made_up::{instruction, path, record};
     use MentionKind::{Landmark, Room as InRoom, Turn};
     use wayword_checks::{FrameEvidence, SeenThing, Source};
-    use wayword_core::{Constraints, MentionKind};
+    use wayword_core::MentionKind;
 
     const TEXT: &str = "Walk past the sofa. Turn left at the lamp. Stop in the kitchen.";
 
@@ -136,7 +136,7 @@ mod tests {
     /// A run of that one record, with what is known of its path.
     fn run(evidence: Evidence) -> Run {
         let references = vec!["Head through the archway and wait near the tall window.".to_owned()];
-        let style = Style { name: "mine".into(), references, words: Vec::new(), constraints: Constraints::default() };
+        let style = Style { name: "mine".into(), references, ..Style::default() };
         let names = ["sofa", "lamp", "table"].map(str::to_owned).into();
         Run {
             styles: vec![style],

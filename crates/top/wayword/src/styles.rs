@@ -3,7 +3,7 @@
 use crate::{error::Error, similar::did_you_mean, text_file};
 use std::path::Path;
 use wayword_core::{Constraints, Style};
-use wayword_synthesis::style::{Profile, built_in, built_in_names, hash, parse, validated};
+use wayword_synthesis::style::{Profile, built_in, built_in_names, hash, parse_with, validated};
 
 /// A style with the measures of its reference texts.
 #[derive(Debug, Clone)]
@@ -33,8 +33,8 @@ fn is_toml(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end == "toml")
 }
 
-/// The styles of a run. A name is that of a built-in style, a TOML file, or NAME=DATASET. The last takes all instructions of a dataset
-/// as reference texts, and the constraints of the built-in style of that name, if there is one.
+/// The styles of a run. A name is that of a built-in style, a TOML file, or either with =DATASET behind it. The last takes all
+/// instructions of a dataset as reference texts; a name brings the constraints of the built-in style of that name, if there is one.
 ///
 /// # Errors
 /// When one cannot be found or read, or two have one name.
@@ -52,28 +52,28 @@ pub fn find(names: &[String]) -> Result<Vec<Measured>, Error> {
 }
 
 fn find_one(name: &str) -> Result<Style, Error> {
-    if let Some((name, file)) = name.split_once('=') {
-        return from_dataset(name, Path::new(file));
+    let (name, dataset) = match name.split_once('=') {
+        Some((name, file)) => (name, Some(Path::new(file))),
+        None => (name, None),
+    };
+    let more = dataset.map(texts).transpose()?;
+    if is_toml(name) {
+        let text = text_file::read(Path::new(name), "read the style")?;
+        return Ok(parse_with(name, &text, more.unwrap_or_default())?);
     }
-    if !is_toml(name) {
-        return Ok(built_in(name)?);
-    }
-    let text = text_file::read(Path::new(name), "read the style")?;
-    Ok(parse(name, &text)?)
+    let Some(references) = more else { return Ok(built_in(name)?) };
+    let constraints = built_in(name).map_or_else(|_| Constraints::default(), |style| style.constraints);
+    Ok(validated(Style { name: name.to_owned(), references, constraints, ..Style::default() })?)
 }
 
-fn from_dataset(name: &str, file: &Path) -> Result<Style, Error> {
+/// The instructions of a dataset, each once.
+fn texts(file: &Path) -> Result<Vec<String>, Error> {
     let episodes = wayword_formats::read(file)?;
-    let mut texts: Vec<String> = episodes
-        .into_iter()
-        .flat_map(|episode| episode.instructions)
-        .map(|text| one_line(&text))
-        .filter(|text| !text.is_empty())
-        .collect();
+    let all = episodes.into_iter().flat_map(|episode| episode.instructions);
+    let mut texts: Vec<String> = all.map(|text| one_line(&text)).filter(|text| !text.is_empty()).collect();
     texts.sort();
     texts.dedup();
-    let constraints = built_in(name).map_or_else(|_| Constraints::default(), |style| style.constraints);
-    Ok(validated(Style { name: name.to_owned(), references: texts, words: Vec::new(), constraints })?)
+    Ok(texts)
 }
 
 /// A text on one line.

@@ -43,7 +43,7 @@ fn to_the_bedroom() -> Evidence {
 
 fn style(ends_in_task: bool) -> Style {
     let constraints = Constraints { ends_in_task, ..Constraints::default() };
-    Style { name: "any".into(), references: Vec::new(), words: Vec::new(), constraints }
+    Style { name: "any".into(), constraints, ..Style::default() }
 }
 
 /// The verdict on a text, with the checks that it fails, or where it fails none, those that are unverified.

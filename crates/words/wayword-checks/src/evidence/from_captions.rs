@@ -97,7 +97,7 @@ pub(super) fn denies(denied: &str, name: &str) -> bool {
 mod tests {
     use super::*;
     use crate::{Subject, check, check_own};
-    use wayword_core::{Caption, Check, Constraints, DVec3, Gaze, Motion, SceneId, Style, Verdict, path::Stop};
+    use wayword_core::{Caption, Check, DVec3, Gaze, Motion, SceneId, Style, Verdict, path::Stop};
 
     /// A path straight ahead, with these captions of its frames.
     fn evidence(captions: Vec<Caption>) -> Evidence {
@@ -132,8 +132,7 @@ mod tests {
     }
 
     fn places(text: &str, own: bool) -> Verdict {
-        let style =
-            Style { name: "s".into(), references: Vec::new(), words: Vec::new(), constraints: Constraints::default() };
+        let style = Style { name: "s".into(), ..Style::default() };
         let evidence = known();
         let subject = Subject::closed(&evidence, &style, None);
         let checked = if own { check_own(text, subject) } else { check(text, subject) };

@@ -3,7 +3,7 @@
 use crate::{Building, Evidence, Reach, Subject, Surroundings, Testimony, Turns, check, lift};
 use std::sync::Arc;
 use wayword_core::{
-    Check, Constraints, DVec3, Frame, Heading, Label, Motion, ObjectId, Path, Placed, SceneId, Style, Survey, Verdict,
+    Check, DVec3, Frame, Heading, Label, Motion, ObjectId, Path, Placed, SceneId, Style, Survey, Verdict,
     ViewpointGraph, ViewpointId, graph::GraphError, path::Stop, survey::Known,
 };
 
@@ -86,7 +86,7 @@ fn path(from: usize, to: usize) -> (Path, Evidence, Surroundings) {
 }
 
 fn any() -> Style {
-    Style { name: "any".into(), references: Vec::new(), words: Vec::new(), constraints: Constraints::default() }
+    Style { name: "any".into(), ..Style::default() }
 }
 
 /// The verdict on a text about the path between two viewpoints, with the checks that have it.

@@ -76,8 +76,18 @@ fn parse_wording() -> std::collections::BTreeMap<String, Shares> {
 /// # Errors
 /// When it is no style, or has no or too many references.
 pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
+    parse_with(name, text, Vec::new())
+}
+
+/// The same, with more references than the file has.
+///
+/// # Errors
+/// When it is no style, or there are no or too many references.
+pub fn parse_with(name: &str, text: &str, more: Vec<String>) -> Result<Style, StyleError> {
     let unreadable = |reason: String| StyleError::Unreadable { name: name.to_owned(), reason };
-    let style: Style = toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().replace('\n', " ")))?;
+    let mut style: Style =
+        toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().replace('\n', " ")))?;
+    style.references.extend(more);
     validated(style).map_err(|error| match error {
         StyleError::Unnamed => unreadable("its `name` is empty: give it one".into()),
         StyleError::NoReferences(_) => StyleError::NoReferences(name.to_owned()),

@@ -41,8 +41,12 @@ impl Profile {
     /// Measures the references of a style. What it says of itself in numbers goes before.
     #[must_use]
     pub fn of(style: &Style) -> Self {
-        let measured = Self::measure(&style.references);
-        if style.words.is_empty() { measured } else { Self { words: style.words.clone(), ..measured } }
+        let mut profile = Self::measure(&style.references);
+        if !style.words.is_empty() {
+            profile.words.clone_from(&style.words);
+        }
+        profile.wording.choose(style.choice);
+        profile
     }
 
     /// Measures texts; at least one has to have a word.

@@ -7,6 +7,7 @@ use super::parse_wording;
 use crate::weighed::weighed;
 use rand_chacha::ChaCha8Rng;
 use std::{collections::BTreeMap, sync::LazyLock};
+use wayword_core::Choice;
 use wayword_language::lexicon::{Class, kinds, thing};
 
 /// A group of constructions with their shares.
@@ -67,6 +68,14 @@ impl Wording {
     pub fn share(&self, name: &str) -> f64 {
         let share = self.tables.get("share").and_then(|shares| shares.get(name)).copied();
         share.unwrap_or_default().clamp(0.0, 1.0)
+    }
+
+    /// What a style chooses goes before what the built-in wording does.
+    pub(super) fn choose(&mut self, choice: Choice) {
+        let table = self.tables.entry("choice".to_owned()).or_default();
+        for (name, chosen) in [("sure", choice.sure), ("sharp", choice.sharp)] {
+            table.extend(chosen.map(|value| (name.to_owned(), value)));
+        }
     }
 
     /// Over 1, what people say most is drawn more often than they say it.

@@ -23,6 +23,8 @@ pub(super) struct Landmark {
     pub(super) name: String,
     /// Its colour, where it is known.
     pub(super) colour: Option<String>,
+    /// Whether another of its name is seen there in another colour.
+    pub(super) needs_colour: bool,
     /// How many of its name and colour are seen there.
     pub(super) alike: usize,
     /// The side of the walker on which it is from the frame for which it was chosen.
@@ -189,12 +191,15 @@ impl<'a> Landmarks<'a> {
         let memory = self.brief.memory;
         let is_alike = |other: &&Remembered| normal(&other.name) == normal(&seen.name) && other.colour == seen.colour;
         let alike = memory.seen_from(frame).filter(is_alike).count();
+        let like = |other: &&Remembered| normal(&other.name) == normal(&seen.name);
+        let needs_colour = memory.seen_from(frame).filter(like).any(|other| other.colour != seen.colour);
         let passed = seen.passed.map(|passed| (passed.frame, passed.side));
         Landmark {
             in_front: is_in_front(seen, frame),
             phrase,
             name,
             colour: seen.colour.clone(),
+            needs_colour,
             alike,
             side: memory.side(seen, frame),
             passed,

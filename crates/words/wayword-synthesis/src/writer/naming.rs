@@ -19,6 +19,9 @@ pub(super) struct Phrase {
     pub(super) is_clause: bool,
 }
 
+/// How often a colour is said of a thing that needs none to be told from others.
+const COLOURED: f64 = 0.25;
+
 /// What the place of a clause in its text asks of its shape.
 #[derive(Clone, Copy)]
 struct Needs {
@@ -53,7 +56,9 @@ impl<'a> Names<'a> {
         let side = clause.side.map_or("", side_word);
         let thing = clause.thing.as_ref().map(|thing| {
             let name = self.thing(&thing.name, rng);
-            let name = thing.colour.as_ref().map_or(name.clone(), |colour| format!("{colour} {name}"));
+            let says_colour = thing.needs_colour || rng.random_bool(COLOURED);
+            let colour = thing.colour.as_ref().filter(|_| says_colour);
+            let name = colour.map_or(name.clone(), |colour| format!("{colour} {name}"));
             let name = match thing.alike {
                 // "The two gold lamps".
                 2 if rng.random_bool(0.3) => counted(2, &name),
@@ -80,12 +85,10 @@ impl<'a> Names<'a> {
         let own = Way::built_in().shapes.get(&clause.kind);
         let shapes = self.way.shapes.get(&clause.kind).or(own);
         let ahead = clause.thing.as_ref().is_none_or(|thing| thing.in_front);
+        let usual = clause.room.as_deref().and_then(room_name);
+        let is_open_air = matches!(usual, Some("porch" | "balcony" | "outdoor area"));
         // "The room" is no hallway, and nobody leaves a porch by it.
-        let has_walls = clause
-            .room
-            .as_deref()
-            .and_then(room_name)
-            .is_none_or(|room| !matches!(room, "hallway" | "entryway" | "porch" | "balcony" | "outdoor area"));
+        let has_walls = !is_open_air && !matches!(usual, Some("hallway" | "entryway"));
         let is_room = |shape: &str| {
             let names_none = shape.split(' ').any(|word| word == "room");
             (clause.room.is_some() || !shape.contains("{r}")) && ((has_walls && !needs.names_room) || !names_none)
@@ -94,6 +97,7 @@ impl<'a> Names<'a> {
             suits(shape, needs.motion)
                 && (ahead || !shape.contains("front"))
                 && is_room(shape)
+                && (is_open_air || !shape.contains("onto the {r}") && !shape.contains("out into the {r}"))
                 && (needs.may_run || !is_until(shape))
         };
         let all: Vec<(f64, &String)> = shapes

@@ -130,7 +130,7 @@ fn draw<'a>(all: &[&'a [Distinction]], wording: &Wording, rng: &mut ChaCha8Rng) 
     let kinds: Vec<&Vec<&[Distinction]>> = of_kind.values().collect();
     let weights: Vec<f64> = kinds.iter().map(|kind| likelihood(kind[0], wording)).collect();
     let Some(kind) = weighed(&weights, rng) else { return &[] };
-    let cheaper: Vec<f64> = (0..kinds[kind].len()).map(|at| 0.94_f64.powi(at as i32)).collect();
+    let cheaper: Vec<f64> = (0..kinds[kind].len()).map(|at| 0.85_f64.powi(at as i32)).collect();
     weighed(&cheaper, rng).map_or(&[], |at| kinds[kind][at])
 }
 

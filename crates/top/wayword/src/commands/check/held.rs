@@ -8,7 +8,7 @@ use crate::{
 };
 use std::sync::Arc;
 use wayword_checks::Copies;
-use wayword_core::{Constraints, Style};
+use wayword_core::Style;
 use wayword_synthesis::style::{built_in, built_in_names, hash};
 
 /// The styles that texts are checked against.
@@ -50,12 +50,7 @@ impl Held {
         let given = style.map(|name| styles::find(&[name.to_owned()])).transpose()?;
         let given = given.and_then(|mut styles| styles.pop()).map(Known::from);
         let known = built_in_names().into_iter().map(|name| built_in(name).map(Known::of)).collect::<Result<_, _>>()?;
-        let any = Style {
-            name: "any".into(),
-            references: Vec::new(),
-            words: Vec::new(),
-            constraints: Constraints::default(),
-        };
+        let any = Style { name: "any".into(), ..Style::default() };
         Ok(Self { given, known, sole: None, any: Known::of(any) })
     }
 

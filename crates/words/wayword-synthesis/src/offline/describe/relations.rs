@@ -15,6 +15,8 @@ const NOT_NEAR_M: f64 = 1.8;
 const CLEARLY: f64 = 0.7;
 /// And nearer by this, metres.
 const CLEARLY_M: f64 = 0.3;
+/// What it costs to name a small thing beside the target.
+const SMALL: f64 = 0.9;
 /// Most neighbours of the target that are looked at, the nearest first.
 const MOST_NEIGHBOURS: usize = 8;
 
@@ -90,6 +92,10 @@ impl<'a> Scene<'a> {
             }
         }
         all.extend(self.beside(at, &alike));
+        // A plate is hard to find itself.
+        if to.salience < 2 {
+            all.iter_mut().for_each(|property| property.cost += SMALL);
+        }
         all
     }
 

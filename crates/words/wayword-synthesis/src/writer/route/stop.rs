@@ -8,6 +8,9 @@ use crate::{
 use wayword_core::Climb;
 use wayword_language::lexicon::room_name;
 
+/// How much seldomer the last room is named twice.
+const NAMED_AGAIN: f64 = 0.1;
+
 impl Planner<'_, '_, '_> {
     /// The end: at a thing within reach, in the room, in the doorway, or at the stairs.
     pub(super) fn stop(&mut self) {
@@ -46,7 +49,8 @@ impl Planner<'_, '_, '_> {
                 self.clauses.last().is_some_and(|before| !before.is_bare() && before.kind != Kind::Straight);
             kinds.push((self.count(Kind::Stop) * if has_place { 0.5 } else { 0.02 }, Kind::Stop));
             if room.is_some() {
-                kinds.push((self.count(Kind::StopIn) * in_room, Kind::StopIn));
+                // Who has just told to enter it does not name it again.
+                kinds.push((self.count(Kind::StopIn) * in_room * NAMED_AGAIN, Kind::StopIn));
             }
         }
         let kind = draw(&kinds, self.rng).unwrap_or(Kind::Stop);
