@@ -116,13 +116,15 @@ fn small_turns_to_one_side_are_one_bend_and_a_winding_way_has_none() {
     let step = |deg: f64| wayword_core::Move { turn_rad: deg.to_radians(), distance_m: 1.0, rise_m: 0.0 };
     let bends = |turns: &[f64]| -> Vec<(usize, usize, f64)> {
         let moves: Vec<_> = turns.iter().map(|deg| step(*deg)).collect();
-        let told = ways::bends(&moves);
+        let told = ways::bends(&moves, &[]);
         told.iter().map(|bend| (bend.first, bend.last, bend.turn_rad.to_degrees().round())).collect()
     };
     assert_eq!(bends(&[0.0, 25.0, 28.0, 22.0, 0.0]), [(1, 3, 75.0)]);
     assert_eq!(bends(&[0.0, -90.0, -90.0]), [(1, 1, -90.0), (2, 2, -90.0)]);
     assert_eq!(bends(&[0.0, 35.0, -40.0, 0.0]), []);
     assert_eq!(bends(&[170.0, 0.0, 29.0]), [(0, 0, 170.0)]);
+    let moves: Vec<_> = [0.0, 35.0, -40.0, 0.0].into_iter().map(step).collect();
+    assert_eq!(ways::bends(&moves, &[2]).len(), 2, "one turns into a room and on in it");
     let around = Bend { first: 0, last: 0, turn_rad: 170_f64.to_radians() };
     assert_eq!((around.side(), around.is_slight()), (Side::Behind, false));
 }
@@ -136,6 +138,20 @@ fn a_flight_is_one_however_many_hops_it_takes() {
     }
     let flights = Memory::of(&evidence, &path).flights;
     assert_eq!(flights, [Flight { climb: Climb::Up, from: 0, to: 2, to_level: Some(2) }]);
+}
+
+#[test]
+fn flights_that_a_landing_joins_are_one() {
+    let up = |x: f64, y: f64, z: f64| (x, y, z);
+    let stops = [up(0.0, 0.0, 0.0), up(0.0, 2.0, 1.4), up(1.0, 2.0, 1.4), up(1.0, 0.0, 2.8), up(4.0, 0.0, 2.8)];
+    let (evidence, path) = walked(&stops, vec![frame("", vec![]); 5]);
+    let flights = Memory::of(&evidence, &path).flights;
+    assert_eq!(flights, [Flight { climb: Climb::Up, from: 0, to: 3, to_level: None }]);
+    let (evidence, path) = walked(
+        &[up(0.0, 0.0, 0.0), up(0.0, 2.0, 1.4), up(4.0, 2.0, 1.4), up(4.0, 0.0, 2.8)],
+        vec![frame("", vec![]); 4],
+    );
+    assert_eq!(Memory::of(&evidence, &path).flights.len(), 2, "a hallway lies between them");
 }
 
 #[test]

@@ -78,8 +78,8 @@ const WINDING_M: f64 = 2.5;
 /// Several turns in a row are one bend up to this, degrees; beyond that they are turns of their own.
 const ONE_BEND_DEG: f64 = 135.0;
 
-/// The turns of a walk that are worth a word.
-pub(super) fn bends(moves: &[Move]) -> Vec<Bend> {
+/// The turns of a walk that are worth a word. `entered` are the frames at which another room begins.
+pub(super) fn bends(moves: &[Move], entered: &[usize]) -> Vec<Bend> {
     let mut bends: Vec<Bend> = Vec::new();
     let mut at = 0;
     while at < moves.len() {
@@ -91,7 +91,7 @@ pub(super) fn bends(moves: &[Move]) -> Vec<Bend> {
         }
         at = last + 1;
     }
-    unwound(bends, moves)
+    unwound(bends, moves, entered)
 }
 
 /// The last move of the bend that begins with a move: its own number, unless the moves after it turn on to the same
@@ -111,15 +111,16 @@ fn last_of_bend(moves: &[Move], first: usize) -> usize {
     (first..=last).rev().find(|last| fits(last) && joins(last)).unwrap_or(first)
 }
 
-/// The bends without those that the next one takes back at once: a way that winds.
-fn unwound(bends: Vec<Bend>, moves: &[Move]) -> Vec<Bend> {
+/// The bends without those that the next one takes back at once in the same room: a way that winds.
+fn unwound(bends: Vec<Bend>, moves: &[Move], entered: &[usize]) -> Vec<Bend> {
     let mut kept: Vec<Bend> = Vec::new();
     for bend in bends {
         let takes_back = kept.last().is_some_and(|before| {
             let between_m: f64 = moves[before.first..bend.first].iter().map(|step| step.distance_m).sum();
             let net_deg = (before.turn_rad + bend.turn_rad).to_degrees().abs();
             let both_slight = before.is_slight() && bend.is_slight();
-            before.first > 0 && both_slight && net_deg < WINDING_DEG && between_m < WINDING_M
+            let stays = !entered.iter().any(|frame| (before.first + 1..=bend.first).contains(frame));
+            before.first > 0 && stays && both_slight && net_deg < WINDING_DEG && between_m < WINDING_M
         });
         if takes_back {
             kept.pop();
@@ -130,9 +131,12 @@ fn unwound(bends: Vec<Bend>, moves: &[Move]) -> Vec<Bend> {
     kept
 }
 
-/// The flights of stairs, in order.
+/// Two flights with no longer way between them are one that turns at a landing, metres.
+const LANDING_M: f64 = 2.5;
+
+/// The flights of stairs, in order. Those that a landing joins are one.
 pub(super) fn flights(evidence: &Evidence) -> Vec<Flight> {
-    let (mut flights, mut at) = (Vec::new(), 0);
+    let (mut flights, mut at) = (Vec::<Flight>::new(), 0);
     while at < evidence.moves.len() {
         let Some((last, climb)) = motion::flight(&evidence.moves, at) else {
             at += 1;
@@ -140,8 +144,18 @@ pub(super) fn flights(evidence: &Evidence) -> Vec<Flight> {
         };
         let level = |frame: usize| evidence.frames.get(frame).and_then(|frame| frame.level);
         let to_level = level(last + 1).filter(|level_after| level(at) != Some(*level_after));
-        flights.push(Flight { climb, from: at, to: last + 1, to_level });
+        let flight = Flight { climb, from: at, to: last + 1, to_level };
         at = last + 1;
+        match flights.last_mut().filter(|before| is_landing(before, &flight, &evidence.moves)) {
+            Some(before) => (before.to, before.to_level) = (flight.to, flight.to_level.or(before.to_level)),
+            None => flights.push(flight),
+        }
     }
     flights
+}
+
+/// Whether only a landing lies between two flights.
+fn is_landing(before: &Flight, next: &Flight, moves: &[Move]) -> bool {
+    let between_m: f64 = moves[before.to..next.from].iter().map(|step| step.distance_m).sum();
+    before.climb == next.climb && between_m <= LANDING_M
 }

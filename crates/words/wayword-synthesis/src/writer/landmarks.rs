@@ -42,6 +42,10 @@ const NEAR_M: f64 = 2.5;
 /// One stops at a thing that is no farther than this, metres.
 const STOP_M: f64 = 1.9;
 
+/// A walker who looks ahead sees this far to either side, radians.
+const AHEAD_RAD: f64 = 1.05;
+/// And, who looks around, this far.
+const BESIDE_RAD: f64 = 1.9;
 /// What lies no farther to a side than this is in front of one, radians.
 const IN_FRONT_RAD: f64 = 1.1;
 /// What it counts that one stops in front of a thing.
@@ -63,8 +67,12 @@ const RARE: f64 = 0.2;
 /// What a landmark is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
-    /// It is named while one is at a frame, or goes to it.
+    /// It is named while one is at a frame.
     Here,
+    /// One goes to it, or past it, on the way to a frame.
+    Onward,
+    /// The same for what shows to the side alone.
+    Beside,
     /// One stops there.
     Stop,
 }
@@ -116,7 +124,7 @@ impl<'a> Landmarks<'a> {
     /// The best landmark at a frame that is still free, without taking it.
     pub(super) fn peek(&self, frame: usize, salience: u8) -> Option<Landmark> {
         let told = self.brief.memory.seen_from(frame).filter(|seen| {
-            is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, Use::Here)
+            is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, Use::Onward)
         });
         let best = told.max_by(|a, b| self.score(a, frame).total_cmp(&self.score(b, frame)))?;
         Some(self.landmark(best, frame))
@@ -159,10 +167,13 @@ impl<'a> Landmarks<'a> {
         let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
         let side = memory.side(seen, frame);
         let is_there = match to {
-            Use::Here => side != Some(Side::Behind) || memory.distance_m(seen, frame).is_some(),
+            Use::Here => side != Some(Side::Behind) && was_seen(seen, frame, AHEAD_RAD),
+            Use::Onward => was_seen(seen, frame, AHEAD_RAD) && (side == Some(Side::Ahead) || is_passed(seen, frame)),
+            Use::Beside => was_seen(seen, frame, BESIDE_RAD) && is_passed(seen, frame),
             Use::Stop => side != Some(Side::Behind),
         };
-        is_near && is_there
+        // Without positions nobody knows what lies where.
+        is_near && (is_there || side.is_none())
     }
 
     /// Salient things that people name, near the frame, and few of their name.
@@ -218,6 +229,18 @@ fn is_tellable(name: &str, salience: u8) -> bool {
     let tells =
         thing(name).is_some_and(|thing| thing.salience >= salience && !is_fixed(thing.class) && !is_faint(thing));
     plain && !is_room(&normal(name)) && !is_fabric(name) && tells
+}
+
+/// Whether a walker who looks so far to either side has seen a thing by the time of a frame, as far as is known. What only
+/// shows behind a walker is no landmark.
+fn was_seen(seen: &Remembered, frame: usize, aside_rad: f64) -> bool {
+    let within = |turn_rad: Option<f64>| turn_rad.is_none_or(|turn_rad| turn_rad.abs() <= aside_rad);
+    seen.glimpses.iter().any(|glimpse| glimpse.frame <= frame && within(glimpse.turn_rad))
+}
+
+/// Whether one passes a thing shortly before a frame, or there.
+fn is_passed(seen: &Remembered, frame: usize) -> bool {
+    seen.passed.is_some_and(|passed| passed.frame <= frame && passed.frame + 2 > frame)
 }
 
 /// Whether a thing lies before somebody who arrives at a frame, as far as is known.

@@ -22,12 +22,32 @@ pub(super) struct Phrase {
 /// How often a colour is said of a thing that needs none to be told from others.
 const COLOURED: f64 = 0.25;
 
+/// Whether a clause may tell to go out: it names what it leaves, or its door leads out of the first room and not into the last.
+fn goes_out(clause: &Clause, brief: &Brief<'_>) -> bool {
+    let openings = &brief.memory.openings;
+    let is_first = openings.len() > 1 && openings[0].before == clause.at;
+    clause.from.is_some() || is_first || !matches!(clause.kind, Kind::ThroughDoor | Kind::DoorOnSide | Kind::ToDoor)
+}
+
+/// Who has walked no farther into a room is just inside, metres.
+const STEP_M: f64 = 2.5;
+
+/// How far one has walked in the room of a frame, metres.
+fn walked_in_m(at: usize, brief: &Brief<'_>) -> f64 {
+    let entered = brief.memory.stay(at).map_or(0, |stay| stay.entered.max(1));
+    brief.walk.moves.get(entered - 1..at).unwrap_or_default().iter().map(|step| step.distance_m).sum()
+}
+
 /// What the place of a clause in its text asks of its shape.
 #[derive(Clone, Copy)]
 struct Needs {
     motion: Motion,
     /// Whether it has to name its room.
     names_room: bool,
+    /// Whether one goes out of the room of the start, or the clause names the room that one leaves.
+    leaves: bool,
+    /// Whether one is no more than a step behind the door of its room.
+    is_near_door: bool,
     /// Whether it may say how far the clause before it goes.
     may_run: bool,
 }
@@ -51,7 +71,13 @@ impl<'a> Names<'a> {
         }
         let motion = brief.walk.path.motion;
         let follows = at.checked_sub(1).is_some_and(|before| told[before].kind.goes_on());
-        let needs = Needs { motion, names_room: has_to_name(told, at, brief), may_run: follows };
+        let needs = Needs {
+            motion,
+            names_room: has_to_name(told, at, brief),
+            is_near_door: clause.kind != Kind::StopIn || walked_in_m(clause.at, brief) <= STEP_M,
+            leaves: goes_out(clause, brief),
+            may_run: follows,
+        };
         let shape = self.shape(clause, needs, rng);
         let side = clause.side.map_or("", side_word);
         let thing = clause.thing.as_ref().map(|thing| {
@@ -98,6 +124,9 @@ impl<'a> Names<'a> {
                 && (ahead || !shape.contains("front"))
                 && is_room(shape)
                 && (is_open_air || !shape.contains("onto the {r}") && !shape.contains("out into the {r}"))
+                && (needs.is_near_door
+                    || !["just inside", "once you", "doorway"].iter().any(|near| shape.contains(near)))
+                && (needs.leaves || !["exit", "leave", "out "].iter().any(|out| shape.contains(out)))
                 && (needs.may_run || !is_until(shape))
         };
         let all: Vec<(f64, &String)> = shapes

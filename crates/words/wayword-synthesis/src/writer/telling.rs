@@ -77,6 +77,7 @@ impl Plan {
             landmarks.reserve(name);
         }
         let mut clauses = route::clauses(brief, &mut landmarks, rng);
+        fill::name_a_thing(&mut clauses, brief, &mut landmarks, rng);
         let mut lengths = Lengths::of(&brief.profile.way);
         while lengths.sum(&clauses) > words as f64 + SLACK && drop_least(&mut clauses, OPTIONAL) {}
         while lengths.sum(&clauses) < words as f64 - SLACK && !stands_still(brief.walk) {

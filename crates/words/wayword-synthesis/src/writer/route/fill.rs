@@ -1,11 +1,11 @@
 //! More to say of a way that is told in fewer words than the texts of its style.
 
-use super::{Clause, FILLER, SIDE, STOPPED_AT, WALKED_PAST, onward::ways_past, usable_room};
+use super::{Clause, FILLER, MAIN, SIDE, STOPPED_AT, WALKED_PAST, onward::past, usable_room};
 use crate::{
     style::way::Kind,
     writer::{
         Brief,
-        landmarks::{Landmarks, Use},
+        landmarks::{Landmark, Landmarks, Use},
         phrases::draw,
     },
 };
@@ -79,6 +79,18 @@ pub(in crate::writer) fn fill(
     false
 }
 
+/// Says a thing that one passes in a text that names none on the way.
+pub(in crate::writer) fn name_a_thing(
+    clauses: &mut Vec<Clause>,
+    brief: &Brief<'_>,
+    landmarks: &mut Landmarks<'_>,
+    rng: &mut ChaCha8Rng,
+) {
+    if !clauses.iter().rev().skip(1).any(|clause| clause.thing.is_some()) {
+        Filler { clauses, brief, landmarks, rng }.landmark();
+    }
+}
+
 struct Filler<'a, 'b> {
     clauses: &'a mut Vec<Clause>,
     brief: &'a Brief<'a>,
@@ -107,24 +119,29 @@ impl Filler<'_, '_> {
             if self.clauses.iter().any(|clause| clause.at == frame && clause.thing.is_some()) {
                 continue;
             }
-            let thing = self.landmarks.find(frame, WALKED_PAST, Use::Here, self.rng);
-            let thing = match thing {
-                None if self.rng.random_bool(LESS_SALIENT) => {
-                    self.landmarks.find(frame, STOPPED_AT, Use::Here, self.rng)
-                }
-                thing => thing,
-            };
-            let Some(thing) = thing else { continue };
+            let Some(thing) = self.thing_at(frame) else { continue };
             let way = &self.brief.profile.way;
-            let side = thing.passed.filter(|(passed, _)| *passed == frame).map(|(_, side)| side);
-            let kinds = ways_past(way, self.clauses, side, thing.side);
-            let kind = draw(&kinds, self.rng).unwrap_or(Kind::Pass);
-            let mut clause = Clause::new(kind, frame, SIDE).by(thing);
+            let side = thing.passed.filter(|(passed, _)| *passed <= frame && *passed + 2 > frame).map(|(_, side)| side);
+            let kind = past(way, self.clauses, side, thing.side, self.rng);
+            let is_only = !self.clauses.iter().rev().skip(1).any(|clause| clause.thing.is_some());
+            let mut clause = Clause::new(kind, frame, if is_only { MAIN } else { SIDE }).by(thing);
             clause.side = side.filter(|_| kind == Kind::PassOnSide);
             self.insert(clause);
             return true;
         }
         false
+    }
+
+    fn thing_at(&mut self, frame: usize) -> Option<Landmark> {
+        let names_none = !self.clauses.iter().rev().skip(1).any(|clause| clause.thing.is_some());
+        let is_faint = self.rng.random_bool(LESS_SALIENT);
+        let tries = [
+            (true, WALKED_PAST, Use::Onward),
+            (is_faint || names_none, STOPPED_AT, Use::Onward),
+            (names_none, STOPPED_AT, Use::Beside),
+        ];
+        let tries = tries.into_iter().filter(|(may, ..)| *may);
+        tries.into_iter().find_map(|(_, salience, to)| self.landmarks.find(frame, salience, to, self.rng))
     }
 
     fn side(&mut self) -> bool {

@@ -9,6 +9,7 @@ use crate::{
     },
 };
 use rand::Rng;
+use rand_chacha::ChaCha8Rng;
 use wayword_core::Side;
 use wayword_language::lexicon::room_name;
 
@@ -27,11 +28,7 @@ impl Planner<'_, '_, '_> {
         });
         let names_thing = self.clauses.iter().any(|clause| clause.thing.is_some());
         if (!was_onward && self.rng.random_bool(if is_last { 0.3 } else { 0.5 })) || !names_thing {
-            let thing = self.landmarks.find(at + 1, WALKED_PAST, Use::Here, self.rng);
-            let thing = thing.or_else(|| self.landmarks.find(at + 1, STOPPED_AT, Use::Here, self.rng));
-            let thing =
-                thing.or_else(|| self.landmarks.find(at, WALKED_PAST, Use::Here, self.rng).filter(|_| !names_thing));
-            if let Some(thing) = thing {
+            if let Some(thing) = self.thing_on_the_way(at, !names_thing) {
                 return self.pass(at, thing);
             }
         }
@@ -46,32 +43,39 @@ impl Planner<'_, '_, '_> {
         }
     }
 
+    /// A thing by which one goes on from a frame. Where a text `must` have one, things to the side will do.
+    fn thing_on_the_way(&mut self, at: usize, must: bool) -> Option<Landmark> {
+        let more =
+            [(at + 1, STOPPED_AT, Use::Onward), (at, WALKED_PAST, Use::Onward), (at + 1, STOPPED_AT, Use::Beside)];
+        let tries =
+            std::iter::once((at + 1, WALKED_PAST, Use::Onward)).chain(more.into_iter().take(if must { 3 } else { 1 }));
+        tries.into_iter().find_map(|(frame, salience, to)| self.landmarks.find(frame, salience, to, self.rng))
+    }
+
     pub(super) fn pass(&mut self, at: usize, thing: Landmark) {
         let side = thing.passed.filter(|(frame, _)| (at..=at + 1).contains(frame)).map(|(_, side)| side);
-        let kinds = self.ways_past(side, thing.side);
-        let kind = draw(&kinds, self.rng).unwrap_or(Kind::Pass);
+        let kind = past(&self.brief.profile.way, &self.clauses, side, thing.side, self.rng);
         let names_thing = self.clauses.iter().any(|clause| clause.thing.is_some());
         let mut clause = Clause::new(kind, at, if names_thing { SIDE } else { MAIN }).by(thing);
         clause.side = side.filter(|_| kind == Kind::PassOnSide);
         self.push(clause);
     }
-
-    /// How one goes on by a thing, with the side on which one passes it, and that on which it lies.
-    fn ways_past(&self, passed: Option<Side>, side: Option<Side>) -> Vec<(f64, Kind)> {
-        ways_past(&self.brief.profile.way, &self.clauses, passed, side)
-    }
 }
 
-/// How one goes on by a thing. What was done already in a text is done less often.
-pub(super) fn ways_past(way: &Way, told: &[Clause], passed: Option<Side>, side: Option<Side>) -> Vec<(f64, Kind)> {
+/// How one goes on by a thing: past what one passes, and otherwise to it. What was done already in a text is done less
+/// often.
+pub(super) fn past(way: &Way, told: &[Clause], passed: Option<Side>, side: Option<Side>, rng: &mut ChaCha8Rng) -> Kind {
     let again = |kind: Kind| 0.35_f64.powi(told.iter().filter(|clause| clause.kind == kind).count() as i32);
     let share = |kind: Kind, times: f64| (way.count(kind) * times * again(kind), kind);
-    let mut kinds = vec![share(Kind::Pass, 0.5)];
+    let mut kinds = Vec::new();
+    if passed.is_some() || side.is_none() {
+        kinds.push(share(Kind::Pass, 0.5));
+    }
     if passed.is_some() {
         kinds.push(share(Kind::PassOnSide, 2.0));
     }
-    if side != Some(Side::Behind) {
+    if matches!(side, Some(Side::Ahead) | None) {
         kinds.push(share(Kind::To, 1.5));
     }
-    kinds
+    draw(&kinds, rng).unwrap_or(if passed.is_some() { Kind::Pass } else { Kind::To })
 }

@@ -1,6 +1,6 @@
 //! From one room into another.
 
-use super::{Clause, MAIN, Planner, SIDE, WALKED_PAST, usable_room};
+use super::{Clause, MAIN, Planner, SIDE, WALKED_PAST, turns::left_out, usable_room};
 use crate::{
     style::way::Kind,
     writer::{landmarks::Use, phrases::draw},
@@ -92,7 +92,10 @@ impl Planner<'_, '_, '_> {
             self.enter(None);
             return;
         };
-        let weight = if is_last || at == 0 { MAIN } else { SIDE };
+        // Whoever turns on the way through the next room has to know which room that is.
+        let until = next.map_or(self.memory.frames(), |next| next.before + 1);
+        let turns = self.memory.bends.iter().any(|bend| (at..until).contains(&bend.first));
+        let weight = if is_last || at == 0 || turns { MAIN } else { SIDE };
         let mut clause = Clause::new(kind, at, weight);
         match kind {
             Kind::Leave | Kind::LeaveByDoor => clause = clause.from(&opening.from).room(&opening.from),
@@ -142,7 +145,7 @@ impl Planner<'_, '_, '_> {
         }
         // Who leaves the room of the start needs no turn; nor does a slight one.
         let is_implied = at == 0 && can_leave && self.rng.random_bool(0.7);
-        if is_implied || (bend.is_slight() && self.rng.random_bool(0.6)) {
+        if is_implied || self.rng.random_bool(left_out(bend)) {
             return self.change(opening);
         }
         let mut kinds: Vec<(f64, Kind)> = Vec::new();

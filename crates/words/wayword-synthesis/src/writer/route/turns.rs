@@ -1,6 +1,6 @@
 //! Turns within a room, and the turn at the start.
 
-use super::{Clause, MAIN, Planner, WALKED_PAST, usable_room};
+use super::{Clause, LONG_M, MAIN, Planner, WALKED_PAST, usable_room};
 use crate::{
     style::way::Kind,
     writer::{landmarks::Use, phrases::draw},
@@ -26,17 +26,18 @@ impl Planner<'_, '_, '_> {
             false => None,
         };
         if let Some(thing) = thing {
-            let kinds = [(3.0, Kind::TurnAt), (0.4, Kind::Pass), (1.8, Kind::To)];
-            let kind = draw(&kinds, self.rng).unwrap_or(Kind::TurnAt);
+            let ahead = if thing.side == Some(Side::Ahead) { 1.8 } else { 0.0 };
+            let kind = draw(&[(3.0, Kind::TurnAt), (ahead, Kind::To)], self.rng).unwrap_or(Kind::TurnAt);
             if kind == Kind::TurnAt {
                 return self.push(Clause::new(kind, at, MAIN).to(side).by(thing));
             }
             self.push(Clause::new(kind, at, MAIN).by(thing));
             return self.push(Clause::new(Kind::Turn, at, MAIN).to(side));
         }
-        if bend.is_slight() && self.rng.random_bool(0.6) {
+        if self.rng.random_bool(left_out(bend)) {
             return;
         }
+        self.go_on_to(at);
         let slight = bend.is_slight() && self.rng.random_bool(0.5);
         let bare = if slight { Kind::TurnSlightly } else { Kind::Turn };
         let follows = self.clauses.last().is_some_and(|before| !before.is_bare() && before.at + 1 >= at);
@@ -48,7 +49,7 @@ impl Planner<'_, '_, '_> {
             Some(Climb::Down) => kinds.push((4.0, Kind::TurnAtBottom)),
             _ => {}
         }
-        if is_hall && !self.along {
+        if is_hall && !self.along && self.walked_in(at) >= 2 {
             kinds.push((3.0, Kind::Along));
         }
         if room.is_some() {
@@ -66,6 +67,25 @@ impl Planner<'_, '_, '_> {
                 self.enter(Some(&room));
             }
             kind => self.push(Clause::new(kind, at, MAIN).to(side)),
+        }
+    }
+
+    /// How many hops one has walked in the room of a frame before it.
+    fn walked_in(&self, at: usize) -> usize {
+        self.memory.stay(at).map_or(0, |stay| at - stay.entered)
+    }
+
+    /// Who has walked some way since the last clause is told so before a turn.
+    fn go_on_to(&mut self, at: usize) {
+        let from = self
+            .clauses
+            .last()
+            .map_or(0, |before| before.at + 1)
+            .max(self.memory.stay(at).map_or(0, |stay| stay.entered));
+        let walked_m: f64 =
+            self.brief.walk.moves.get(from..at).unwrap_or_default().iter().map(|step| step.distance_m).sum();
+        if walked_m >= LONG_M && !self.along {
+            self.push(Clause::new(Kind::Straight, from, MAIN));
         }
     }
 
@@ -94,3 +114,11 @@ impl Planner<'_, '_, '_> {
         }
     }
 }
+
+/// How often a turn is left out: nobody tells a small one that the way asks for by itself.
+pub(super) fn left_out(bend: Bend) -> f64 {
+    if bend.turn_rad.to_degrees().abs() < HARDLY_DEG { 0.6 } else { 0.0 }
+}
+
+/// Smaller turns may be left out, degrees.
+const HARDLY_DEG: f64 = 40.0;
