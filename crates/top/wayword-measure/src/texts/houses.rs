@@ -15,7 +15,7 @@ use wayword::{error::Error, output::Output, platforms, run::file, settings::Aske
 use wayword_core::{DVec3, Platform};
 use wayword_formats::jsonl::{self, Record};
 use wayword_house::{EYE_M, HouseScene, Object, generate};
-use wayword_language::lexicon::{agree, same_room};
+use wayword_language::lexicon::{agree, normal, same_room};
 use wayword_world::labels_around;
 
 /// "Stop at the sofa": the sofa is within this distance of the end, metres.
@@ -131,7 +131,8 @@ fn stop_at(words: &[String]) -> Option<String> {
 }
 
 fn nearest_m(feet: DVec3, name: &str, home: &HouseScene) -> f64 {
-    let called = home.objects.values().filter(|object| agree(&object.name, name));
+    let is_called = |object: &&Object| agree(&object.name, name) || normal(&object.name) == normal(name);
+    let called = home.objects.values().filter(is_called);
     called.map(|object| off_m(feet, object)).fold(f64::INFINITY, f64::min)
 }
 

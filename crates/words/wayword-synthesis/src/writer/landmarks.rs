@@ -48,6 +48,8 @@ const AHEAD_RAD: f64 = 1.05;
 const BESIDE_RAD: f64 = 1.9;
 /// What lies no farther to a side than this is in front of one, radians.
 const IN_FRONT_RAD: f64 = 1.1;
+/// Things of one name are "the two chairs" where they are no farther apart, metres.
+const TOGETHER_M: f64 = 1.5;
 /// What it counts that one stops in front of a thing.
 const IN_FRONT: f64 = 1.5;
 /// Things that are told together are no farther apart, metres.
@@ -170,7 +172,7 @@ impl<'a> Landmarks<'a> {
             Use::Here => side != Some(Side::Behind) && was_seen(seen, frame, AHEAD_RAD),
             Use::Onward => was_seen(seen, frame, AHEAD_RAD) && (side == Some(Side::Ahead) || is_passed(seen, frame)),
             Use::Beside => was_seen(seen, frame, BESIDE_RAD) && is_passed(seen, frame),
-            Use::Stop => side != Some(Side::Behind),
+            Use::Stop => side != Some(Side::Behind) && !hangs_overhead(&seen.name),
         };
         // Without positions nobody knows what lies where.
         is_near && (is_there || side.is_none())
@@ -201,7 +203,11 @@ impl<'a> Landmarks<'a> {
         };
         let memory = self.brief.memory;
         let is_alike = |other: &&Remembered| normal(&other.name) == normal(&seen.name) && other.colour == seen.colour;
-        let alike = memory.seen_from(frame).filter(is_alike).count();
+        let stands_by = |other: &&Remembered| match (seen.position, other.position) {
+            (Some(here), Some(there)) => here.distance(there) <= TOGETHER_M,
+            _ => true,
+        };
+        let alike = memory.seen_from(frame).filter(is_alike).filter(stands_by).count();
         let like = |other: &&Remembered| normal(&other.name) == normal(&seen.name);
         let needs_colour = memory.seen_from(frame).filter(like).any(|other| other.colour != seen.colour);
         let passed = seen.passed.map(|passed| (passed.frame, passed.side));
@@ -236,6 +242,12 @@ fn is_tellable(name: &str, salience: u8) -> bool {
 fn was_seen(seen: &Remembered, frame: usize, aside_rad: f64) -> bool {
     let within = |turn_rad: Option<f64>| turn_rad.is_none_or(|turn_rad| turn_rad.abs() <= aside_rad);
     seen.glimpses.iter().any(|glimpse| glimpse.frame <= frame && within(glimpse.turn_rad))
+}
+
+/// Whether nobody stops at a thing of that name, because it is above one.
+fn hangs_overhead(name: &str) -> bool {
+    let is_lamp_by_hand = |name: &str| name.ends_with("lamp");
+    thing(name).is_some_and(|thing| thing.class == Class::Light) && !is_lamp_by_hand(name)
 }
 
 /// Whether one passes a thing shortly before a frame, or there.

@@ -82,7 +82,7 @@ struct Plan<'a> {
 }
 
 /// A text of fewer words need not pin its target down.
-const SHORT: usize = 9;
+const SHORT: usize = 8;
 /// From so many words on, a text says one thing more than it needs, or two, or three.
 const LONG: [usize; 3] = [16, 20, 25];
 

@@ -119,7 +119,7 @@ fn mend(clauses: &mut Vec<Clause>, brief: &Brief<'_>) {
     clauses.retain(|clause| {
         let leaves = matches!(clause.kind, Kind::Leave | Kind::LeaveByDoor | Kind::TurnOut);
         let is_known = !leaves || clause.from.as_ref().is_none_or(|from| known.contains(from));
-        if !leaves {
+        if !leaves && clause.kind.names_room() {
             known.extend(clause.room.clone());
         }
         is_known || clause.kind == Kind::TurnOut
@@ -128,7 +128,8 @@ fn mend(clauses: &mut Vec<Clause>, brief: &Brief<'_>) {
         if let Kind::LeaveEnter | Kind::TurnOut = clauses[at].kind {
             let from = clauses[at].from.clone();
             let leaves = |clause: &Clause| matches!(clause.kind, Kind::Leave | Kind::LeaveByDoor);
-            let entered = clauses[..at].iter().any(|clause| !leaves(clause) && clause.room == from);
+            let names = |clause: &Clause| clause.kind.names_room() && !leaves(clause);
+            let entered = clauses[..at].iter().any(|clause| names(clause) && clause.room == from);
             if !entered && from != brief.memory.room(0).map(str::to_owned) {
                 let is_turn = clauses[at].kind == Kind::TurnOut;
                 clauses[at].kind = if is_turn { Kind::Turn } else { Kind::Enter };

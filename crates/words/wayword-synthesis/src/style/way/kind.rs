@@ -63,6 +63,22 @@ impl Kind {
         matches!(self, Self::Turn | Self::TurnSlightly | Self::TurnAround)
     }
 
+    /// Whether its words name the room to which it leads, or in which one is.
+    #[must_use]
+    pub fn names_room(self) -> bool {
+        !matches!(
+            self,
+            Self::DoorOnSide
+                | Self::TurnThroughDoor
+                | Self::ThroughDoor
+                | Self::ToDoor
+                | Self::TurnAtDoor
+                | Self::StopAt
+                | Self::Stop
+                | Self::StopInDoorway
+        )
+    }
+
     /// Whether it may be followed by how far one goes.
     #[must_use]
     pub fn goes_on(self) -> bool {

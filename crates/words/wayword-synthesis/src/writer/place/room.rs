@@ -82,7 +82,10 @@ impl<'a> Goal<'a> {
         let must = by.iter().any(|by| matches!(by, Distinction::Level { .. }));
         let level = self.level.filter(|_| must || names_level);
         let room = self.wording.called(self.room, rng);
-        let qualifiers: Vec<String> = by.iter().filter_map(|by| self.qualifier(by, rng)).collect();
+        // "The kitchen by the corridor with the stove" reads as if the corridor had it.
+        let has_with = |by: &Distinction| matches!(by, Distinction::RoomWith { .. });
+        let (with, beside): (Vec<&Distinction>, Vec<&Distinction>) = by.iter().partition(|by| has_with(by));
+        let qualifiers: Vec<String> = with.into_iter().chain(beside).filter_map(|by| self.qualifier(by, rng)).collect();
         let Some(level) = level else { return join(&[format!("the {room}")], &qualifiers) };
         let has_ordinal = |way: &str| ordinal(level).is_some() || !way.contains("{th}");
         let way = self.wording.draw("level", rng, has_ordinal).unwrap_or("the {r} on level {n}");

@@ -16,7 +16,6 @@ use wayword_language::lexicon::room_name;
 impl Planner<'_, '_, '_> {
     pub(super) fn along(&mut self, at: usize, room: &str, weight: u8) {
         self.push(Clause::new(Kind::Along, at, weight).room(room));
-        self.enter(Some(room));
         self.along = true;
     }
 
@@ -27,15 +26,17 @@ impl Planner<'_, '_, '_> {
             matches!(before.kind, Kind::Pass | Kind::PassOnSide | Kind::To | Kind::Straight) && before.at == at
         });
         let names_thing = self.clauses.iter().any(|clause| clause.thing.is_some());
-        if (!was_onward && self.rng.random_bool(if is_last { 0.3 } else { 0.5 })) || !names_thing {
-            if let Some(thing) = self.thing_on_the_way(at, !names_thing) {
-                return self.pass(at, thing);
-            }
+        let often = if is_last { 0.3 } else { 0.5 };
+        let tells_thing = (!was_onward && self.rng.random_bool(often)) || !names_thing;
+        if let Some(thing) = tells_thing.then(|| self.thing_on_the_way(at, !names_thing)).flatten() {
+            return self.pass(at, thing);
         }
         let room = self.memory.room(at + 1).and_then(usable_room);
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
         if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.7)) {
-            return self.along(at, &hall, SIDE);
+            let left = self.memory.stay(at + 1).map_or(at, |stay| stay.left);
+            let weight = if self.walked_m(at, left) >= LONG_M { MAIN } else { SIDE };
+            return self.along(at, &hall, weight);
         }
         let is_long = self.brief.walk.moves.get(at).is_none_or(|step| step.distance_m >= LONG_M);
         if is_long && !was_onward && !self.along && self.rng.random_bool(0.25) {

@@ -8,12 +8,15 @@ use crate::{
 use rand::Rng;
 use wayword_checks::memory::{Bend, Opening};
 use wayword_core::{Side, motion};
-use wayword_language::lexicon::room_name;
+use wayword_language::lexicon::{Class, room_name, thing};
 
 /// A room is left soon where the path leaves it within so many hops.
 const LEFT_SOON: usize = 2;
 /// How often a text begins with that.
 const LEFT_AT_ONCE: f64 = 0.6;
+
+/// One stands in a door that is no farther than this, metres.
+const IN_DOOR_M: f64 = 0.5;
 
 impl Planner<'_, '_, '_> {
     /// Many texts begin with leaving the room of the start, however one turns before that. The frame from which the
@@ -49,6 +52,7 @@ impl Planner<'_, '_, '_> {
     /// Into another room, with the turn before it, if any.
     pub(super) fn change(&mut self, opening: &Opening) {
         let at = opening.before;
+        self.go_on_to(at);
         let to = usable_room(&opening.to);
         let from = usable_room(&opening.from).filter(|from| self.here.as_ref() == Some(from));
         let mut kinds: Vec<(f64, Kind)> = Vec::new();
@@ -125,6 +129,13 @@ impl Planner<'_, '_, '_> {
         self.enter(to.as_deref().filter(|_| told));
     }
 
+    /// Whether one stands in a door or doorway at a frame, so that a turn there is one behind it.
+    fn stands_in_a_door(&self, at: usize) -> bool {
+        let is_door = |name: &str| thing(name).is_some_and(|thing| thing.class == Class::Door);
+        let doors = self.memory.things.iter().filter(|seen| seen.position.is_some() && is_door(&seen.name));
+        doors.filter_map(|door| self.memory.distance_m(door, at)).any(|distance_m| distance_m <= IN_DOOR_M)
+    }
+
     /// Whether a hallway ends where the walk leaves it: it went straight along it, and straight on into the room behind.
     fn is_end_of_hall(&self, opening: &Opening) -> bool {
         let stay = self.memory.stay(opening.before);
@@ -139,9 +150,14 @@ impl Planner<'_, '_, '_> {
         let (at, side) = (bend.first, bend.side());
         let to = usable_room(&opening.to);
         let can_leave = usable_room(&opening.from).is_some_and(|from| self.here == Some(from));
+        self.go_on_to(at);
         if side == Side::Behind {
             self.push(Clause::new(Kind::TurnAround, at, MAIN));
             return self.change(opening);
+        }
+        if self.stands_in_a_door(at) {
+            self.change(opening);
+            return self.push(Clause::new(Kind::Turn, at, MAIN).to(side));
         }
         // Who leaves the room of the start needs no turn; nor does a slight one.
         let is_implied = at == 0 && can_leave && self.rng.random_bool(0.7);

@@ -22,6 +22,8 @@ impl Planner<'_, '_, '_> {
         let thing = thing.or_else(|| self.landmarks.find(end, STOPPED_AT, Use::Stop, self.rng));
         let last_hop_m = self.brief.walk.moves.last().map_or(f64::INFINITY, |step| step.distance_m);
         let door = self.memory.openings.last().filter(|opening| opening.behind == end && opening.has_door);
+        // Where the text has the walker in another room, it names the last one.
+        let misleads = !is_told && self.names_another(room.as_deref());
         let mut kinds: Vec<(f64, Kind)> = Vec::new();
         match flight {
             Some(Climb::Up) => kinds.push((self.count(Kind::StopAtTop) * 8.0, Kind::StopAtTop)),
@@ -53,10 +55,19 @@ impl Planner<'_, '_, '_> {
                 kinds.push((self.count(Kind::StopIn) * in_room * NAMED_AGAIN, Kind::StopIn));
             }
         }
+        if misleads && room.is_some() {
+            kinds.retain(|(_, kind)| matches!(kind, Kind::StopIn | Kind::StopAtIn | Kind::StopInDoorwayOf));
+        }
         let kind = draw(&kinds, self.rng).unwrap_or(Kind::Stop);
         let mut clause = Clause::new(kind, end, KEPT);
         clause.thing = thing.filter(|_| matches!(kind, Kind::StopAt | Kind::StopAtIn));
         clause.room = room;
         self.push(clause);
+    }
+
+    /// Whether the room that the text names last is not this one.
+    fn names_another(&self, room: Option<&str>) -> bool {
+        let named = self.clauses.iter().rfind(|clause| clause.room.is_some() && clause.kind.names_room());
+        named.is_some_and(|clause| clause.room.as_deref() != room)
     }
 }

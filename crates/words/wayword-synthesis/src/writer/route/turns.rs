@@ -64,7 +64,6 @@ impl Planner<'_, '_, '_> {
             }
             Kind::TurnIn => {
                 self.push(Clause::new(kind, at, MAIN).to(side).room(&room));
-                self.enter(Some(&room));
             }
             kind => self.push(Clause::new(kind, at, MAIN).to(side)),
         }
@@ -75,18 +74,24 @@ impl Planner<'_, '_, '_> {
         self.memory.stay(at).map_or(0, |stay| at - stay.entered)
     }
 
-    /// Who has walked some way since the last clause is told so before a turn.
-    fn go_on_to(&mut self, at: usize) {
-        let from = self
-            .clauses
-            .last()
-            .map_or(0, |before| before.at + 1)
-            .max(self.memory.stay(at).map_or(0, |stay| stay.entered));
-        let walked_m: f64 =
-            self.brief.walk.moves.get(from..at).unwrap_or_default().iter().map(|step| step.distance_m).sum();
-        if walked_m >= LONG_M && !self.along {
-            self.push(Clause::new(Kind::Straight, from, MAIN));
+    /// Who has walked some way in a room since the last clause is told so, before a turn or a door.
+    pub(super) fn go_on_to(&mut self, at: usize) {
+        let Some(stay) = self.memory.stay(at) else { return };
+        let told = self.clauses.last().map_or(0, |before| before.at + 1);
+        let from = stay.entered.max(told);
+        let room = usable_room(&stay.room);
+        if self.along || self.walked_m(from, at) < LONG_M {
+            return;
         }
+        match room.filter(|room| room_name(room) == Some("hallway")) {
+            Some(hall) => self.along(from, &hall, MAIN),
+            None => self.push(Clause::new(Kind::Straight, from, MAIN)),
+        }
+    }
+
+    /// How far one walks from one frame to another, metres.
+    pub(super) fn walked_m(&self, from: usize, to: usize) -> f64 {
+        self.brief.walk.moves.get(from..to).unwrap_or_default().iter().map(|step| step.distance_m).sum()
     }
 
     /// The turn at the start. What lies ahead after it tells it, too.
