@@ -18,6 +18,10 @@ use wayword_core::{Finding, Image, ModelError, Style, rng};
 
 pub use rules::RulesWriter;
 
+/// People say more of a place than labels show, such as how things look. Texts that name a place are as long as this share of
+/// a style's texts, the shorter ones: longer ones would only pile up what tells a target apart.
+const SHORTER: f64 = 0.55;
+
 /// Writes instructions.
 pub trait Writer: Send + Sync {
     /// `rules`, or `provider/model`.
@@ -72,7 +76,18 @@ impl<'a> Brief<'a> {
     /// How many words the text should have. All candidates for a walk share it, so that the choice among them does not
     /// change how long the style's texts are.
     fn length(&self) -> usize {
-        phrases::drawn(&self.profile.words, &mut rng(self.seed, &["length", &self.style.name, &self.walk.path.id]))
+        self.length_among(&self.profile.words)
+    }
+
+    /// The same, among the shorter of its style's lengths, where the style does not say itself how long its texts are.
+    fn shorter_length(&self) -> usize {
+        let words = &self.profile.words;
+        let shorter = (words.len() as f64 * SHORTER).ceil() as usize;
+        self.length_among(if self.style.words.is_empty() { &words[..shorter.min(words.len())] } else { words })
+    }
+
+    fn length_among(&self, words: &[usize]) -> usize {
+        phrases::drawn(words, &mut rng(self.seed, &["length", &self.style.name, &self.walk.path.id]))
     }
 }
 

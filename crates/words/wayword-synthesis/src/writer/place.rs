@@ -42,7 +42,7 @@ pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<Strin
     let object = Said::of(brief, rng)?;
     let goal = Goal::new(brief, room);
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-    let words = brief.length().min(limit.saturating_sub(1));
+    let words = brief.shorter_length().min(limit.saturating_sub(1));
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
     let matter = Matter { target: Some(&object.name), rooms: &rooms };
     let copies = &brief.profile.copies;
