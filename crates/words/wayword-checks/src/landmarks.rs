@@ -84,7 +84,7 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) ->
 }
 
 /// Whether a text names a room beside the one at the end, or a thing in it, only to tell which room or thing it means.
-fn is_beyond(place: &Place, evidence: &Evidence) -> bool {
+pub(crate) fn is_beyond(place: &Place, evidence: &Evidence) -> bool {
     // Every building has these.
     if matches!(&*place.name, "wall" | "floor" | "ceiling") && place.side.is_none() && place.colour.is_none() {
         return true;

@@ -9,7 +9,7 @@ use super::{
     sight::{Missed, Sight},
     weights::{Table, Weights},
 };
-use crate::{Subject, evidence::Source, finding};
+use crate::{Subject, evidence::Source, finding, landmarks::is_beyond};
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::reading::{Reading, What};
 
@@ -29,6 +29,8 @@ pub(super) fn places(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
             Sight::Unknown => {
                 Some((Verdict::Unverified, format!("the program cannot check whether there is {:?}", claim.name)))
             }
+            // It is in the room at the end, or is the room beside it, and no frame has to show it.
+            Sight::Missed(_) if is_beyond(place, evidence) => None,
             Sight::Missed(missed) => Some(missing(&claim, missed, weights, subject.reach.calibration)),
         };
         findings.extend(wrong.map(|(verdict, reason)| finding(Check::Landmarks, verdict, reason, Some(claim.span))));
