@@ -10,6 +10,7 @@
 pub mod ambiguity;
 pub mod caption;
 pub mod contain;
+pub mod detector;
 pub mod encoder;
 pub mod failure;
 pub mod from_above;
@@ -38,6 +39,7 @@ pub use caption::{
     Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Trouble, WayOut, Where, Witness,
 };
 pub use contain::contained;
+pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring};
 pub use encoder::{Grounder, TextEncoder};
 pub use failure::Failure;
 pub use from_above::FromAbove;

@@ -84,6 +84,12 @@ impl View {
     pub fn ground_truth(&self) -> Option<&GroundTruth> {
         self.truth.as_ref()
     }
+
+    /// The objects whose outline in the picture is known. They serve only to say which object a box is of: REVERIE's
+    /// task gives an agent the candidates' boxes in the same way.
+    pub(crate) fn outlines(&self) -> impl Iterator<Item = &Label> {
+        self.truth.iter().flat_map(|truth| &truth.labels).filter(|label| label.box_px.is_some())
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,220 @@
+//! Models that find things in pictures by phrases, and how any of them scores whole views.
+
+use crate::{Grounder, Label, ModelError, ObjectId, View};
+use serde::{Deserialize, Serialize};
+
+/// The most boxes that a detector gives for a phrase in a view.
+pub const MOST_BOXES: usize = 100;
+
+/// The least share of its union with an object's outline that a box must cover to be a box of that object.
+const LEAST_OVERLAP: f64 = 0.1;
+
+/// A place in a picture at which a phrase was found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// Left, top, right and bottom edge in the view's picture, pixels from its upper left corner, within the picture.
+    pub box_px: [f32; 4],
+    /// How sure the detector is, 0 to 1. [`Scoring`] says what it means.
+    pub score: f32,
+}
+
+/// What the scores of a detector mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scoring {
+    /// What a score is, and of which prompt, in words for provenance.
+    pub means: &'static str,
+    /// The score from which its makers take a box for a find.
+    pub found_from: f32,
+    /// Whether the phrases that are looked for together change each other's scores. Then scores of different phrases
+    /// can be compared only where each phrase was looked for by itself.
+    pub phrases_meet: bool,
+}
+
+/// Finds things in pictures by phrases.
+///
+/// Scores of one detector and phrase can be compared between views, because every view is looked at by itself. Between
+/// phrases they can be compared as [`Scoring::phrases_meet`] says; between detectors they cannot.
+///
+/// Blocking, object-safe and batching; threads belong to the caller.
+pub trait Detector: Send + Sync {
+    /// `provider/model`.
+    fn name(&self) -> &str;
+
+    /// What its scores mean.
+    fn scoring(&self) -> Scoring;
+
+    /// One result per view, in their order: for each phrase, in their order, where it was found, the best first, at most
+    /// [`MOST_BOXES`]. A phrase that was not found has none. A view that fails does not fail the others.
+    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>>;
+}
+
+impl<D: Detector + ?Sized> Detector for std::sync::Arc<D> {
+    fn name(&self) -> &str {
+        (**self).name()
+    }
+
+    fn scoring(&self) -> Scoring {
+        (**self).scoring()
+    }
+
+    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+        (**self).detect(views, phrases)
+    }
+}
+
+/// A detector as a [`Grounder`]: a phrase scores as its best box does, or 0 where it was not found. Where phrases change
+/// each other's scores, each is looked for by itself.
+#[derive(Debug)]
+pub struct Grounded<D> {
+    detector: D,
+}
+
+impl<D: Detector> Grounded<D> {
+    /// A grounder that asks a detector.
+    #[must_use]
+    pub fn new(detector: D) -> Self {
+        Self { detector }
+    }
+
+    /// What its scores mean.
+    #[must_use]
+    pub fn scoring(&self) -> Scoring {
+        self.detector.scoring()
+    }
+}
+
+impl<D: Detector> Grounder for Grounded<D> {
+    fn name(&self) -> &str {
+        self.detector.name()
+    }
+
+    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        let best = |found: &Vec<Found>| found.iter().map(|found| found.score).fold(0.0, f32::max);
+        let together = if self.detector.scoring().phrases_meet { 1 } else { phrases.len().max(1) };
+        let mut scores: Vec<Result<Vec<f32>, ModelError>> = views.iter().map(|_| Ok(Vec::new())).collect();
+        for asked in phrases.chunks(together) {
+            for (scores, found) in scores.iter_mut().zip(self.detector.detect(views, asked)) {
+                match (scores.as_mut(), found) {
+                    (Ok(scores), Ok(found)) => scores.extend(found.iter().map(best)),
+                    (Ok(_), Err(error)) => *scores = Err(error),
+                    (Err(_), _) => {}
+                }
+            }
+        }
+        scores
+    }
+
+    /// The object whose outline the best box of all views covers best. A view that knows no outlines has no objects.
+    fn point(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
+        let mut best: Option<(Found, &View)> = None;
+        for (view, found) in views.iter().zip(self.detector.detect(views, &[phrase])) {
+            for found in found?.into_iter().flatten() {
+                if best.is_none_or(|(best, _)| found.score > best.score) {
+                    best = Some((found, view));
+                }
+            }
+        }
+        Ok(best.and_then(|(found, view)| outlined(view, found)))
+    }
+}
+
+/// The object of a view whose outline a box covers best.
+fn outlined(view: &View, found: Found) -> Option<ObjectId> {
+    let share = |label: &Label| label.box_px.map_or(0.0, |outline| overlap(found.box_px, outline));
+    let best = view.outlines().map(|label| (share(label), label)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 >= LEAST_OVERLAP).then(|| best.1.object.clone())
+}
+
+/// The area that a box and an outline share, as a share of the area that they cover together.
+fn overlap(found: [f32; 4], [x, y, width, height]: [f64; 4]) -> f64 {
+    let [left, top, right, bottom] = found.map(f64::from);
+    let across = (right.min(x + width) - left.max(x)).max(0.0);
+    let down = (bottom.min(y + height) - top.max(y)).max(0.0);
+    let shared = across * down;
+    let all = (right - left) * (bottom - top) + width * height - shared;
+    if all > 0.0 { shared / all } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{DVec3, GroundTruth, Heading, Pose};
+
+    /// Finds `sink` with 0.5 on the left half of a picture of 10 pixels, and with 0.9 where it is alone.
+    struct Meets {
+        meets: bool,
+    }
+
+    impl Detector for Meets {
+        fn name(&self) -> &str {
+            "meets"
+        }
+
+        fn scoring(&self) -> Scoring {
+            Scoring { means: "made up", found_from: 0.5, phrases_meet: self.meets }
+        }
+
+        fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+            let score = if phrases.len() == 1 { 0.9 } else { 0.5 };
+            let one = |phrase: &&str| match *phrase {
+                "sink" => vec![Found { box_px: [0.0, 0.0, 5.0, 10.0], score }, Found { box_px: [0.0; 4], score: 0.1 }],
+                _ => Vec::new(),
+            };
+            let of_view = |view: &&View| match view.ground_truth() {
+                Some(_) => Ok(phrases.iter().map(one).collect()),
+                None => Err(ModelError::Failed { model: "meets".into(), reason: "no picture".into() }),
+            };
+            views.iter().map(of_view).collect()
+        }
+    }
+
+    fn view(outlines: &[(&str, [f64; 4])]) -> View {
+        let heading = Heading::new(0.0).unwrap();
+        let label = |(id, outline): &(&str, [f64; 4])| Label {
+            object: ObjectId::new(*id).unwrap(),
+            name: "thing".into(),
+            heading,
+            elevation_rad: 0.0,
+            box_px: Some(*outline),
+            distance_m: None,
+            position: None,
+            colour: None,
+        };
+        let truth = GroundTruth { labels: outlines.iter().map(label).collect(), lists_objects: true, room: None };
+        View::new(Pose::level(DVec3::ZERO, heading), 1.5, None, Some(truth))
+    }
+
+    #[test]
+    fn a_phrase_scores_as_its_best_box_does() {
+        let shown = view(&[]);
+        let scores = Grounded::new(Meets { meets: false }).ground(&[&shown], &["sink", "bed"]);
+        assert_eq!(scores, [Ok(vec![0.5, 0.0])]);
+    }
+
+    #[test]
+    fn phrases_that_change_each_other_are_looked_for_one_by_one() {
+        let shown = view(&[]);
+        let scores = Grounded::new(Meets { meets: true }).ground(&[&shown], &["sink", "bed"]);
+        assert_eq!(scores, [Ok(vec![0.9, 0.0])]);
+    }
+
+    #[test]
+    fn a_view_that_fails_does_not_fail_the_others() {
+        let (shown, mut blank) = (view(&[]), view(&[]));
+        blank = View::new(blank.pose, 1.5, None, None);
+        let scores = Grounded::new(Meets { meets: true }).ground(&[&blank, &shown], &["sink", "bed"]);
+        assert!(scores[0].is_err());
+        assert_eq!(scores[1], Ok(vec![0.9, 0.0]));
+        assert_eq!(Grounded::new(Meets { meets: false }).ground(&[&shown], &[]), [Ok(Vec::new())]);
+    }
+
+    #[test]
+    fn a_box_points_to_the_object_that_it_covers_best() {
+        let near = view(&[("left", [0.0, 0.0, 4.0, 10.0]), ("all", [0.0, 0.0, 10.0, 10.0])]);
+        let grounder = Grounded::new(Meets { meets: false });
+        assert_eq!(grounder.point(&[&near], "sink").unwrap().unwrap().as_str(), "left");
+        assert_eq!(grounder.point(&[&near], "bed").unwrap(), None);
+        let elsewhere = view(&[("right", [6.0, 0.0, 4.0, 10.0])]);
+        assert_eq!(grounder.point(&[&elsewhere], "sink").unwrap(), None);
+    }
+}
