@@ -72,12 +72,6 @@ impl Copies {
         Some([run[0].span[0], run[run.len() - 1].span[1]])
     }
 
-    /// Whether a text shares eight words in a row with a reference.
-    #[must_use]
-    pub fn shares_much(&self, text: &str) -> bool {
-        self.much(text).is_some()
-    }
-
     /// The byte range of the first eight words in a row that a text shares with a reference.
     #[must_use]
     pub fn much(&self, text: &str) -> Option<[usize; 2]> {

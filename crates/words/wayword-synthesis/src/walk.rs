@@ -89,6 +89,11 @@ impl Walk {
         Evidence::from_captions(&self.path, &self.observations)
     }
 
+    /// How far one walks from one frame to another, metres along the hops.
+    pub(crate) fn walked_m(&self, from: usize, to: usize) -> f64 {
+        self.moves.get(from..to).unwrap_or_default().iter().map(|step| step.distance_m).sum()
+    }
+
     /// What stays in mind of it, as its captions tell.
     #[must_use]
     pub fn memory(&self) -> Memory {

@@ -71,11 +71,11 @@ fn worth(share: f64, instruction: &Instruction) -> f64 {
 mod tests {
     use super::*;
     use crate::{
-        dialogue::{Mode, RulesAsker, RulesSummariser},
+        dialogue::RulesAsker,
         offline::Labels,
         repair::{
             Follow,
-            tests::{GOOD, Scripted, order, walk},
+            tests::{GOOD, Scripted, observers, order, walk},
         },
         style::{Profile, built_in},
     };
@@ -108,13 +108,8 @@ mod tests {
         let candidates = u32::try_from(texts.len()).unwrap();
         let order = Order { repairs: 0, candidates, follower, ..order(&walk, &memory, &evidence, &style, &profile) };
         let asker = RulesAsker::default();
-        let observers = Observers {
-            asker: &asker,
-            answerer: &Labels::default(),
-            summariser: &RulesSummariser,
-            mode: Mode::Fixed,
-            prompts_hash: None,
-        };
+        let labels = Labels::default();
+        let observers = observers(&asker, &labels);
         let writer = Scripted::new(texts.iter().map(|text| Ok((*text).to_owned())).collect());
         match written(&writer, observers, order).unwrap() {
             Outcome::Accepted(instruction) => instruction,

@@ -83,6 +83,11 @@ pub(super) fn order<'a>(
     }
 }
 
+/// Observers that ask by fixed queries; labels answer.
+pub(super) fn observers<'a>(asker: &'a RulesAsker, answerer: &'a Labels) -> Observers<'a> {
+    Observers { asker, answerer, summariser: &RulesSummariser, mode: Mode::Fixed, prompts_hash: None }
+}
+
 fn outcome(
     texts: Vec<Result<String, WriteError>>,
     finisher: bool,
@@ -238,13 +243,8 @@ fn a_text_that_the_walk_already_has_is_written_again() {
     let style = built_in("r2r").unwrap();
     let profile = Profile::measure(&style.references);
     let asker = RulesAsker::default();
-    let observers = Observers {
-        asker: &asker,
-        answerer: &Labels::default(),
-        summariser: &RulesSummariser,
-        mode: Mode::Fixed,
-        prompts_hash: None,
-    };
+    let labels = Labels::default();
+    let observers = observers(&asker, &labels);
     let write = |writer: &dyn Writer, earlier: &[String]| {
         let order = Order { earlier, ..order(&walk, &memory, &evidence, &style, &profile) };
         match write_and_repair(Writers { writer, finisher: None }, observers, order).unwrap() {
@@ -271,8 +271,8 @@ fn a_writer_that_sees_the_pictures_may_name_what_no_caption_does() {
     let profile = Profile::of(&style);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
     let asker = RulesAsker::default();
-    let (answerer, summariser) = (&Labels::default(), &RulesSummariser);
-    let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
+    let labels = Labels::default();
+    let observers = observers(&asker, &labels);
     let is_accepted = |pictures: &[FramePicture]| {
         let order = Order { repairs: 0, pictures, ..order(&walk, &memory, &evidence, &style, &profile) };
         let writer = Scripted::new(vec![said("Walk past the sofa to the piano and turn right. Stop at the sink.")]);
@@ -328,8 +328,8 @@ proptest! {
         }
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let asker = RulesAsker::default();
-        let (answerer, summariser) = (&Labels::default(), &RulesSummariser);
-        let observers = Observers { asker: &asker, answerer, summariser, mode: Mode::Fixed, prompts_hash: None };
+        let labels = Labels::default();
+        let observers = observers(&asker, &labels);
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
             let profile = Profile::measure(&style.references);
             let memory = walk.memory();

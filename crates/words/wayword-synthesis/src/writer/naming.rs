@@ -34,8 +34,8 @@ const STEP_M: f64 = 2.5;
 
 /// How far one has walked in the room of a frame, metres.
 fn walked_in_m(at: usize, brief: &Brief<'_>) -> f64 {
-    let entered = brief.memory.stay(at).map_or(0, |stay| stay.entered.max(1));
-    brief.walk.moves.get(entered - 1..at).unwrap_or_default().iter().map(|step| step.distance_m).sum()
+    let before = brief.memory.stay(at).map_or(0, |stay| stay.entered.saturating_sub(1));
+    brief.walk.walked_m(before, at)
 }
 
 /// What the place of a clause in its text asks of its shape.

@@ -54,7 +54,7 @@ pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<Strin
             let text = draft(brief, &goal, &object, plan, rng);
             let count = word_count(&text);
             let is_copied = if copies.copied(&text, matter).is_some() { NEVER } else { 0.0 };
-            let is_shared = if copies.shares_much(&text) { RATHER_NOT } else { 0.0 };
+            let is_shared = if copies.much(&text).is_some() { RATHER_NOT } else { 0.0 };
             let too_long = if count < limit { 0.0 } else { NEVER };
             let fault = count.abs_diff(words) as f64 + is_copied + is_shared + too_long;
             if best.as_ref().is_none_or(|(least, _)| fault < *least) {

@@ -86,9 +86,14 @@ pub(in crate::writer) fn name_a_thing(
     landmarks: &mut Landmarks<'_>,
     rng: &mut ChaCha8Rng,
 ) {
-    if !clauses.iter().rev().skip(1).any(|clause| clause.thing.is_some()) {
+    if names_none(clauses) {
         Filler { clauses, brief, landmarks, rng }.landmark();
     }
+}
+
+/// Whether a text names no thing before its last clause.
+fn names_none(clauses: &[Clause]) -> bool {
+    clauses.iter().rev().skip(1).all(|clause| clause.thing.is_none())
 }
 
 struct Filler<'a, 'b> {
@@ -123,7 +128,7 @@ impl Filler<'_, '_> {
             let way = &self.brief.profile.way;
             let side = thing.passed.filter(|(passed, _)| *passed <= frame && *passed + 2 > frame).map(|(_, side)| side);
             let kind = past(way, self.clauses, side, thing.side, self.rng);
-            let is_only = !self.clauses.iter().rev().skip(1).any(|clause| clause.thing.is_some());
+            let is_only = names_none(self.clauses);
             let mut clause = Clause::new(kind, frame, if is_only { MAIN } else { SIDE }).by(thing);
             clause.side = side.filter(|_| kind == Kind::PassOnSide);
             self.insert(clause);
@@ -133,12 +138,12 @@ impl Filler<'_, '_> {
     }
 
     fn thing_at(&mut self, frame: usize) -> Option<Landmark> {
-        let names_none = !self.clauses.iter().rev().skip(1).any(|clause| clause.thing.is_some());
+        let is_only = names_none(self.clauses);
         let is_faint = self.rng.random_bool(LESS_SALIENT);
         let tries = [
             (true, WALKED_PAST, Use::Onward),
-            (is_faint || names_none, STOPPED_AT, Use::Onward),
-            (names_none, STOPPED_AT, Use::Beside),
+            (is_faint || is_only, STOPPED_AT, Use::Onward),
+            (is_only, STOPPED_AT, Use::Beside),
         ];
         let tries = tries.into_iter().filter(|(may, ..)| *may);
         tries.into_iter().find_map(|(_, salience, to)| self.landmarks.find(frame, salience, to, self.rng))

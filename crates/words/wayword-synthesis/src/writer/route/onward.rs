@@ -35,7 +35,7 @@ impl Planner<'_, '_, '_> {
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
         if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.7)) {
             let left = self.memory.stay(at + 1).map_or(at, |stay| stay.left);
-            let weight = if self.walked_m(at, left) >= LONG_M { MAIN } else { SIDE };
+            let weight = if self.brief.walk.walked_m(at, left) >= LONG_M { MAIN } else { SIDE };
             return self.along(at, &hall, weight);
         }
         let is_long = self.brief.walk.moves.get(at).is_none_or(|step| step.distance_m >= LONG_M);

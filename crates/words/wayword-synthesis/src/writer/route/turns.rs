@@ -80,18 +80,13 @@ impl Planner<'_, '_, '_> {
         let told = self.clauses.last().map_or(0, |before| before.at + 1);
         let from = stay.entered.max(told);
         let room = usable_room(&stay.room);
-        if self.along || self.walked_m(from, at) < LONG_M {
+        if self.along || self.brief.walk.walked_m(from, at) < LONG_M {
             return;
         }
         match room.filter(|room| room_name(room) == Some("hallway")) {
             Some(hall) => self.along(from, &hall, MAIN),
             None => self.push(Clause::new(Kind::Straight, from, MAIN)),
         }
-    }
-
-    /// How far one walks from one frame to another, metres.
-    pub(super) fn walked_m(&self, from: usize, to: usize) -> f64 {
-        self.brief.walk.moves.get(from..to).unwrap_or_default().iter().map(|step| step.distance_m).sum()
     }
 
     /// The turn at the start. What lies ahead after it tells it, too.
