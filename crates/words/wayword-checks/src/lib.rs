@@ -7,6 +7,7 @@
 
 mod align;
 mod coverage;
+pub mod detected;
 mod evidence;
 mod floors;
 mod form;

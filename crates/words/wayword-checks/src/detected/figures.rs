@@ -1,0 +1,147 @@
+//! How often a detector finds what is there and what is not, as measured on worlds with labels.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use wayword_language::lexicon::{normal, thing};
+
+/// What was measured of a detector. A file of it is untrusted: every share is kept within bounds where it is used.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DetectorFigures {
+    /// The detector: `provider/model`.
+    pub detector: String,
+    /// The platforms on which it was measured.
+    pub platforms: Vec<String>,
+    /// The score from which a box counts as a find.
+    pub found_from: f32,
+    /// Of all names.
+    pub all: Rates,
+    /// Of single names in normal spelling, where enough was seen.
+    #[serde(default)]
+    pub names: BTreeMap<String, Rates>,
+}
+
+/// How often things were found from frames that show them, and from frames that do not. A frame is all that was looked at
+/// from one place.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rates {
+    /// Pairs of a frame and a name that it shows.
+    pub shown: u32,
+    /// Those among them that were found.
+    pub found: u32,
+    /// Pairs of a frame and a name that it does not show.
+    pub absent: u32,
+    /// Those among them that were found all the same.
+    pub alarms: u32,
+    /// Pairs of frames of a path, one after the other, that both show a name, the first of which was missed.
+    pub missed_before: u32,
+    /// Those among them in which the second was missed too.
+    pub missed_again: u32,
+    /// How many names of a path were shown by one frame of it, by two, and so on; the last counts longer runs too.
+    pub runs: Vec<u32>,
+}
+
+/// The longest run of frames that is counted by itself.
+const LONGEST_RUN: usize = 8;
+
+/// A single name has rates of its own from this many frames that show it, and as many that do not.
+const ENOUGH: u32 = 30;
+
+/// What is assumed where little was measured: half a find and half a miss in addition.
+const PRIOR: f64 = 0.5;
+
+impl DetectorFigures {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// When it is none.
+    pub fn read(text: &str) -> Result<Self, toml::de::Error> {
+        toml::from_str(text)
+    }
+
+    /// The rates of a name: its own where enough was seen of it, or else those of all names.
+    #[must_use]
+    pub fn of(&self, name: &str) -> &Rates {
+        self.names.get(&normal(name)).unwrap_or(&self.all)
+    }
+
+    /// Counts one name along one path: for each frame, whether the labels show it, and whether the detector found it.
+    pub fn count(&mut self, name: &str, frames: &[(bool, bool)]) {
+        self.all.count(frames);
+        self.names.entry(normal(name)).or_default().count(frames);
+    }
+
+    /// Forgets the names of which too little was seen, and those that the lexicon does not have.
+    pub fn settle(&mut self) {
+        self.names.retain(|name, rates| thing(name).is_some() && rates.shown >= ENOUGH && rates.absent >= ENOUGH);
+    }
+}
+
+impl Rates {
+    fn count(&mut self, frames: &[(bool, bool)]) {
+        for (shown, found) in frames {
+            let (all, hits) = match shown {
+                true => (&mut self.shown, &mut self.found),
+                false => (&mut self.absent, &mut self.alarms),
+            };
+            *all += 1;
+            *hits += u32::from(*found);
+        }
+        let shown: Vec<bool> = frames.iter().filter(|(shown, _)| *shown).map(|(_, found)| *found).collect();
+        for pair in shown.windows(2).filter(|pair| !pair[0]) {
+            self.missed_before += 1;
+            self.missed_again += u32::from(!pair[1]);
+        }
+        if !shown.is_empty() {
+            self.runs.resize(LONGEST_RUN, 0);
+            self.runs[shown.len().min(LONGEST_RUN) - 1] += 1;
+        }
+    }
+
+    /// The share of what a frame shows that is found.
+    #[must_use]
+    pub fn recall(&self) -> f64 {
+        share(self.found, self.shown)
+    }
+
+    /// The share of what a frame does not show that is found all the same.
+    #[must_use]
+    pub fn alarm(&self) -> f64 {
+        share(self.alarms, self.absent)
+    }
+
+    /// The share of things to which the detector is blind: it misses them from every frame. What is missed again beyond
+    /// what independent misses would give is put down to them.
+    #[must_use]
+    pub fn blind(&self) -> f64 {
+        let (miss, again) = (1.0 - self.recall(), share(self.missed_again, self.missed_before));
+        if self.missed_before == 0 || miss >= 1.0 {
+            return miss;
+        }
+        // With a share b of blind things and misses q of the others: miss = b + (1 - b) q, and again miss = b + (1 - b) q².
+        let both = miss * again;
+        let blind = (both - miss * miss) / (1.0 + both - 2.0 * miss).max(f64::EPSILON);
+        blind.clamp(0.0, miss)
+    }
+
+    /// The share of names of a path that are shown by a run of that many frames, for runs of 1, 2, ... at most `most`. Longer
+    /// runs count as the longest.
+    pub(super) fn runs(&self, most: usize) -> Vec<f64> {
+        let mut runs = vec![0.0; most];
+        let all: u64 = self.runs.iter().map(|count| u64::from(*count)).sum();
+        if all == 0 {
+            runs.iter_mut().take(1).for_each(|run| *run = 1.0);
+            return runs;
+        }
+        for (at, count) in self.runs.iter().enumerate() {
+            runs[at.min(most - 1)] += f64::from(*count) / all as f64;
+        }
+        runs
+    }
+}
+
+/// A share that is neither 0 nor 1, because nothing that was measured is certain.
+fn share(part: u32, whole: u32) -> f64 {
+    (f64::from(part.min(whole)) + PRIOR) / (f64::from(whole) + 2.0 * PRIOR)
+}

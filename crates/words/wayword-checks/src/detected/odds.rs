@@ -1,0 +1,72 @@
+//! From finds along a path to whether a thing is there.
+
+use super::Rates;
+
+/// What the finds of a name along a path say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Judged {
+    /// It is there.
+    There,
+    /// It is nowhere along the path.
+    Absent,
+    /// Neither is sure enough.
+    Open,
+}
+
+/// The probability from which something is taken to be there: nine of ten such findings are right. A thing is absent only
+/// where it would have been found with the same probability, and its finds are as much likelier without it.
+const SURE: f64 = 0.9;
+
+/// Whether a thing is there, by the frames of a path in which it was found. `before` is the probability that it is there
+/// before anybody looked; an absence does not depend on it.
+#[must_use]
+pub fn judge(rates: &Rates, found: &[bool], before: f64) -> Judged {
+    if found.is_empty() {
+        return Judged::Open;
+    }
+    let (there, absent) = (if_there(rates, found), if_absent(rates, found));
+    let after = before * there / (before * there + (1.0 - before) * absent);
+    let would_be_found = 1.0 - if_there(&silent(rates), &vec![false; found.len()]);
+    if after >= SURE {
+        Judged::There
+    } else if there <= absent * (1.0 - SURE) && would_be_found >= SURE {
+        Judged::Absent
+    } else {
+        Judged::Open
+    }
+}
+
+/// The same detector without false alarms: with it, what was found was there.
+fn silent(rates: &Rates) -> Rates {
+    Rates { alarms: 0, absent: u32::MAX, ..rates.clone() }
+}
+
+/// How probable the finds are where the thing is nowhere.
+fn if_absent(rates: &Rates, found: &[bool]) -> f64 {
+    let alarm = rates.alarm();
+    found.iter().map(|found| if *found { alarm } else { 1.0 - alarm }).product()
+}
+
+/// How probable the finds are where some run of frames shows the thing. Each run of a length is as probable as any other.
+/// A share of all things is never found, and the others are found independently from each frame that shows them.
+fn if_there(rates: &Rates, found: &[bool]) -> f64 {
+    let (alarm, blind) = (rates.alarm(), rates.blind());
+    let seeing = ((rates.recall() / (1.0 - blind).max(f64::EPSILON)).min(1.0), 1.0 - blind);
+    // What is seen may be found by a false alarm as well.
+    let hit = seeing.0 + (1.0 - seeing.0) * alarm;
+    let one = |found: bool, hit: f64| if found { hit } else { 1.0 - hit };
+    let within = |from: usize, to: usize| -> f64 {
+        let of = |at: usize| one(found[at], if (from..to).contains(&at) { hit } else { alarm });
+        (0..found.len()).map(of).product()
+    };
+    let seen: f64 = rates
+        .runs(found.len())
+        .iter()
+        .enumerate()
+        .map(|(at, share)| {
+            let (length, places) = (at + 1, found.len() - at);
+            share * (0..places).map(|from| within(from, from + length)).sum::<f64>() / places as f64
+        })
+        .sum();
+    blind * if_absent(rates, found) + seeing.1 * seen
+}
