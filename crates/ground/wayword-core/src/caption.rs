@@ -1,6 +1,6 @@
 //! What is said about a view, and who vouches for it.
 
-use crate::{ModelError, Schema, Side, View};
+use crate::{Found, ModelError, Schema, Side, View};
 use serde::{Deserialize, Serialize};
 
 /// A view in words, with the evidence behind them.
@@ -56,7 +56,7 @@ pub struct WayOut {
 }
 
 /// One object, and what a witness said of it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sighting {
     /// Its name as the witness gave it.
     pub name: String,
@@ -83,8 +83,31 @@ pub struct Sighting {
     /// Whether several were said to be there.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub several: bool,
+    /// Where a detector found it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spot: Option<Spot>,
     /// Who said so (`labels`, `provider/model`).
     pub by: String,
+}
+
+/// Where in a view a detector found an object.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spot {
+    /// Its box in the view's picture, and how sure the detector was.
+    pub found: Found,
+    /// The direction of the box's middle from that of the view, radians, positive right.
+    pub off_rad: f64,
+}
+
+impl Spot {
+    /// A find in a picture that is `width_px` wide and shows `horizontal_fov_rad`, as a pinhole camera does.
+    #[must_use]
+    pub fn new(found: Found, width_px: u32, horizontal_fov_rad: f64) -> Self {
+        let half_px = f64::from(width_px) / 2.0;
+        let [left, _, right, _] = found.box_px.map(f64::from);
+        let off = ((left + right) / 2.0 - half_px) / half_px.max(0.5);
+        Self { found, off_rad: (off * (horizontal_fov_rad / 2.0).tan()).atan() }
+    }
 }
 
 impl Sighting {
@@ -101,6 +124,7 @@ impl Sighting {
             is_far: false,
             stands_out: false,
             several: false,
+            spot: None,
             by: by.into(),
         }
     }

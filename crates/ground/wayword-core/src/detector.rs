@@ -18,6 +18,18 @@ pub struct Found {
     pub score: f32,
 }
 
+impl Found {
+    /// The area that two boxes share, as a share of the area that they cover together, 0 to 1.
+    #[must_use]
+    pub fn overlap(&self, other: &Self) -> f64 {
+        overlap(self.edges(), other.edges())
+    }
+
+    fn edges(&self) -> [f64; 4] {
+        self.box_px.map(f64::from)
+    }
+}
+
 /// What the scores of a detector mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scoring {
@@ -120,18 +132,21 @@ impl<D: Detector> Grounder for Grounded<D> {
 
 /// The object of a view whose outline a box covers best.
 fn outlined(view: &View, found: Found) -> Option<ObjectId> {
-    let share = |label: &Label| label.box_px.map_or(0.0, |outline| overlap(found.box_px, outline));
+    let share = |label: &Label| {
+        label.box_px.map_or(0.0, |[x, y, width, height]| overlap(found.edges(), [x, y, x + width, y + height]))
+    };
     let best = view.outlines().map(|label| (share(label), label)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 >= LEAST_OVERLAP).then(|| best.1.object.clone())
 }
 
-/// The area that a box and an outline share, as a share of the area that they cover together.
-fn overlap(found: [f32; 4], [x, y, width, height]: [f64; 4]) -> f64 {
-    let [left, top, right, bottom] = found.map(f64::from);
-    let across = (right.min(x + width) - left.max(x)).max(0.0);
-    let down = (bottom.min(y + height) - top.max(y)).max(0.0);
+/// The area that two boxes share, as a share of the area that they cover together. Each is given by its left, top, right and
+/// bottom edge.
+fn overlap(a: [f64; 4], b: [f64; 4]) -> f64 {
+    let across = (a[2].min(b[2]) - a[0].max(b[0])).max(0.0);
+    let down = (a[3].min(b[3]) - a[1].max(b[1])).max(0.0);
+    let area = |[left, top, right, bottom]: [f64; 4]| (right - left) * (bottom - top);
     let shared = across * down;
-    let all = (right - left) * (bottom - top) + width * height - shared;
+    let all = area(a) + area(b) - shared;
     if all > 0.0 { shared / all } else { 0.0 }
 }
 
@@ -160,9 +175,9 @@ mod tests {
                 "sink" => vec![Found { box_px: [0.0, 0.0, 5.0, 10.0], score }, Found { box_px: [0.0; 4], score: 0.1 }],
                 _ => Vec::new(),
             };
-            let of_view = |view: &&View| match view.ground_truth() {
-                Some(_) => Ok(phrases.iter().map(one).collect()),
-                None => Err(ModelError::Failed { model: "meets".into(), reason: "no picture".into() }),
+            let of_view = |view: &&View| match view.is_blank() {
+                false => Ok(phrases.iter().map(one).collect()),
+                true => Err(ModelError::Failed { model: "meets".into(), reason: "no picture".into() }),
             };
             views.iter().map(of_view).collect()
         }

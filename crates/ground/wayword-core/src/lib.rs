@@ -36,7 +36,7 @@ pub mod view;
 
 pub use ambiguity::Ambiguity;
 pub use caption::{
-    Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Trouble, WayOut, Where, Witness,
+    Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Spot, Trouble, WayOut, Where, Witness,
 };
 pub use contain::contained;
 pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring};

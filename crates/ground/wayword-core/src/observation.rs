@@ -34,6 +34,8 @@ impl Look {
         if off_rad.abs() < 0.1 {
             return Some(place.side());
         }
-        Some(heading.side_of(self.gaze.heading.turned(place.turn_rad(self.gaze.horizontal_fov_rad))))
+        let within_rad =
+            sighting.spot.map_or_else(|| place.turn_rad(self.gaze.horizontal_fov_rad), |spot| spot.off_rad);
+        Some(heading.side_of(self.gaze.heading.turned(within_rad)))
     }
 }

@@ -2,8 +2,8 @@
 //! nine rooms, 14 viewpoints, 42 objects (some share a name), ten paths with instructions. Nothing of it is taken from
 //! a dataset.
 //!
-//! [`provider`] has models behind HTTP that answer by script, with every fault that services have. [`documents`] has
-//! the commands that the repository's documents give their readers to type.
+//! [`provider`] has models behind HTTP that answer by script, with every fault that services have; [`PlayedDetector`] finds
+//! things by script. [`documents`] has the commands that the repository's documents give their readers to type.
 
 mod boxes;
 pub mod documents;
@@ -11,12 +11,14 @@ mod episodes;
 mod house_file;
 mod pictures;
 mod plan;
+mod played_detector;
 pub mod provider;
 
 use serde_json::{Value, json};
 use std::{fs, io, path::Path};
 
 pub use plan::{SCAN, viewpoint_id};
+pub use played_detector::PlayedDetector;
 
 /// Writes the building below `data`, laid out as a user's Matterport3D and REVERIE folders are:
 /// `matterport/connectivity`, `matterport/v1/scans`, `reverie` (boxes, `objpos.json`, `REVERIE_val_seen.json`) and

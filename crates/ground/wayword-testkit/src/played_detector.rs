@@ -1,0 +1,125 @@
+//! A detector whose finds and misses are drawn by the labels of a view: with a recall, with false alarms, and with misses
+//! that may repeat with a thing.
+
+use rand::Rng;
+use wayword_core::{Detector, Found, Label, ModelError, Scoring, View, rng};
+
+/// Plays a detector.
+#[derive(Debug, Clone, Copy)]
+pub struct PlayedDetector {
+    /// Whether two names mean the same.
+    pub same: fn(&str, &str) -> bool,
+    /// The share of what a view shows that it finds.
+    pub recall: f64,
+    /// The share of phrases, of those that nothing at a place is called by, that it finds in the views from there.
+    pub alarms: f64,
+    /// Whether it misses a thing from everywhere, once it misses it. Else each view is drawn by itself.
+    pub repeats: bool,
+    /// Seed of what is drawn.
+    pub seed: u64,
+}
+
+/// The score of whatever it finds.
+const SCORE: f32 = 0.8;
+
+/// A box around the middle of a label, as a share of the picture's width to each side.
+const HALF: f64 = 0.05;
+
+impl PlayedDetector {
+    fn is(&self, share: f64, purpose: &[&str]) -> bool {
+        rng(self.seed, purpose).random_bool(share.clamp(0.0, 1.0))
+    }
+
+    fn finds(&self, view: &View, label: &Label, phrase: &str) -> bool {
+        let place = place(view);
+        let from = if self.repeats { "anywhere" } else { &place };
+        self.is(self.recall, &["found", label.object.as_str(), phrase, from])
+    }
+
+    fn one(&self, view: &View, phrase: &str) -> Vec<Found> {
+        let labels = view.ground_truth().map_or(&[][..], |truth| &truth.labels);
+        let shown: Vec<&Label> = labels.iter().filter(|label| (self.same)(&label.name, phrase)).collect();
+        if shown.is_empty() && self.is(self.alarms, &["alarm", phrase, &place(view)]) {
+            return vec![found(view, 0.0)];
+        }
+        let off_rad = |label: &&Label| view.pose.heading.turn_to(label.heading);
+        let hits = shown.iter().filter(|label| self.finds(view, label, phrase));
+        hits.map(|label| found(view, off_rad(label))).collect()
+    }
+}
+
+/// The place of the eye, to the centimetre.
+fn place(view: &View) -> String {
+    view.pose.position.to_array().map(|metres| format!("{metres:.2}")).join(" ")
+}
+
+fn found(view: &View, off_rad: f64) -> Found {
+    let (width, height) = view.image.as_ref().map_or((1, 1), |image| (image.width_px(), image.height_px()));
+    let (width, height) = (f64::from(width), f64::from(height));
+    let middle = 0.5 + 0.5 * off_rad.tan() / (view.horizontal_fov_rad / 2.0).tan();
+    let left = (middle - HALF).clamp(0.0, 1.0) * width;
+    let right = (middle + HALF).clamp(0.0, 1.0) * width;
+    Found { box_px: [left, 0.4 * height, right, 0.6 * height].map(|edge| edge as f32), score: SCORE }
+}
+
+impl Detector for PlayedDetector {
+    fn name(&self) -> &str {
+        "played/detector"
+    }
+
+    fn scoring(&self) -> Scoring {
+        Scoring { means: "drawn by labels", found_from: 0.5, phrases_meet: false }
+    }
+
+    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+        views.iter().map(|view| Ok(phrases.iter().map(|phrase| self.one(view, phrase)).collect())).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::{DVec3, GroundTruth, Heading, ObjectId, Pose};
+
+    fn view(at: f64, names: &[&str]) -> View {
+        let label = |name: &&str| Label {
+            object: ObjectId::new(*name).unwrap(),
+            name: (*name).to_owned(),
+            heading: Heading::new(0.3).unwrap(),
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: None,
+            position: None,
+            colour: None,
+        };
+        let truth = GroundTruth { labels: names.iter().map(label).collect(), lists_objects: true, room: None };
+        View::new(Pose::level(DVec3::new(at, 0.0, 1.5), Heading::NORTH), 1.5, None, Some(truth))
+    }
+
+    /// The shares of places at which the sofa that is there, and the piano that is not, are found.
+    fn shares(detector: PlayedDetector) -> (f64, f64) {
+        let views: Vec<View> = (0..400).map(|at| view(f64::from(at), &["sofa"])).collect();
+        let found = detector.detect(&views.iter().collect::<Vec<_>>(), &["sofa", "piano"]);
+        let share =
+            |of: usize| found.iter().filter(|found| !found.as_ref().unwrap()[of].is_empty()).count() as f64 / 400.0;
+        (share(0), share(1))
+    }
+
+    #[test]
+    fn finds_and_alarms_come_as_often_as_asked_for() {
+        let played = PlayedDetector { same: |a, b| a == b, recall: 0.8, alarms: 0.1, repeats: false, seed: 1 };
+        let (found, alarms) = shares(played);
+        assert!((found - 0.8).abs() < 0.07 && (alarms - 0.1).abs() < 0.05, "{found} {alarms}");
+        let (always, _) = shares(PlayedDetector { repeats: true, ..played });
+        assert!(always == 0.0 || always == 1.0, "{always}");
+    }
+
+    #[test]
+    fn a_box_lies_where_its_label_does() {
+        let played = PlayedDetector { same: |a, b| a == b, recall: 1.0, alarms: 0.0, repeats: false, seed: 1 };
+        let shown = view(0.0, &["sofa"]);
+        let found = played.detect(&[&shown], &["sofa"])[0].as_ref().unwrap()[0][0];
+        let middle = (found.box_px[0] + found.box_px[2]) / 2.0;
+        assert!(middle > 0.6 && middle < 0.8, "{found:?}");
+    }
+}
