@@ -97,10 +97,7 @@ fn wrong_thing(name: &str, near: &[FrameEvidence], source: Source) -> Option<(Ve
     let class = thing(name).map(|thing| thing.class);
     let is_listed = class.is_some_and(|class| !matches!(class, Class::Door | Class::Stairs)) && !is_fabric(name);
     let is_perhaps = near.iter().any(|frame| frame.may_show(name));
-    let lists = |frame: &FrameEvidence| match source {
-        Source::Captions => frame.lists_things,
-        _ => frame.knows_things,
-    };
+    let lists = |frame: &FrameEvidence| if source.leaves_out() { frame.lists_things } else { frame.knows_things };
     Some(match is_listed && !is_perhaps && near.iter().all(lists) {
         true => (Verdict::Fail, format!("{name:?} is not seen from the end of the path")),
         false => (Verdict::Unverified, format!("the program cannot check whether {name:?} is at the end of the path")),

@@ -79,7 +79,7 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) ->
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
     let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
     // Captions miss things, so one may stand on the other side too. Who wrote from them cannot know of it.
-    let may_be_missed = evidence.source == Source::Captions && !made_up;
+    let may_be_missed = evidence.source.leaves_out() && !made_up;
     Some((if may_be_missed { Verdict::Unverified } else { wrong_unless_elsewhere(shown) }, reason))
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Architecture invariant: nothing here opens a file or a connection, and nothing knows a platform beyond the trait.
 
+pub mod detection;
 pub mod dialogue;
 pub mod models;
 pub mod observe;

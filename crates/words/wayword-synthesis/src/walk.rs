@@ -31,7 +31,7 @@ pub struct Walk {
 }
 
 /// An object that was seen from a frame, in words that a writer can use.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Seen<'a> {
     /// What the witness said.
     pub sighting: &'a Sighting,

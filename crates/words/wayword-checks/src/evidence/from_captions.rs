@@ -20,10 +20,19 @@ impl Evidence {
             })
             .collect();
         doubt(&mut frames);
-        let known = frames
-            .iter()
-            .any(|frame| !frame.rooms.is_empty() || !frame.things.is_empty() || !frame.perhaps.things.is_empty());
+        let is_known = |frame: &FrameEvidence| {
+            let FrameEvidence { rooms, things, perhaps, denied, .. } = frame;
+            !(rooms.is_empty() && things.is_empty() && perhaps.things.is_empty() && denied.is_empty())
+        };
+        let known = frames.iter().any(is_known);
         known.then(|| Self::of(path, frames, Source::Captions))
+    }
+
+    /// Evidence from what a detector alone found and missed: captions without words, one observation per frame. `None`
+    /// where it looked for nothing.
+    #[must_use]
+    pub fn from_detector(path: &Path, observations: &[Observation]) -> Option<Self> {
+        Some(Self { source: Source::Detector, ..Self::from_captions(path, observations)? })
     }
 }
 
@@ -77,12 +86,13 @@ fn is_list(look: &Look) -> bool {
 }
 
 fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {
-    let turn_rad = |place: Where| off_rad + place.turn_rad(look.gaze.horizontal_fov_rad);
+    let of_place = |place: Where| place.turn_rad(look.gaze.horizontal_fov_rad);
+    let within_rad = sighting.spot.map(|spot| spot.off_rad).or_else(|| sighting.place.map(of_place));
     SeenThing {
         name: sighting.name.clone(),
         colour: sighting.colour.clone(),
         more_colours: sighting.more_colours.clone(),
-        turn_rad: sighting.place.map(turn_rad),
+        turn_rad: within_rad.map(|within_rad| off_rad + within_rad),
         ..SeenThing::default()
     }
 }

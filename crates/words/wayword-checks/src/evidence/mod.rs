@@ -103,6 +103,8 @@ pub enum Source {
     Labels,
     /// Captions of what was seen.
     Captions,
+    /// What a detector found and missed.
+    Detector,
     /// Nothing: only the path itself is known.
     Nothing,
 }
@@ -114,8 +116,15 @@ impl Source {
         match self {
             Self::Labels => "labels",
             Self::Captions => "captions",
+            Self::Detector => "detector",
             Self::Nothing => "nothing",
         }
+    }
+
+    /// Whether its witnesses leave out much of what is there.
+    #[must_use]
+    pub fn leaves_out(self) -> bool {
+        matches!(self, Self::Captions | Self::Detector)
     }
 }
 
@@ -142,7 +151,7 @@ impl Evidence {
     #[must_use]
     pub fn denies_thing(&self, name: &str) -> bool {
         let overlooked = || !(stands_out(name) && self.frames.iter().all(|frame| frame.lists_things));
-        self.names_no(name) && (self.source != Source::Captions || self.is_denied(name) || !overlooked())
+        self.names_no(name) && (!self.source.leaves_out() || self.is_denied(name) || !overlooked())
     }
 
     /// For a thing that no frame shows: whether every frame's witnesses spoke and none of them named it, not even as a
@@ -160,7 +169,7 @@ impl Evidence {
         };
         let listed = || last.lists_things && !self.may_show(name) && thing(name).is_some();
         let denied = || last.denied.iter().any(|denied| denies(denied, name));
-        !last.may_show(name) && (self.source != Source::Captions || denied() || listed())
+        !last.may_show(name) && (!self.source.leaves_out() || denied() || listed())
     }
 
     /// Whether some witness thought of seeing such a thing, without being sure.

@@ -11,6 +11,8 @@ mod read;
 mod tests;
 mod told;
 
+pub(crate) use told::text as caption_text;
+
 use crate::{
     dialogue::{OPENING, RulesSummariser, Summariser, refuses, rephrased, room, sightings},
     observe::{Observers, unanswered},

@@ -44,7 +44,7 @@ fn of_thing<'a>(thing: &'a Thing, by: &'a str) -> impl Iterator<Item = Sighting>
 }
 
 /// The caption's text: what stands out first, what is far last. Doubtful things are named only where nothing is sure.
-pub(super) fn text(room: Option<&str>, perhaps_rooms: &[String], sightings: &[Sighting], ways: &[WayOut]) -> String {
+pub(crate) fn text(room: Option<&str>, perhaps_rooms: &[String], sightings: &[Sighting], ways: &[WayOut]) -> String {
     let mut named: Vec<Sighting> =
         sightings.iter().filter(|sighting| sighting.witness == Witness::Seen).cloned().collect();
     named.sort_by_key(|sighting| (!sighting.stands_out, sighting.is_far));

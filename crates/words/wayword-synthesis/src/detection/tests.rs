@@ -1,0 +1,175 @@
+use super::*;
+use std::sync::Arc;
+use wayword_checks::{Evidence, Source, Subject, check, detected::Rates};
+use wayword_core::{
+    Check, DVec3, Exchange, Frame, Gaze, Image, Motion, ObjectId, PathRequest, SceneId, Scoring, Style, Verdict,
+    ViewpointGraph, ViewpointId, path::Stop,
+};
+
+/// Three frames straight ahead, with a picture each.
+struct Corridor;
+
+impl Platform for Corridor {
+    fn name(&self) -> &'static str {
+        "corridor"
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        Ok(Vec::new())
+    }
+
+    fn graph(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        panic!("these tests need no graph")
+    }
+
+    fn sample_path(&self, _: &SceneId, _: &PathRequest, _: u64) -> Result<Path, PlatformError> {
+        panic!("these tests need no random path")
+    }
+
+    fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let picture = Image::new(90, 60, vec![0; 90 * 60 * 3]).ok().map(Arc::new);
+        Ok(View::new(from.pose, gaze.horizontal_fov_rad, picture, None))
+    }
+
+    fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
+        Ok(None)
+    }
+
+    fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        Ok(None)
+    }
+}
+
+/// Finds each name at the frames that are given for it, on the right of the picture.
+struct Finds(Vec<(&'static str, Vec<usize>)>);
+
+impl Detector for Finds {
+    fn name(&self) -> &str {
+        "test/detector"
+    }
+
+    fn scoring(&self) -> Scoring {
+        Scoring { means: "given", found_from: 0.5, phrases_meet: false }
+    }
+
+    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+        let found = |view: &View, phrase: &str| {
+            let frame = (view.pose.position.y / 2.0).round() as usize;
+            let hit = self.0.iter().any(|(name, frames)| *name == phrase && frames.contains(&frame));
+            let best = Found { box_px: [70.0, 20.0, 90.0, 40.0], score: 0.9 };
+            let again = Found { box_px: [71.0, 20.0, 90.0, 40.0], score: 0.6 };
+            let unsure = Found { box_px: [0.0, 20.0, 10.0, 40.0], score: 0.4 };
+            if hit { vec![best, again, unsure] } else { vec![unsure] }
+        };
+        let of_view = |view: &&View| Ok(phrases.iter().map(|phrase| found(view, phrase)).collect());
+        views.iter().map(of_view).collect()
+    }
+}
+
+fn path() -> Path {
+    let stop = |at: usize| Stop { position: DVec3::new(0.0, 2.0 * at as f64, 1.5), viewpoint: None, level: None };
+    let frames = Path::frames_along((0..3).map(stop).collect(), None);
+    Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: None }
+}
+
+/// Finds what is there with 0.95, mostly from two frames or three.
+fn figures() -> DetectorFigures {
+    let all = Rates {
+        shown: 2000,
+        found: 1900,
+        absent: 2000,
+        alarms: 40,
+        missed_before: 100,
+        missed_again: 5,
+        runs: vec![0, 50, 50],
+    };
+    DetectorFigures { found_from: 0.5, all, ..DetectorFigures::default() }
+}
+
+/// The captions of the frames after a detector looked; each is given by what it saw.
+fn after(captions: [&[&str]; 3], finds: Vec<(&'static str, Vec<usize>)>, nouns: &[&str]) -> Vec<Observation> {
+    let path = path();
+    let observed = |(frame, names): (&Frame, &[&str])| {
+        let sightings = names.iter().map(|name| Sighting::new(*name, Witness::Seen, "eye")).collect();
+        let transcript = vec![Exchange::new("what is there?", "all that")];
+        let caption = Caption { text: names.join(", "), sightings, transcript, ..Caption::default() };
+        Observation { looks: vec![Look { gaze: Gaze::quarter(frame.pose.heading), caption }], ..Observation::default() }
+    };
+    let mut observations: Vec<Observation> = path.frames.iter().zip(captions).map(observed).collect();
+    let nouns: Vec<String> = nouns.iter().map(|noun| (*noun).to_owned()).collect();
+    let seeker = Seeker { detector: &Finds(finds), figures: &figures(), nouns: &nouns };
+    seek(&Corridor, &path, &mut observations, seeker).unwrap();
+    observations
+}
+
+fn of_frame<'a>(seen: &'a [Observation], at: usize, name: &str) -> Option<&'a Sighting> {
+    seen[at].looks[0].caption.sightings.iter().find(|sighting| sighting.name == name)
+}
+
+#[test]
+fn what_is_found_is_seen_with_its_box_and_its_side() {
+    let seen = after([&["sofa"], &["sofa"], &[]], vec![("sofa", vec![0, 1])], &[]);
+    let sofa = of_frame(&seen, 0, "sofa").unwrap();
+    assert_eq!((sofa.witness, sofa.place, sofa.by.as_str()), (Witness::Seen, Some(Where::Right), "eye"));
+    let spot = sofa.spot.unwrap();
+    assert_eq!(spot.found.score, 0.9);
+    assert!(
+        (spot.off_rad - (35.0_f64 / 45.0).atan()).abs() < 1e-6,
+        "the middle of the box is 35 px right of the picture's"
+    );
+}
+
+#[test]
+fn what_a_caption_made_up_is_struck_out_of_its_words_too() {
+    let seen = after([&["sofa"], &["sofa", "piano"], &[]], vec![("sofa", vec![0, 1])], &[]);
+    let piano = of_frame(&seen, 1, "piano").unwrap();
+    assert_eq!((piano.witness, piano.by.as_str()), (Witness::Denied, "test/detector"));
+    let caption = &seen[1].looks[0].caption;
+    assert!(caption.text.contains("sofa") && !caption.text.contains("sofa, piano"), "{}", caption.text);
+    assert_eq!(caption.by.as_deref(), Some("rules"));
+    assert!(of_frame(&seen, 0, "piano").is_none(), "nobody named it there");
+}
+
+#[test]
+fn a_caption_that_nobody_changed_keeps_its_words() {
+    let seen = after([&["ghost story"], &[], &[]], vec![], &[]);
+    assert_eq!(seen[0].looks[0].caption.text, "ghost story", "a name that the lexicon does not have is not looked for");
+}
+
+#[test]
+fn proposals_are_added_where_they_were_found_often_enough_and_else_left_out() {
+    let seen = after([&[], &[], &[]], vec![("bed", vec![0, 1, 2]), ("vase", vec![1])], &["bed", "vase", "sink"]);
+    for at in 0..3 {
+        let bed = of_frame(&seen, at, "bed").unwrap();
+        assert_eq!((bed.witness, bed.by.as_str(), bed.several), (Witness::Seen, "test/detector", false));
+    }
+    assert!((0..3).all(|at| of_frame(&seen, at, "vase").is_none() && of_frame(&seen, at, "sink").is_none()));
+}
+
+#[test]
+fn claims_about_a_path_that_nobody_described_pass_fail_or_stay_open() {
+    let path = path();
+    let looks: Vec<Vec<Look>> = path
+        .frames
+        .iter()
+        .map(|frame| vec![Look { gaze: Gaze::quarter(frame.pose.heading), caption: Caption::default() }])
+        .collect();
+    let claims = ["sofa", "piano", "lamp"].map(str::to_owned).into();
+    let mut figures = figures();
+    figures.names.insert("lamp".into(), Rates { found: 600, missed_again: 70, ..figures.all.clone() });
+    let seeker = Seeker { detector: &Finds(vec![("sofa", vec![0, 1])]), figures: &figures, nouns: &[] };
+    let seen = seek_claims(&Corridor, &path, looks, &claims, seeker).unwrap();
+    let evidence = Evidence::from_detector(&path, &seen).unwrap();
+    assert_eq!(evidence.source, Source::Detector);
+    let style = Style { name: "s".into(), ..Style::default() };
+    for (text, wanted) in [
+        ("Walk past the sofa.", Verdict::Pass),
+        ("Walk past the piano.", Verdict::Fail),
+        ("Walk past the lamp.", Verdict::Unverified),
+        ("Walk past the clock.", Verdict::Unverified),
+    ] {
+        let checked = check(text, Subject::closed(&evidence, &style, None));
+        let places = checked.findings.iter().filter(|finding| finding.check == Check::Landmarks);
+        assert_eq!(places.map(|finding| finding.verdict).max(), Some(wanted), "{text}");
+    }
+}
