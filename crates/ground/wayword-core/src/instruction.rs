@@ -63,6 +63,9 @@ pub struct Provenance {
     pub asker: String,
     /// Who answered (`labels` is ground truth, not perception).
     pub answerer: String,
+    /// Which detector looked for things in the pictures, and what its scores mean.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detector: Option<String>,
     /// Who summed the answers up.
     pub summariser: String,
     /// Who wrote the text.

@@ -3,8 +3,13 @@
 //! What it found is seen, with its box. What captions named and it did not find becomes doubtful or is struck out, by what is
 //! known of its recall ([`DetectorFigures`]). What was proposed and not found is left out.
 
+mod nouns;
+
+pub use nouns::{listed, usual};
+
 use crate::{
     dialogue::{RulesSummariser, Summariser},
+    observe::{CONDENSED_WORDS, ObserveError},
     seeing::caption_text,
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -57,17 +62,6 @@ enum Purpose {
 /// The finds of one name, look by look.
 type Finds = BTreeMap<(usize, usize), Vec<Spot>>;
 
-/// A detector could not look.
-#[derive(Debug, thiserror::Error)]
-pub enum SeekError {
-    /// The platform did not give a view.
-    #[error(transparent)]
-    Platform(#[from] PlatformError),
-    /// The detector failed.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-}
-
 /// Looks for what captions named and for what is proposed, in every view that was captioned, and corrects the captions.
 ///
 /// # Errors
@@ -77,7 +71,7 @@ pub fn seek(
     path: &Path,
     observations: &mut [Observation],
     seeker: Seeker<'_>,
-) -> Result<(), SeekError> {
+) -> Result<(), ObserveError> {
     let mut wanted: Wanted = seeker.nouns.iter().map(|noun| (normal(noun), PROPOSED)).collect();
     wanted.extend(named(observations));
     testify(platform, path, observations, seeker, &wanted, Purpose::Captions)
@@ -94,12 +88,25 @@ pub fn seek_claims(
     looks: Vec<Vec<Look>>,
     claims: &BTreeSet<String>,
     seeker: Seeker<'_>,
-) -> Result<Vec<Observation>, SeekError> {
+) -> Result<Vec<Observation>, ObserveError> {
     let mut observations: Vec<Observation> =
         looks.into_iter().map(|looks| Observation { looks, ..Observation::default() }).collect();
     let wanted = claims.iter().map(|claim| (normal(claim), CLAIMED)).collect();
     testify(platform, path, &mut observations, seeker, &wanted, Purpose::Claims)?;
     Ok(observations)
+}
+
+/// What a detector alone says of the frames: captions without words, with what it found, denied and was not sure of.
+#[must_use]
+pub fn alone(observations: &[Observation], detector: &str) -> Vec<Observation> {
+    let is_its = |sighting: &&Sighting| sighting.spot.is_some() || sighting.by == detector;
+    let look = |look: &Look| {
+        let sightings = look.caption.sightings.iter().filter(is_its).cloned().collect();
+        Look { gaze: look.gaze, caption: Caption { sightings, ..Caption::default() } }
+    };
+    let observation =
+        |seen: &Observation| Observation { looks: seen.looks.iter().map(look).collect(), ..Observation::default() };
+    observations.iter().map(observation).collect()
 }
 
 /// What the captions name, as far as the lexicon has it.
@@ -127,7 +134,7 @@ fn testify(
     seeker: Seeker<'_>,
     wanted: &Wanted,
     purpose: Purpose,
-) -> Result<(), SeekError> {
+) -> Result<(), ObserveError> {
     let seen = views(platform, path, observations)?;
     if seen.is_empty() || wanted.is_empty() {
         return Ok(());
@@ -148,10 +155,9 @@ fn testify(
             (Judged::Open, Purpose::Claims) => said_of_all(observations, name, Witness::Unsure, by),
         }
     }
-    for (look, was) in looks(observations).zip(was) {
-        if purpose == Purpose::Captions && look.caption.sightings != was {
-            retell(&mut look.caption);
-        }
+    if purpose == Purpose::Captions {
+        let mut was = was.into_iter();
+        observations.iter_mut().try_for_each(|observation| retell(observation, &mut was))?;
     }
     Ok(())
 }
@@ -283,12 +289,32 @@ fn each(observations: &mut [Observation], mut change: impl FnMut((usize, usize),
     }
 }
 
-/// A caption that a detector changed is told again by rules, so that its words name nothing that it does not hold.
-fn retell(caption: &mut Caption) {
-    caption.text = caption_text(caption.room.as_deref(), &caption.perhaps_rooms, &caption.sightings, &caption.ways);
-    if !caption.is_structured {
-        caption.by = Some(RulesSummariser.name().to_owned());
+/// What a detector changed is told again by rules, so that no words name what the caption does not hold. `was` gives the
+/// sightings of each look as they were.
+fn retell(observation: &mut Observation, was: &mut impl Iterator<Item = Vec<Sighting>>) -> Result<(), ModelError> {
+    let mut is_changed = false;
+    for (look, was) in observation.looks.iter_mut().zip(was) {
+        let caption = &mut look.caption;
+        if caption.sightings == was {
+            continue;
+        }
+        is_changed = true;
+        caption.text = caption_text(caption.room.as_deref(), &caption.perhaps_rooms, &caption.sightings, &caption.ways);
+        if !caption.is_structured {
+            caption.by = Some(RulesSummariser.name().to_owned());
+        }
     }
+    if !is_changed {
+        return Ok(());
+    }
+    if let [only] = &observation.looks[..] {
+        observation.summary.clone_from(&only.caption.text);
+        return Ok(());
+    }
+    let captions: Vec<(&str, &Caption)> = observation.looks.iter().map(|look| ("", &look.caption)).collect();
+    observation.summary = RulesSummariser.condense(&captions, CONDENSED_WORDS)?.text;
+    observation.by = Some(RulesSummariser.name().to_owned());
+    Ok(())
 }
 
 #[cfg(test)]

@@ -23,6 +23,8 @@ pub struct Observers<'a> {
     pub mode: Mode,
     /// Hash of the prompts, where a language model takes part.
     pub prompts_hash: Option<&'a str>,
+    /// The detector that completed and corrected the captions, and what its scores mean, where there is one.
+    pub detector: Option<&'a str>,
 }
 
 /// A path could not be observed.
@@ -37,7 +39,7 @@ pub enum ObserveError {
 }
 
 /// A panorama's description has fewer words than this (arXiv 2403.11487).
-const CONDENSED_WORDS: usize = 20;
+pub(crate) const CONDENSED_WORDS: usize = 20;
 
 /// A view that is to be talked about.
 #[derive(Debug, Clone)]
@@ -252,6 +254,7 @@ mod tests {
             summariser: &RulesSummariser,
             mode: Mode::Dialogue { questions: 9 },
             prompts_hash: None,
+            detector: None,
         };
         assert!(matches!(talk_about(&view, observers), Err(ModelError::Failed { model, .. }) if model == "test/mute"));
     }

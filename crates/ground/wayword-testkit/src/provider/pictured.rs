@@ -45,7 +45,8 @@ impl<P: Platform> Platform for Pictured<P> {
     }
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let view = self.platform.look(scene, from, gaze)?;
+        // The picture is replaced, so none is drawn.
+        let view = self.platform.look_without_picture(scene, from, gaze)?;
         let truth = view.ground_truth().cloned();
         let id = id(scene, from, gaze);
         if let Some(truth) = &truth {

@@ -26,6 +26,10 @@ pub(super) fn places(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
             Sight::Shown => {
                 sides::unclear_side(place, subject).or_else(|| colour(place.colour.as_deref(), &claim, subject))
             }
+            _ if evidence.source == Source::Detector && place.is_thing && evidence.denies_thing(&place.name) => {
+                let reason = format!("the detector finds no {:?} along the path, and would have found one", claim.name);
+                Some((Verdict::Fail, reason))
+            }
             Sight::Unknown => {
                 Some((Verdict::Unverified, format!("the program cannot check whether there is {:?}", claim.name)))
             }

@@ -206,6 +206,7 @@ fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, r
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
         asker: asker.to_owned(),
         answerer: observers.answerer.name().to_owned(),
+        detector: observers.detector.map(str::to_owned),
         summariser: summariser.to_owned(),
         writer: writer.name().to_owned(),
         checked_against: order.evidence.source.name().to_owned(),

@@ -1,0 +1,81 @@
+//! What a detector looks for by itself.
+
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::Style;
+use wayword_language::{
+    lexicon::{normal, thing},
+    reading::{What, read},
+};
+
+/// The list of things worth naming, as data.
+const LIST: &str = include_str!("nouns.txt");
+
+/// Most names that a style adds.
+const MOST_OF_STYLE: usize = 30;
+
+/// Most names that are looked for: each costs time in every view.
+const MOST: usize = 300;
+
+/// The names of a list: one on each line, without comments. `None` where it has none, or too many.
+#[must_use]
+pub fn listed(text: &str) -> Option<Vec<String>> {
+    let names = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
+    let names: BTreeSet<String> = names.filter(|name| !name.is_empty()).map(normal).collect();
+    (1..=MOST).contains(&names.len()).then(|| names.into_iter().collect())
+}
+
+/// Household things, and what the texts of these styles name most often.
+#[must_use]
+pub fn usual<'a>(styles: impl Iterator<Item = &'a Style>) -> Vec<String> {
+    let mut names: BTreeSet<String> = listed(LIST).unwrap_or_default().into_iter().collect();
+    styles.for_each(|style| names.extend(of_style(style)));
+    names.into_iter().collect()
+}
+
+fn of_style(style: &Style) -> Vec<String> {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for text in &style.references {
+        for event in read(text, &BTreeSet::new()).events {
+            if let What::Place(place) = event.what
+                && place.is_thing
+                && !place.is_room
+                && let Some(thing) = thing(&place.name).filter(|thing| thing.salience >= 1)
+            {
+                *counts.entry(thing.name.to_owned()).or_default() += 1;
+            }
+        }
+    }
+    let mut names: Vec<(String, usize)> = counts.into_iter().filter(|(_, count)| *count > 1).collect();
+    names.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    names.into_iter().take(MOST_OF_STYLE).map(|(name, _)| name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_of_the_list_is_one_that_the_lexicon_has() {
+        let names = listed(LIST).unwrap();
+        let strange: Vec<&String> =
+            names.iter().filter(|name| thing(name).is_none_or(|thing| thing.salience == 0)).collect();
+        assert!(strange.is_empty() && names.len() > 40, "{strange:?}");
+    }
+
+    #[test]
+    fn a_style_adds_what_its_texts_name_more_than_once() {
+        let references = ["Stop at the canoe.", "Pass the guitar and the sofa.", "Stop beside the guitar."];
+        let style = Style { references: references.map(str::to_owned).to_vec(), ..Style::default() };
+        let names = usual(std::iter::once(&style));
+        assert!(names.contains(&"guitar".to_owned()) && names.contains(&"sofa".to_owned()), "{names:?}");
+        assert!(!names.contains(&"canoe".to_owned()));
+    }
+
+    #[test]
+    fn a_list_has_one_name_a_line_and_is_neither_empty_nor_endless() {
+        assert_eq!(listed("# mine\nRed Sofas\n\nlamp # tall").unwrap(), ["lamp", "red sofa"]);
+        assert_eq!(listed("# nothing"), None);
+        let endless: String = (0..=MOST).map(|at| format!("thing{at}\n")).collect();
+        assert_eq!(listed(&endless), None);
+    }
+}
