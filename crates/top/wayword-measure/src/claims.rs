@@ -14,7 +14,7 @@ use wayword::{
     plan::Plan,
     platforms::Remembering,
     run::fresh_id,
-    settings::{Against, Job, LABELS, Perception, RULES, Settings},
+    settings::{Job, LABELS, Perception, RULES, Settings, Sources},
     team::Team,
 };
 use wayword_checks::{Evidence, Subject, check};
@@ -96,7 +96,7 @@ fn job(stage: &Stage, flags: &Flags) -> Result<Job, Error> {
     (roles.ask, roles.summarise, roles.write) = (RULES.to_owned(), RULES.to_owned(), RULES.to_owned());
     debug_assert!(roles.see != LABELS);
     let Settings { perception, evidence, .. } = &mut job.settings;
-    (*perception, *evidence) = (Perception::Structured, Against::Labels);
+    (*perception, *evidence) = (Perception::Structured, Sources::default());
     if flags.episodes.is_some() {
         job.settings.episodes.clone_from(&flags.episodes);
         job.settings.paths = 0;

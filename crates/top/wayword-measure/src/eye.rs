@@ -17,13 +17,13 @@ use wayword_synthesis::repair::Outcome;
 
 /// Counts of the objects that instructions name, and of those that no label along the path confirms.
 #[derive(Debug, Default)]
-struct Named {
-    texts: usize,
-    rejected: usize,
+pub(super) struct Named {
+    pub(super) texts: usize,
+    pub(super) rejected: usize,
     finished_by_rules: usize,
-    objects: usize,
-    hallucinated: usize,
-    with_hallucinations: usize,
+    pub(super) objects: usize,
+    pub(super) hallucinated: usize,
+    pub(super) with_hallucinations: usize,
 }
 
 pub(super) fn measure(
@@ -75,7 +75,7 @@ pub(super) fn measure(
 }
 
 impl Named {
-    fn count(&mut self, made: &Made, world: &dyn Platform) -> Result<(), Error> {
+    pub(super) fn count(&mut self, made: &Made, world: &dyn Platform) -> Result<(), Error> {
         let panoramas = panoramas(world, &made.walk.path)?;
         let Some(labels) = Evidence::from_labels(&made.walk.path, &panoramas) else { return Ok(()) };
         for outcome in &made.outcomes {

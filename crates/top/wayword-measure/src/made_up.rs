@@ -28,6 +28,7 @@ pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKin
             wayword: by("test"),
             asker: by("rules"),
             answerer: by("labels"),
+            detector: None,
             summariser: by("rules"),
             writer: by("rules"),
             checked_against: by("labels"),

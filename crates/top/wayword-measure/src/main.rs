@@ -7,6 +7,7 @@ mod corrupt;
 mod corrupt_people;
 mod corruptions;
 mod coverage;
+mod detector;
 mod eye;
 mod fit_evidence;
 mod fit_follower;
@@ -100,6 +101,9 @@ enum What {
     /// Hold true and false claims about paths against labels and against the captions of a flawed eye, and count what the
     /// checks refuse and what they catch.
     Claims(claims::Flags),
+    /// Hold right and seeded wrong landmarks against a detector whose finds and misses are drawn by labels, and count the objects
+    /// that a flawed eye hallucinates in texts, with that detector and without.
+    Detector(detector::Flags),
     /// Fit the weights that say how much the silence of labels says about a claim, on people's texts.
     FitEvidence {
         /// Folder of Matterport3D's and REVERIE's data.
@@ -230,6 +234,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
         What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
         What::Claims(flags) => claims::measure(&flags, output),
+        What::Detector(flags) => detector::measure(&flags, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
         What::People(flags) => people::measure(flags, output),

@@ -8,12 +8,13 @@ use wayword::{
     calls::Spent,
     error::Error,
     follow::KnownScenes,
+    looking_for::Lookout,
     output::Output,
     pipeline::{Made, RunPlatform, make},
     plan::Plan,
     platforms,
     run::fresh_id,
-    settings::{Against, Asked, AskedPlatform, AskedRoles, Draw, Job, Service, Walks, Writing},
+    settings::{Asked, AskedPlatform, AskedRoles, Draw, Job, Service, Sources, Walks, Writing},
     team::Team,
 };
 use wayword_core::Platform;
@@ -83,7 +84,7 @@ impl Stage {
             roles,
             service,
             writing: Writing {
-                evidence: Some(Against::Captions),
+                evidence: Some(Sources::CAPTIONS),
                 style: Some(vec!["r2r".into()]),
                 ..Writing::default()
             },
@@ -111,9 +112,18 @@ impl Stage {
 
     /// Makes every item of a job, and returns what was spent.
     pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
+        self.make_with(job, None)
+    }
+
+    /// The same, with a detector that looks along the paths.
+    pub(super) fn make_with(
+        &self,
+        job: &Job,
+        lookout: Option<Lookout>,
+    ) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
         let plan = Plan::writing(job, &self.world)?;
         let calls = plan.models.open(|| Ok(fresh_id("measure")), &Output::new(false, true))?;
-        let team = Team::new(&job.settings, calls.as_ref(), &self.world)?;
+        let team = Team::new(&job.settings, calls.as_ref(), &self.world)?.with(lookout);
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };
         let one = |item| make(item, &job.settings, world, &team, &plan.styles, 1);

@@ -18,6 +18,7 @@ pub mod follow;
 mod in_order;
 pub mod interrupt;
 pub mod item;
+pub mod looking_for;
 mod losses;
 pub mod output;
 pub mod people;

@@ -5,16 +5,18 @@ use crate::{
     error::Error,
     follow::{Followed, GOES_UNKNOWN, KnownScenes, Told, rejection},
     item::Item,
+    looking_for::Lookout,
     pictures::{self, Picture},
     platforms::Remembering,
     run::WorldData,
-    settings::{Against, Settings, TargetMode},
+    settings::{Settings, Sources, TargetMode},
     styles::Measured,
     team::Team,
 };
 use wayword_checks::{Checked, Evidence, Memory, Source};
 use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Motion, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
+    detection::{alone, seek},
     observe::{Planned, observe_with, talk_about},
     offline::{around, describe},
     repair::{Follow, Order, Outcome, write_and_repair},
@@ -71,9 +73,13 @@ pub fn make(
         let ends = |told: &Result<Caption, ModelError>| told.as_ref().is_err_and(ModelError::ends_run);
         at_once(views, threads, |planned| talk_about(&planned.view, observers), ends).into_iter().collect()
     };
-    let observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
+    let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
+    if let Some(lookout) = team.lookout() {
+        seek(&world, &path, &mut observations, lookout.seeker())?;
+    }
     let walk = Walk::new(path, observations);
-    let mut evidence = evidence(&walk, &world, settings.evidence)?;
+    let detector = team.lookout().map(Lookout::name);
+    let mut evidence = evidence(&walk, &world, settings.evidence, detector)?;
     // Where labels see, the writer remembers all that they list around each frame; a model's captions else.
     let sees_labels = team.observers().answerer.name() == "labels" && evidence.source == Source::Labels;
     let memory = if sees_labels { Memory::of(&evidence, &walk.path) } else { walk.memory() };
@@ -227,12 +233,22 @@ fn ahead(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, PlatformErro
     path.frames.iter().map(look).collect()
 }
 
-/// What texts are checked against: labels if they are wanted and available, else captions, else only the path.
-fn evidence(walk: &Walk, platform: &dyn Platform, against: Against) -> Result<Evidence, PlatformError> {
-    let labels = match against {
-        Against::Labels => Evidence::from_labels(&walk.path, &panoramas(platform, &walk.path)?),
-        // No labels are collected here, because that takes longer than everything else.
-        Against::Captions => None,
+/// What texts are checked against: labels if they are wanted and available, else captions and what the detector of that name
+/// found, else only the path.
+fn evidence(
+    walk: &Walk,
+    platform: &dyn Platform,
+    sources: Sources,
+    detector: Option<&str>,
+) -> Result<Evidence, PlatformError> {
+    // Labels that nobody wants are not collected, because that takes longer than everything else.
+    let labels = match sources.labels {
+        true => Evidence::from_labels(&walk.path, &panoramas(platform, &walk.path)?),
+        false => None,
     };
-    Ok(labels.or_else(|| walk.evidence()).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))
+    let heard = || match detector.filter(|_| sources.detector && !sources.captions) {
+        Some(detector) => Evidence::from_detector(&walk.path, &alone(&walk.observations, detector)),
+        None => walk.evidence(),
+    };
+    Ok(labels.or_else(heard).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))
 }

@@ -4,6 +4,7 @@ use crate::{
     calibration,
     calls::Calls,
     error::Error,
+    looking_for::Lookout,
     settings::{Finish, LABELS, Settings, is_model},
     text_file,
 };
@@ -29,6 +30,9 @@ pub struct Team {
     finisher: Option<RulesWriter>,
     mode: Mode,
     prompts_hash: Option<String>,
+    lookout: Option<Lookout>,
+    /// The detector of the lookout, and what its scores mean.
+    detector: Option<String>,
 }
 
 impl Team {
@@ -85,7 +89,22 @@ impl Team {
             finisher: finisher.then_some(RulesWriter),
             mode: settings.mode(),
             prompts_hash,
+            lookout: None,
+            detector: None,
         })
+    }
+
+    /// The same, with a detector that looks along the paths.
+    #[must_use]
+    pub fn with(self, lookout: Option<Lookout>) -> Self {
+        let named = |lookout: &Lookout| format!("{} ({})", lookout.name(), lookout.seeker().detector.scoring().means);
+        Self { detector: lookout.as_ref().map(named), lookout, ..self }
+    }
+
+    /// What looks for things along the paths, if anything does.
+    #[must_use]
+    pub fn lookout(&self) -> Option<&Lookout> {
+        self.lookout.as_ref()
     }
 
     /// Who asks, sees and summarises.
@@ -97,6 +116,7 @@ impl Team {
             summariser: self.summariser.as_ref(),
             mode: self.mode,
             prompts_hash: self.prompts_hash.as_deref(),
+            detector: self.detector.as_deref(),
         }
     }
 

@@ -167,7 +167,9 @@ fn what_makes_no_sense_is_refused_and_leaves_no_folder() {
         (vec!["--swaps", "none,directions"], "together with others"),
         (vec!["--swaps", "sentences,sentences"], "a swap twice"),
         (vec!["--grounder", "magic"], "there is no such grounder"),
-        (vec!["--grounder", "hf/openai/clip-vit-base-patch32"], "no GLIP network"),
+        (vec!["--grounder", "detector"], "no detector is named"),
+        (vec!["--detector", "ollama/x"], "detectors run inside this program"),
+        (vec!["--grounder", "hf/openai/clip-vit-base-patch32"], "glip-nav needs a detector"),
         (vec!["--rule", "visible", "--episodes", R2R], "names no object"),
     ] {
         let ran = if args.contains(&"--episodes") {

@@ -37,6 +37,9 @@ pub struct About {
     pub grounder: String,
     /// The same for agents that walk by a detector.
     pub detector: String,
+    /// What a score of that detector is, where it is a network.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detector_score: Option<String>,
     /// The sentence encoder behind `labels`, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub encoder: Option<String>,

@@ -7,7 +7,7 @@ use crate::{
     settings::{self, Job},
 };
 use std::sync::Arc;
-use wayword_core::LanguageModel;
+use wayword_core::{Detector, LanguageModel};
 use wayword_ledger::Run;
 use wayword_local::{Device, EyeKind, Hub, HubConfig, Loading, Models, Precision};
 use wayword_remote::Finding;
@@ -39,6 +39,22 @@ impl Local {
     /// Loads a model, once.
     pub(super) fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
         Ok(self.models.model(name)?)
+    }
+
+    /// Refuses a name that no detector in process can have, and unusable settings of device or memory.
+    pub(super) fn rehearse_detector(job: &Job, name: &str) -> Result<(), Error> {
+        loading(job)?;
+        Ok(Models::check_detector_name(name)?)
+    }
+
+    /// Makes sure that a detector's files are on this machine.
+    pub(super) fn detector_ready(&self, name: &str) -> Result<(), Error> {
+        Ok(self.models.detector_at_hand(name)?)
+    }
+
+    /// Loads a detector, once.
+    pub(super) fn detector(&self, name: &str) -> Result<Arc<dyn Detector>, Error> {
+        Ok(self.models.detector(name)?)
     }
 
     /// The manner in which a model is asked.

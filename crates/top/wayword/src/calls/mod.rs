@@ -24,7 +24,7 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use wayword_core::LanguageModel;
+use wayword_core::{Detector, LanguageModel};
 use wayword_ledger::{Ledger, Limits, Run};
 use wayword_remote::{Finding, Price, Services};
 use wayword_synthesis::prompts::Manner;
@@ -58,6 +58,10 @@ impl Calls {
         let price = |name: &str| -> Result<Option<Price>, Error> {
             if let Some(refused) = gguf::refused(name) {
                 return Err(refused);
+            }
+            if settings.roles.detector.as_deref() == Some(name) {
+                Local::rehearse_detector(job, name)?;
+                return Ok(Some(Price::nothing()));
             }
             if is_in_process(name) {
                 Local::rehearse(job, name)?;
@@ -120,6 +124,17 @@ impl Calls {
         match self.local.as_ref().filter(|_| is_in_process(name)) {
             Some(local) => local.model(name),
             None => Ok(self.services.model(name)?),
+        }
+    }
+
+    /// The detector of the settings, by its name.
+    ///
+    /// # Errors
+    /// When it cannot be loaded, or does not detect.
+    pub fn detector(&self, name: &str) -> Result<Arc<dyn Detector>, Error> {
+        match &self.local {
+            Some(local) => local.detector(name),
+            None => Err(Error::not_built(format!("{name} cannot be asked: this build runs no models in process"))),
         }
     }
 

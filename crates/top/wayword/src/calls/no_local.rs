@@ -2,7 +2,7 @@
 
 use crate::{error::Error, output::Output, settings::Job};
 use std::sync::Arc;
-use wayword_core::LanguageModel;
+use wayword_core::{Detector, LanguageModel};
 use wayword_ledger::Run;
 use wayword_remote::Finding;
 use wayword_synthesis::prompts::Manner;
@@ -24,6 +24,18 @@ impl Local {
     }
 
     pub(super) fn model(&self, _: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+        match *self {}
+    }
+
+    pub(super) fn rehearse_detector(_: &Job, name: &str) -> Result<(), Error> {
+        Err(refused(name))
+    }
+
+    pub(super) fn detector_ready(&self, _: &str) -> Result<(), Error> {
+        match *self {}
+    }
+
+    pub(super) fn detector(&self, _: &str) -> Result<Arc<dyn Detector>, Error> {
         match *self {}
     }
 

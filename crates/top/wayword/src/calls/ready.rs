@@ -41,7 +41,12 @@ impl Calls {
         }
         if !local.is_empty() {
             let files = Local::open(job, nowhere, output)?;
-            local.iter().try_for_each(|name| files.ready(name))?;
+            let detector = job.settings.roles.detector.as_deref();
+            let ready = |name: &&str| match detector == Some(*name) {
+                true => files.detector_ready(name),
+                false => files.ready(name),
+            };
+            local.iter().try_for_each(ready)?;
         }
         Ok(())
     }

@@ -49,10 +49,14 @@ pub struct Compare {
         hide_possible_values = true
     )]
     pub agents: Vec<String>,
-    /// What scores how well a phrase fits a view: labels/lexical (compares words, no weights), labels (with a text encoder), or a
-    /// CLIP model as hf/ORG/NAME.
+    /// What scores how well a phrase fits a view: labels/lexical (compares words, no weights), labels (with a text encoder), a CLIP
+    /// model as hf/ORG/NAME, a detector by its name, or detector (that of --detector). With a CLIP model, glip-nav takes its scores
+    /// from --detector.
     #[arg(long, value_name = "GROUNDER", default_value = "labels/lexical")]
     pub grounder: String,
+    /// Detector that finds things in pictures, as hf/ORG/NAME: a phrase scores as its best box does.
+    #[arg(long, value_name = "MODEL")]
+    pub detector: Option<String>,
     /// Sentence encoder of the grounder `labels`.
     #[arg(long, value_name = "MODEL", default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]
     pub encoder: String,
@@ -149,7 +153,14 @@ fn splitter(name: &str) -> Result<String, String> {
 }
 
 impl Compare {
-    /// What the flags ask for, in the form of other commands. The splitter's model is the only one; it stands in the role that asks.
+    /// The detector: that of `--detector`, or a grounder that is a checkpoint of GLIP (`hf/ORG/NAME:FILE.pth`).
+    #[must_use]
+    pub fn detector(&self) -> Option<&str> {
+        let is_glip = |name: &&str| name.starts_with("hf/") && name.ends_with(".pth");
+        self.detector.as_deref().or_else(|| Some(self.grounder.as_str()).filter(is_glip))
+    }
+
+    /// What the flags ask for, in the form of other commands. The splitter's model stands in the role that asks.
     #[must_use]
     pub fn asked(&self) -> Asked {
         Asked {
@@ -159,6 +170,7 @@ impl Compare {
             roles: AskedRoles {
                 ask: Some(self.split.clone()),
                 base_url: self.base_url.clone(),
+                detector: self.detector().map(str::to_owned),
                 ..AskedRoles::default()
             },
             service: self.service.clone(),

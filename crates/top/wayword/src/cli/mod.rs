@@ -10,7 +10,7 @@ mod similarity;
 mod view;
 
 use crate::{
-    settings::{Asked, AskedPlatform},
+    settings::{Asked, AskedPlatform, Sources},
     styles,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
@@ -189,6 +189,9 @@ pub struct Check {
     /// Shares by the names of objects and rooms that `wayword calibrate` made.
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
+    /// A detector that looks for what the texts name.
+    #[command(flatten)]
+    pub detecting: Detecting,
     /// Show at most this many of the instructions that did not pass.
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub show: usize,
@@ -210,6 +213,29 @@ pub struct Calibrate {
     /// File to write.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
+}
+
+/// The detector of `wayword check`.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Detector")]
+pub struct Detecting {
+    /// Look for the things that the texts name in the pictures along their paths, where the platform has no labels: a model as
+    /// hf/ORG/NAME, which runs inside this program.
+    #[arg(long, value_name = "MODEL", conflicts_with = "run")]
+    pub detector: Option<String>,
+    /// What `wayword perceive --detector` measured of it. Without it nothing that it misses is taken to be absent.
+    #[arg(long, value_name = "FILE", requires = "detector")]
+    pub detector_figures: Option<PathBuf>,
+    /// What counts: labels, detector, or both separated by a comma (the detector where there are no labels).
+    /// [default: labels,detector]
+    #[arg(long, value_name = "SOURCES", requires = "detector")]
+    pub evidence: Option<Sources>,
+    /// Device that it runs on: cpu, cuda, cuda:1 or metal. [default: cpu]
+    #[arg(long, value_name = "DEVICE", requires = "detector")]
+    pub device: Option<String>,
+    /// File of the ledger, which keeps what it found. [default: wayword/ledger.db in the data folder of your system]
+    #[arg(long, value_name = "FILE", requires = "detector")]
+    pub ledger: Option<PathBuf>,
 }
 
 /// The world that texts are held against, as the user asks for it.

@@ -12,6 +12,8 @@ Examples:
       Compare fixed queries, a single request, the structured request and the dialogue on the same 100 views, and say
       which pays.
   wayword perceive --platform matterport --data DATA --see openai/gpt-4.1-mini --perception single --max-usd 1
+  wayword perceive --platform matterport --data DATA --detector hf/google/owlv2-base-patch16-ensemble --figures owl.toml
+      How much of what the labels list a detector finds, and how often it finds what is not there.
   wayword perceive --perception dialogue --show 5
       Without a model: ground-truth labels answer, and rules ask and summarise.")]
 pub struct Perceive {
@@ -39,6 +41,9 @@ pub struct Perceive {
     /// Seed of the random paths. [default: 0]
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Write what was measured of --detector to this file, for --detector-figures of `generate` and `check`.
+    #[arg(long, value_name = "FILE", requires = "detector")]
+    pub figures: Option<PathBuf>,
     /// Show this many captions of each kind of perception.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub show: usize,

@@ -5,6 +5,7 @@ use crate::{
     count::count,
     error::Error,
     item::Item,
+    looking_for::nouns,
     pipeline,
     platforms::Remembering,
     settings::{Perception, Settings, is_model},
@@ -33,8 +34,20 @@ pub struct Estimate {
     views: usize,
     /// Most questions per view, the opening among them.
     questions: usize,
+    /// What a detector would look for in each view.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    detector: Option<Looked>,
     /// One per model.
     models: Vec<Asked>,
+}
+
+/// What a detector would look for.
+#[derive(Debug, Serialize)]
+struct Looked {
+    /// The detector.
+    model: String,
+    /// Names that it looks for in every view by itself; the names of captions come on top.
+    phrases: usize,
 }
 
 /// What one model would be asked.
@@ -112,6 +125,10 @@ impl Estimate {
         }
         estimate.views = views.len();
         let panoramas = if settings.frames == FrameSelection::Panoramic { panoramas.len() as u64 } else { 0 };
+        if let Some(model) = &settings.roles.detector {
+            let phrases = nouns(settings, &plan.styles)?.len();
+            estimate.detector = Some(Looked { model: model.clone(), phrases });
+        }
         let talk = Talk::of(&prompts, settings)?;
         let roles = &settings.roles;
         let dialogue = settings.has_dialogue();
@@ -269,6 +286,13 @@ impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (items, frames) = (count(self.items, "item"), count(self.frames, "frame"));
         writeln!(f, "{items}, {frames}, {} to caption", count(self.views, "different view"))?;
+        if let Some(Looked { model, phrases }) = &self.detector {
+            writeln!(
+                f,
+                "{model} looks for {} and what captions name in each of these views, free: it runs in process",
+                count(*phrases, "thing")
+            )?;
+        }
         if self.models.is_empty() {
             return write!(f, "no model takes part, so the run costs nothing");
         }

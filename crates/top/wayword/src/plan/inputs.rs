@@ -3,6 +3,7 @@
 
 use crate::{
     error::Error,
+    looking_for::{Proposals, proposals},
     run::{hash_of_file, short_hex},
     settings::{Job, Providers},
     styles::Measured,
@@ -19,6 +20,12 @@ pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, 
     }
     if let Some(file) = &job.settings.calibration {
         inputs.insert("calibration".into(), hash_of_file(file)?);
+    }
+    if let Some(file) = &job.settings.detector_figures {
+        inputs.insert("detector figures".into(), hash_of_file(file)?);
+    }
+    if let Some(Proposals::File(file)) = proposals(&job.settings) {
+        inputs.insert("proposals".into(), hash_of_file(file)?);
     }
     let prompts = prompts(&job.settings)?;
     if !job.settings.roles.models().is_empty() {

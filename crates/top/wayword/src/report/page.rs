@@ -3,7 +3,7 @@
 use super::records::{Counts, Records, RolesPlayed};
 use crate::{
     platforms::has_hops,
-    settings::{Against, Perception, Settings, TargetMode},
+    settings::{Perception, Settings, Sources, TargetMode},
 };
 use serde::Serialize;
 use std::path::Path;
@@ -121,9 +121,16 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         TargetMode::Given => "given to the writer",
         TargetMode::Free => "the writer's choice",
     };
-    let against = match settings.evidence {
-        Against::Labels => "labels if there are any, else captions",
-        Against::Captions => "captions only",
+    let Sources { labels, captions, detector } = settings.evidence;
+    let heard = match (captions, detector) {
+        (true, true) => "captions and the detector",
+        (false, true) => "the detector only",
+        (_, false) => "captions only",
+    };
+    let against = if labels {
+        format!("labels if there are any, else {}", heard.trim_end_matches(" only"))
+    } else {
+        heard.to_owned()
     };
     let calibration = settings.calibration.as_deref().map(|path| ("Calibration of labels", file(path)));
     let mut told = vec![
@@ -132,12 +139,13 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         ("Views", views.to_owned()),
         ("Questions", questions),
         ("Object of the task", target.to_owned()),
-        ("Texts are checked against", against.to_owned()),
+        ("Texts are checked against", against),
         ("Repairs", format!("at most {}", settings.repairs)),
         ("Texts written, of which one is kept", settings.candidates.to_string()),
         ("Seed", settings.seed.to_string()),
     ];
     told.extend(calibration);
+    told.extend(settings.roles.detector.clone().map(|name| ("Detector", name)));
     told.extend(settings.reject_ambiguous.then(|| ("Ambiguous texts", "rejected".to_owned())));
     if !settings.scan.is_empty() {
         told.insert(1, ("Scenes", settings.scan.join(", ")));

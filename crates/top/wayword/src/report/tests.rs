@@ -79,6 +79,7 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<F
             wayword: "0.0.0".into(),
             asker: "rules".into(),
             answerer: "labels".into(),
+            detector: None,
             summariser: "rules".into(),
             writer: "rules".into(),
             checked_against: "labels".into(),

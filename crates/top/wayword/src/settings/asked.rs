@@ -1,6 +1,6 @@
 //! What flags and the settings file ask for, group by group: each group is written once, and both are read into it.
 
-use super::{Against, AskedRoles, Perception, Providers, Service, TargetMode};
+use super::{AskedRoles, Perception, Providers, Service, Sources, TargetMode};
 use crate::{platforms, styles};
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use serde::Deserialize;
@@ -158,9 +158,18 @@ writing:
         /// number that R2R has. [default: 1]
         #[arg(long, value_name = "N")]
         pub per_path: Option<usize>,
-        /// Check texts against the platform's labels if it has any, or only against the captions. [default: labels]
-        #[arg(long)]
-        pub evidence: Option<Against>,
+        /// Check texts against these, separated by commas: labels (where the platform has them; else captions), captions, and detector
+        /// (what --detector finds and misses). [default: labels; with a detector labels,captions,detector]
+        #[arg(long, value_name = "SOURCES")]
+        pub evidence: Option<Sources>,
+        /// What `wayword perceive --detector` measured of the detector. Without it nothing that the detector misses is taken to be
+        /// absent.
+        #[arg(long, value_name = "FILE")]
+        pub detector_figures: Option<PathBuf>,
+        /// What the detector looks for in every view, whatever the captions name: off, or a file with a name on each line.
+        /// [default: household things, and what the style's texts name]
+        #[arg(long, value_name = "off|FILE")]
+        pub proposals: Option<PathBuf>,
         /// Shares by the names of objects that `wayword calibrate` made. The texts are held against a closed world, where absence
         /// counts in full, so it changes only what labels answer in a dialogue about things that they do not list: "No" or "I am not
         /// sure".

@@ -3,6 +3,7 @@
 mod asked;
 mod roles;
 mod service;
+mod sources;
 
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,7 @@ use wayword_synthesis::{
 pub use asked::{Asked, AskedPlatform, Draw, Frames, Walks, Writing};
 pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, can_play, is_in_process, is_model};
 pub use service::{Providers, Service};
+pub use sources::Sources;
 
 /// What a run does.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -74,7 +76,13 @@ pub struct Settings {
     pub limit: Option<usize>,
     /// What texts are checked against.
     #[serde(default)]
-    pub evidence: Against,
+    pub evidence: Sources,
+    /// What was measured of the detector.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detector_figures: Option<PathBuf>,
+    /// What the detector looks for by itself: nothing (`off`), or the names of a file; `None` for the built-in names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub proposals: Option<PathBuf>,
     /// What the user's own data says of single names of objects, for the answers of labels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<PathBuf>,
@@ -142,17 +150,6 @@ impl Perception {
     }
 }
 
-/// What texts are checked against.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "snake_case")]
-pub enum Against {
-    /// The platform's labels where it has them, else the captions.
-    #[default]
-    Labels,
-    /// Only the captions, as on a platform without labels.
-    Captions,
-}
-
 /// Who chooses the object of the closing task.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
@@ -207,6 +204,8 @@ impl Asked {
             ("--data", &settings.data),
             ("--episodes", &settings.episodes),
             ("--calibration", &settings.calibration),
+            ("--detector-figures", &settings.detector_figures),
+            ("--proposals", &settings.proposals),
             ("--prompts", &settings.roles.prompts),
         ] {
             nameable(flag, path.as_deref())?;
@@ -270,6 +269,7 @@ impl Asked {
         let roles = roles.resolve()?;
         let (repairs, candidates) = if is_model(&roles.write) { (REPAIRS_OF_MODELS, 1) } else { (REPAIRS, CANDIDATES) };
         let perception = writing.perception.unwrap_or_else(|| Perception::of(&roles.see));
+        let evidence = evidence(&writing, &roles)?;
         let styles = writing.style.filter(|styles| !styles.is_empty());
         Ok(Settings {
             platform: platform.name().to_owned(),
@@ -291,13 +291,32 @@ impl Asked {
             per_path: writing.per_path.unwrap_or(1),
             seed: draw.seed.unwrap_or(0),
             limit: draw.limit,
-            evidence: writing.evidence.unwrap_or_default(),
+            evidence,
+            detector_figures: writing.detector_figures,
+            proposals: writing.proposals,
             calibration: writing.calibration,
             reject_ambiguous: writing.reject_ambiguous.unwrap_or(false),
             no_route: writing.no_route.unwrap_or(false),
             roles,
             inputs: BTreeMap::new(),
         })
+    }
+}
+
+/// What texts are checked against. What only a detector uses is refused without one.
+fn evidence(writing: &Writing, roles: &Roles) -> Result<Sources, Error> {
+    let evidence = writing.evidence.unwrap_or_else(|| Sources::usual(roles.detector.is_some()));
+    let without = [
+        ("--evidence detector", evidence.detector),
+        ("--detector-figures", writing.detector_figures.is_some()),
+        ("--proposals", writing.proposals.is_some()),
+    ];
+    match without.iter().find(|(_, is_asked)| *is_asked && roles.detector.is_none()) {
+        Some((flag, _)) => Err(Error::usage(
+            format!("{flag} has no effect without a detector"),
+            "name one, as in --detector hf/google/owlv2-base-patch16-ensemble, or leave it out",
+        )),
+        None => Ok(evidence),
     }
 }
 

@@ -37,6 +37,10 @@ group! {
         /// Who writes: rules, or a model. [default: the model of --llm, else rules]
         #[arg(long, value_name = "MODEL")]
         pub write: Option<String>,
+        /// Detector that looks for things in the pictures, as hf/ORG/NAME: what it finds is seen, and what captions name and it misses
+        /// is doubted. It runs inside this program.
+        #[arg(long, value_name = "MODEL")]
+        pub detector: Option<String>,
         /// Show the model that writes the pictures ahead of the frames, at most 16 of a path, besides their descriptions: as in
         /// --write openai/gpt-4.1-mini --write-sees. A provider that takes no pictures is refused.
         #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
@@ -96,6 +100,9 @@ pub struct Roles {
     pub summarise: String,
     /// Who writes.
     pub write: String,
+    /// Who looks for things in the pictures, if anybody does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detector: Option<String>,
     /// Whether the model that writes is shown the pictures of the frames.
     #[serde(default, skip_serializing_if = "is_false")]
     pub write_sees: bool,
@@ -121,6 +128,7 @@ impl Default for Roles {
             see: LABELS.to_owned(),
             summarise: RULES.to_owned(),
             write: RULES.to_owned(),
+            detector: None,
             write_sees: false,
             finish: Finish::default(),
             base_url: None,
@@ -172,6 +180,7 @@ impl AskedRoles {
             see: self.see.map_or(Ok(default.see), |name| named("--see", name, LABELS))?,
             summarise: text(self.summarise, "--summarise", &default.summarise)?,
             write,
+            detector: self.detector.map(detects).transpose()?,
             write_sees,
             finish: self.finish.unwrap_or_default(),
             base_url: self.base_url,
@@ -193,6 +202,17 @@ fn named(flag: &str, name: String, embedded: &str) -> Result<String, Error> {
     ))
 }
 
+/// A detector's name.
+fn detects(name: String) -> Result<String, Error> {
+    if is_in_process(&name) {
+        return Ok(name);
+    }
+    Err(Error::usage(
+        format!("--detector {name}: detectors run inside this program, and their names begin with hf/"),
+        "give one as in --detector hf/google/owlv2-base-patch16-ensemble",
+    ))
+}
+
 /// Whether a role can have that name: `rules` or `labels`, or provider/model.
 #[must_use]
 pub fn can_play(name: &str, embedded: &str) -> bool {
@@ -205,7 +225,7 @@ impl Roles {
     #[must_use]
     pub fn models(&self) -> Vec<&str> {
         let mut models: Vec<&str> = Vec::new();
-        for name in [&self.ask, &self.see, &self.summarise, &self.write] {
+        for name in [&self.ask, &self.see, &self.summarise, &self.write].into_iter().chain(&self.detector) {
             if is_model(name) && !models.contains(&name.as_str()) {
                 models.push(name);
             }

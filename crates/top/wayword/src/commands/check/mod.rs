@@ -1,5 +1,6 @@
 //! `wayword check`.
 
+mod detecting;
 mod held;
 mod of_run;
 mod report;
@@ -14,8 +15,9 @@ use crate::{
     output::Output,
     pipeline::panoramas,
     platforms::{self, Remembering},
-    settings::{Asked, Settings},
+    settings::{Asked, Settings, Sources},
 };
+use detecting::Eyes;
 use held::Held;
 use rayon::prelude::*;
 use report::Shown;
@@ -45,15 +47,20 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
         without_route: args.no_route,
         reject_ambiguous: args.reject_ambiguous,
         calibration: args.calibration.as_deref(),
+        eyes: None,
+        sources: None,
     };
     if let Some(run) = &args.run {
         return of_run::check_file(&args.file, run, how);
     }
-    check_file(&args.file, &Asked::from(args.platform.clone()).resolve()?, how, output)
+    let settings = Asked::from(args.platform.clone()).resolve()?;
+    let eyes = Eyes::open(&args.detecting, &settings, output)?;
+    let how = How { eyes: eyes.as_ref(), sources: args.detecting.evidence, ..how };
+    check_file(&args.file, &settings, how, output)
 }
 
 /// How the texts of a file are checked.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Clone, Copy, Default)]
 pub struct How<'a> {
     /// The style that every text has to keep to.
     pub style: Option<&'a str>,
@@ -67,6 +74,10 @@ pub struct How<'a> {
     pub reject_ambiguous: bool,
     /// A file of what the user's own data says of single names.
     pub calibration: Option<&'a FilePath>,
+    /// What looks for what the texts name.
+    eyes: Option<&'a Eyes>,
+    /// Whether labels count, and the detector; both where `None`.
+    sources: Option<Sources>,
 }
 
 /// Checks every instruction of a file.
@@ -133,8 +144,13 @@ impl Checking<'_> {
         let Self { platform, how, .. } = *self;
         let world = Remembering::new(platform);
         let views = panoramas(&world, &walk.path)?;
-        let mut evidence =
-            Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let sources = how.sources.unwrap_or(Sources::usual(true));
+        let labels = if sources.labels { Evidence::from_labels(&walk.path, &views) } else { None };
+        let detected = match how.eyes.filter(|_| labels.is_none() && sources.detector) {
+            Some(eyes) => eyes.evidence(&world, walk)?,
+            None => None,
+        };
+        let mut evidence = labels.or(detected).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let source = evidence.source;
         let world_of = |text: &Text| world_of(text, how.world, platform.name(), source);
         let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);

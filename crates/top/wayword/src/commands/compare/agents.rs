@@ -97,7 +97,11 @@ pub(super) struct Thresholds {
 ///
 /// # Errors
 /// When an agent is named twice, or the file names an unknown agent or threshold.
-pub(super) fn parameters(names: &[String], grounder: &str, file: Option<&Path>) -> Result<Thresholds, Error> {
+pub(super) fn parameters(
+    names: &[String],
+    (grounder, detector): (&str, Option<&str>),
+    file: Option<&Path>,
+) -> Result<Thresholds, Error> {
     if let Some(name) = (1..names.len()).find(|at| names[..*at].contains(&names[*at])).map(|at| &names[at]) {
         return Err(Error::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
     }
@@ -108,7 +112,7 @@ pub(super) fn parameters(names: &[String], grounder: &str, file: Option<&Path>) 
     }
     let mut all = Thresholds::default();
     for name in names {
-        let default = Parameters::default_of(name, grounder);
+        let default = Parameters::default_of(name, scored_by(name, grounder, detector));
         let own = tables.remove(name);
         let is_reader = name == READER && !grounder.starts_with("labels");
         let changed = match (name.as_str(), own) {
@@ -128,6 +132,13 @@ pub(super) fn parameters(names: &[String], grounder: &str, file: Option<&Path>) 
         (Some(unused), Some(file)) => Err(wrong(file, &format!("no agent of this command is named {unused}"))),
         _ => Ok(all),
     }
+}
+
+/// What scores phrases for an agent, by the name that its default thresholds have: one that walks by boxes takes the
+/// detector's scores.
+pub(super) fn scored_by<'a>(agent: &str, grounder: &'a str, detector: Option<&str>) -> &'a str {
+    let by_boxes = agent == BY_DETECTOR && detector.is_some();
+    if by_boxes || detector == Some(grounder) { super::kept::BY_NAME } else { grounder }
 }
 
 fn wrong(file: &Path, problem: &str) -> Error {

@@ -1,9 +1,9 @@
 //! Grounders by their names.
 
 use super::kept::Kept;
-use crate::{encoder, error::Error, output::Output};
+use crate::{calls::Calls, encoder, error::Error, output::Output};
 use std::sync::Arc;
-use wayword_core::Grounder;
+use wayword_core::{Detector, Grounded, Grounder};
 use wayword_navigation::grounders::{Lexical, Sees, Similar};
 
 /// What scores views in a comparison.
@@ -12,6 +12,8 @@ pub(super) struct Grounders {
     pub(super) views: Box<dyn Grounder>,
     /// For agents that look for boxes.
     pub(super) boxes: Box<dyn Grounder>,
+    /// What a score of a box is, where a detector gives it.
+    pub(super) score: Option<String>,
     /// Whether they look at pictures.
     pub(super) need_pictures: bool,
 }
@@ -21,35 +23,60 @@ impl Grounders {
     ///
     /// # Errors
     /// When there is none of that name, or its model cannot be loaded.
-    pub(super) fn open(kept: &Kept, output: &Output) -> Result<Self, Error> {
+    pub(super) fn open(kept: &Kept, calls: Option<&Calls>, output: &Output) -> Result<Self, Error> {
+        let detector = kept.detector.as_deref().zip(calls).map(|(name, calls)| calls.detector(name)).transpose()?;
+        if kept.detects_views() {
+            return Self::by_detector(detector);
+        }
+        let (score, need_pictures) = (detector.as_ref().map(score), detector.is_some());
+        let detector = detector.map(|detector| Box::new(Grounded::new(detector)) as Box<dyn Grounder>);
+        let of = |labels: &dyn Fn(Sees) -> Box<dyn Grounder>, detector: Option<Box<dyn Grounder>>| Self {
+            views: labels(Sees::Views),
+            boxes: detector.unwrap_or_else(|| labels(Sees::Boxes)),
+            score: score.clone(),
+            need_pictures,
+        };
         match (kept.grounder.as_str(), &kept.encoder) {
             ("labels", Some(encoder)) => {
                 let encoder = Arc::from(encoder::encoder(encoder)?);
-                let grounder = |sees| Box::new(Similar::new(sees, Arc::clone(&encoder)));
-                Ok(Self { views: grounder(Sees::Views), boxes: grounder(Sees::Boxes), need_pictures: false })
+                Ok(of(&|sees| Box::new(Similar::new(sees, Arc::clone(&encoder))), detector))
             }
-            ("labels/lexical", _) => {
-                let grounder = |sees| Box::new(Lexical::new(sees));
-                Ok(Self { views: grounder(Sees::Views), boxes: grounder(Sees::Boxes), need_pictures: false })
-            }
+            ("labels/lexical", _) => Ok(of(&|sees| Box::new(Lexical::new(sees)), detector)),
             (name, _) if name.starts_with("hf/") => {
-                let by_detector = kept.agents.iter().any(|agent| agent == super::agents::BY_DETECTOR);
-                if by_detector {
+                let walks_by_boxes = kept.agents.iter().any(|agent| agent == super::agents::BY_DETECTOR);
+                if walks_by_boxes && detector.is_none() {
                     return Err(Error::usage(
-                        format!("--grounder {name}: glip-nav needs a detector, and this program has no GLIP network"),
-                        "leave glip-nav out with --agents clip-nav,seq-clip-nav, or use --grounder labels, whose detector reads labels",
+                        format!("--grounder {name}: glip-nav needs a detector, and none is named"),
+                        "name one, as in --detector hf/google/owlv2-base-patch16-ensemble, or leave glip-nav out with --agents clip-nav,seq-clip-nav",
                     ));
                 }
-                // No agent looks for boxes then.
-                let boxes = Box::new(Lexical::new(Sees::Boxes));
-                Ok(Self { views: clip(name, output)?, boxes, need_pictures: true })
+                // Without a detector, no agent looks for boxes.
+                let boxes = detector.unwrap_or_else(|| Box::new(Lexical::new(Sees::Boxes)));
+                Ok(Self { views: clip(name, output)?, boxes, score, need_pictures: true })
             }
             (name, _) => Err(Error::usage(
                 format!("--grounder {name}: there is no such grounder"),
-                "give labels, labels/lexical, or a CLIP model as hf/openai/clip-vit-base-patch32",
+                "give labels, labels/lexical, detector (with --detector), or a CLIP model as hf/openai/clip-vit-base-patch32",
             )),
         }
     }
+
+    /// The detector scores whole views too.
+    fn by_detector(detector: Option<Arc<dyn Detector>>) -> Result<Self, Error> {
+        let Some(detector) = detector else {
+            return Err(Error::usage(
+                "--grounder detector: no detector is named",
+                "name one, as in --detector hf/google/owlv2-base-patch16-ensemble",
+            ));
+        };
+        let score = Some(score(&detector));
+        let views = Box::new(Grounded::new(Arc::clone(&detector)));
+        Ok(Self { views, boxes: Box::new(Grounded::new(detector)), score, need_pictures: true })
+    }
+}
+
+fn score(detector: &Arc<dyn Detector>) -> String {
+    detector.scoring().means.to_owned()
 }
 
 #[cfg(feature = "local")]

@@ -44,6 +44,9 @@ pub(crate) struct Kept {
     /// The sentence encoder, if the grounder needs one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) encoder: Option<String>,
+    /// The detector, if one was named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) detector: Option<String>,
     /// What splits instructions into phrases.
     pub(crate) split: String,
     /// Base URL of that model, if it is not its provider's default.
@@ -70,6 +73,9 @@ pub(crate) struct Kept {
 
 /// Format of the walks. It also changes when agents decide otherwise.
 const FORMAT: u32 = 1;
+
+/// The grounder that is the detector of `--detector`.
+pub(super) const BY_NAME: &str = "detector";
 
 /// The set of the episodes' own instructions.
 pub(super) const ORIGINAL: &str = "original";
@@ -99,7 +105,9 @@ impl Kept {
             }
             instructions.push((name, source));
         }
-        let thresholds = super::agents::parameters(&args.agents, &args.grounder, args.parameters.as_deref())?;
+        let detector = settings.roles.detector.as_deref();
+        let thresholds =
+            super::agents::parameters(&args.agents, (&args.grounder, detector), args.parameters.as_deref())?;
         Ok(Self {
             format: FORMAT,
             platform: settings.platform.clone(),
@@ -111,6 +119,7 @@ impl Kept {
             agents: args.agents.clone(),
             grounder: args.grounder.clone(),
             encoder: (args.grounder == "labels").then(|| args.encoder.clone()),
+            detector: settings.roles.detector.clone(),
             split: settings.roles.ask.clone(),
             base_url: settings.roles.base_url.clone(),
             swaps: swaps(&args.swaps)?,
@@ -121,6 +130,11 @@ impl Kept {
             parameters: thresholds.of_phrases,
             inputs,
         })
+    }
+
+    /// Whether the detector scores whole views too.
+    pub(super) fn detects_views(&self) -> bool {
+        self.grounder == BY_NAME || self.detector.as_deref() == Some(&*self.grounder)
     }
 
     /// Whether the agent that reads and knows the map was asked for.

@@ -59,8 +59,8 @@ impl<'a> Judge<'a> {
             (None, None) => Rule::Visible,
         };
         let clusters = items.iter().map(|item| (item.episode.id.as_str(), episodes::cluster(&item.episode))).collect();
-        // A grounder of labels can name an object; one that looks at pictures cannot.
-        let names_objects = kept.grounder.starts_with("labels");
+        // Labels name objects, and boxes point to them; a grounder that compares whole pictures does neither.
+        let names_objects = kept.grounder.starts_with("labels") || kept.detects_views();
         let without_object = blind.map(|item| item.episode.id.as_str());
         Ok(Self { demands, clusters, rule, names_objects, without_object })
     }
@@ -112,6 +112,7 @@ pub(super) fn comparison(
         episodes: last_part(&kept.episodes.to_string_lossy()),
         grounder: crew.grounders.views.name().to_owned(),
         detector: crew.grounders.boxes.name().to_owned(),
+        detector_score: crew.grounders.score.clone(),
         encoder: kept.encoder.clone(),
         splitter: crew.splitter.name().to_owned(),
         rule: judge.rule,
@@ -142,5 +143,5 @@ fn is_swept(kept: &Kept) -> bool {
     let has_sweep =
         kept.grounder == "labels/lexical" || kept.encoder.as_deref().is_some_and(|encoder| encoder != "words");
     let is_default = |(agent, of): (&String, &Parameters)| *of == Parameters::default_of(agent, &kept.grounder);
-    has_sweep && kept.parameters.iter().all(is_default)
+    kept.detector.is_none() && has_sweep && kept.parameters.iter().all(is_default)
 }

@@ -15,6 +15,7 @@ use crate::{
     in_order::{cores, in_order},
     interrupt,
     item::Item,
+    looking_for::Lookout,
     output::Output,
     pipeline::{RunPlatform, make},
     plan::Plan,
@@ -115,8 +116,9 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     let mut run = RunFolder::open(folder, settings)?;
     let data = WorldData::of(folder)?;
     let calls = plan.models.open(|| run.id(), output)?;
-    let team = Team::new(settings, calls.as_ref(), platform.as_ref())?;
     let Plan { items, styles, .. } = &plan;
+    let lookout = Lookout::of(settings, calls.as_ref(), styles)?;
+    let team = Team::new(settings, calls.as_ref(), platform.as_ref())?.with(lookout);
 
     let numbers = |measured: &Measured| {
         let style = measured.style.name.clone();

@@ -1,5 +1,6 @@
 //! `wayword perceive`: how well captions fit the labels of their views, for each way of asking.
 
+mod detector;
 mod table;
 mod views;
 
@@ -10,6 +11,7 @@ use crate::{
     error::{Error, Exit},
     in_order::{cores, in_order},
     interrupt,
+    looking_for::Lookout,
     losses::Losses,
     output::Output,
     plan::Plan,
@@ -19,14 +21,18 @@ use crate::{
     team::Team,
 };
 use serde::Serialize;
-use table::Table;
+use std::path::Path;
+use table::{Table, WithDetector};
 use views::{Labelled, labelled_views};
-use wayword_core::{Caption, ModelError, Platform};
+use wayword_checks::detected::DetectorFigures;
+use wayword_core::{Caption, Gaze, Look, ModelError, Observation, Platform};
 use wayword_synthesis::{
+    detection::{Seeker, seek},
     observe::talk_about,
     perception::{Score, score},
 };
 
+pub use detector::{OfDetector, measure as measure_detector};
 pub use table::Row;
 
 /// What was measured.
@@ -40,6 +46,9 @@ pub struct Measured {
     pub roles: String,
     /// One per way of asking.
     pub rows: Vec<Row>,
+    /// What was measured of the detector, where one was named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detector: Option<OfDetector>,
     /// Captions, where they were asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shown: Vec<Shown>,
@@ -74,6 +83,9 @@ pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
     let platform = platforms::open(&job.settings)?;
     let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or_else(|| ways(&job.settings));
     let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;
+    if let (Some(file), Some(detector)) = (&args.figures, &measured.detector) {
+        keep(file, &detector.figures)?;
+    }
     output.data(&measured, Table(&measured));
     Ok(if measured.rows.iter().all(|row| row.failed == 0) { Exit::Done } else { Exit::WithLoss })
 }
@@ -107,11 +119,18 @@ pub fn perceive(
         views: views.len(),
         roles: roles(&job.settings),
         rows: Vec::new(),
+        detector: None,
         shown: Vec::new(),
     };
+    let lookout = Lookout::of(&job.settings, calls.as_ref(), &[])?;
+    measured.detector =
+        lookout.as_ref().map(|lookout| measure_detector(&plan, extent.views, lookout, output)).transpose()?;
     for &perception in ways {
         let settings = Settings { perception, ..job.settings.clone() };
-        let (captions, row) = measure(platform, &settings, calls.as_ref(), &views, output)?;
+        let (captions, mut row) = measure(platform, &settings, calls.as_ref(), &views, output)?;
+        if let Some(lookout) = &lookout {
+            row.with_detector = Some(corrected(platform, &captions, &views, lookout)?);
+        }
         measured.rows.push(row);
         let shown = captions.iter().zip(&views).filter_map(|(captioned, view)| {
             let Captioned { caption, score } = captioned.as_ref()?;
@@ -172,6 +191,32 @@ fn measure(
     bar.finish_and_clear();
     let row = Row::of(settings.perception, &captions, asked() - before);
     Ok((captions, row))
+}
+
+/// How well the captions fit after a detector looked at each view: what it did not find is left out of their words.
+fn corrected(
+    platform: &dyn Platform,
+    captions: &[Option<Captioned>],
+    views: &[Labelled],
+    lookout: &Lookout,
+) -> Result<WithDetector, Error> {
+    let seeker = Seeker { nouns: &[], ..lookout.seeker() };
+    let mut scores = Vec::new();
+    for (captioned, view) in captions.iter().zip(views) {
+        let Some(captioned) = captioned else { continue };
+        let gaze = Gaze { heading: view.view.pose.heading, horizontal_fov_rad: view.view.horizontal_fov_rad };
+        let look = Look { gaze, caption: captioned.caption.clone() };
+        let mut seen = [Observation { looks: vec![look], ..Observation::default() }];
+        seek(platform, &view.path, &mut seen, seeker)?;
+        scores.extend(seen[0].looks.iter().map(|look| score(&look.caption.text, &view.labels)));
+    }
+    Ok(WithDetector::of(captions.iter().flatten().map(|captioned| &captioned.score), &scores))
+}
+
+/// Writes what was measured of a detector.
+fn keep(file: &Path, figures: &DetectorFigures) -> Result<(), Error> {
+    let text = toml::to_string(figures).map_err(|error| Error::usage(error.to_string(), "report this as a defect"))?;
+    std::fs::write(file, text).map_err(Error::io(file, "write"))
 }
 
 /// A view that the model did not caption is left out and counted. When no more calls are possible, the measurement

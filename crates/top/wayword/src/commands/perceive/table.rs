@@ -7,6 +7,7 @@ use crate::{
 };
 use serde::Serialize;
 use std::fmt;
+use wayword_synthesis::perception::Score;
 
 /// One way of asking.
 #[derive(Debug, Serialize)]
@@ -31,6 +32,43 @@ pub struct Row {
     pub questions_per_view: f64,
     /// Calls to models per view, those among them that the ledger answered.
     pub calls_per_view: f64,
+    /// How well they fit after a detector looked, where one was named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with_detector: Option<WithDetector>,
+}
+
+/// Captions after a detector looked at their views.
+#[derive(Debug, Serialize)]
+pub struct WithDetector {
+    /// Hallucinated objects that it struck out.
+    pub struck_out: usize,
+    /// Objects that a label confirms and that it struck out all the same.
+    pub lost: usize,
+    /// Share of the objects still named that a label agrees with.
+    pub precision: f64,
+    /// Share of them that no label confirms.
+    pub hallucination_rate: f64,
+    /// Share of the different labels of a view that its caption names.
+    pub recall: f64,
+}
+
+impl WithDetector {
+    pub(super) fn of<'a>(before: impl Iterator<Item = &'a Score>, after: &[Score]) -> Self {
+        let (mut named_before, mut wrong_before) = (0, 0);
+        for score in before {
+            named_before += score.named;
+            wrong_before += score.hallucinated.len();
+        }
+        let sum = |count: fn(&Score) -> usize| after.iter().map(count).sum::<usize>();
+        let (named, wrong) = (sum(|score| score.named), sum(|score| score.hallucinated.len()));
+        Self {
+            struck_out: wrong_before.saturating_sub(wrong),
+            lost: (named_before - wrong_before).saturating_sub(named - wrong),
+            precision: share(named - wrong, named),
+            hallucination_rate: share(wrong, named),
+            recall: share(sum(|score| score.found), sum(|score| score.labelled)),
+        }
+    }
 }
 
 impl Row {
@@ -51,6 +89,7 @@ impl Row {
             captions_with_hallucinations: share(with_hallucinations, captioned.len()),
             questions_per_view: share(sum(|one| one.caption.transcript.len()), captioned.len()),
             calls_per_view: calls as f64 / captions.len().max(1) as f64,
+            with_detector: None,
         }
     }
 }
@@ -65,7 +104,7 @@ pub(super) struct Table<'a>(pub(super) &'a Measured);
 
 impl fmt::Display for Table<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Measured { platform, views, roles, rows, shown } = self.0;
+        let Measured { platform, views, roles, rows, shown, .. } = self.0;
         writeln!(f, "{} of {platform}; {roles}", count(*views, "view"))?;
         if roles.contains(&format!("answered by {LABELS}")) {
             writeln!(
@@ -89,6 +128,17 @@ impl fmt::Display for Table<'_> {
                 row.questions_per_view,
                 row.calls_per_view
             )?;
+            if let Some(with) = &row.with_detector {
+                writeln!(
+                    f,
+                    "  with the detector {:>8.1}%  {:>5.1}%  {:>11.1}%  {} hallucinated struck out, {} others lost",
+                    100.0 * with.precision,
+                    100.0 * with.recall,
+                    100.0 * with.hallucination_rate,
+                    with.struck_out,
+                    with.lost
+                )?;
+            }
             if row.failed > 0 {
                 let views = count(row.failed, "view");
                 writeln!(f, "           no caption for {views}; the reasons are printed above")?;
@@ -106,6 +156,9 @@ impl fmt::Display for Table<'_> {
         )?;
         if let Some(verdict) = which_pays(rows) {
             write!(f, "\n\n{verdict}")?;
+        }
+        if let Some(detector) = &self.0.detector {
+            write!(f, "\n\n{detector}")?;
         }
         for one in shown {
             write!(

@@ -226,11 +226,13 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
         ));
     }
     if comparison.rows.iter().any(|row| detects(&row.agent)) {
-        notes.push(format!(
-            "GLIP-Nav uses a label detector ({}{}), because the GLIP network is not in this program.",
-            name(&about.detector),
-            nature(&about.detector)
-        ));
+        let (detector, nature) = (name(&about.detector), nature(&about.detector));
+        notes.push(if about.detector.starts_with("labels") {
+            format!("GLIP-Nav uses a label detector ({detector}{nature}): --detector names a network.")
+        } else {
+            let score = about.detector_score.as_deref().unwrap_or("the score of its best box");
+            format!("GLIP-Nav walks by the boxes of {detector}, each phrase looked for by itself where phrases meet: {score}.")
+        });
     }
     if about.grounder.starts_with("labels") && comparison.sets.len() > 1 {
         notes.push(

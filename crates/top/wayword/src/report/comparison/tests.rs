@@ -159,7 +159,7 @@ fn every_form_has_the_notes() {
             "clustered by path",
             "mean over its texts",
             "ground-truth labels, not perception",
-            "the GLIP network is not in this program",
+            "--detector names a network",
             "not shown to do worse with another path",
             "its rows say nothing about the instructions",
             "encoded by some-encoder",

@@ -1,0 +1,91 @@
+//! The detector of a run, what is known of it, and what it looks for by itself.
+
+use crate::{calls::Calls, error::Error, settings::Settings, styles::Measured, text_file};
+use std::{path::Path, sync::Arc};
+use wayword_checks::detected::DetectorFigures;
+use wayword_core::Detector;
+use wayword_synthesis::detection::{Seeker, listed, usual};
+
+/// A detector that looks for things along paths.
+pub struct Lookout {
+    detector: Arc<dyn Detector>,
+    figures: DetectorFigures,
+    nouns: Vec<String>,
+}
+
+/// What a detector looks for by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Proposals<'a> {
+    /// Nothing.
+    Off,
+    /// The names of a file.
+    File(&'a Path),
+}
+
+/// What the settings say of it; `None` for the built-in names.
+pub(crate) fn proposals(settings: &Settings) -> Option<Proposals<'_>> {
+    let asked = settings.proposals.as_deref()?;
+    Some(if asked == Path::new("off") { Proposals::Off } else { Proposals::File(asked) })
+}
+
+impl Lookout {
+    /// A detector with what was measured of it, which looks for these names by itself.
+    #[must_use]
+    pub fn new(detector: Arc<dyn Detector>, figures: DetectorFigures, nouns: Vec<String>) -> Self {
+        Self { detector, figures, nouns }
+    }
+
+    /// The detector of the settings; `None` where they name none.
+    ///
+    /// # Errors
+    /// When it cannot be loaded, or a file that the settings name cannot be used.
+    pub fn of(settings: &Settings, calls: Option<&Calls>, styles: &[Measured]) -> Result<Option<Self>, Error> {
+        let (Some(name), Some(calls)) = (&settings.roles.detector, calls) else { return Ok(None) };
+        let nouns = nouns(settings, styles)?;
+        let detector = calls.detector(name)?;
+        let figures = figures(settings.detector_figures.as_deref(), detector.as_ref())?;
+        Ok(Some(Self::new(detector, figures, nouns)))
+    }
+
+    /// What looks for things along a path.
+    #[must_use]
+    pub fn seeker(&self) -> Seeker<'_> {
+        Seeker { detector: self.detector.as_ref(), figures: &self.figures, nouns: &self.nouns }
+    }
+
+    /// The detector's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.detector.name()
+    }
+}
+
+/// The names that the detector of the settings looks for by itself.
+///
+/// # Errors
+/// When the file has none.
+pub(crate) fn nouns(settings: &Settings, styles: &[Measured]) -> Result<Vec<String>, Error> {
+    match proposals(settings) {
+        Some(Proposals::Off) => Ok(Vec::new()),
+        Some(Proposals::File(file)) => listed(&text_file::read(file, "read the proposals")?).ok_or_else(|| {
+            let problem = format!("--proposals {}: it names nothing, or over 300 things", file.display());
+            Error::usage(problem, "give a file with a name on each line, or off")
+        }),
+        None => Ok(usual(styles.iter().map(|measured| &measured.style))),
+    }
+}
+
+/// What was measured of a detector, or what is assumed.
+pub(crate) fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<DetectorFigures, Error> {
+    let (name, found_from) = (detector.name(), detector.scoring().found_from);
+    let Some(file) = file else { return Ok(DetectorFigures::assumed(name, found_from)) };
+    let hint = format!("make it with: wayword perceive --detector {name} --platform PLATFORM --figures FILE");
+    let figures = DetectorFigures::read(&text_file::read(file, "read the detector's figures")?).map_err(|error| {
+        Error::usage(format!("{} has no figures of a detector: {}", file.display(), error.message()), &*hint)
+    })?;
+    if figures.detector != name {
+        let problem = format!("{} was measured with {}, and not with {name}", file.display(), figures.detector);
+        return Err(Error::usage(problem, hint));
+    }
+    Ok(figures)
+}
