@@ -21,6 +21,7 @@ mod memory;
 mod models;
 mod ops;
 mod picture;
+mod swin;
 mod text;
 mod weights;
 

@@ -8,9 +8,10 @@ mod activation;
 mod attention;
 mod embedding;
 mod half;
-mod kernels;
+pub(crate) mod kernels;
 mod linear;
 mod norm;
+pub(crate) mod tiles;
 
 pub(crate) use activation::Activation;
 pub(crate) use attention::{Attention, Past, causal};
