@@ -3,7 +3,7 @@
 //! Gives the same numbers as transformers' processors of CLIP, BLIP and BLIP-2 with Pillow.
 
 mod config;
-mod resample;
+pub(crate) mod resample;
 
 use crate::{Device, LocalError};
 use candle_core::Tensor;

@@ -6,18 +6,18 @@ use std::path::Path;
 
 /// `config.json`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Config {
-    pub(super) vocab_size: usize,
-    pub(super) hidden_size: usize,
-    pub(super) num_hidden_layers: usize,
-    pub(super) num_attention_heads: usize,
-    pub(super) intermediate_size: usize,
-    pub(super) hidden_act: Activation,
-    pub(super) max_position_embeddings: usize,
+pub(crate) struct Config {
+    pub(crate) vocab_size: usize,
+    pub(crate) hidden_size: usize,
+    pub(crate) num_hidden_layers: usize,
+    pub(crate) num_attention_heads: usize,
+    pub(crate) intermediate_size: usize,
+    pub(crate) hidden_act: Activation,
+    pub(crate) max_position_embeddings: usize,
     #[serde(default = "two")]
-    pub(super) type_vocab_size: usize,
+    pub(crate) type_vocab_size: usize,
     #[serde(default = "epsilon")]
-    pub(super) layer_norm_eps: f64,
+    pub(crate) layer_norm_eps: f64,
     model_type: Option<String>,
 }
 
@@ -61,17 +61,20 @@ impl Config {
             problem,
             hint: "choose a sentence encoder with BERT's architecture, such as sentence-transformers/all-MiniLM-L6-v2",
         };
-        if let Some(kind) = config.model_type.as_deref().filter(|kind| *kind != "bert") {
-            return Err(wrong(format!("model_type: {kind} is not bert")));
-        }
-        let heads = config.num_attention_heads;
-        if heads == 0 || !config.hidden_size.is_multiple_of(heads) {
-            return Err(wrong(format!(
-                "num_attention_heads: {heads} does not divide hidden_size {}",
-                config.hidden_size
-            )));
-        }
+        config.check().map_err(wrong)?;
         Ok(config)
+    }
+
+    /// Checks what computations rely on.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        if let Some(kind) = self.model_type.as_deref().filter(|kind| *kind != "bert") {
+            return Err(format!("model_type: {kind} is not bert"));
+        }
+        let (size, heads) = (self.hidden_size, self.num_attention_heads);
+        if heads == 0 || !size.is_multiple_of(heads) {
+            return Err(format!("num_attention_heads: {heads} does not divide hidden_size {size}"));
+        }
+        Ok(())
     }
 
     /// The most tokens of a text.

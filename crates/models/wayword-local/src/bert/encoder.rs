@@ -9,7 +9,7 @@ use crate::{
 use candle_core::{Result, Tensor};
 
 /// Computes states from tokens.
-pub(super) struct Encoder {
+pub(crate) struct Encoder {
     words: Embedding,
     positions: Embedding,
     /// Added to every token: the first of the token types, because a text is not a pair.
@@ -30,7 +30,7 @@ struct Layer {
 }
 
 impl Encoder {
-    pub(super) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+    pub(crate) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
         let (size, epsilon) = (config.hidden_size, config.layer_norm_eps);
         let embeddings = weights.sub("embeddings");
         let kinds = embeddings.embedding("token_type_embeddings", config.type_vocab_size, size)?;
@@ -48,8 +48,13 @@ impl Encoder {
 
     /// From ids [batch, length] and a bias [batch, 1, 1, length] that hides padding, states [batch, length, size].
     pub(super) fn of(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
-        let length = ids.dim(1)? as u32;
-        let positions = self.positions.of(&Tensor::arange(0, length, ids.device())?)?;
+        self.of_at(ids, &Tensor::arange(0, ids.dim(1)? as u32, ids.device())?, mask)
+    }
+
+    /// The same for tokens at other positions [length] than one after another, and with a mask that can be broadcast to
+    /// [batch, heads, length, length].
+    pub(crate) fn of_at(&self, ids: &Tensor, positions: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let positions = self.positions.of(positions)?;
         let x =
             self.words.of(ids)?.broadcast_add(&positions.broadcast_add(&self.kind.to_dtype(positions.dtype())?)?)?;
         self.layers.iter().try_fold(self.norm.of(&x)?, |x, layer| layer.of(&x, mask))

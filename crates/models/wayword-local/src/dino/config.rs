@@ -1,10 +1,12 @@
 //! The `config.json` of the family. Missing values are those that transformers takes.
 
+use super::backbone::swin_config;
 use crate::{
     LocalError,
     bert::BertConfig,
     json::{self, size_problem},
     ops::Activation,
+    swin::SwinConfig,
 };
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -39,8 +41,7 @@ pub(super) struct Config {
     pub(super) epsilon: f64,
     pub(super) activation: Activation,
     pub(super) text: BertConfig,
-    /// `backbone_config` as it is written.
-    pub(super) backbone: Map<String, Value>,
+    pub(super) backbone: SwinConfig,
 }
 
 /// The settings of the encoder's or the decoder's layers.
@@ -144,6 +145,11 @@ impl Written {
         };
         self.check()?;
         let text = text_config(self.text_config)?;
+        let backbone = swin_config(self.backbone_config).map_err(|problem| format!("backbone_config.{problem}"))?;
+        if self.num_feature_levels < backbone.outputs.len() {
+            let (levels, outputs) = (self.num_feature_levels, backbone.outputs.len());
+            return Err(format!("num_feature_levels: {levels} are fewer than the backbone's {outputs}"));
+        }
         Ok(Config {
             family,
             size: self.d_model,
@@ -168,7 +174,7 @@ impl Written {
             epsilon: self.layer_norm_eps,
             activation: self.activation_function,
             text,
-            backbone: self.backbone_config,
+            backbone,
         })
     }
 
@@ -230,7 +236,8 @@ fn text_config(given: Map<String, Value>) -> Result<BertConfig, String> {
     });
     let Value::Object(mut all) = defaults else { return Err("text_config: there are no defaults".to_owned()) };
     all.extend(given.into_iter().filter(|(_, value)| !value.is_null()));
-    let config: BertConfig = serde_path_to_error::deserialize(Value::Object(all)).map_err(|e| format!("text_config: {e}"))?;
+    let config: BertConfig =
+        serde_path_to_error::deserialize(Value::Object(all)).map_err(|e| format!("text_config: {e}"))?;
     config.check().map_err(|problem| format!("text_config.{problem}"))?;
     Ok(config)
 }

@@ -1,7 +1,11 @@
 //! Multi-scale deformable attention: each query looks at a few places of each level, which it chooses itself.
 
 use super::{config::LayersConfig, features::Level};
-use crate::{LocalError, ops::Linear, weights::Scope};
+use crate::{
+    LocalError,
+    ops::{Linear, kernels::slice},
+    weights::Scope,
+};
 use candle_core::{CpuStorage, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
@@ -97,10 +101,7 @@ fn place((from, step): Start, level: Level, offset: [f32; 2]) -> (f32, f32) {
     let (width, height) = (level.width as f32, level.height as f32);
     match step {
         None => (from[0] * width + offset[0] - 0.5, from[1] * height + offset[1] - 0.5),
-        Some(step) => (
-            (from[0] + offset[0] * step[0]) * width - 0.5,
-            (from[1] + offset[1] * step[1]) * height - 0.5,
-        ),
+        Some(step) => ((from[0] + offset[0] * step[0]) * width - 0.5, (from[1] + offset[1] * step[1]) * height - 0.5),
     }
 }
 
@@ -116,15 +117,22 @@ impl CustomOp2 for Look<'_> {
         "deformable-attention"
     }
 
-    fn cpu_fwd(&self, v: &CpuStorage, v_layout: &Layout, p: &CpuStorage, p_layout: &Layout) -> Result<(CpuStorage, Shape)> {
+    fn cpu_fwd(
+        &self,
+        v: &CpuStorage,
+        v_layout: &Layout,
+        p: &CpuStorage,
+        p_layout: &Layout,
+    ) -> Result<(CpuStorage, Shape)> {
         let ((cells, size), (queries, width)) = (v_layout.shape().dims2()?, p_layout.shape().dims2()?);
         let held: usize = self.levels.iter().map(|level| level.height * level.width).sum();
         if held != cells || self.from.len() != queries || width != 3 * self.shape.count() {
             bail!("{cells} cells and {queries} queries do not fit together");
         }
-        let (values, points) = (crate::ops::slice::<f32>(v, v_layout)?, crate::ops::slice::<f32>(p, p_layout)?);
+        let (values, points) = (slice::<f32>(v, v_layout)?, slice::<f32>(p, p_layout)?);
         let mut mixed = vec![0.0; queries * size];
-        let pieces = mixed.par_chunks_mut(PIECE * size).zip(points.par_chunks(PIECE * width)).zip(self.from.par_chunks(PIECE));
+        let pieces =
+            mixed.par_chunks_mut(PIECE * size).zip(points.par_chunks(PIECE * width)).zip(self.from.par_chunks(PIECE));
         pieces.for_each(|((mixed, points), from)| {
             let mut shares = vec![0.0; self.shape.levels * self.shape.points];
             for ((mixed, points), &from) in mixed.chunks_mut(size).zip(points.chunks(width)).zip(from) {

@@ -2,15 +2,16 @@
 
 use crate::{
     LocalError,
-    ops::{Activation, Attention, LayerNorm, Linear},
+    ops::{
+        Activation, Attention, LayerNorm, Linear,
+        kernels::{is_ours, with_numbers},
+        tiles::{each_tile, room},
+    },
     weights::Scope,
 };
 use candle_core::{Result, Tensor};
 
 type Loaded<T> = std::result::Result<T, LocalError>;
-
-/// How many rows pass through wide layers at a time, so that what is between them stays in the processor's caches.
-const ROWS: usize = 512;
 
 /// Multi-head attention with layers for queries, keys, values and the result.
 pub(super) struct Mixing {
@@ -28,6 +29,7 @@ pub(super) struct Feed {
     narrow: Linear,
     norm: LayerNorm,
     activation: Activation,
+    inner: usize,
 }
 
 /// Layers with a ReLU between them.
@@ -67,21 +69,36 @@ impl Feed {
             narrow: weights.linear("fc2", inner, size)?,
             norm: weights.layer_norm(norm, size, epsilon)?,
             activation,
+            inner,
         })
     }
 
     /// Of x [1, rows, size].
     pub(super) fn of(&self, x: &Tensor) -> Result<Tensor> {
-        let through = |x: &Tensor| {
-            let narrow = self.narrow.of(&self.wide.of_then(x, self.activation)?)?;
-            self.norm.of(&(narrow + x)?)
-        };
-        let rows = x.dim(1)?;
-        if !x.device().is_cpu() || rows <= ROWS {
-            return through(x);
+        if is_ours(x) {
+            return self.on_processor(x);
         }
-        let piece = |from: usize| through(&x.narrow(1, from, ROWS.min(rows - from))?);
-        Tensor::cat(&(0..rows).step_by(ROWS).map(piece).collect::<Result<Vec<_>>>()?, 1)
+        let narrow = self.narrow.of(&self.wide.of_then(x, self.activation)?)?;
+        self.norm.of(&(narrow + x)?)
+    }
+
+    /// By tiles of rows, so that what is between two layers stays in the processor's cache.
+    fn on_processor(&self, x: &Tensor) -> Result<Tensor> {
+        let (_, count, size) = x.dims3()?;
+        let mut y = vec![0.0; count * size];
+        with_numbers(x, |x| {
+            each_tile(&mut y, size, |from, y, memory| {
+                let rows = y.len() / size;
+                let x = &x[from * size..(from + rows) * size];
+                let [wide, narrow] = room(memory, [rows * self.inner, rows * size]);
+                self.wide.rows(x, wide)?;
+                self.activation.map_here(wide);
+                self.narrow.rows(wide, narrow)?;
+                narrow.iter_mut().zip(x).for_each(|(narrow, x)| *narrow += x);
+                self.norm.rows(narrow, y)
+            })
+        })?;
+        Tensor::from_vec(y, (1, count, size), x.device())
     }
 }
 

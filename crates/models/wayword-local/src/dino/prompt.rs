@@ -85,7 +85,11 @@ pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], longest: usize) -
         if Prompt::new().with(ids.len()) > longest {
             return Err(LocalError::Compute {
                 model: "detector".to_owned(),
-                problem: format!("a phrase of {} tokens is too long, {} are the most: {phrase:?}", ids.len(), longest - 3),
+                problem: format!(
+                    "a phrase of {} tokens is too long, {} are the most: {phrase:?}",
+                    ids.len(),
+                    longest - 3
+                ),
             });
         }
         if open.with(ids.len()) > longest {

@@ -32,7 +32,7 @@ pub(super) fn packed(weight: &[f32], outputs: usize, inputs: usize) -> PackedBMa
 pub(super) const PIECE: usize = 16 << 10;
 
 /// The numbers of a contiguous tensor.
-pub(super) fn slice<'a, T: WithDType>(storage: &'a CpuStorage, layout: &Layout) -> Result<&'a [T]> {
+pub(crate) fn slice<'a, T: WithDType>(storage: &'a CpuStorage, layout: &Layout) -> Result<&'a [T]> {
     let Some((from, to)) = layout.contiguous_offsets() else { bail!("a tensor is not contiguous") };
     let all = storage.as_slice::<T>()?;
     match all.get(from..to) {
