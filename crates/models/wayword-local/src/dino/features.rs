@@ -169,3 +169,23 @@ fn grouped(x: &Tensor) -> Result<Tensor> {
     let normed = off.broadcast_div(&variance.sqrt()?)?.to_dtype(x.dtype())?;
     normed.reshape((GROUPS, cells, each))?.transpose(0, 1)?.contiguous()?.reshape((cells, size))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use candle_core::Device;
+
+    #[test]
+    fn squares_and_a_layer_are_a_convolution() {
+        for (height, width) in [(5, 8), (6, 3), (1, 1)] {
+            let numbers = |count: usize| (0..count).map(|at| (at * 7 % 11) as f32 - 5.0).collect::<Vec<_>>();
+            let map = Tensor::from_vec(numbers(height * width * 2), (height, width, 2), &Device::Cpu).unwrap();
+            let kernel = Tensor::from_vec(numbers(3 * 2 * 9), (3, 2, 3, 3), &Device::Cpu).unwrap();
+            let rows = kernel.permute((0, 2, 3, 1)).unwrap().contiguous().unwrap().reshape((3, 18)).unwrap();
+            let ours = Linear::new(&rows, None).unwrap().of(&squares(&map).unwrap()).unwrap();
+            let theirs = map.permute((2, 0, 1)).unwrap().unsqueeze(0).unwrap().conv2d(&kernel, 1, 2, 1, 1).unwrap();
+            let theirs = theirs.squeeze(0).unwrap().permute((1, 2, 0)).unwrap();
+            assert_eq!(ours.to_vec3::<f32>().unwrap(), theirs.to_vec3::<f32>().unwrap());
+        }
+    }
+}

@@ -4,7 +4,7 @@ use super::{
     config::{Config, Family},
     decoder::{Decoder, Seen},
     encoder::EncoderLayer,
-    features::{Eye, Features},
+    features::{Eye, Features, Level},
     picture::Shown,
     prompt::{self, Prompt},
     queries::Chooser,
@@ -103,11 +103,8 @@ impl Dino {
         text: &Text,
         picked: impl FnOnce(Vec<u32>) -> Vec<u32>,
     ) -> Computed<Seen> {
-        let levels = &features.levels[..];
         let (cells, read) = self.encoded(features, text)?;
-        let candidates = self.chooser.candidates(&cells, &read, levels)?;
-        let picked = picked(self.chooser.best(&candidates));
-        self.decoder.of(self.chooser.boxes(&candidates, &picked)?, &cells, &read, levels)
+        self.decoded((&cells, &read), &features.levels, picked)
     }
 
     /// The states of cells and tokens behind the encoder.
@@ -120,11 +117,24 @@ impl Dino {
             .try_fold(begin, |(cells, states), layer| layer.of(&cells, &states, (&positions, levels), text))
     }
 
+    /// What the queries see in the encoder's states.
+    fn decoded(
+        &self,
+        (cells, read): (&Tensor, &Tensor),
+        levels: &[Level],
+        picked: impl FnOnce(Vec<u32>) -> Vec<u32>,
+    ) -> Computed<Seen> {
+        let candidates = self.chooser.candidates(cells, read, levels)?;
+        let picked = picked(self.chooser.best(&candidates));
+        self.decoder.of(self.chooser.boxes(&candidates, &picked)?, cells, read, levels)
+    }
+
     fn wrong(&self, error: &candle_core::Error) -> LocalError {
         LocalError::compute(&self.name, error)
     }
 }
 
+/// What tests look into.
 #[cfg(test)]
 impl Dino {
     pub(super) fn pixels(&self, image: &Image) -> Tensor {
@@ -134,5 +144,19 @@ impl Dino {
     pub(super) fn candidates(&self, features: &Features, text: &Text) -> Computed<Vec<f32>> {
         let (cells, read) = self.encoded(features, text)?;
         Ok(self.chooser.candidates(&cells, &read, &features.levels)?.scores)
+    }
+
+    /// Sets the edges of pictures.
+    pub(super) fn shows(&mut self, shortest: usize, longest: usize) {
+        self.shown.set_edges(shortest, longest);
+    }
+
+    /// Features that are not kept.
+    pub(super) fn fresh(&self, image: &Image) -> Computed<Features> {
+        self.eye.of(&self.pixels(image))
+    }
+
+    pub(super) fn seen_behind(&self, features: &Features, (cells, read): (&Tensor, &Tensor)) -> Computed<Seen> {
+        self.decoded((cells, read), &features.levels, |best| best)
     }
 }

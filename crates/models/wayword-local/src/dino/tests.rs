@@ -1,5 +1,7 @@
 //! Compares each stage with PyTorch (`fixtures/make_dino.py`), and the operators with each other.
 
+mod true_sizes;
+
 use super::{
     model::Dino,
     prompt::{Prompt, prompts},
@@ -14,16 +16,16 @@ use wayword_core::Image;
 
 const PHRASES: [&str; 4] = ["red door", "Stairs", "a kitchen tables lamp", "sink"];
 
-pub(super) fn folder(name: &str) -> PathBuf {
+fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
 }
 
-pub(super) fn load(folder: &Path) -> Dino {
+fn load(folder: &Path) -> Dino {
     Dino::load("hf/test/dino", folder, &Device::cpu(), Precision::F32).unwrap()
 }
 
 /// The same formula as in `fixtures/make_dino.py`.
-pub(super) fn drawn(width: u32, height: u32) -> Image {
+fn drawn(width: u32, height: u32) -> Image {
     let byte = |at: u32| {
         let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
         ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
@@ -31,11 +33,11 @@ pub(super) fn drawn(width: u32, height: u32) -> Image {
     Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
 }
 
-pub(super) fn numbers(x: &Tensor) -> Vec<f32> {
+fn numbers(x: &Tensor) -> Vec<f32> {
     x.to_dtype(DType::F32).unwrap().flatten_all().unwrap().to_vec1().unwrap()
 }
 
-pub(super) fn off(ours: &[f32], theirs: &[f32]) -> f32 {
+fn off(ours: &[f32], theirs: &[f32]) -> f32 {
     assert_eq!(ours.len(), theirs.len());
     ours.iter().zip(theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
@@ -100,4 +102,22 @@ fn phrases_become_as_few_prompts_as_hold_them() {
     assert!(prompts(&tokenizer, &[], 9).unwrap().is_empty());
     let error = prompts(&tokenizer, &["a red door a red door a red door"], 9).unwrap_err().to_string();
     assert!(error.contains("9 tokens") && error.contains("6 are the most"), "{error}");
+}
+
+#[test]
+fn a_picture_gets_the_size_that_transformers_gives_it() {
+    // By `get_size_with_aspect_ratio` of transformers, with edges of 72 and 97 pixels.
+    let dino = load(&folder("dino"));
+    for ((width, height), size) in [
+        ((75, 50), (65, 97)),
+        ((59, 70), (85, 72)),
+        ((72, 90), (90, 72)),
+        ((50, 50), (72, 72)),
+        ((640, 480), (72, 96)),
+        ((97, 72), (72, 97)),
+        ((100, 300), (97, 32)),
+    ] {
+        let pixels = dino.pixels(&drawn(width, height));
+        assert_eq!(pixels.dims(), [1, 3, size.0, size.1], "{width} x {height}");
+    }
 }
