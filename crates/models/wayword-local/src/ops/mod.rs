@@ -6,6 +6,7 @@
 
 mod activation;
 mod attention;
+pub(crate) mod conv3;
 mod embedding;
 mod half;
 pub(crate) mod kernels;
