@@ -9,14 +9,14 @@ use std::{
     sync::Arc,
 };
 use wayword_core::{DVec3, Detector, Grounded, Grounder, Heading, Image, ModelError, Pose, View};
-use wayword_local::{Device, Glip, GlipFiles, LocalError, Precision};
+use wayword_local::{Device, Glip, GlipFiles, Hub, HubConfig, LocalError, ModelName, Precision, Progress};
 
 fn fixture() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/glip")
 }
 
 fn load_from(folder: &Path, short: usize) -> Result<Glip, LocalError> {
-    let files = GlipFiles { weights: folder.join("glip.pth"), tokenizer: folder.to_owned() };
+    let files = GlipFiles { weights: folder.join("glip.pth"), tokenizer: folder.to_owned(), identity: String::new() };
     Glip::load("hf/test/glip:glip.pth", &files, short, &Device::cpu(), Precision::F32)
 }
 
@@ -111,6 +111,32 @@ fn view(image: Option<Image>) -> View {
     View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.5, image.map(Arc::new), None)
 }
 
+/// Remembers what was told.
+#[derive(Default)]
+struct Notes(std::sync::Mutex<Vec<String>>);
+
+impl Progress for Notes {
+    fn bytes(&self, _: &str, _: u64, _: Option<u64>) {}
+
+    fn told(&self, note: &str) {
+        self.0.lock().unwrap().push(note.to_owned());
+    }
+}
+
+#[test]
+fn a_file_is_found_by_its_name_and_the_licence_is_told() {
+    let cache = tempfile::tempdir().unwrap();
+    let hub = Hub::new(HubConfig { offline: true, ..HubConfig::new(cache.path().to_owned()) }).unwrap();
+    let name = |file: &str| ModelName::parse(&format!("hf/{}", fixture().join(file).display())).unwrap();
+    let notes = Notes::default();
+    let files = GlipFiles::find(&hub, &name("glip.pth"), &notes).unwrap();
+    assert_eq!((files.weights, files.tokenizer), (fixture().join("glip.pth"), fixture()));
+    let notes = notes.0.into_inner().unwrap();
+    assert!(notes.len() == 2 && notes[0].contains("SHA-256") && notes[1] == wayword_local::GLIP_LICENCE, "{notes:?}");
+    let error = GlipFiles::find(&hub, &name(""), &()).unwrap_err().to_string();
+    assert!(error.contains("GLIPModel/GLIP:glip_tiny"), "{error}");
+}
+
 #[test]
 fn a_view_without_a_picture_does_not_fail_the_others() {
     let (glip, case) = (load_from(&fixture(), 96).unwrap(), &cases()[0]);
@@ -159,7 +185,7 @@ fn many_phrases_go_into_several_prompts() {
 #[test]
 fn sixteen_bits_come_near() {
     let case = &cases()[0];
-    let files = GlipFiles { weights: fixture().join("glip.pth"), tokenizer: fixture() };
+    let files = GlipFiles { weights: fixture().join("glip.pth"), tokenizer: fixture(), identity: String::new() };
     let half = Glip::load("half", &files, 96, &Device::cpu(), Precision::Bf16).unwrap();
     let (logits, _) = half.raw(&drawn(case.size), &case.phrases()).unwrap();
     let expected = numbers(&expected()["logits0"]);

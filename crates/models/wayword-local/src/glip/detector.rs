@@ -1,6 +1,7 @@
 //! GLIP as a detector.
 
 use super::{
+    GlipFiles,
     boxes::{Sizes, boxes},
     config::Config,
     head::Said,
@@ -9,13 +10,14 @@ use super::{
 };
 use crate::{
     Device, LocalError, Precision,
+    memory::Budget,
     ops::conv3::Map,
     picture::{Edges, digest},
     text::Tokenizer,
     weights::Weights,
 };
 use candle_core::{Result as Computed, Tensor};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use wayword_core::{Detector, Found, Image, ModelError, Recent, Scoring, View};
 
 /// The most memory for the features of pictures that were seen lately, bytes.
@@ -27,15 +29,6 @@ const DEVIATION: [f32; 3] = [57.375, 57.12, 58.395];
 
 /// The longest edge of a picture for the model, pixels.
 const LONGEST_EDGE: usize = 1333;
-
-/// Where the files of a GLIP are.
-#[derive(Debug, Clone)]
-pub struct GlipFiles {
-    /// The checkpoint, in the form of the original. Sizes other than GLIP-T's are read from `config.json` beside it.
-    pub weights: PathBuf,
-    /// The folder of BERT's `tokenizer.json`.
-    pub tokenizer: PathBuf,
-}
 
 /// GLIP. Its score is the root of the phrase's probability times the box's centreness, as the original gives it, and is 0
 /// where no box has a probability of more than 0.05.
@@ -84,6 +77,7 @@ impl Glip {
             });
         }
         let weights = Weights::of_file(&files.weights, device, precision)?;
+        Budget::default().take(name, weights.bytes())?;
         let model = Model::load(&weights, &config)?;
         let kept = (FEATURES_BYTES / model.bytes(edges.most_pixels()).max(1)).max(1);
         Ok(Self {

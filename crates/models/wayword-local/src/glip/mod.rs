@@ -5,6 +5,7 @@ mod bend;
 mod boxes;
 mod config;
 mod detector;
+mod files;
 mod fusion;
 mod head;
 mod model;
@@ -12,7 +13,8 @@ mod prompt;
 mod pyramid;
 mod tower;
 
-pub use detector::{Glip, GlipFiles};
+pub use detector::Glip;
+pub use files::GlipFiles;
 
 /// The repository whose `tokenizer.json` GLIP's texts are cut with: the checkpoints come without one.
 pub const GLIP_TOKENIZER: &str = "hf/google-bert/bert-base-uncased";

@@ -14,7 +14,7 @@ pub(super) enum Value {
     Other,
     Whole(i64),
     Text(Rc<str>),
-    Tuple(Rc<[Value]>),
+    Tuple(Rc<Tuple>),
     /// A list, by its number. What lists hold is not needed.
     List,
     /// A table, by its number.
@@ -23,6 +23,17 @@ pub(super) enum Value {
     Storage(Rc<Storage>),
     Tensor(Rc<Place>),
 }
+
+/// Values in a row.
+#[derive(Debug)]
+pub(super) struct Tuple {
+    values: Vec<Value>,
+    /// How deep tuples lie in tuples. It is bounded, because they are dropped one within the other.
+    depth: usize,
+}
+
+/// How deep tuples may lie in tuples.
+const DEEPEST: usize = 16;
 
 /// The names that a checkpoint may call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,7 +123,7 @@ impl Machine<'_> {
                 b'G' => self.skip(8)?,
                 b'}' => self.table(),
                 b']' => self.stack.push(Value::List),
-                b')' => self.stack.push(Value::Tuple(Rc::new([]))),
+                b')' => self.join(Vec::new())?,
                 b'K' => self.whole(1)?,
                 b'M' => self.whole(2)?,
                 b'J' => self.whole(4)?,
@@ -239,21 +250,30 @@ impl Machine<'_> {
 
     fn tuple(&mut self) -> Result<(), String> {
         let values = self.since_mark()?;
-        self.stack.push(Value::Tuple(values.into()));
+        self.join(values)
+    }
+
+    fn join(&mut self, values: Vec<Value>) -> Result<(), String> {
+        let depth = |value: &Value| if let Value::Tuple(tuple) = value { tuple.depth + 1 } else { 0 };
+        let depth = values.iter().map(depth).max().unwrap_or(0);
+        if depth > DEEPEST {
+            return Err(format!("its tuples lie deeper than {DEEPEST} in each other"));
+        }
+        self.stack.push(Value::Tuple(Rc::new(Tuple { values, depth })));
         Ok(())
     }
 
     fn short_tuple(&mut self, length: usize) -> Result<(), String> {
         let mut values = (0..length).map(|_| self.pop()).collect::<Result<Vec<_>, _>>()?;
         values.reverse();
-        self.stack.push(Value::Tuple(values.into()));
-        Ok(())
+        self.join(values)
     }
 
     /// A storage: ("storage", type, key, device, count).
     fn storage(&mut self) -> Result<(), String> {
         let Value::Tuple(parts) = self.pop()? else { return Err("a storage is not described".to_owned()) };
-        let [Value::Text(_), Value::Known(kind), Value::Text(key), Value::Text(_), Value::Whole(count)] = &parts[..]
+        let [Value::Text(_), Value::Known(kind), Value::Text(key), Value::Text(_), Value::Whole(count)] =
+            &parts.values[..]
         else {
             return Err("a storage is not described as PyTorch does".to_owned());
         };
@@ -270,9 +290,9 @@ impl Machine<'_> {
     fn call(&mut self) -> Result<(), String> {
         let (given, called) = (self.pop()?, self.pop()?);
         match (called, given) {
-            (Value::Known(Known::OrderedDict), Value::Tuple(given)) if given.is_empty() => self.table(),
+            (Value::Known(Known::OrderedDict), Value::Tuple(given)) if given.values.is_empty() => self.table(),
             (Value::Known(Known::Rebuild), Value::Tuple(given)) => {
-                let place = place(&given).ok_or("a tensor is not described as PyTorch does")?;
+                let place = place(&given.values).ok_or("a tensor is not described as PyTorch does")?;
                 self.stack.push(Value::Tensor(Rc::new(place)));
             }
             _ => return Err("it calls something that is not to be called so".to_owned()),
@@ -318,7 +338,7 @@ fn place(given: &[Value]) -> Option<Place> {
         };
         values.iter().map(length).collect::<Option<Vec<usize>>>()
     };
-    let (shape, strides) = (lengths(shape)?, lengths(strides)?);
+    let (shape, strides) = (lengths(&shape.values)?, lengths(&strides.values)?);
     let offset = u64::try_from(*offset).ok()?;
     (shape.len() == strides.len()).then(|| Place { storage: Rc::clone(storage), offset, shape, strides })
 }

@@ -279,6 +279,7 @@ mod tests {
             (b"R", "not there"),
             (b"(K\x01u", "no table"),
             (b"", "cut off"),
+            (&[&[b'N'][..], &[0x85; 100_000]].concat(), "deeper than 16"),
         ] {
             let error = told(folder.path(), pickle, &[1]).unwrap_err();
             assert!(error.contains("made.pth") && error.contains(problem), "{problem}: {error}");
