@@ -7,11 +7,13 @@
 use super::config::HeadConfig;
 use crate::{
     LocalError,
-    ops::{LayerNorm, Linear},
+    ops::{
+        LayerNorm, Linear,
+        matrix::{plus_times, softmax, times},
+    },
     weights::Scope,
 };
 use candle_core::{D, Result, Tensor};
-use candle_nn::ops::softmax_last_dim;
 
 const EPSILON: f64 = 1e-5;
 
@@ -76,31 +78,28 @@ impl Fusion {
         // [heads, tokens, width]: what a position's features are multiplied with; [heads, tokens, 1]: what is added.
         let folded = keys.matmul(&self.query.0)?;
         let added = keys.matmul(&self.query.1)?;
-        let outputs = split(self.values_l.of(&l)?)?.matmul(&self.out_v.0)?;
-        let mut to_v: Option<Tensor> = None;
+        // What the tokens give, as large as it is to be added.
+        let outputs = split(self.values_l.of(&l)?)?.matmul(&self.out_v.0)?.broadcast_mul(&self.gamma_v)?;
+        let bias = (&self.out_v.1 * &self.gamma_v)?;
+        // The residuals begin from the normed features.
+        let mut new_v = v.clone();
         let mut pooled = Vec::new();
         let each = (MOST_COLUMNS / tokens.max(1)).clamp(1, self.heads);
         for begin in (0..self.heads).step_by(each) {
             let heads = each.min(self.heads - begin);
             let of_heads = |x: &Tensor| x.narrow(0, begin, heads)?.flatten_to(1);
-            let columns = heads * tokens;
-            let scores = v.matmul(&of_heads(&folded)?.t()?)?;
-            let scores = scores.broadcast_add(&of_heads(&added)?.reshape((1, columns))?)?;
-            let to_text = softmax_last_dim(&scores.t()?.contiguous()?)?;
-            pooled.push(to_text.matmul(&v)?.reshape((heads, tokens, v.dim(1)?))?);
-            let to_vision = softmax_last_dim(&scores.reshape((v.dim(0)?, heads, tokens))?)?.flatten_from(1)?;
-            let part = to_vision.matmul(&of_heads(&outputs)?)?;
-            to_v = Some(match to_v {
-                None => part,
-                Some(sum) => (sum + part)?,
-            });
+            let folded = of_heads(&folded)?;
+            // What is added to all positions alike does not change how they are weighed for a token.
+            let to_text = softmax(&times(&folded, &v.t()?)?)?;
+            pooled.push(times(&to_text, &v)?.reshape((heads, tokens, v.dim(1)?))?);
+            let added = of_heads(&added)?.reshape((1, heads * tokens))?;
+            let scores = times(&v, &folded.t()?)?.broadcast_add(&added)?;
+            let to_vision = softmax(&scores.reshape((v.dim(0)?, heads, tokens))?)?.flatten_from(1)?;
+            new_v = plus_times(&new_v, &to_vision, &of_heads(&outputs)?, (begin == 0).then_some(&bias))?;
         }
-        let Some(to_v) = to_v else { candle_core::bail!("the fusion has no heads") };
-        let to_v = to_v.broadcast_add(&self.out_v.1)?;
         let mixed = Tensor::cat(&pooled, 0)?.matmul(&self.values_v.0.transpose(1, D::Minus1)?.contiguous()?)?;
         let mixed = mixed.broadcast_add(&self.values_v.1)?.transpose(0, 1)?.contiguous()?.flatten_from(1)?;
         let to_l = self.out_l.of(&mixed)?;
-        // The residuals begin from the normed features.
-        Ok(((v + to_v.broadcast_mul(&self.gamma_v)?)?, (l + to_l.broadcast_mul(&self.gamma_l)?)?))
+        Ok((new_v, (l + to_l.broadcast_mul(&self.gamma_l)?)?))
     }
 }

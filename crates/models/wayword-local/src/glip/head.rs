@@ -4,7 +4,7 @@
 use super::{config::Config, fusion::Fusion, numbers, pyramid::LEVELS, tower::Tower};
 use crate::{
     LocalError, bert,
-    ops::{Linear, conv3::Map},
+    ops::{Linear, conv3::Map, matrix::times},
     weights::Scope,
 };
 use candle_core::{DType, Result, Tensor};
@@ -103,7 +103,7 @@ impl Head {
         let say = |(level, scale): (&Map, &f32)| {
             let mut boxes = numbers(self.boxes.of(&level.x)?)?;
             boxes.chunks_exact_mut(5).for_each(|row| row[..4].iter_mut().for_each(|distance| *distance *= scale));
-            let logits = numbers(level.x.matmul(&words)?.broadcast_add(&bias)?)?;
+            let logits = numbers(times(&level.x, &words)?.broadcast_add(&bias)?)?;
             Ok(Said { height: level.height, width: level.width, logits, boxes })
         };
         levels.iter().zip(&self.scales).map(say).collect()

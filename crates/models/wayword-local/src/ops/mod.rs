@@ -11,6 +11,7 @@ mod embedding;
 mod half;
 pub(crate) mod kernels;
 mod linear;
+pub(crate) mod matrix;
 mod norm;
 pub(crate) mod tiles;
 

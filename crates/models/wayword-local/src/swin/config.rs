@@ -113,6 +113,7 @@ impl Names {
     };
 
     /// The names of transformers' checkpoints.
+    #[allow(dead_code, reason = "for backbones of other detectors")]
     pub(crate) const TRANSFORMERS: Self = Self {
         patch: "embeddings.patch_embeddings.projection",
         patch_norm: "embeddings.norm",
