@@ -1,6 +1,6 @@
 //! The configuration files of a sentence encoder.
 
-use crate::{LocalError, json, ops::Activation};
+use crate::{LocalError, json, json::size_problem, ops::Activation};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -19,6 +19,44 @@ pub(crate) struct Config {
     #[serde(default = "epsilon")]
     pub(crate) layer_norm_eps: f64,
     model_type: Option<String>,
+}
+
+/// The sizes of an encoder, where nothing else of it differs from BERT's.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Sizes {
+    pub(crate) vocab_size: usize,
+    pub(crate) hidden_size: usize,
+    pub(crate) num_hidden_layers: usize,
+    pub(crate) num_attention_heads: usize,
+    pub(crate) intermediate_size: usize,
+    pub(crate) max_position_embeddings: usize,
+    pub(crate) type_vocab_size: usize,
+}
+
+/// The most layers. BERT-large has 24.
+const MOST_LAYERS: usize = 64;
+
+impl Sizes {
+    /// What is wrong with the sizes, if anything is.
+    pub(crate) fn problem(&self) -> Option<String> {
+        let (heads, layers) = (self.num_attention_heads, self.num_hidden_layers);
+        let sizes = [
+            ("vocab_size", self.vocab_size),
+            ("hidden_size", self.hidden_size),
+            ("intermediate_size", self.intermediate_size),
+            ("max_position_embeddings", self.max_position_embeddings),
+            ("type_vocab_size", self.type_vocab_size),
+        ];
+        if let Some(problem) = size_problem(&sizes) {
+            return Some(problem);
+        }
+        if heads == 0 || !self.hidden_size.is_multiple_of(heads) {
+            return Some(format!("num_attention_heads: {heads} does not divide hidden_size {}", self.hidden_size));
+        }
+        (!(1..=MOST_LAYERS).contains(&layers))
+            .then(|| format!("num_hidden_layers: {layers} is not from 1 to {MOST_LAYERS}"))
+    }
 }
 
 /// `1_Pooling/config.json`.
@@ -75,6 +113,35 @@ impl Config {
             return Err(format!("num_attention_heads: {heads} does not divide hidden_size {size}"));
         }
         Ok(())
+    }
+
+    /// The configuration of an encoder of these sizes.
+    pub(crate) fn uncased(sizes: &Sizes) -> Self {
+        Self {
+            vocab_size: sizes.vocab_size,
+            hidden_size: sizes.hidden_size,
+            num_hidden_layers: sizes.num_hidden_layers,
+            num_attention_heads: sizes.num_attention_heads,
+            intermediate_size: sizes.intermediate_size,
+            hidden_act: Activation::Gelu,
+            max_position_embeddings: sizes.max_position_embeddings,
+            type_vocab_size: sizes.type_vocab_size,
+            layer_norm_eps: epsilon(),
+            model_type: None,
+        }
+    }
+
+    pub(crate) fn hidden_size(&self) -> usize {
+        self.hidden_size
+    }
+
+    pub(crate) fn vocab_size(&self) -> usize {
+        self.vocab_size
+    }
+
+    /// The most tokens that there are positions for.
+    pub(crate) fn longest_text(&self) -> usize {
+        self.max_position_embeddings
     }
 
     /// The most tokens of a text.

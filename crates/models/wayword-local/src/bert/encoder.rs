@@ -18,7 +18,8 @@ pub(crate) struct Encoder {
     layers: Vec<Layer>,
 }
 
-struct Layer {
+/// One layer of an encoder, also by itself.
+pub(crate) struct Layer {
     qkv: Linear,
     mixed: Linear,
     mixed_norm: LayerNorm,
@@ -47,7 +48,7 @@ impl Encoder {
     }
 
     /// From ids [batch, length] and a bias [batch, 1, 1, length] that hides padding, states [batch, length, size].
-    pub(super) fn of(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+    pub(crate) fn of(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         self.of_at(ids, &Tensor::arange(0, ids.dim(1)? as u32, ids.device())?, mask)
     }
 
@@ -62,7 +63,7 @@ impl Encoder {
 }
 
 impl Layer {
-    fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+    pub(crate) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
         Ok(Self {
             qkv: weights.sub("attention.self").linears(&["query", "key", "value"], size, size)?,
@@ -76,7 +77,8 @@ impl Layer {
         })
     }
 
-    fn of(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+    /// From states [batch, length, size], the same shape.
+    pub(crate) fn of(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let size = x.dim(2)?;
         let qkv = self.qkv.of(x)?;
         let part = |at: usize| qkv.narrow(2, at * size, size);

@@ -4,6 +4,6 @@ mod config;
 mod encoder;
 mod sentences;
 
-pub(crate) use config::Config as BertConfig;
-pub(crate) use encoder::Encoder as BertEncoder;
+pub(crate) use config::{Config, Sizes};
+pub(crate) use encoder::{Encoder, Layer};
 pub use sentences::SentenceEncoder;

@@ -3,7 +3,7 @@
 use super::backbone::swin_config;
 use crate::{
     LocalError,
-    bert::BertConfig,
+    bert::Config as BertConfig,
     json::{self, size_problem},
     ops::Activation,
     swin::SwinConfig,

@@ -7,7 +7,10 @@
 use super::config::Config;
 use crate::{
     LocalError,
-    ops::{LayerNorm, Linear},
+    ops::{
+        LayerNorm, Linear,
+        matrix::{softmax, times},
+    },
     weights::Scope,
 };
 use candle_core::{Result, Tensor};
@@ -83,13 +86,13 @@ impl Fusion {
         let bias = keys.matmul(&self.query_bias)?.flatten_all()?;
         let scores = Linear::new(&rows, Some(bias))?.of(&v)?.reshape((cells, self.heads * tokens))?;
         // A softmax over all cells, and what each token takes from them.
-        let over_cells = candle_nn::ops::softmax_last_dim(&scores.t()?.contiguous()?)?;
-        let pooled = over_cells.matmul(&v.squeeze(0)?)?.reshape((self.heads, tokens, size))?;
+        let over_cells = softmax(&scores.t()?.contiguous()?)?;
+        let pooled = times(&over_cells, &v.squeeze(0)?)?.reshape((self.heads, tokens, size))?;
         let pooled = pooled.matmul(&self.value)?.broadcast_add(&self.value_bias)?;
         let pooled = pooled.transpose(0, 1)?.reshape((1, tokens, width))?;
         let l = (l + self.text_out.of(&pooled)?.broadcast_mul(&self.text_share)?)?;
         // A softmax over the tokens of each head, and what each cell takes from them.
-        let over_tokens = candle_nn::ops::softmax_last_dim(&scores.reshape((cells * self.heads, tokens))?)?;
+        let over_tokens = softmax(&scores.reshape((cells * self.heads, tokens))?)?;
         let values = part(1)?.matmul(&self.out)?.reshape((self.heads * tokens, size))?;
         let mixed = Linear::new(&values.t()?.contiguous()?, Some(self.out_bias.clone()))?;
         let v = (v + mixed.of(&over_tokens.reshape((1, cells, self.heads * tokens))?)?)?;

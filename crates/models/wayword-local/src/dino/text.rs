@@ -1,7 +1,7 @@
 //! The text of a prompt as states: BERT, and a projection to the width of the picture's states.
 
 use super::{config::Config, position, prompt::Prompt};
-use crate::{LocalError, bert::BertEncoder, ops::Linear, weights::Scope};
+use crate::{LocalError, bert::Encoder as BertEncoder, ops::Linear, weights::Scope};
 use candle_core::{DType, Device, Result, Tensor};
 
 /// Computes the states of a prompt's tokens.

@@ -6,10 +6,12 @@
 
 mod activation;
 mod attention;
+pub(crate) mod conv3;
 mod embedding;
 mod half;
 pub(crate) mod kernels;
 mod linear;
+pub(crate) mod matrix;
 mod norm;
 pub(crate) mod tiles;
 
