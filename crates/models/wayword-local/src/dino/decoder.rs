@@ -2,7 +2,7 @@
 
 use super::{
     config::Config,
-    deformable::{Deformable, From},
+    deformable::{Deformable, Origin},
     features::Level,
     heads::Heads,
     layers::{Feed, Mixing, Perceptron},
@@ -125,7 +125,7 @@ impl Layer {
         let states = self.mix_norm.of(&(states + mixed)?)?;
         let read = self.read.of(&(&states + places)?, text, text, None)?;
         let states = self.read_norm.of(&(states + read)?)?;
-        let seen = self.look.of(&(&states + places)?, cells, levels, From::Boxes(boxes))?;
+        let seen = self.look.of(&(&states + places)?, cells, levels, Origin::Boxes(boxes))?;
         self.feed.of(&self.look_norm.of(&(states + seen)?)?)
     }
 }

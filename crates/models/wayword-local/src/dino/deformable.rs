@@ -31,7 +31,7 @@ struct Sampling {
 
 /// Where queries look from.
 #[derive(Clone, Copy)]
-pub(super) enum From<'a> {
+pub(super) enum Origin<'a> {
     /// From the middle of each cell of each level. An offset of 1 is a cell of the level that is looked at.
     Cells,
     /// From boxes by their middle, width and height, as shares of the picture. An offset of 1 is half of the box, divided
@@ -61,7 +61,7 @@ impl Deformable {
     }
 
     /// What queries [1, queries, size] find in cells [1, cells, size].
-    pub(super) fn of(&self, queries: &Tensor, cells: &Tensor, levels: &[Level], from: From<'_>) -> Result<Tensor> {
+    pub(super) fn of(&self, queries: &Tensor, cells: &Tensor, levels: &[Level], from: Origin<'_>) -> Result<Tensor> {
         let value = self.value.of(cells)?.squeeze(0)?;
         let points = self.points.of(queries)?.squeeze(0)?;
         let from = starts(from, levels, self.shape.points);
@@ -86,13 +86,13 @@ impl Sampling {
 /// where it is `None`, a cell.
 type Start = ([f32; 2], Option<[f32; 2]>);
 
-fn starts(from: From<'_>, levels: &[Level], points: usize) -> Vec<Start> {
+fn starts(from: Origin<'_>, levels: &[Level], points: usize) -> Vec<Start> {
     match from {
-        From::Boxes(boxes) => {
+        Origin::Boxes(boxes) => {
             let step = |edge: f32| 0.5 * edge / points as f32;
             boxes.iter().map(|&[x, y, width, height]| ([x, y], Some([step(width), step(height)]))).collect()
         }
-        From::Cells => levels.iter().flat_map(|level| level.middles().map(|middle| (middle, None))).collect(),
+        Origin::Cells => levels.iter().flat_map(|level| level.middles().map(|middle| (middle, None))).collect(),
     }
 }
 
@@ -264,47 +264,4 @@ fn gathered(shape: Sampling, value: &Tensor, points: &Tensor, levels: &[Level], 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use candle_core::Device;
-
-    fn random(shape: &[usize], seed: u64, scale: f32) -> Tensor {
-        let count = shape.iter().product::<usize>() as u64;
-        let draw = |at: u64| {
-            ((wayword_core::seed::derive(seed + at, &["dino"]) >> 40) as f32 / (1 << 23) as f32 - 1.0) * scale
-        };
-        Tensor::from_vec((0..count).map(draw).collect(), shape, &Device::Cpu).unwrap()
-    }
-
-    #[test]
-    fn one_pass_agrees_with_gathers() {
-        let levels = [Level { height: 5, width: 7 }, Level { height: 2, width: 3 }, Level { height: 1, width: 1 }];
-        let shape = Sampling { heads: 2, levels: 3, points: 2 };
-        let values = random(&[35 + 6 + 1, 8], 1, 1.0);
-        let boxes = [[0.1, 0.2, 0.3, 0.4], [0.99, 0.01, 1.5, 0.2], [0.5, 0.5, 0.01, 0.9]];
-        for from in [From::Cells, From::Boxes(&boxes)] {
-            let from = starts(from, &levels, shape.points);
-            // Offsets of some cells, many of which lead out of the picture.
-            let points = random(&[from.len(), 3 * shape.count()], 7, 4.0);
-            let look = Look { shape, levels: &levels, from: &from };
-            let ours = values.apply_op2_no_bwd(&points, &look).unwrap();
-            let theirs = gathered(shape, &values, &points, &levels, &from).unwrap();
-            let off = (&ours - theirs).unwrap().abs().unwrap().max_all().unwrap().to_scalar::<f32>().unwrap();
-            let most = ours.abs().unwrap().max_all().unwrap().to_scalar::<f32>().unwrap();
-            assert!(off < 1e-5 && most > 0.1, "{off} of {most}");
-        }
-    }
-
-    #[test]
-    fn places_that_are_no_numbers_count_nothing() {
-        let level = [Level { height: 2, width: 2 }];
-        let shape = Sampling { heads: 1, levels: 1, points: 1 };
-        let values = random(&[4, 2], 1, 1.0);
-        for offset in [f32::NAN, f32::INFINITY, f32::MAX] {
-            let points = Tensor::new(&[[offset, 0.0, 1.0]], &Device::Cpu).unwrap();
-            let from = starts(From::Boxes(&[[0.5; 4]]), &level, 1);
-            let found = values.apply_op2_no_bwd(&points, &Look { shape, levels: &level, from: &from }).unwrap();
-            assert_eq!(found.to_vec2::<f32>().unwrap(), [[0.0, 0.0]]);
-        }
-    }
-}
+mod tests;

@@ -2,7 +2,7 @@
 
 use super::{
     config::Config,
-    deformable::{Deformable, From},
+    deformable::{Deformable, Origin},
     features::Level,
     fusion::Fusion,
     layers::{Feed, Mixing},
@@ -50,7 +50,7 @@ impl EncoderLayer {
         let placed = (&states + &text.places)?;
         let mixed = self.text_mix.of(&placed, &placed, &states, Some(&text.mask))?;
         let states = self.text_feed.of(&self.text_norm.of(&(states + mixed)?)?)?;
-        let seen = self.look.of(&(&cells + positions)?, &cells, levels, From::Cells)?;
+        let seen = self.look.of(&(&cells + positions)?, &cells, levels, Origin::Cells)?;
         let cells = self.feed.of(&self.norm.of(&(cells + seen)?)?)?;
         Ok((cells, states))
     }

@@ -13,6 +13,10 @@ use candle_core::{Result, Tensor};
 
 type Loaded<T> = std::result::Result<T, LocalError>;
 
+/// The width of a part of wide layers. Rows that are much longer, and a power of 2 apart, would drive each other out of the
+/// cache.
+const PART: usize = 256;
+
 /// Multi-head attention with layers for queries, keys, values and the result.
 pub(super) struct Mixing {
     query: Linear,
@@ -25,11 +29,12 @@ pub(super) struct Mixing {
 
 /// A wide layer, an activation, a narrow layer, and a norm of the sum with the input.
 pub(super) struct Feed {
-    wide: Linear,
-    narrow: Linear,
+    /// The two layers, in parts that go through the processor's cache one after another.
+    parts: Vec<(Linear, Linear)>,
+    /// The width between the two layers of a part.
+    width: usize,
     norm: LayerNorm,
     activation: Activation,
-    inner: usize,
 }
 
 /// Layers with a ReLU between them.
@@ -64,12 +69,21 @@ impl Feed {
         activation: Activation,
         epsilon: f64,
     ) -> Loaded<Self> {
+        let (first, second) = (weights.sub("fc1"), weights.sub("fc2"));
+        let (wide, wide_bias) = (first.tensor("weight", &[inner, size])?, first.tensor("bias", &[inner])?);
+        let (narrow, narrow_bias) = (second.tensor("weight", &[size, inner])?, second.tensor("bias", &[size])?);
+        let width = if wide.device().is_cpu() && inner.is_multiple_of(PART) { PART } else { inner };
+        let part = |from: usize| -> Result<(Linear, Linear)> {
+            let bias = if from == 0 { Some(narrow_bias.clone()) } else { None };
+            let wide = Linear::new(&wide.narrow(0, from, width)?, Some(wide_bias.narrow(0, from, width)?))?;
+            Ok((wide, Linear::new(&narrow.narrow(1, from, width)?.contiguous()?, bias)?))
+        };
+        let parts = (0..inner).step_by(width).map(part).collect::<Result<_>>();
         Ok(Self {
-            wide: weights.linear("fc1", size, inner)?,
-            narrow: weights.linear("fc2", inner, size)?,
+            parts: parts.map_err(|error| first.wrong("weight", &error))?,
+            width,
             norm: weights.layer_norm(norm, size, epsilon)?,
             activation,
-            inner,
         })
     }
 
@@ -78,8 +92,9 @@ impl Feed {
         if is_ours(x) {
             return self.on_processor(x);
         }
-        let narrow = self.narrow.of(&self.wide.of_then(x, self.activation)?)?;
-        self.norm.of(&(narrow + x)?)
+        let part =
+            |sum: Tensor, (wide, narrow): &(Linear, Linear)| sum + narrow.of(&wide.of_then(x, self.activation)?)?;
+        self.norm.of(&self.parts.iter().try_fold(x.clone(), part)?)
     }
 
     /// By tiles of rows, so that what is between two layers stays in the processor's cache.
@@ -90,12 +105,14 @@ impl Feed {
             each_tile(&mut y, size, |from, y, memory| {
                 let rows = y.len() / size;
                 let x = &x[from * size..(from + rows) * size];
-                let [wide, narrow] = room(memory, [rows * self.inner, rows * size]);
-                self.wide.rows(x, wide)?;
-                self.activation.map_here(wide);
-                self.narrow.rows(wide, narrow)?;
-                narrow.iter_mut().zip(x).for_each(|(narrow, x)| *narrow += x);
-                self.norm.rows(narrow, y)
+                let [between, sum] = room(memory, [rows * self.width, rows * size]);
+                sum.copy_from_slice(x);
+                for (wide, narrow) in &self.parts {
+                    wide.rows(x, between)?;
+                    self.activation.map_here(between);
+                    narrow.add_rows(between, sum)?;
+                }
+                self.norm.rows(sum, y)
             })
         })?;
         Tensor::from_vec(y, (1, count, size), x.device())

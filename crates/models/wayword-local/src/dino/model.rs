@@ -18,10 +18,8 @@ use wayword_core::{Image, Recent};
 /// The memory that the features of recent pictures may take, bytes.
 const KEPT_BYTES: usize = 256 << 20;
 
-/// Pixels that a cell of the finest level covers, and how many cells all levels have together for each of those: a
-/// quarter for each coarser level.
-const CELL_PX: usize = 64;
-const ALL_LEVELS: (usize, usize) = (4, 3);
+/// Pixels of an edge of the patches that the backbone begins with.
+const PATCH_PX: usize = 4;
 
 /// MM Grounding DINO, LLMDet or Grounding DINO: finds things in pictures by phrases.
 ///
@@ -56,7 +54,9 @@ impl Dino {
         Budget::new(None).take(name, weights.bytes().saturating_add(KEPT_BYTES as u64))?;
         let (all, model) = (weights.scope(""), weights.scope("model"));
         let layer = |at: usize| EncoderLayer::load(&model.sub("encoder.layers").sub(at), &config);
-        let of_one = (shown.most_pixels() / CELL_PX + 1) * ALL_LEVELS.0 / ALL_LEVELS.1 * config.size * size_of::<f32>();
+        // The finest level, and a quarter as many cells for each coarser one.
+        let cell_px = PATCH_PX << config.backbone.outputs.first().copied().unwrap_or_default();
+        let of_one = (shown.most_pixels() / (cell_px * cell_px) + 1) * 4 / 3 * config.size * size_of::<f32>();
         Ok(Self {
             name: name.to_owned(),
             family: config.family,
@@ -79,7 +79,7 @@ impl Dino {
             let text = self.reader.of(&prompt, &self.device.0);
             text.map(|text| (prompt, text)).map_err(|error| self.wrong(&error))
         };
-        prompt::prompts(&self.tokenizer, phrases, self.longest)?.into_iter().map(read).collect()
+        prompt::prompts(&self.name, &self.tokenizer, phrases, self.longest)?.into_iter().map(read).collect()
     }
 
     /// The features of a picture, which are kept.

@@ -69,11 +69,16 @@ impl Prompt {
 }
 
 /// All phrases in as few prompts as hold them in their order, with at most `longest` tokens each. A phrase without
-/// letters is in none. Dots and question marks within a phrase are left out, because they would cut it in two.
+/// letters is in none. `name` is the model's, for errors. Dots and question marks within a phrase are left out, because they would cut it in two.
 ///
 /// # Errors
 /// When a phrase alone is too long.
-pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], longest: usize) -> Result<Vec<Prompt>, LocalError> {
+pub(super) fn prompts(
+    name: &str,
+    tokenizer: &Tokenizer,
+    phrases: &[&str],
+    longest: usize,
+) -> Result<Vec<Prompt>, LocalError> {
     let mut done = Vec::new();
     let mut open = Prompt::new();
     for (at, phrase) in phrases.iter().enumerate() {
@@ -84,7 +89,7 @@ pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], longest: usize) -
         }
         if Prompt::new().with(ids.len()) > longest {
             return Err(LocalError::Compute {
-                model: "detector".to_owned(),
+                model: name.to_owned(),
                 problem: format!(
                     "a phrase of {} tokens is too long, {} are the most: {phrase:?}",
                     ids.len(),

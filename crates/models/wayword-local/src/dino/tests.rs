@@ -86,7 +86,7 @@ fn every_stage_agrees_with_pytorch() {
 #[test]
 fn phrases_become_as_few_prompts_as_hold_them() {
     let tokenizer = Tokenizer::load(&folder("dino")).unwrap();
-    let made = prompts(&tokenizer, &["Red  door", " ?. ", "stairs. lamp", "sinks"], 9).unwrap();
+    let made = prompts("hf/test/dino", &tokenizer, &["Red  door", " ?. ", "stairs. lamp", "sinks"], 9).unwrap();
     let expected = [
         Prompt { ids: vec![101, 1, 2, 1012, 3, 8, 1012, 102], phrases: vec![(0, 1..3), (2, 4..6)] },
         Prompt { ids: vec![101, 6, 48, 1012, 102], phrases: vec![(3, 1..3)] },
@@ -99,8 +99,8 @@ fn phrases_become_as_few_prompts_as_hold_them() {
         (seen(0), seen(1), seen(3), seen(6), seen(7)),
         (vec![0], vec![1, 2, 3], vec![1, 2, 3], vec![4, 5, 6], vec![7])
     );
-    assert!(prompts(&tokenizer, &[], 9).unwrap().is_empty());
-    let error = prompts(&tokenizer, &["a red door a red door a red door"], 9).unwrap_err().to_string();
+    assert!(prompts("hf/test/dino", &tokenizer, &[], 9).unwrap().is_empty());
+    let error = prompts("hf/test/dino", &tokenizer, &["a red door a red door a red door"], 9).unwrap_err().to_string();
     assert!(error.contains("9 tokens") && error.contains("6 are the most"), "{error}");
 }
 

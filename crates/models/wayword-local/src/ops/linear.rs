@@ -66,15 +66,31 @@ impl Linear {
 
     /// Writes the layer's output for the rows of x into y, on the CPU.
     pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+        self.into(x, y, 0.0)
+    }
+
+    /// Adds the layer's output for the rows of x to y, on the CPU.
+    pub(crate) fn add_rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+        self.into(x, y, 1.0)
+    }
+
+    /// The layer's output for the rows of x, plus a multiple of y.
+    fn into(&self, x: &[f32], y: &mut [f32], beta: f32) -> Result<()> {
         let count = y.len() / self.outputs.max(1);
         let inputs = x.len() / count.max(1);
         self.with_bias(|bias| match &self.matrix {
             Matrix::Packed(packed) => {
                 let x = GemmInputA::Unpacked(NdTensorView::from_data([count, inputs], x));
-                let options = Options { bias: bias.map(BiasVector::Row), ..Options::default() };
+                let options = Options { bias: bias.map(BiasVector::Row), beta, ..Options::default() };
                 product(y, x, GemmInputB::Packed(packed), options)
             }
-            Matrix::Half(half) => half.product(x, inputs, bias, y),
+            Matrix::Half(half) if beta == 0.0 => half.product(x, inputs, bias, y),
+            Matrix::Half(half) => {
+                let mut more = vec![0.0; y.len()];
+                half.product(x, inputs, bias, &mut more)?;
+                y.iter_mut().zip(more).for_each(|(y, more)| *y = *y * beta + more);
+                Ok(())
+            }
             Matrix::Plain(_) => bail!("candle computes this product"),
         })
     }
