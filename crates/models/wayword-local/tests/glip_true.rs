@@ -6,7 +6,8 @@
 //! WAYWORD_GLIP=FOLDER cargo test -p wayword-local --test glip_true -- --ignored --nocapture --test-threads 1
 //! ```
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "a measurement is read by people")]
 
 use candle_core::{Device as On, safetensors};
 use std::{path::PathBuf, time::Instant};
