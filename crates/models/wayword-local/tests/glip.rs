@@ -126,7 +126,9 @@ impl Progress for Notes {
 #[test]
 fn a_file_is_found_by_its_name_and_the_licence_is_told() {
     let cache = tempfile::tempdir().unwrap();
-    let hub = Hub::new(HubConfig { offline: true, ..HubConfig::new(cache.path().to_owned()) }).unwrap();
+    let mut config = HubConfig::new(cache.path().to_owned());
+    config.offline = true;
+    let hub = Hub::new(config).unwrap();
     let name = |file: &str| ModelName::parse(&format!("hf/{}", fixture().join(file).display())).unwrap();
     let notes = Notes::default();
     let files = GlipFiles::find(&hub, &name("glip.pth"), &notes).unwrap();

@@ -6,7 +6,8 @@
 //! WAYWORD_GLIP=FOLDER cargo test -p wayword-local --test glip_true -- --ignored --nocapture --test-threads 1
 //! ```
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "a measurement is read by people")]
 
 use candle_core::{Device as On, safetensors};
 use std::{path::PathBuf, time::Instant};
@@ -85,6 +86,16 @@ fn glip_t_is_the_oracles() {
     }
 }
 
+/// Seconds of all processors so far, and the most memory so far, MiB (Linux).
+fn used() -> (f64, u64) {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let ticks: u64 = stat.split_whitespace().skip(13).take(2).filter_map(|field| field.parse::<u64>().ok()).sum();
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak =
+        status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix("kB")?.trim().parse().ok());
+    (ticks as f64 / 100.0, peak.unwrap_or(0_u64) >> 10)
+}
+
 #[test]
 #[ignore = "needs WAYWORD_GLIP"]
 fn glip_t_takes_this_long() {
@@ -95,11 +106,15 @@ fn glip_t_takes_this_long() {
         let mut rgb = image.rgb().to_vec();
         rgb[0] = round;
         let image = Image::new(640, 480, rgb).unwrap();
-        let begun = Instant::now();
+        let (begun, before) = (Instant::now(), used().0);
         let count = glip.find(&image, &["blue chair", "fireplace", "a wooden door"]).unwrap().len();
-        let first = begun.elapsed().as_secs_f64();
+        let (first, (after, peak)) = (begun.elapsed().as_secs_f64(), used());
         let begun = Instant::now();
         glip.find(&image, &["blue chair", "fireplace", "a wooden door"]).unwrap();
-        println!("{count} phrases: {first:.2} s, again {:.2} s", begun.elapsed().as_secs_f64());
+        println!(
+            "{count} phrases: {first:.2} s, {:.2} s of processors; again {:.2} s; at most {peak} MiB",
+            after - before,
+            begun.elapsed().as_secs_f64()
+        );
     }
 }

@@ -8,6 +8,7 @@ mod detector;
 mod files;
 mod fusion;
 mod head;
+mod means;
 mod model;
 mod prompt;
 mod pyramid;

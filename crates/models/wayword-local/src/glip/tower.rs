@@ -4,7 +4,7 @@
 //! Norms, weights and the activation are affine for each channel, so only their coefficients are computed one after
 //! another; the map itself is read twice: for its means, and to write the result.
 
-use super::{bend::Enlarged, config::HeadConfig, numbers};
+use super::{bend::Enlarged, config::HeadConfig, means::Means, numbers};
 use crate::{
     LocalError,
     ops::{
@@ -106,11 +106,9 @@ impl Tower {
         let count = seen.len() as f32;
         for seen in &mut seen {
             let weight = self.weight(&seen.mean) / count;
-            for channel in 0..self.width {
-                seen.scale[channel] *= weight;
-                height[channel] += seen.shift[channel] * weight;
-                mean[channel] += seen.mean[channel] * weight;
-            }
+            seen.scale.iter_mut().for_each(|scale| *scale *= weight);
+            height.iter_mut().zip(&seen.shift).for_each(|(height, shift)| *height += shift * weight);
+            mean.iter_mut().zip(&seen.mean).for_each(|(sum, mean)| *sum += mean * weight);
         }
         let lines = self.lines(&mean);
         let x = if is_ours(&level.x) {
@@ -198,63 +196,6 @@ impl Tower {
             }
         });
         Tensor::from_vec(y, (level.count(), width), level.x.device())
-    }
-}
-
-/// Means over the positions of a map, for each channel.
-struct Means {
-    plain: Vec<f64>,
-    square: Vec<f64>,
-    /// With a share for each position.
-    shared: Vec<f64>,
-}
-
-impl Means {
-    fn of(map: &Map, shares: Option<&[f32]>) -> Result<Self> {
-        let (count, width) = map.x.dims2()?;
-        if !is_ours(&map.x) {
-            let x = map.x.to_dtype(candle_core::DType::F32)?;
-            let numbers =
-                |x: Tensor| -> Result<Vec<f64>> { Ok(x.to_vec1::<f32>()?.into_iter().map(f64::from).collect()) };
-            let plain = numbers(x.mean(0)?)?;
-            let shared = match shares {
-                None => plain.clone(),
-                Some(shares) => {
-                    let shares = Tensor::from_slice(shares, (1, count), x.device())?;
-                    numbers(shares.matmul(&x)?.squeeze(0)?)?
-                }
-            };
-            return Ok(Self { plain, square: numbers(x.sqr()?.mean(0)?)?, shared });
-        }
-        with_numbers(&map.x, |x| {
-            let tiles = x.par_chunks(width * TILE).enumerate().map(|(tile, x)| Self::of_tile(tile, x, width, shares));
-            let zero = || vec![0.0; 3 * width];
-            let sums = tiles.reduce(zero, |mut a, b| {
-                a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
-                a
-            });
-            let mean = |at: usize| sums[at * width..(at + 1) * width].iter().map(|sum| sum / count as f64).collect();
-            let (plain, square): (Vec<f64>, Vec<f64>) = (mean(0), mean(1));
-            let shared = if shares.is_some() { sums[2 * width..].to_vec() } else { plain.clone() };
-            Ok(Self { plain, square, shared })
-        })
-    }
-
-    /// The sums of a tile: of numbers, of their squares, and of their shares.
-    fn of_tile(tile: usize, x: &[f32], width: usize, shares: Option<&[f32]>) -> Vec<f64> {
-        let mut sums = vec![0.0_f32; 3 * width];
-        let (plain, rest) = sums.split_at_mut(width);
-        let (square, shared) = rest.split_at_mut(width);
-        for (at, row) in x.chunks_exact(width).enumerate() {
-            for ((plain, square), x) in plain.iter_mut().zip(&mut *square).zip(row) {
-                *plain += x;
-                *square += x * x;
-            }
-            if let Some(share) = shares.and_then(|shares| shares.get(tile * TILE + at)) {
-                shared.iter_mut().zip(row).for_each(|(shared, x)| *shared += x * share);
-            }
-        }
-        sums.into_iter().map(f64::from).collect()
     }
 }
 

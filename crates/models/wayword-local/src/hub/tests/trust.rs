@@ -1,8 +1,8 @@
 //! Files whose hashes are published, given, or kept since their first use.
 
-use super::fake::{FakeHub, bytes, sha256};
+use super::fake::{COMMIT, FakeHub, bytes, sha256};
 use crate::hub::{Hub, HubConfig, ModelName, Needs, Progress};
-use std::{fs, path::Path, sync::Mutex};
+use std::{fs, sync::Mutex};
 
 /// Remembers what was told.
 #[derive(Default)]
@@ -35,8 +35,8 @@ fn a_file_without_a_published_hash_is_told_once_and_held_against_later() {
     // The file on this machine is exchanged.
     let kept = cache.path().join("models--org--name/.trust/main/own.pth.sha256");
     assert_eq!(fs::read_to_string(&kept).unwrap().trim(), hash);
-    let blob = cache.path().join("models--org--name/blobs").join(&hash);
-    fs::write(&blob, bytes(3001)).unwrap();
+    let file = cache.path().join("models--org--name/snapshots").join(COMMIT).join("own.pth");
+    fs::write(&file, bytes(3001)).unwrap();
     let error = used(fake.config(cache.path()), "hf/org/name:own.pth").unwrap_err();
     for part in [&hash, &sha256(&bytes(3001)), "--trust", "own.pth"] {
         assert!(error.contains(part), "{error}");
@@ -62,7 +62,7 @@ fn a_hash_that_is_published_or_given_must_be_the_files() {
     assert!(used(given(&sha256(&bytes(100))), &name).unwrap().is_empty());
     assert!(used(given(&sha256(b"")), &name).unwrap_err().contains("which was given"));
     // Nothing was kept.
-    assert!(!Path::new(&folder.path().join("cache")).exists());
+    assert!(!folder.path().join("cache").exists());
 }
 
 #[test]
