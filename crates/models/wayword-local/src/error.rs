@@ -10,7 +10,7 @@ pub(crate) const FETCH_AGAIN: &str = "fetch it again: delete the folder models--
 pub enum LocalError {
     /// A name that is not valid.
     #[error(
-        "{name:?} is not the name of a model in process: {problem}\nhint: names are hf/ORG/NAME, hf/ORG/NAME@REVISION, or hf/PATH of a local folder that begins with / or ."
+        "{name:?} is not the name of a model in process: {problem}\nhint: names are hf/ORG/NAME, hf/ORG/NAME@REVISION, hf/ORG/NAME@REVISION:FILE, or hf/PATH of a local folder that begins with / or ."
     )]
     Name {
         /// What was given.

@@ -219,6 +219,9 @@ fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
     if parts.iter().any(ModelName::is_gguf) {
         return Err(no_name(name, "a GGUF file cannot be used in process"));
     }
+    if parts.iter().any(ModelName::is_file) {
+        return Err(no_name(name, "a .pth file holds a detector, which neither sees nor writes"));
+    }
     if parts.len() > 2 {
         return Err(no_name(name, "a name has at most two parts: one BLIP that answers and one that describes"));
     }

@@ -3,7 +3,10 @@
 //! Gives the same numbers as transformers' processors of CLIP, BLIP and BLIP-2 with Pillow.
 
 mod config;
-mod resample;
+mod edges;
+pub(crate) mod resample;
+
+pub(crate) use edges::Edges;
 
 use crate::{Device, LocalError};
 use candle_core::Tensor;

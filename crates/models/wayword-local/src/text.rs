@@ -48,6 +48,17 @@ impl Tokenizer {
         Ok(ids)
     }
 
+    /// The ids of a text with the special ones, and the bytes of the text that each stands for; none for special ones.
+    pub(crate) fn spans(&self, text: &str) -> Result<(Vec<u32>, Vec<(usize, usize)>), LocalError> {
+        let encoding = self.inner.encode(text, true).map_err(|error| self.wrong(&error.to_string()))?;
+        Ok((encoding.get_ids().to_vec(), encoding.get_offsets().to_vec()))
+    }
+
+    /// How many words there are.
+    pub(crate) fn size(&self) -> usize {
+        self.inner.get_vocab_size(true)
+    }
+
     /// The ids of a part of a text, without special ids.
     pub(crate) fn inner_ids(&self, text: &str) -> Result<Vec<u32>, LocalError> {
         let encoding = self.inner.encode(text, false).map_err(|error| self.wrong(&error.to_string()))?;

@@ -1,24 +1,62 @@
 //! The configuration files of a sentence encoder.
 
-use crate::{LocalError, json, ops::Activation};
+use crate::{LocalError, json, json::size_problem, ops::Activation};
 use serde::Deserialize;
 use std::path::Path;
 
 /// `config.json`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Config {
-    pub(super) vocab_size: usize,
-    pub(super) hidden_size: usize,
-    pub(super) num_hidden_layers: usize,
-    pub(super) num_attention_heads: usize,
-    pub(super) intermediate_size: usize,
-    pub(super) hidden_act: Activation,
-    pub(super) max_position_embeddings: usize,
+pub(crate) struct Config {
+    pub(crate) vocab_size: usize,
+    pub(crate) hidden_size: usize,
+    pub(crate) num_hidden_layers: usize,
+    pub(crate) num_attention_heads: usize,
+    pub(crate) intermediate_size: usize,
+    pub(crate) hidden_act: Activation,
+    pub(crate) max_position_embeddings: usize,
     #[serde(default = "two")]
-    pub(super) type_vocab_size: usize,
+    pub(crate) type_vocab_size: usize,
     #[serde(default = "epsilon")]
-    pub(super) layer_norm_eps: f64,
+    pub(crate) layer_norm_eps: f64,
     model_type: Option<String>,
+}
+
+/// The sizes of an encoder, where nothing else of it differs from BERT's.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Sizes {
+    pub(crate) vocab_size: usize,
+    pub(crate) hidden_size: usize,
+    pub(crate) num_hidden_layers: usize,
+    pub(crate) num_attention_heads: usize,
+    pub(crate) intermediate_size: usize,
+    pub(crate) max_position_embeddings: usize,
+    pub(crate) type_vocab_size: usize,
+}
+
+/// The most layers. BERT-large has 24.
+const MOST_LAYERS: usize = 64;
+
+impl Sizes {
+    /// What is wrong with the sizes, if anything is.
+    pub(crate) fn problem(&self) -> Option<String> {
+        let (heads, layers) = (self.num_attention_heads, self.num_hidden_layers);
+        let sizes = [
+            ("vocab_size", self.vocab_size),
+            ("hidden_size", self.hidden_size),
+            ("intermediate_size", self.intermediate_size),
+            ("max_position_embeddings", self.max_position_embeddings),
+            ("type_vocab_size", self.type_vocab_size),
+        ];
+        if let Some(problem) = size_problem(&sizes) {
+            return Some(problem);
+        }
+        if heads == 0 || !self.hidden_size.is_multiple_of(heads) {
+            return Some(format!("num_attention_heads: {heads} does not divide hidden_size {}", self.hidden_size));
+        }
+        (!(1..=MOST_LAYERS).contains(&layers))
+            .then(|| format!("num_hidden_layers: {layers} is not from 1 to {MOST_LAYERS}"))
+    }
 }
 
 /// `1_Pooling/config.json`.
@@ -61,17 +99,49 @@ impl Config {
             problem,
             hint: "choose a sentence encoder with BERT's architecture, such as sentence-transformers/all-MiniLM-L6-v2",
         };
-        if let Some(kind) = config.model_type.as_deref().filter(|kind| *kind != "bert") {
-            return Err(wrong(format!("model_type: {kind} is not bert")));
-        }
-        let heads = config.num_attention_heads;
-        if heads == 0 || !config.hidden_size.is_multiple_of(heads) {
-            return Err(wrong(format!(
-                "num_attention_heads: {heads} does not divide hidden_size {}",
-                config.hidden_size
-            )));
-        }
+        config.check().map_err(wrong)?;
         Ok(config)
+    }
+
+    /// Checks what computations rely on.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        if let Some(kind) = self.model_type.as_deref().filter(|kind| *kind != "bert") {
+            return Err(format!("model_type: {kind} is not bert"));
+        }
+        let (size, heads) = (self.hidden_size, self.num_attention_heads);
+        if heads == 0 || !size.is_multiple_of(heads) {
+            return Err(format!("num_attention_heads: {heads} does not divide hidden_size {size}"));
+        }
+        Ok(())
+    }
+
+    /// The configuration of an encoder of these sizes.
+    pub(crate) fn uncased(sizes: &Sizes) -> Self {
+        Self {
+            vocab_size: sizes.vocab_size,
+            hidden_size: sizes.hidden_size,
+            num_hidden_layers: sizes.num_hidden_layers,
+            num_attention_heads: sizes.num_attention_heads,
+            intermediate_size: sizes.intermediate_size,
+            hidden_act: Activation::Gelu,
+            max_position_embeddings: sizes.max_position_embeddings,
+            type_vocab_size: sizes.type_vocab_size,
+            layer_norm_eps: epsilon(),
+            model_type: None,
+        }
+    }
+
+    pub(crate) fn hidden_size(&self) -> usize {
+        self.hidden_size
+    }
+
+    pub(crate) fn vocab_size(&self) -> usize {
+        self.vocab_size
+    }
+
+    /// The most tokens that there are positions for.
+    pub(crate) fn longest_text(&self) -> usize {
+        self.max_position_embeddings
     }
 
     /// The most tokens of a text.

@@ -9,7 +9,7 @@ use crate::{
 use candle_core::{Result, Tensor};
 
 /// Computes states from tokens.
-pub(super) struct Encoder {
+pub(crate) struct Encoder {
     words: Embedding,
     positions: Embedding,
     /// Added to every token: the first of the token types, because a text is not a pair.
@@ -18,7 +18,8 @@ pub(super) struct Encoder {
     layers: Vec<Layer>,
 }
 
-struct Layer {
+/// One layer of an encoder, also by itself.
+pub(crate) struct Layer {
     qkv: Linear,
     mixed: Linear,
     mixed_norm: LayerNorm,
@@ -30,7 +31,7 @@ struct Layer {
 }
 
 impl Encoder {
-    pub(super) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+    pub(crate) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
         let (size, epsilon) = (config.hidden_size, config.layer_norm_eps);
         let embeddings = weights.sub("embeddings");
         let kinds = embeddings.embedding("token_type_embeddings", config.type_vocab_size, size)?;
@@ -47,9 +48,14 @@ impl Encoder {
     }
 
     /// From ids [batch, length] and a bias [batch, 1, 1, length] that hides padding, states [batch, length, size].
-    pub(super) fn of(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
-        let length = ids.dim(1)? as u32;
-        let positions = self.positions.of(&Tensor::arange(0, length, ids.device())?)?;
+    pub(crate) fn of(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        self.of_at(ids, &Tensor::arange(0, ids.dim(1)? as u32, ids.device())?, mask)
+    }
+
+    /// The same for tokens at other positions [length] than one after another, and with a mask that can be broadcast to
+    /// [batch, heads, length, length].
+    pub(crate) fn of_at(&self, ids: &Tensor, positions: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let positions = self.positions.of(positions)?;
         let x =
             self.words.of(ids)?.broadcast_add(&positions.broadcast_add(&self.kind.to_dtype(positions.dtype())?)?)?;
         self.layers.iter().try_fold(self.norm.of(&x)?, |x, layer| layer.of(&x, mask))
@@ -57,7 +63,7 @@ impl Encoder {
 }
 
 impl Layer {
-    fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+    pub(crate) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
         Ok(Self {
             qkv: weights.sub("attention.self").linears(&["query", "key", "value"], size, size)?,
@@ -71,7 +77,8 @@ impl Layer {
         })
     }
 
-    fn of(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+    /// From states [batch, length, size], the same shape.
+    pub(crate) fn of(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let size = x.dim(2)?;
         let qkv = self.qkv.of(x)?;
         let part = |at: usize| qkv.narrow(2, at * size, size);

@@ -24,6 +24,9 @@ pub struct HubConfig {
     pub offline: bool,
     /// Snapshots contain links to the blobs, not copies.
     pub symlinks: bool,
+    /// The SHA-256 that a checkpoint of the form `hf/ORG/NAME:FILE.pth` must have. Without it, it is the published one, or
+    /// that of the first use.
+    pub trust: Option<String>,
     pub(super) token: Option<Token>,
     pub(super) first_wait: Duration,
 }
@@ -41,6 +44,7 @@ impl HubConfig {
             endpoint: ENDPOINT.to_owned(),
             offline: false,
             symlinks: true,
+            trust: None,
             token: None,
             first_wait: FIRST_WAIT,
         }

@@ -30,6 +30,11 @@ pub trait Progress {
     fn waiting(&self, file: &str) {
         let _ = file;
     }
+
+    /// Something that the user should know of a file.
+    fn told(&self, note: &str) {
+        let _ = note;
+    }
 }
 
 /// Shows no progress.

@@ -67,7 +67,7 @@ pub(super) struct Gathered {
 
 impl Needs {
     /// Adds the weights: `model.safetensors`, or its parts and their index, or `pytorch_model.bin`. For the name of a
-    /// GGUF file, the weights are in that file.
+    /// file, the weights are in that file.
     #[must_use]
     pub fn weights(mut self) -> Self {
         self.weights = true;
@@ -91,7 +91,7 @@ impl Needs {
     /// The files that a model of any kind needs.
     #[must_use]
     pub fn of_any(name: &ModelName) -> Self {
-        if name.is_gguf() {
+        if name.is_file() {
             return Self::default();
         }
         Self::default().weights().required(&["config.json"]).optional(&READ_WHERE_THERE)

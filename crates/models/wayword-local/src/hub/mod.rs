@@ -20,6 +20,7 @@ mod fetching;
 mod files;
 mod name;
 mod trouble;
+mod trust;
 
 pub use cache::CachedModel;
 pub use config::HubConfig;
@@ -47,7 +48,7 @@ pub struct Hub {
 pub struct ModelFolder {
     /// The folder that the files are in.
     pub path: PathBuf,
-    /// For GGUF, the file in the model's name.
+    /// The file in the model's name, if it names one.
     pub file: Option<PathBuf>,
     /// Distinguishes models of the same name: the commit's hash, 40 hex digits. If there is no commit (local folders,
     /// files that the user put into the cache), `sha256:` and 64 digits over the small files, and over length,
@@ -98,6 +99,20 @@ impl Hub {
     }
 
     fn have(
+        &self,
+        name: &ModelName,
+        needs: &Needs,
+        progress: &dyn Progress,
+        anew: bool,
+    ) -> Result<ModelFolder, LocalError> {
+        let found = self.found(name, needs, progress, anew)?;
+        if let Some(file) = found.file.as_deref().filter(|_| name.is_trained()) {
+            trust::check(&self.config, name, file, progress)?;
+        }
+        Ok(found)
+    }
+
+    fn found(
         &self,
         name: &ModelName,
         needs: &Needs,

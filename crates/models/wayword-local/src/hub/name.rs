@@ -20,9 +20,9 @@ const LONGEST_PATH: usize = 4096;
 /// A name that says where a model is:
 ///
 /// - `hf/ORG/NAME`, `hf/ORG/NAME@REVISION`: on the hub, at a branch, tag or commit (`main` if none is given);
-/// - `hf/ORG/NAME@REVISION:FILE.gguf`: one file of such a repository;
+/// - `hf/ORG/NAME@REVISION:FILE.gguf`, or `FILE.pth`: one file of such a repository;
 /// - `hf//abs/folder`, `hf/./folder`, `hf/../folder`: a folder on this machine;
-/// - the same with a path that ends in `.gguf`: a file on this machine.
+/// - the same with a path that ends in `.gguf` or `.pth`: a file on this machine.
 ///
 /// Organisation, name, revision and file become parts of paths and addresses, so they cannot contain anything that
 /// leads elsewhere.
@@ -46,7 +46,7 @@ pub(super) struct OnHub {
     pub(super) org: String,
     pub(super) name: String,
     pub(super) revision: String,
-    /// The file in the name, for GGUF.
+    /// The file in the name, for GGUF and for checkpoints as training leaves them.
     pub(super) file: Option<String>,
 }
 
@@ -66,10 +66,26 @@ impl ModelName {
     /// Whether the name is that of one GGUF file.
     #[must_use]
     pub fn is_gguf(&self) -> bool {
+        self.file().is_some_and(|file| ends_in(file, "gguf"))
+    }
+
+    /// Whether the name is that of one checkpoint as training leaves it, `.pth`.
+    #[must_use]
+    pub fn is_trained(&self) -> bool {
+        self.file().is_some_and(|file| ends_in(file, "pth"))
+    }
+
+    /// Whether the name is that of one file.
+    #[must_use]
+    pub fn is_file(&self) -> bool {
+        self.file().is_some()
+    }
+
+    fn file(&self) -> Option<&Path> {
         match &self.source {
-            ModelSource::Hub(model) => model.file.is_some(),
-            ModelSource::Folder(_) => false,
-            ModelSource::File(_) => true,
+            ModelSource::Hub(model) => model.file.as_deref().map(Path::new),
+            ModelSource::Folder(_) => None,
+            ModelSource::File(path) => Some(path),
         }
     }
 }
@@ -97,7 +113,7 @@ fn source(text: &str) -> Result<ModelSource, &'static str> {
         return Err("its revision is not a branch, tag or commit");
     }
     if file.is_some_and(|file| !is_file(file)) {
-        return Err("after the colon there must be a file of the repository that ends in .gguf");
+        return Err("after the colon there must be a file of the repository that ends in .gguf or .pth");
     }
     Ok(ModelSource::Hub(OnHub {
         org: org.to_owned(),
@@ -111,7 +127,7 @@ fn local(path: &str) -> Result<ModelSource, &'static str> {
     if path.chars().any(char::is_control) || path.len() > LONGEST_PATH {
         return Err("its path contains control characters or is too long");
     }
-    let source = if ends_in_gguf(path) { ModelSource::File } else { ModelSource::Folder };
+    let source = if is_one_file(Path::new(path)) { ModelSource::File } else { ModelSource::Folder };
     Ok(source(PathBuf::from(path)))
 }
 
@@ -134,7 +150,7 @@ fn is_revision(revision: &str) -> bool {
 
 fn is_file(file: &str) -> bool {
     let allowed = |c: char| c.is_ascii_graphic() && !r#"\:*?"<>|%#"#.contains(c);
-    file.len() <= LONGEST_FILE && ends_in_gguf(file) && are_segments(file, allowed)
+    file.len() <= LONGEST_FILE && is_one_file(Path::new(file)) && are_segments(file, allowed)
 }
 
 /// Whether a text is names between slashes, none of which is empty, hidden, or `..`.
@@ -142,6 +158,11 @@ fn are_segments(text: &str, allowed: impl Fn(char) -> bool) -> bool {
     text.split('/').all(|segment| !segment.is_empty() && !segment.starts_with('.') && segment.chars().all(&allowed))
 }
 
-fn ends_in_gguf(path: &str) -> bool {
-    Path::new(path).extension().is_some_and(|end| end.eq_ignore_ascii_case("gguf"))
+/// Whether a model is one file of this name, and not a folder.
+fn is_one_file(path: &Path) -> bool {
+    ["gguf", "pth"].iter().any(|end| ends_in(path, end))
+}
+
+fn ends_in(path: &Path, end: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(end))
 }

@@ -64,6 +64,37 @@ impl Linear {
         x.contiguous()?.apply_op1_no_bwd(&Product { layer: self, activation })
     }
 
+    /// Writes the layer's output for the rows of x into y, on the CPU.
+    pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+        self.into(x, y, 0.0)
+    }
+
+    /// Adds the layer's output for the rows of x to y, on the CPU.
+    pub(crate) fn add_rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+        self.into(x, y, 1.0)
+    }
+
+    /// The layer's output for the rows of x, plus a multiple of y.
+    fn into(&self, x: &[f32], y: &mut [f32], beta: f32) -> Result<()> {
+        let count = y.len() / self.outputs.max(1);
+        let inputs = x.len() / count.max(1);
+        self.with_bias(|bias| match &self.matrix {
+            Matrix::Packed(packed) => {
+                let x = GemmInputA::Unpacked(NdTensorView::from_data([count, inputs], x));
+                let options = Options { bias: bias.map(BiasVector::Row), beta, ..Options::default() };
+                product(y, x, GemmInputB::Packed(packed), options)
+            }
+            Matrix::Half(half) if beta == 0.0 => half.product(x, inputs, bias, y),
+            Matrix::Half(half) => {
+                let mut more = vec![0.0; y.len()];
+                half.product(x, inputs, bias, &mut more)?;
+                y.iter_mut().zip(more).for_each(|(y, more)| *y = *y * beta + more);
+                Ok(())
+            }
+            Matrix::Plain(_) => bail!("candle computes this product"),
+        })
+    }
+
     /// Calls `then` with the numbers of the bias, if there is one.
     fn with_bias<T>(&self, then: impl FnOnce(Option<&[f32]>) -> Result<T>) -> Result<T> {
         let Some(bias) = &self.bias else { return then(None) };
@@ -86,18 +117,10 @@ impl CustomOp1 for Product<'_> {
 
     fn cpu_fwd(&self, storage: &CpuStorage, layout: &Layout) -> Result<(CpuStorage, Shape)> {
         let x = slice::<f32>(storage, layout)?;
-        let (count, inputs) = rows(layout)?;
+        let (count, _) = rows(layout)?;
         let outputs = self.layer.outputs;
         let mut y = vec![0.0; count * outputs];
-        self.layer.with_bias(|bias| match &self.layer.matrix {
-            Matrix::Packed(packed) => {
-                let x = GemmInputA::Unpacked(NdTensorView::from_data([count, inputs], x));
-                let options = Options { bias: bias.map(BiasVector::Row), ..Options::default() };
-                product(&mut y, x, GemmInputB::Packed(packed), options)
-            }
-            Matrix::Half(half) => half.product(x, inputs, bias, &mut y),
-            Matrix::Plain(_) => bail!("candle computes this product"),
-        })?;
+        self.layer.rows(x, &mut y)?;
         if let Some(activation) = self.activation {
             activation.map(&mut y);
         }

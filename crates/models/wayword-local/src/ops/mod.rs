@@ -6,11 +6,14 @@
 
 mod activation;
 mod attention;
+pub(crate) mod conv3;
 mod embedding;
 mod half;
-mod kernels;
+pub(crate) mod kernels;
 mod linear;
+pub(crate) mod matrix;
 mod norm;
+pub(crate) mod tiles;
 
 pub(crate) use activation::Activation;
 pub(crate) use attention::{Attention, Past, causal};

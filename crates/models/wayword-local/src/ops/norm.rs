@@ -1,6 +1,6 @@
 //! Norms over the last axis.
 
-use super::kernels::{is_ours, rows, rows_per_piece, slice};
+use super::kernels::{is_ours, rows, rows_per_piece, slice, with_numbers};
 use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdOp;
@@ -31,6 +31,18 @@ impl LayerNorm {
         }
         candle_nn::ops::layer_norm(&x.contiguous()?, &self.weight, &self.bias, self.epsilon as f32)
     }
+
+    /// Writes the norm of the rows of x into y, on the CPU.
+    pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+        y.copy_from_slice(x);
+        with_numbers(&self.weight, |weight| {
+            with_numbers(&self.bias, |bias| {
+                let standard = Standard(self.epsilon);
+                y.chunks_exact_mut(weight.len().max(1)).for_each(|row| standard.row(row, weight, bias));
+                Ok(())
+            })
+        })
+    }
 }
 
 impl RmsNorm {
@@ -54,6 +66,22 @@ fn wide(weight: Tensor) -> Tensor {
 
 struct Standard(f64);
 
+impl Standard {
+    fn row(&self, row: &mut [f32], weight: &[f32], bias: &[f32]) {
+        let size = row.len() as f32;
+        let mean = Sum::new(row).dispatch() / size;
+        let variance = SumSquareSub::new(row, mean).dispatch() / size;
+        let options = NormalizeOptions {
+            pre_scale_bias: mean,
+            scale: 1.0 / (variance + self.0 as f32).sqrt(),
+            element_scale: Some(weight),
+            element_bias: Some(bias),
+            ..NormalizeOptions::default()
+        };
+        Normalize::new_mut(row, options).dispatch();
+    }
+}
+
 impl CustomOp3 for Standard {
     fn name(&self) -> &'static str {
         "layer-norm"
@@ -68,20 +96,8 @@ impl CustomOp3 for Standard {
         bias: &CpuStorage,
         bias_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let (_, size) = rows(x_layout)?;
         let (weight, bias) = (slice::<f32>(weight, weight_layout)?, slice::<f32>(bias, bias_layout)?);
-        let row = |row: &mut [f32]| {
-            let mean = Sum::new(row).dispatch() / size as f32;
-            let variance = SumSquareSub::new(row, mean).dispatch() / size as f32;
-            let options = NormalizeOptions {
-                pre_scale_bias: mean,
-                scale: 1.0 / (variance + self.0 as f32).sqrt(),
-                element_scale: Some(weight),
-                element_bias: Some(bias),
-                ..NormalizeOptions::default()
-            };
-            Normalize::new_mut(row, options).dispatch();
-        };
+        let row = |row: &mut [f32]| self.row(row, weight, bias);
         Ok((each_row(x, x_layout, row)?, x_layout.shape().clone()))
     }
 }

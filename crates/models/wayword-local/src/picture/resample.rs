@@ -14,7 +14,7 @@ const BITS: u32 = 32 - 8 - 2;
 
 /// How new pixels are interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Filter {
+pub(crate) enum Filter {
     /// From the two nearest pixels.
     Bilinear,
     /// From the four nearest pixels, with a = -0.5.
@@ -22,7 +22,7 @@ pub(super) enum Filter {
 }
 
 /// How one axis of a picture is resized.
-pub(super) struct Axis {
+pub(crate) struct Axis {
     /// Pixels before.
     from: usize,
     /// Pixels after.
@@ -84,7 +84,7 @@ impl Filter {
 impl Axis {
     /// An axis that is resized from `from` pixels to `to`, of which the middle `keep` are kept. If there are fewer,
     /// black is added around them (transformers' `center_crop`). Only kept pixels are computed.
-    pub(super) fn middle(filter: Filter, from: usize, to: usize, keep: usize) -> Self {
+    pub(crate) fn middle(filter: Filter, from: usize, to: usize, keep: usize) -> Self {
         let (kept, first): (Range<usize>, usize) = if to >= keep {
             let left = (to - keep) / 2;
             (left..left + keep, 0)
@@ -103,7 +103,7 @@ impl Axis {
 }
 
 /// Resizes a picture of 3 bytes per pixel, rows from the top.
-pub(super) fn resample(rgb: &[u8], down: &Axis, across: &Axis) -> Vec<u8> {
+pub(crate) fn resample(rgb: &[u8], down: &Axis, across: &Axis) -> Vec<u8> {
     let seen = down.seen();
     let row = across.windows.len() * 3;
     let mut narrow = vec![0; seen.len() * row];

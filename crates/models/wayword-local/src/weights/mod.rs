@@ -3,9 +3,11 @@
 //! A file is never mapped into memory. Each tensor is converted for the computation as soon as it is read, so that only
 //! one tensor is in memory twice.
 
+mod pickle;
 mod pickled;
 mod safetensor;
 mod scope;
+mod trained;
 
 pub(crate) use scope::Scope;
 
@@ -18,6 +20,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
+use trained::Trained;
 
 /// Longest index of a checkpoint in several files, bytes.
 const LONGEST_INDEX: u64 = 64 << 20;
@@ -37,6 +40,7 @@ pub(crate) struct Weights {
 enum WeightFile {
     Safe(SafeFile),
     Pickled(Pickled),
+    Trained(Trained),
 }
 
 #[derive(Deserialize)]
@@ -68,11 +72,29 @@ impl Weights {
                 "put the checkpoint's model.safetensors there, or fetch it: wayword models fetch NAME".to_owned();
             return Err(LocalError::Missing { file: whole, what: "the checkpoint", hint });
         };
+        Ok(Self::new(path, files, device, precision))
+    }
+
+    /// Opens one file: `.safetensors`, or a checkpoint as training leaves it, of which the weights alone are read.
+    ///
+    /// # Errors
+    /// When it is missing or damaged.
+    pub(crate) fn of_file(path: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+        let is_safe = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("safetensors"));
+        let file = if is_safe {
+            SafeFile::open(path).map(WeightFile::Safe)
+        } else {
+            Trained::open(path).map(WeightFile::Trained)
+        };
+        Ok(Self::new(path.to_owned(), vec![file?], device, precision))
+    }
+
+    fn new(path: PathBuf, files: Vec<WeightFile>, device: &Device, precision: Precision) -> Self {
         let mut at = BTreeMap::new();
         for (number, file) in files.iter().enumerate() {
             at.extend(file.names().map(|name| (name, number)));
         }
-        Ok(Self { path, files, at, device: device.0.clone(), dtype: precision.dtype() })
+        Self { path, files, at, device: device.0.clone(), dtype: precision.dtype() }
     }
 
     /// The tensors whose names begin with `prefix`; "" for all.
@@ -101,6 +123,7 @@ impl Weights {
         let tensor = match file {
             WeightFile::Safe(file) => file.read(name, shape)?,
             WeightFile::Pickled(file) => file.read(name, shape)?,
+            WeightFile::Trained(file) => file.read(name, shape)?,
         };
         let wrong = |error: candle_core::Error| LocalError::tensor(file.path(), name, error.to_string());
         tensor.to_dtype(self.dtype).and_then(|tensor| tensor.to_device(&self.device)).map_err(wrong)
@@ -111,6 +134,7 @@ impl Weights {
         match self.files.get(*self.at.get(name)?)? {
             WeightFile::Safe(file) => file.shape(name),
             WeightFile::Pickled(file) => file.shape(name),
+            WeightFile::Trained(file) => file.shape(name),
         }
     }
 }
@@ -120,6 +144,7 @@ impl WeightFile {
         match self {
             Self::Safe(file) => file.path(),
             Self::Pickled(file) => file.path(),
+            Self::Trained(file) => file.path(),
         }
     }
 
@@ -127,6 +152,7 @@ impl WeightFile {
         match self {
             Self::Safe(file) => Box::new(file.names()),
             Self::Pickled(file) => Box::new(file.names()),
+            Self::Trained(file) => Box::new(file.names()),
         }
     }
 }

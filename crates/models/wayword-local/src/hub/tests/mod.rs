@@ -7,6 +7,7 @@ mod names;
 mod offline;
 mod refusals;
 mod server;
+mod trust;
 
 use super::{Hub, ModelFolder, ModelName, Needs};
 use crate::LocalError;

@@ -20,11 +20,18 @@ fn names_say_where_a_model_is() {
     assert_eq!(hub("hf/a/b.c_d@refs/pr/7"), told(["a", "b.c_d", "refs/pr/7", ""]));
     assert_eq!(hub("hf/a/b:q4/x.GGUF"), told(["a", "b", "main", "q4/x.GGUF"]));
     assert_eq!(hub("hf/a/b@v1:x.gguf"), told(["a", "b", "v1", "x.gguf"]));
+    assert_eq!(hub("hf/a/b@v1:x.pth"), told(["a", "b", "v1", "x.pth"]));
+    for (text, kinds) in [("hf/a/b", (false, false)), ("hf/a/b:x.gguf", (true, false)), ("hf/a/b:x.pth", (false, true))]
+    {
+        let name = ModelName::parse(text).unwrap();
+        assert_eq!((name.is_gguf(), name.is_trained(), name.is_file()), (kinds.0, kinds.1, kinds.0 || kinds.1));
+    }
     for (text, source) in [
         ("hf//models/blip", ModelSource::Folder("/models/blip".into())),
         ("hf/./blip", ModelSource::Folder("./blip".into())),
         ("hf/../blip:2@home", ModelSource::Folder("../blip:2@home".into())),
         ("hf//models/x.gguf", ModelSource::File("/models/x.gguf".into())),
+        ("hf/./x.pth", ModelSource::File("./x.pth".into())),
     ] {
         let name = ModelName::parse(text).unwrap();
         assert_eq!((&name.source, name.to_string().as_str()), (&source, text));

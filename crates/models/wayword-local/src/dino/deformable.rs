@@ -1,0 +1,267 @@
+//! Multi-scale deformable attention: each query looks at a few places of each level, which it chooses itself.
+
+use super::{config::LayersConfig, features::Level};
+use crate::{
+    LocalError,
+    ops::{Linear, kernels::slice},
+    weights::Scope,
+};
+use candle_core::{CpuStorage, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
+use rayon::prelude::*;
+
+/// How many queries a thread computes at a time.
+const PIECE: usize = 64;
+
+/// Deformable attention of one layer.
+pub(super) struct Deformable {
+    value: Linear,
+    /// For each head, level and point: two offsets. Then for each of them a weight.
+    points: Linear,
+    out: Linear,
+    shape: Sampling,
+}
+
+/// How many places are looked at.
+#[derive(Debug, Clone, Copy)]
+struct Sampling {
+    heads: usize,
+    levels: usize,
+    points: usize,
+}
+
+/// Where queries look from.
+#[derive(Clone, Copy)]
+pub(super) enum Origin<'a> {
+    /// From the middle of each cell of each level. An offset of 1 is a cell of the level that is looked at.
+    Cells,
+    /// From boxes by their middle, width and height, as shares of the picture. An offset of 1 is half of the box, divided
+    /// by the number of points.
+    Boxes(&'a [[f32; 4]]),
+}
+
+impl Deformable {
+    pub(super) fn load(
+        weights: &Scope<'_>,
+        size: usize,
+        levels: usize,
+        config: LayersConfig,
+    ) -> std::result::Result<Self, LocalError> {
+        let shape = Sampling { heads: config.heads, levels, points: config.points };
+        let count = shape.count();
+        let (offsets, shares) = (weights.sub("sampling_offsets"), weights.sub("attention_weights"));
+        let weight = [offsets.tensor("weight", &[2 * count, size])?, shares.tensor("weight", &[count, size])?];
+        let bias = [offsets.tensor("bias", &[2 * count])?, shares.tensor("bias", &[count])?];
+        let points = Tensor::cat(&weight, 0).and_then(|weight| Linear::new(&weight, Some(Tensor::cat(&bias, 0)?)));
+        Ok(Self {
+            value: weights.linear("value_proj", size, size)?,
+            points: points.map_err(|error| offsets.wrong("weight", &error))?,
+            out: weights.linear("output_proj", size, size)?,
+            shape,
+        })
+    }
+
+    /// What queries [1, queries, size] find in cells [1, cells, size].
+    pub(super) fn of(&self, queries: &Tensor, cells: &Tensor, levels: &[Level], from: Origin<'_>) -> Result<Tensor> {
+        let value = self.value.of(cells)?.squeeze(0)?;
+        let points = self.points.of(queries)?.squeeze(0)?;
+        let from = starts(from, levels, self.shape.points);
+        let mixed = if value.device().is_cpu() {
+            let look = Look { shape: self.shape, levels, from: &from };
+            value.contiguous()?.apply_op2_no_bwd(&points.contiguous()?, &look)?
+        } else {
+            gathered(self.shape, &value, &points, levels, &from)?
+        };
+        self.out.of(&mixed.unsqueeze(0)?)
+    }
+}
+
+impl Sampling {
+    /// Places that a query looks at.
+    fn count(self) -> usize {
+        self.heads * self.levels * self.points
+    }
+}
+
+/// Where a query looks from, as shares of the picture, and how far an offset of 1 reaches: a share of the picture, or,
+/// where it is `None`, a cell.
+type Start = ([f32; 2], Option<[f32; 2]>);
+
+fn starts(from: Origin<'_>, levels: &[Level], points: usize) -> Vec<Start> {
+    match from {
+        Origin::Boxes(boxes) => {
+            let step = |edge: f32| 0.5 * edge / points as f32;
+            boxes.iter().map(|&[x, y, width, height]| ([x, y], Some([step(width), step(height)]))).collect()
+        }
+        Origin::Cells => levels.iter().flat_map(|level| level.middles().map(|middle| (middle, None))).collect(),
+    }
+}
+
+/// Where a sample lies in a level, in cells from the middle of the first one.
+fn place((from, step): Start, level: Level, offset: [f32; 2]) -> (f32, f32) {
+    let (width, height) = (level.width as f32, level.height as f32);
+    match step {
+        None => (from[0] * width + offset[0] - 0.5, from[1] * height + offset[1] - 0.5),
+        Some(step) => ((from[0] + offset[0] * step[0]) * width - 0.5, (from[1] + offset[1] * step[1]) * height - 0.5),
+    }
+}
+
+/// One pass over all queries on the processor.
+struct Look<'a> {
+    shape: Sampling,
+    levels: &'a [Level],
+    from: &'a [Start],
+}
+
+impl CustomOp2 for Look<'_> {
+    fn name(&self) -> &'static str {
+        "deformable-attention"
+    }
+
+    fn cpu_fwd(
+        &self,
+        v: &CpuStorage,
+        v_layout: &Layout,
+        p: &CpuStorage,
+        p_layout: &Layout,
+    ) -> Result<(CpuStorage, Shape)> {
+        let ((cells, size), (queries, width)) = (v_layout.shape().dims2()?, p_layout.shape().dims2()?);
+        let held: usize = self.levels.iter().map(|level| level.height * level.width).sum();
+        if held != cells || self.from.len() != queries || width != 3 * self.shape.count() {
+            bail!("{cells} cells and {queries} queries do not fit together");
+        }
+        let (values, points) = (slice::<f32>(v, v_layout)?, slice::<f32>(p, p_layout)?);
+        let mut mixed = vec![0.0; queries * size];
+        let pieces =
+            mixed.par_chunks_mut(PIECE * size).zip(points.par_chunks(PIECE * width)).zip(self.from.par_chunks(PIECE));
+        pieces.for_each(|((mixed, points), from)| {
+            let mut shares = vec![0.0; self.shape.levels * self.shape.points];
+            for ((mixed, points), &from) in mixed.chunks_mut(size).zip(points.chunks(width)).zip(from) {
+                self.query(values, points, from, &mut shares, mixed);
+            }
+        });
+        Ok((CpuStorage::F32(mixed), (queries, size).into()))
+    }
+}
+
+impl Look<'_> {
+    fn query(&self, values: &[f32], points: &[f32], from: Start, shares: &mut [f32], mixed: &mut [f32]) {
+        let each = mixed.len() / self.shape.heads;
+        let size = mixed.len();
+        let (offsets, weights) = points.split_at(2 * self.shape.count());
+        let heads = offsets.chunks(2 * shares.len()).zip(weights.chunks(shares.len()));
+        for (head, ((offsets, weights), mixed)) in heads.zip(mixed.chunks_mut(each)).enumerate() {
+            softmax(weights, shares);
+            let mut begin = 0;
+            let of_levels = offsets.chunks(2 * self.shape.points).zip(shares.chunks(self.shape.points));
+            for (&level, (offsets, shares)) in self.levels.iter().zip(of_levels) {
+                let cells = level.height * level.width;
+                let map = Map { values: &values[begin * size..(begin + cells) * size], level, size, from: head * each };
+                for (offset, &share) in offsets.chunks(2).zip(shares) {
+                    let (x, y) = place(from, level, [offset[0], offset[1]]);
+                    map.add(x, y, share, mixed);
+                }
+                begin += cells;
+            }
+        }
+    }
+}
+
+fn softmax(weights: &[f32], shares: &mut [f32]) {
+    let most = weights.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let mut sum = 0.0;
+    for (share, weight) in shares.iter_mut().zip(weights) {
+        *share = (weight - most).exp();
+        sum += *share;
+    }
+    shares.iter_mut().for_each(|share| *share /= sum);
+}
+
+/// One head's values of one level.
+struct Map<'a> {
+    values: &'a [f32],
+    level: Level,
+    /// From one cell to the next.
+    size: usize,
+    /// Where the head's values begin within a cell.
+    from: usize,
+}
+
+impl Map<'_> {
+    /// Adds the value at a place, interpolated between four cells, to a sum. Outside of the map it is 0.
+    fn add(&self, x: f32, y: f32, share: f32, sum: &mut [f32]) {
+        let (width, height) = (self.level.width, self.level.height);
+        if !(x > -1.0 && y > -1.0 && x < width as f32 && y < height as f32) {
+            return;
+        }
+        let (left, top) = (x.floor(), y.floor());
+        let (right_share, low_share) = (x - left, y - top);
+        // A cell outside counts 0, so that any cell can stand for it.
+        let both = |at: f32, count: usize, share: f32| {
+            let first = at as isize;
+            let is_in = |at: isize| if at >= 0 && at < count as isize { 1.0 } else { 0.0 };
+            let inside = |at: isize| at.clamp(0, count as isize - 1) as usize;
+            ([inside(first), inside(first + 1)], [(1.0 - share) * is_in(first), share * is_in(first + 1)])
+        };
+        let (columns, across) = both(left, width, right_share);
+        let (rows, down) = both(top, height, low_share);
+        let cell = |row: usize, column: usize| {
+            let begin = (rows[row] * width + columns[column]) * self.size + self.from;
+            (&self.values[begin..begin + sum.len()], share * down[row] * across[column])
+        };
+        let ((a, of_a), (b, of_b), (c, of_c), (d, of_d)) = (cell(0, 0), cell(0, 1), cell(1, 0), cell(1, 1));
+        for ((((sum, a), b), c), d) in sum.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+            *sum += a * of_a + b * of_b + c * of_c + d * of_d;
+        }
+    }
+}
+
+/// The same by candle's operators, for any device: rows of single heads are gathered.
+fn gathered(shape: Sampling, value: &Tensor, points: &Tensor, levels: &[Level], from: &[Start]) -> Result<Tensor> {
+    let (device, dtype) = (value.device(), value.dtype());
+    let ((cells, size), queries) = (value.dims2()?, points.dim(0)?);
+    let Sampling { heads, levels: _, points: count } = shape;
+    let rows = value.reshape((cells * heads, size / heads))?;
+    let points = points.to_dtype(DType::F32)?;
+    let offsets = points.narrow(1, 0, 2 * shape.count())?.reshape((queries, heads, levels.len() * count, 2))?;
+    let shares = points.narrow(1, 2 * shape.count(), shape.count())?.reshape((queries, heads, levels.len() * count))?;
+    let shares = candle_nn::ops::softmax_last_dim(&shares.contiguous()?)?;
+    let head = Tensor::arange(0, heads as u32, device)?.to_dtype(DType::F32)?;
+    let mut sum = Tensor::zeros((queries * heads, size / heads), dtype, device)?;
+    let mut begin = 0;
+    for (at, &level) in levels.iter().enumerate() {
+        // Where a query looks from, and how far an offset of 1 reaches, in cells of this level.
+        let axis = |axis: usize, length: usize| -> Result<(Tensor, Tensor)> {
+            let length = length as f32;
+            let middle = from.iter().map(|(from, _)| from[axis] * length - 0.5).collect();
+            let step = from.iter().map(|(_, step)| step.map_or(1.0, |step| step[axis] * length)).collect();
+            Ok((Tensor::from_vec(middle, (queries, 1), device)?, Tensor::from_vec(step, (queries, 1), device)?))
+        };
+        let ((from_x, step_x), (from_y, step_y)) = (axis(0, level.width)?, axis(1, level.height)?);
+        for point in at * count..(at + 1) * count {
+            let offset = |axis: usize| offsets.narrow(2, point, 1)?.narrow(3, axis, 1)?.reshape((queries, heads));
+            let x = offset(0)?.broadcast_mul(&step_x)?.broadcast_add(&from_x)?;
+            let y = offset(1)?.broadcast_mul(&step_y)?.broadcast_add(&from_y)?;
+            let share = shares.narrow(2, point, 1)?.reshape((queries, heads))?;
+            let (left, top) = (x.floor()?, y.floor()?);
+            for (right, low) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+                let (column, row) = ((&left + right)?, (&top + low)?);
+                let part = |at: &Tensor, cell: &Tensor, length: usize| {
+                    let inside = (cell.ge(0.0)? * cell.lt(length as f64)?)?.to_dtype(DType::F32)?;
+                    (1.0 - (at - cell)?.abs()?)? * inside
+                };
+                let weight = (part(&x, &column, level.width)? * part(&y, &row, level.height)? * &share)?;
+                let column = column.clamp(0.0, level.width as f64 - 1.0)?;
+                let row = row.clamp(0.0, level.height as f64 - 1.0)?;
+                let cell = ((row * level.width as f64)? + column)?;
+                let cell = ((cell + begin as f64)? * heads as f64)?.broadcast_add(&head)?;
+                let taken = rows.index_select(&cell.to_dtype(DType::U32)?.flatten_all()?, 0)?;
+                sum = (sum + taken.broadcast_mul(&weight.reshape((queries * heads, 1))?.to_dtype(dtype)?)?)?;
+            }
+        }
+        begin += level.height * level.width;
+    }
+    sum.reshape((queries, size))
+}
+
+#[cfg(test)]
+mod tests;

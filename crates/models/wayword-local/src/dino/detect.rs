@@ -1,0 +1,102 @@
+//! The family as a [`Detector`].
+
+use super::{config::Family, decoder::Seen, model::Dino, prompt::Prompt, queries::sigmoid, text::Text};
+use crate::LocalError;
+use candle_core::DType;
+use wayword_core::{Detector, Found, Image, MOST_BOXES, ModelError, Scoring, View};
+
+/// The score from which the processors of these models take a box for a find.
+const FOUND_FROM: f32 = 0.25;
+
+impl Dino {
+    /// The picture of a view.
+    fn image<'a>(&self, view: &'a View) -> Result<&'a Image, ModelError> {
+        let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
+        image.ok_or_else(|| ModelError::NothingToSee {
+            name: self.name.clone(),
+            needs: "a picture",
+            hint: "use a platform or data folder with pictures",
+        })
+    }
+
+    fn failed(&self, error: &LocalError) -> ModelError {
+        ModelError::Failed { model: self.name.clone(), reason: error.to_string() }
+    }
+
+    fn view(&self, image: &Image, prompts: &[(Prompt, Text)], phrases: usize) -> Result<Vec<Vec<Found>>, LocalError> {
+        let mut found = vec![Vec::new(); phrases];
+        let features = self.features(image)?;
+        for (prompt, text) in prompts {
+            let seen = self.seen(&features, text)?;
+            let of_prompt = boxes(&seen, prompt, image).map_err(|error| LocalError::compute(&self.name, &error))?;
+            for ((at, _), boxes) in prompt.phrases.iter().zip(of_prompt) {
+                found[*at] = boxes;
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// For each phrase of a prompt the best boxes. A box scores for a phrase as its best token does.
+fn boxes(seen: &Seen, prompt: &Prompt, image: &Image) -> candle_core::Result<Vec<Vec<Found>>> {
+    let logits: Vec<Vec<f32>> = seen.logits.to_dtype(DType::F32)?.to_vec2()?;
+    let (width, height) = (image.width_px() as f32, image.height_px() as f32);
+    let edges = |&[x, y, across, down]: &[f32; 4]| {
+        let edge = |middle: f32, part: f32, length: f32| (middle + part).clamp(0.0, 1.0) * length;
+        [
+            edge(x, -across / 2.0, width),
+            edge(y, -down / 2.0, height),
+            edge(x, across / 2.0, width),
+            edge(y, down / 2.0, height),
+        ]
+    };
+    let edges: Vec<[f32; 4]> = seen.boxes.iter().map(edges).collect();
+    let of_phrase = |(_, tokens): &(usize, std::ops::Range<usize>)| {
+        let best = |logits: &Vec<f32>| logits[tokens.clone()].iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let scores = logits.iter().map(|logits| sigmoid(best(logits)));
+        let mut found: Vec<Found> = scores
+            .zip(&edges)
+            .map(|(score, &box_px)| Found { box_px, score })
+            .filter(|found| is_sound(*found))
+            .collect();
+        found.sort_by(|a, b| b.score.total_cmp(&a.score));
+        found.truncate(MOST_BOXES);
+        found
+    };
+    Ok(prompt.phrases.iter().map(of_phrase).collect())
+}
+
+/// Whether it consists of numbers; those of a damaged checkpoint may not.
+fn is_sound(found: Found) -> bool {
+    found.score.is_finite() && found.box_px.iter().all(|edge| edge.is_finite())
+}
+
+impl Detector for Dino {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// A score is the maximum over the phrase's tokens of the sigmoid of a query's logit; all phrases of a call are in
+    /// one prompt, or in several where they have more tokens than the model takes.
+    fn scoring(&self) -> Scoring {
+        let means = match self.family {
+            Family::Mm => {
+                "MM Grounding DINO: a query's largest sigmoid over the tokens of the phrase, all phrases in one prompt"
+            }
+            Family::Plain => {
+                "Grounding DINO: a query's largest sigmoid over the tokens of the phrase, all phrases in one prompt"
+            }
+        };
+        Scoring { means, found_from: FOUND_FROM, phrases_meet: true }
+    }
+
+    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+        let prompts = self.prompts(phrases).map_err(|error| self.failed(&error));
+        let of_view = |view: &&View| {
+            let image = self.image(view)?;
+            let prompts = prompts.as_ref().map_err(Clone::clone)?;
+            self.view(image, prompts, phrases.len()).map_err(|error| self.failed(&error))
+        };
+        views.iter().map(of_view).collect()
+    }
+}

@@ -1,0 +1,101 @@
+//! Attention between a picture and a text, in both directions at once.
+//!
+//! A picture has thousands of cells and a prompt a few tokens. So the layers of the cells are folded into the tokens:
+//! a score is `(W v + b) . k = v . (Wᵀ k) + b . k`, what a cell takes from the tokens is projected before it is mixed,
+//! and what a token takes from the cells after it. The numbers are the same, for a tenth of the work.
+
+use super::config::Config;
+use crate::{
+    LocalError,
+    ops::{
+        LayerNorm, Linear,
+        matrix::{softmax, times},
+    },
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+
+/// The fusion of one layer of the encoder. What it adds is added to the *normalised* states.
+pub(super) struct Fusion {
+    vision_norm: LayerNorm,
+    text_norm: LayerNorm,
+    /// Keys and values of the tokens side by side.
+    text: Linear,
+    /// The layer of the cells' queries: [heads, head size, size] and [heads, head size, 1].
+    query: Tensor,
+    query_bias: Tensor,
+    /// The layer behind the cells' mixture times `vision_param`: [heads, head size, size] and [size].
+    out: Tensor,
+    out_bias: Tensor,
+    /// The layer of the cells' values: [heads, size, head size] and [heads, 1, head size].
+    value: Tensor,
+    value_bias: Tensor,
+    text_out: Linear,
+    text_share: Tensor,
+    heads: usize,
+    scale: f64,
+}
+
+impl Fusion {
+    pub(super) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+        let (size, width, heads) = (config.size, config.encoder.inner / 2, config.encoder.heads / 2);
+        let each = width / heads;
+        let attn = weights.sub("attn");
+        let wrong = |name: &str, error| attn.wrong(name, &error);
+        let weight = |name: &str, shape: &[usize]| attn.state(&format!("{name}.weight"), shape);
+        let bias = |name: &str, count: usize| attn.state(&format!("{name}.bias"), &[count]);
+        let share = weights.state("vision_param", &[size])?;
+        let query = weight("vision_proj", &[width, size])?.reshape((heads, each, size));
+        let query_bias = bias("vision_proj", width)?.reshape((heads, each, 1));
+        let out = weight("out_vision_proj", &[size, width])?;
+        let out = out.t().and_then(|out| out.broadcast_mul(&share)?.reshape((heads, each, size)));
+        let out_bias = bias("out_vision_proj", size)? * &share;
+        let value = weight("values_vision_proj", &[width, size])?;
+        let value = value.reshape((heads, each, size)).and_then(|value| value.transpose(1, 2)?.contiguous());
+        let value_bias = bias("values_vision_proj", width)?.reshape((heads, 1, each));
+        Ok(Self {
+            vision_norm: weights.layer_norm("layer_norm_vision", size, config.epsilon)?,
+            text_norm: weights.layer_norm("layer_norm_text", size, config.epsilon)?,
+            text: attn.linears(&["text_proj", "values_text_proj"], size, width)?,
+            query: query.map_err(|error| wrong("vision_proj.weight", error))?,
+            query_bias: query_bias.map_err(|error| wrong("vision_proj.bias", error))?,
+            out: out.map_err(|error| wrong("out_vision_proj.weight", error))?,
+            out_bias: out_bias.map_err(|error| wrong("out_vision_proj.bias", error))?,
+            value: value.map_err(|error| wrong("values_vision_proj.weight", error))?,
+            value_bias: value_bias.map_err(|error| wrong("values_vision_proj.bias", error))?,
+            text_out: attn.linear("out_text_proj", width, size)?,
+            text_share: weights.state("text_param", &[size])?,
+            heads,
+            scale: 1.0 / (each as f64).sqrt(),
+        })
+    }
+
+    /// The fused states of cells [1, cells, size] and tokens [1, tokens, size].
+    pub(super) fn of(&self, vision: &Tensor, text: &Tensor) -> Result<(Tensor, Tensor)> {
+        let (v, l) = (self.vision_norm.of(vision)?, self.text_norm.of(text)?);
+        let (cells, tokens, size) = (v.dim(1)?, l.dim(1)?, v.dim(2)?);
+        let both = self.text.of(&l)?;
+        let width = both.dim(2)? / 2;
+        let part = |at: usize| {
+            let part = both.narrow(2, at * width, width)?;
+            part.reshape((tokens, self.heads, width / self.heads))?.transpose(0, 1)?.contiguous()
+        };
+        // Scores of all heads side by side, [cells, heads * tokens].
+        let keys = (part(0)? * self.scale)?;
+        let rows = keys.matmul(&self.query)?.reshape((self.heads * tokens, size))?;
+        let bias = keys.matmul(&self.query_bias)?.flatten_all()?;
+        let scores = Linear::new(&rows, Some(bias))?.of(&v)?.reshape((cells, self.heads * tokens))?;
+        // A softmax over all cells, and what each token takes from them.
+        let over_cells = softmax(&scores.t()?.contiguous()?)?;
+        let pooled = times(&over_cells, &v.squeeze(0)?)?.reshape((self.heads, tokens, size))?;
+        let pooled = pooled.matmul(&self.value)?.broadcast_add(&self.value_bias)?;
+        let pooled = pooled.transpose(0, 1)?.reshape((1, tokens, width))?;
+        let l = (l + self.text_out.of(&pooled)?.broadcast_mul(&self.text_share)?)?;
+        // A softmax over the tokens of each head, and what each cell takes from them.
+        let over_tokens = softmax(&scores.reshape((cells * self.heads, tokens))?)?;
+        let values = part(1)?.matmul(&self.out)?.reshape((self.heads * tokens, size))?;
+        let mixed = Linear::new(&values.t()?.contiguous()?, Some(self.out_bias.clone()))?;
+        let v = (v + mixed.of(&over_tokens.reshape((1, cells, self.heads * tokens))?)?)?;
+        Ok((v, l))
+    }
+}

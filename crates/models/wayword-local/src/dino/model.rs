@@ -1,0 +1,162 @@
+//! A whole model: from a picture and a prompt to what its queries see.
+
+use super::{
+    config::{Config, Family},
+    decoder::{Decoder, Seen},
+    encoder::EncoderLayer,
+    features::{Eye, Features, Level},
+    picture::Shown,
+    prompt::{self, Prompt},
+    queries::Chooser,
+    text::{Text, TextTower},
+};
+use crate::{Device, LocalError, Precision, memory::Budget, picture::digest, text::Tokenizer, weights::Weights};
+use candle_core::{Result as Computed, Tensor};
+use std::{path::Path, sync::Arc};
+use wayword_core::{Image, Recent};
+
+/// The memory that the features of recent pictures may take, bytes.
+const KEPT_BYTES: usize = 256 << 20;
+
+/// Pixels of an edge of the patches that the backbone begins with.
+const PATCH_PX: usize = 4;
+
+/// MM Grounding DINO, LLMDet or Grounding DINO: finds things in pictures by phrases.
+///
+/// What does not depend on the phrases is computed once per picture and kept for recent ones, in at most 256 MiB.
+pub struct Dino {
+    pub(super) name: String,
+    pub(super) family: Family,
+    shown: Shown,
+    tokenizer: Tokenizer,
+    eye: Eye,
+    reader: TextTower,
+    encoder: Vec<EncoderLayer>,
+    chooser: Chooser,
+    decoder: Decoder,
+    /// The most tokens of a prompt.
+    longest: usize,
+    device: Device,
+    kept: Recent<[u8; 32], Features>,
+}
+
+impl Dino {
+    /// Reads `config.json`, `preprocessor_config.json`, `tokenizer.json` and the checkpoint of a folder. `name` is the
+    /// model's name: `hf/ORG/NAME`.
+    ///
+    /// # Errors
+    /// When a file is missing or damaged, the checkpoint has another architecture, or the memory does not suffice.
+    pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+        let config = Config::read(folder)?;
+        let shown = Shown::load(folder)?;
+        let tokenizer = Tokenizer::load(folder)?;
+        let weights = Weights::open(folder, device, precision)?;
+        Budget::new(None).take(name, weights.bytes().saturating_add(KEPT_BYTES as u64))?;
+        let (all, model) = (weights.scope(""), weights.scope("model"));
+        let layer = |at: usize| EncoderLayer::load(&model.sub("encoder.layers").sub(at), &config);
+        // The finest level, and a quarter as many cells for each coarser one.
+        let cell_px = PATCH_PX << config.backbone.outputs.first().copied().unwrap_or_default();
+        let of_one = (shown.most_pixels() / (cell_px * cell_px) + 1) * 4 / 3 * config.size * size_of::<f32>();
+        Ok(Self {
+            name: name.to_owned(),
+            family: config.family,
+            shown,
+            tokenizer,
+            eye: Eye::load(&model, &config)?,
+            reader: TextTower::load(&model, &config)?,
+            encoder: (0..config.encoder.count).map(layer).collect::<Result<_, _>>()?,
+            chooser: Chooser::load(&model, &config)?,
+            decoder: Decoder::load(&all, &config)?,
+            longest: config.longest,
+            device: device.clone(),
+            kept: Recent::new((KEPT_BYTES / of_one).max(1)),
+        })
+    }
+
+    /// Phrases as prompts.
+    pub(super) fn prompts(&self, phrases: &[&str]) -> Result<Vec<(Prompt, Text)>, LocalError> {
+        let read = |prompt: Prompt| {
+            let text = self.reader.of(&prompt, &self.device.0);
+            text.map(|text| (prompt, text)).map_err(|error| self.wrong(&error))
+        };
+        prompt::prompts(&self.name, &self.tokenizer, phrases, self.longest)?.into_iter().map(read).collect()
+    }
+
+    /// The features of a picture, which are kept.
+    pub(super) fn features(&self, image: &Image) -> Result<Arc<Features>, LocalError> {
+        self.kept.get_or_make(digest(image), || {
+            let pixels = self.shown.tensor(image, &self.device)?;
+            self.eye.of(&pixels).map_err(|error| self.wrong(&error))
+        })
+    }
+
+    /// What the queries see of a prompt in a picture.
+    pub(super) fn seen(&self, features: &Features, text: &Text) -> Result<Seen, LocalError> {
+        self.look(features, text, |best| best).map_err(|error| self.wrong(&error))
+    }
+
+    /// The same with other candidates, or in another order, than the best ones: their order is also that of the queries,
+    /// which begin differently, so that two equal candidates that change places change a result.
+    pub(super) fn look(
+        &self,
+        features: &Features,
+        text: &Text,
+        picked: impl FnOnce(Vec<u32>) -> Vec<u32>,
+    ) -> Computed<Seen> {
+        let (cells, read) = self.encoded(features, text)?;
+        self.decoded((&cells, &read), &features.levels, picked)
+    }
+
+    /// The states of cells and tokens behind the encoder.
+    pub(super) fn encoded(&self, features: &Features, text: &Text) -> Computed<(Tensor, Tensor)> {
+        let levels = &features.levels[..];
+        let positions = self.eye.positions(levels)?;
+        let begin = (features.cells.clone(), text.states.clone());
+        self.encoder
+            .iter()
+            .try_fold(begin, |(cells, states), layer| layer.of(&cells, &states, (&positions, levels), text))
+    }
+
+    /// What the queries see in the encoder's states.
+    fn decoded(
+        &self,
+        (cells, read): (&Tensor, &Tensor),
+        levels: &[Level],
+        picked: impl FnOnce(Vec<u32>) -> Vec<u32>,
+    ) -> Computed<Seen> {
+        let candidates = self.chooser.candidates(cells, read, levels)?;
+        let picked = picked(self.chooser.best(&candidates));
+        self.decoder.of(self.chooser.boxes(&candidates, &picked)?, cells, read, levels)
+    }
+
+    fn wrong(&self, error: &candle_core::Error) -> LocalError {
+        LocalError::compute(&self.name, error)
+    }
+}
+
+/// What tests look into.
+#[cfg(test)]
+impl Dino {
+    pub(super) fn pixels(&self, image: &Image) -> Tensor {
+        self.shown.tensor(image, &self.device).unwrap()
+    }
+
+    pub(super) fn candidates(&self, features: &Features, text: &Text) -> Computed<Vec<f32>> {
+        let (cells, read) = self.encoded(features, text)?;
+        Ok(self.chooser.candidates(&cells, &read, &features.levels)?.scores)
+    }
+
+    /// Sets the edges of pictures.
+    pub(super) fn shows(&mut self, shortest: usize, longest: usize) {
+        self.shown.set_edges(shortest, longest);
+    }
+
+    /// Features that are not kept.
+    pub(super) fn fresh(&self, image: &Image) -> Computed<Features> {
+        self.eye.of(&self.pixels(image))
+    }
+
+    pub(super) fn seen_behind(&self, features: &Features, (cells, read): (&Tensor, &Tensor)) -> Computed<Seen> {
+        self.decoded((cells, read), &features.levels, |best| best)
+    }
+}

@@ -1,0 +1,148 @@
+//! Pictures as the family's models see them, as transformers' processor makes them with Pillow.
+
+use crate::{
+    Device, LocalError, json,
+    picture::resample::{Axis, Filter, resample},
+};
+use candle_core::Tensor;
+use serde::Deserialize;
+use std::path::Path;
+use wayword_core::Image;
+
+const FILE: &str = "preprocessor_config.json";
+
+/// Longest edge of a picture for a model, pixels.
+const LONGEST_EDGE: usize = 2048;
+
+/// ImageNet's means and standard deviations of red, green and blue.
+const MEAN: [f64; 3] = [0.485, 0.456, 0.406];
+const DEVIATION: [f64; 3] = [0.229, 0.224, 0.225];
+
+/// `preprocessor_config.json`.
+#[derive(Debug, Deserialize)]
+struct Config {
+    #[serde(alias = "feature_extractor_type")]
+    image_processor_type: Option<String>,
+    size: Option<Edges>,
+    max_size: Option<usize>,
+    do_resize: Option<bool>,
+    do_rescale: Option<bool>,
+    do_normalize: Option<bool>,
+    resample: Option<u32>,
+    rescale_factor: Option<f64>,
+    image_mean: Option<[f64; 3]>,
+    image_std: Option<[f64; 3]>,
+}
+
+/// A size, in the forms that files use.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum Edges {
+    Both { shortest_edge: usize, longest_edge: usize },
+    One(usize),
+}
+
+/// Prepares pictures: the shorter edge gets one length, but the longer one at most another.
+#[derive(Debug)]
+pub(super) struct Shown {
+    shortest: usize,
+    longest: usize,
+    /// The model's number for each value of a byte, for each colour.
+    numbers: [[f32; 256]; 3],
+}
+
+impl Shown {
+    pub(super) fn load(folder: &Path) -> Result<Self, LocalError> {
+        let config: Config = json::read(folder, FILE, "the configuration of the pictures")?;
+        config.build().map_err(|problem| LocalError::File {
+            file: folder.join(FILE),
+            problem,
+            hint: "choose a model of Grounding DINO's architecture, such as hf/iSEE-Laboratory/llmdet_tiny; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
+        })
+    }
+
+    /// The most pixels of a picture for the model.
+    pub(super) fn most_pixels(&self) -> usize {
+        self.shortest * self.longest
+    }
+
+    /// A picture as a tensor [1, 3, height, width] in 32 bits.
+    pub(super) fn tensor(&self, image: &Image, device: &Device) -> Result<Tensor, LocalError> {
+        let wrong = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
+        let (from_height, from_width) = (image.height_px() as usize, image.width_px() as usize);
+        if from_height == 0 || from_width == 0 {
+            return Err(wrong(format!("{image:?} has no pixels")));
+        }
+        let (height, width) = self.size_of(from_height, from_width);
+        let axis = |from, to| Axis::middle(Filter::Bilinear, from, to, to);
+        let rgb = resample(image.rgb(), &axis(from_height, height), &axis(from_width, width));
+        let mut numbers = vec![0.0; 3 * height * width];
+        for (colour, (numbers, table)) in numbers.chunks_mut(height * width).zip(&self.numbers).enumerate() {
+            for (number, pixel) in numbers.iter_mut().zip(rgb.chunks_exact(3)) {
+                *number = table[usize::from(pixel[colour])];
+            }
+        }
+        Tensor::from_vec(numbers, (1, 3, height, width), &device.0).map_err(|error| wrong(error.to_string()))
+    }
+
+    #[cfg(test)]
+    pub(super) fn set_edges(&mut self, shortest: usize, longest: usize) {
+        (self.shortest, self.longest) = (shortest, longest);
+    }
+
+    /// The height and width of a picture for the model, in Python's arithmetic.
+    fn size_of(&self, height: usize, width: usize) -> (usize, usize) {
+        let (short, long) = (height.min(width), height.max(width));
+        let (mut edge, mut exact) = (self.shortest, self.shortest as f64);
+        if long as f64 / short as f64 * edge as f64 > self.longest as f64 {
+            exact = self.longest as f64 * short as f64 / long as f64;
+            edge = exact.round_ties_even() as usize;
+        }
+        if short == edge {
+            return (height, width);
+        }
+        // A picture may be so narrow that nothing would be left of it.
+        let edge = edge.max(1);
+        let other = ((exact * long as f64 / short as f64) as usize).max(1);
+        if width < height { (other, edge) } else { (edge, other) }
+    }
+}
+
+impl Config {
+    fn build(&self) -> Result<Shown, String> {
+        if let Some(name) = self.image_processor_type.as_deref().filter(|name| !name.contains("GroundingDino")) {
+            return Err(format!("image_processor_type: {name} is not Grounding DINO's"));
+        }
+        if self.do_resize == Some(false) {
+            return Err("do_resize: pictures that are not resized are not supported".to_owned());
+        }
+        if let Some(other) = self.resample.filter(|&filter| filter != 2) {
+            return Err(format!("resample: {other} is not 2 (bilinear)"));
+        }
+        let (shortest, longest) = match self.size {
+            None => (800, 1333),
+            Some(Edges::One(edge)) => (edge, self.max_size.unwrap_or(1333)),
+            Some(Edges::Both { shortest_edge, longest_edge }) => (shortest_edge, longest_edge),
+        };
+        if shortest == 0 || shortest > longest || longest > LONGEST_EDGE {
+            return Err(format!("size: edges of {shortest} and {longest} pixels are not between 1 and {LONGEST_EDGE}"));
+        }
+        Ok(Shown { shortest, longest, numbers: self.numbers()? })
+    }
+
+    /// The model's number for each value of a byte, for each colour.
+    fn numbers(&self) -> Result<[[f32; 256]; 3], String> {
+        let factor = if self.do_rescale == Some(false) { 1.0 } else { self.rescale_factor.unwrap_or(1.0 / 255.0) };
+        let (mean, deviation) = match self.do_normalize {
+            Some(false) => ([0.0; 3], [1.0; 3]),
+            _ => (self.image_mean.unwrap_or(MEAN), self.image_std.unwrap_or(DEVIATION)),
+        };
+        let is_finite = deviation.iter().chain(&mean).chain([&factor]).all(|number| number.is_finite());
+        if deviation.contains(&0.0) || !is_finite {
+            return Err("image_mean, image_std and rescale_factor must be finite, and image_std not 0".to_owned());
+        }
+        Ok(std::array::from_fn(|colour| {
+            std::array::from_fn(|byte| ((byte as f64 * factor) as f32 - mean[colour] as f32) / deviation[colour] as f32)
+        }))
+    }
+}

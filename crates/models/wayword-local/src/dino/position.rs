@@ -1,0 +1,65 @@
+//! Positions as sines and cosines of many wave lengths.
+
+use std::f32::consts::TAU;
+
+/// The temperature of the positions of tokens and boxes.
+const TEMPERATURE: f32 = 10_000.0;
+
+/// The wave lengths of `count` numbers: two of each.
+fn lengths(count: usize, temperature: f32) -> Vec<f32> {
+    (0..count).map(|at| temperature.powf(2.0 * (at / 2) as f32 / count as f32)).collect()
+}
+
+/// Sine and cosine of a phase for each pair of wave lengths.
+fn waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
+    for (at, (number, length)) in to.iter_mut().zip(lengths).enumerate() {
+        let angle = phase / length;
+        *number = if at % 2 == 0 { angle.sin() } else { angle.cos() };
+    }
+}
+
+/// Of the cells of a map, row by row, `size` numbers each: first of the row, then of the column.
+pub(super) fn of_map(height: usize, width: usize, size: usize, temperature: f32) -> Vec<f32> {
+    const EPSILON: f32 = 1e-6;
+    let lengths = lengths(size / 2, temperature);
+    let along = |count: usize| -> Vec<Vec<f32>> {
+        let at = |at: usize| {
+            let mut numbers = vec![0.0; size / 2];
+            waves((at + 1) as f32 / (count as f32 + EPSILON) * TAU, &lengths, &mut numbers);
+            numbers
+        };
+        (0..count).map(at).collect()
+    };
+    let (rows, columns) = (along(height), along(width));
+    let mut all = Vec::with_capacity(height * width * size);
+    for row in &rows {
+        for column in &columns {
+            all.extend_from_slice(row);
+            all.extend_from_slice(column);
+        }
+    }
+    all
+}
+
+/// Of the places of tokens, `size` numbers each.
+pub(super) fn of_places(places: &[u32], size: usize) -> Vec<f32> {
+    let lengths = lengths(size, TEMPERATURE);
+    let mut all = vec![0.0; places.len() * size];
+    for (numbers, &place) in all.chunks_mut(size.max(1)).zip(places) {
+        waves(place as f32 * TAU, &lengths, numbers);
+    }
+    all
+}
+
+/// Of boxes by their middle, width and height, `2 * size` numbers each, in the order y, x, width, height.
+pub(super) fn of_boxes(boxes: &[[f32; 4]], size: usize) -> Vec<f32> {
+    let each = size / 2;
+    let lengths = lengths(each, TEMPERATURE);
+    let mut all = vec![0.0; boxes.len() * 4 * each];
+    for (numbers, &[x, y, width, height]) in all.chunks_mut(4 * each.max(1)).zip(boxes) {
+        for (numbers, edge) in numbers.chunks_mut(each.max(1)).zip([y, x, width, height]) {
+            waves(edge * TAU, &lengths, numbers);
+        }
+    }
+    all
+}

@@ -1,0 +1,44 @@
+//! The text of a prompt as states: BERT, and a projection to the width of the picture's states.
+
+use super::{config::Config, position, prompt::Prompt};
+use crate::{LocalError, bert::Encoder as BertEncoder, ops::Linear, weights::Scope};
+use candle_core::{DType, Device, Result, Tensor};
+
+/// Computes the states of a prompt's tokens.
+pub(super) struct TextTower {
+    bert: BertEncoder,
+    projection: Linear,
+    size: usize,
+}
+
+/// A prompt's states, the same for all pictures.
+pub(super) struct Text {
+    /// [1, tokens, size].
+    pub(super) states: Tensor,
+    /// The sines of the tokens' places in their phrases, [1, tokens, size].
+    pub(super) places: Tensor,
+    /// Hides the other phrases, [1, 1, tokens, tokens].
+    pub(super) mask: Tensor,
+}
+
+impl TextTower {
+    pub(super) fn load(model: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+        Ok(Self {
+            bert: BertEncoder::load(&model.sub("text_backbone"), &config.text)?,
+            projection: model.linear("text_projection", config.text.hidden_size, config.size)?,
+            size: config.size,
+        })
+    }
+
+    pub(super) fn of(&self, prompt: &Prompt, device: &Device) -> Result<Text> {
+        let count = prompt.ids.len();
+        let ids = Tensor::from_slice(&prompt.ids, (1, count), device)?;
+        let places = prompt.places();
+        let mask = prompt.mask(device)?.reshape((1, 1, count, count))?;
+        let at = Tensor::from_slice(&places, count, device)?;
+        let states = self.projection.of(&self.bert.of_at(&ids, &at, Some(&mask))?)?;
+        let places = Tensor::from_vec(position::of_places(&places, self.size), (1, count, self.size), device)?;
+        let places = if device.is_cpu() { places.to_dtype(DType::F32)? } else { places.to_dtype(states.dtype())? };
+        Ok(Text { states, places, mask })
+    }
+}

@@ -1,0 +1,74 @@
+//! How a map is enlarged to the size of a finer one: bilinear, with the corners upon each other.
+
+use crate::ops::conv3::Map;
+
+/// The enlargement of one axis: for each new position, the position before it, the one behind it, and the share of that.
+pub(super) struct Axis(pub(super) Vec<(usize, usize, f32)>);
+
+impl Axis {
+    pub(super) fn new(from: usize, to: usize) -> Self {
+        let step = if to > 1 { (from.saturating_sub(1)) as f32 / (to - 1) as f32 } else { 0.0 };
+        let last = from.saturating_sub(1);
+        let one = |at: usize| {
+            let place = at as f32 * step;
+            let before = (place as usize).min(last);
+            (before, (before + 1).min(last), place - before as f32)
+        };
+        Self((0..to).map(one).collect())
+    }
+
+    /// How much each old position counts in the mean of all new ones.
+    fn shares(&self, from: usize) -> Vec<f64> {
+        let mut shares = vec![0.0; from];
+        for &(before, behind, share) in &self.0 {
+            shares[before] += f64::from(1.0 - share) / self.0.len() as f64;
+            shares[behind] += f64::from(share) / self.0.len() as f64;
+        }
+        shares
+    }
+}
+
+/// The enlargement of a map.
+pub(super) struct Enlarged {
+    down: Axis,
+    across: Axis,
+    width: usize,
+}
+
+impl Enlarged {
+    pub(super) fn new(map: &Map, height: usize, width: usize) -> Self {
+        Self { down: Axis::new(map.height, height), across: Axis::new(map.width, width), width: map.width }
+    }
+
+    /// The four old positions of a new one, with their shares.
+    pub(super) fn corners(&self, position: usize) -> [(usize, f32); 4] {
+        let (above, below, down) = self.down.0[position / self.across.0.len()];
+        let (left, right, across) = self.across.0[position % self.across.0.len()];
+        [
+            (above * self.width + left, (1.0 - down) * (1.0 - across)),
+            (above * self.width + right, (1.0 - down) * across),
+            (below * self.width + left, down * (1.0 - across)),
+            (below * self.width + right, down * across),
+        ]
+    }
+
+    /// How much each old position counts in the mean of all new ones.
+    pub(super) fn shares(&self, map: &Map) -> Vec<f32> {
+        let (down, across) = (self.down.shares(map.height), self.across.shares(map.width));
+        down.iter().flat_map(|down| across.iter().map(move |across| (down * across) as f32)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_corners_lie_upon_each_other() {
+        assert_eq!(Axis::new(3, 5).0, [(0, 1, 0.0), (0, 1, 0.5), (1, 2, 0.0), (1, 2, 0.5), (2, 2, 0.0)]);
+        assert_eq!(Axis::new(1, 2).0, [(0, 0, 0.0), (0, 0, 0.0)]);
+        assert_eq!(Axis::new(4, 1).0, [(0, 1, 0.0)]);
+        let sum: f64 = Axis::new(3, 7).shares(3).iter().sum();
+        assert!((sum - 1.0).abs() < 1e-6);
+    }
+}

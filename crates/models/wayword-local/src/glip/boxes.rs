@@ -1,0 +1,171 @@
+//! From what the head says to boxes with scores, as the original does it.
+
+use super::{head::Said, prompt::Prompt};
+use wayword_core::{Found, MOST_BOXES};
+
+/// The least probability of a phrase at a position.
+const LEAST: f64 = 0.05;
+
+/// The most candidates of a level, pairs of position and phrase.
+const MOST_CANDIDATES: usize = 1000;
+
+/// Boxes of a phrase that share more than this with a better one are left out.
+const MOST_OVERLAP: f64 = 0.6;
+
+/// The most that a box is larger than its anchor, as a logarithm.
+const LARGEST: f64 = 4.135_166_556_742_356;
+
+/// Sizes of a picture as the model sees it, without padding, and of the picture itself: width and height.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    pub(super) shown: (usize, usize),
+    pub(super) picture: (usize, usize),
+}
+
+/// A box [x1, y1, x2, y2] in the picture as the model sees it, with its score and its phrase.
+struct Candidate {
+    edges: [f64; 4],
+    score: f64,
+    phrase: usize,
+}
+
+/// For each phrase of a prompt, in their order, its boxes in the picture, the best first, at most [`MOST_BOXES`].
+pub(super) fn boxes(said: &[Said], prompt: &Prompt, sizes: Sizes) -> Vec<Vec<Found>> {
+    let mut found: Vec<Candidate> =
+        said.iter().enumerate().flat_map(|(level, said)| candidates(level, said, prompt, sizes)).collect();
+    found.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let mut kept: Vec<Vec<Candidate>> = prompt.phrases.iter().map(|_| Vec::new()).collect();
+    for candidate in found {
+        let of_phrase = &mut kept[candidate.phrase];
+        if of_phrase.len() < MOST_BOXES
+            && of_phrase.iter().all(|better| overlap(&better.edges, &candidate.edges) <= MOST_OVERLAP)
+        {
+            of_phrase.push(candidate);
+        }
+    }
+    let (across, down) =
+        (sizes.picture.0 as f64 / sizes.shown.0.max(1) as f64, sizes.picture.1 as f64 / sizes.shown.1.max(1) as f64);
+    let back = |candidate: Candidate| Found {
+        box_px: [(0, across), (1, down), (2, across), (3, down)].map(|(edge, by)| (candidate.edges[edge] * by) as f32),
+        score: candidate.score as f32,
+    };
+    kept.into_iter().map(|of_phrase| of_phrase.into_iter().map(back).collect()).collect()
+}
+
+/// The best candidates of a level.
+fn candidates(level: usize, said: &Said, prompt: &Prompt, sizes: Sizes) -> Vec<Candidate> {
+    let count = said.height * said.width;
+    let tokens = said.logits.len() / count.max(1);
+    let mut values = Vec::new();
+    for (position, (logits, boxes)) in
+        said.logits.chunks_exact(tokens.max(1)).zip(said.boxes.chunks_exact(5)).enumerate()
+    {
+        let centre = sigmoid(boxes[4]);
+        for (phrase, (_, of_phrase)) in prompt.phrases.iter().enumerate() {
+            let sum: f64 = of_phrase.iter().filter_map(|&token| logits.get(token)).map(|&logit| sigmoid(logit)).sum();
+            let p = sum / of_phrase.len().max(1) as f64;
+            if p > LEAST {
+                values.push((p * centre, position, phrase));
+            }
+        }
+    }
+    // Among equals the first stay first.
+    values.sort_by(|a, b| b.0.total_cmp(&a.0));
+    values.truncate(MOST_CANDIDATES);
+    let candidate = |(value, position, phrase): (f64, usize, usize)| {
+        let deltas = &said.boxes[position * 5..position * 5 + 4];
+        let edges = edges(level, position % said.width, position / said.width, deltas, sizes.shown);
+        Candidate { edges, score: value.sqrt(), phrase }
+    };
+    values.into_iter().map(candidate).collect()
+}
+
+/// The edges of a box at a column and row of a level, within the picture as the model sees it.
+fn edges(level: usize, column: usize, row: usize, deltas: &[f32], (width, height): (usize, usize)) -> [f64; 4] {
+    let (stride, side) = ((8_usize << level) as f64, (64_usize << level) as f64);
+    let axis = |at: usize, moved: f32, grown: f32, length: usize| {
+        let centre = f64::from(moved) / 10.0 * side + at as f64 * stride + (stride - 1.0) / 2.0;
+        let half = ((f64::from(grown) / 5.0).min(LARGEST).exp() * side - 1.0) / 2.0;
+        let most = length.saturating_sub(1) as f64;
+        [(centre - half).clamp(0.0, most), (centre + half).clamp(0.0, most)]
+    };
+    let ([left, right], [top, bottom]) =
+        (axis(column, deltas[0], deltas[2], width), axis(row, deltas[1], deltas[3], height));
+    [left, top, right, bottom]
+}
+
+/// The area that two boxes share, as a share of the area that they cover together, where edges are whole pixels.
+fn overlap(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    let length = |from: f64, to: f64| (to - from + 1.0).max(0.0);
+    let area = |edges: &[f64; 4]| length(edges[0], edges[2]) * length(edges[1], edges[3]);
+    let shared = length(a[0].max(b[0]), a[2].min(b[2])) * length(a[1].max(b[1]), a[3].min(b[3]));
+    shared / (area(a) + area(b) - shared)
+}
+
+fn sigmoid(x: f32) -> f64 {
+    1.0 / (1.0 + (-f64::from(x)).exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn prompt(phrases: usize) -> Prompt {
+        Prompt { ids: Vec::new(), phrases: (0..phrases).map(|at| (at, vec![at])).collect() }
+    }
+
+    /// A level of `width` x 1 positions.
+    fn said(logits: Vec<f32>, boxes: Vec<f32>) -> Said {
+        Said { height: 1, width: boxes.len() / 5, logits, boxes }
+    }
+
+    const SIZES: Sizes = Sizes { shown: (100, 100), picture: (200, 100) };
+
+    #[test]
+    fn a_box_is_its_anchor_where_nothing_is_moved_and_is_told_in_the_picture() {
+        let found = boxes(&[said(vec![0.0], vec![0.0; 5])], &prompt(1), SIZES);
+        // The anchor of 64 pixels around 3.5 goes to 35, twice as far in the picture; probability and centreness are 0.5.
+        assert_eq!(found, [[Found { box_px: [0.0, 0.0, 70.0, 35.0], score: 0.5 }]]);
+    }
+
+    #[test]
+    fn what_is_improbable_has_no_box() {
+        // 0.05 itself is not enough; centreness does not count here.
+        let p = |p: f32| (p / (1.0 - p)).ln();
+        let found = boxes(&[said(vec![p(0.0499), p(0.0501)], [0.0, 0.0, 0.0, 0.0, -20.0].to_vec())], &prompt(2), SIZES);
+        assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [0, 1]);
+    }
+
+    #[test]
+    fn a_phrase_is_the_mean_of_its_tokens() {
+        let prompt = Prompt { ids: Vec::new(), phrases: vec![(0, vec![0, 1])] };
+        let found = boxes(&[said(vec![50.0, -50.0], [0.0, 0.0, 0.0, 0.0, 50.0].to_vec())], &prompt, SIZES);
+        assert!((found[0][0].score - 0.5_f32.sqrt()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn of_boxes_upon_each_other_the_best_of_each_phrase_stays() {
+        // Two positions beside each other: the same box, moved by 8 pixels.
+        let found = boxes(&[said(vec![0.0, 1.0, 1.0, 0.0], vec![0.0; 10])], &prompt(2), SIZES);
+        assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1]);
+        assert!(found[0][0].box_px[2] > found[1][0].box_px[2]);
+    }
+
+    #[test]
+    fn numbers_that_are_none_find_nothing() {
+        let found = boxes(&[said(vec![f32::NAN], vec![f32::NAN; 5])], &prompt(1), SIZES);
+        assert!(found[0].is_empty());
+        let found = boxes(&[said(vec![f32::INFINITY], vec![f32::INFINITY; 5])], &prompt(1), SIZES);
+        assert!(found[0].iter().flat_map(|found| found.box_px).all(|edge| (0.0..=200.0).contains(&edge)));
+    }
+
+    #[test]
+    fn the_boxes_of_a_phrase_are_bounded() {
+        // 40 x 40 positions of a coarse level that shrink their boxes to points.
+        let count = 1600;
+        let boxes_px: Vec<f32> = (0..count).flat_map(|_| [0.0, 0.0, -40.0, -40.0, 0.0]).collect();
+        let said = Said { height: 40, width: 40, logits: vec![0.0; count], boxes: boxes_px };
+        let sizes = Sizes { shown: (10_000, 10_000), picture: (10_000, 10_000) };
+        assert_eq!(boxes(&[said], &prompt(1), sizes)[0].len(), MOST_BOXES);
+    }
+}

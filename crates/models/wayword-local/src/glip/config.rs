@@ -1,0 +1,112 @@
+//! The sizes of GLIP. The original checkpoints come without any, so GLIP-T's are built in.
+
+use crate::{LocalError, bert, json, json::size_problem, swin::SwinConfig};
+use serde::Deserialize;
+use std::path::Path;
+
+/// The sizes of a model.
+pub(super) struct Config {
+    pub(super) swin: SwinConfig,
+    pub(super) text: bert::Config,
+    pub(super) head: HeadConfig,
+}
+
+/// The sizes of the head.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct HeadConfig {
+    /// Channels of the features.
+    pub(super) width: usize,
+    /// Groups of the norms.
+    pub(super) groups: usize,
+    /// Rounds of fusion, text layer and convolutions.
+    pub(super) rounds: usize,
+    pub(super) fusion_heads: usize,
+    /// Width of a head of the fusion.
+    pub(super) fusion_width: usize,
+}
+
+/// `config.json`, which only small models for tests have.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    model_type: String,
+    swin: WrittenSwin,
+    text: bert::Sizes,
+    head: HeadConfig,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenSwin {
+    width: usize,
+    depths: Vec<usize>,
+    heads: Vec<usize>,
+    window: usize,
+}
+
+/// The most rounds. GLIP-L has 8.
+const MOST_ROUNDS: usize = 16;
+
+impl Config {
+    /// The sizes from `config.json` of a folder, or GLIP-T's.
+    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
+        let Some(written) = json::read_if_there::<Written>(folder, "config.json")? else { return Ok(Self::tiny()) };
+        written.config().map_err(|problem| LocalError::File {
+            file: folder.join("config.json"),
+            problem,
+            hint: "the original checkpoints of GLIP come without this file: take it away, or correct it",
+        })
+    }
+
+    /// GLIP-T's, and those of its variants A, B and C.
+    fn tiny() -> Self {
+        let sizes = bert::Sizes {
+            vocab_size: 30522,
+            hidden_size: 768,
+            num_hidden_layers: 12,
+            num_attention_heads: 12,
+            intermediate_size: 3072,
+            max_position_embeddings: 512,
+            type_vocab_size: 2,
+        };
+        let head = HeadConfig { width: 256, groups: 16, rounds: 6, fusion_heads: 8, fusion_width: 256 };
+        Self { swin: SwinConfig::tiny(), text: bert::Config::uncased(&sizes), head }
+    }
+}
+
+impl Written {
+    fn config(self) -> Result<Config, String> {
+        if self.model_type != "glip" {
+            return Err(format!("model_type: {} is not glip", self.model_type));
+        }
+        let WrittenSwin { width, depths, heads, window } = self.swin;
+        let swin = SwinConfig { width, depths, heads, window, ..SwinConfig::tiny() };
+        if swin.depths.len() != 4 {
+            return Err("swin.depths: there must be 4 stages".to_owned());
+        }
+        if let Some(problem) = swin.problem() {
+            return Err(format!("swin.{problem}"));
+        }
+        if let Some(problem) = self.text.problem() {
+            return Err(format!("text.{problem}"));
+        }
+        let head = &self.head;
+        let sizes = [
+            ("head.width", head.width),
+            ("head.groups", head.groups),
+            ("head.fusion_heads", head.fusion_heads),
+            ("head.fusion_width", head.fusion_width),
+        ];
+        if let Some(problem) = size_problem(&sizes) {
+            return Err(problem);
+        }
+        if !head.width.is_multiple_of(head.groups) || !head.width.is_multiple_of(4) {
+            return Err(format!("head.groups: {} and 4 do not divide the width {}", head.groups, head.width));
+        }
+        if !(1..=MOST_ROUNDS).contains(&head.rounds) {
+            return Err(format!("head.rounds: {} is not from 1 to {MOST_ROUNDS}", head.rounds));
+        }
+        Ok(Config { swin, text: bert::Config::uncased(&self.text), head: self.head })
+    }
+}

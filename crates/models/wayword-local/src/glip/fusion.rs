@@ -1,0 +1,105 @@
+//! The fusion of picture and text: each attends to the other.
+//!
+//! The projections of the picture's side are folded: they are applied to the few tokens instead of the many positions.
+//! For a head, (W v + b) . k = v . (Wᵀ k) + b . k; and since weights of attention sum to 1, a projection of what they mix
+//! is the mix of projections. Both are exact, and need a tenth of the multiplications.
+
+use super::config::HeadConfig;
+use crate::{
+    LocalError,
+    ops::{
+        LayerNorm, Linear,
+        matrix::{plus_times, softmax, times},
+    },
+    weights::Scope,
+};
+use candle_core::{D, Result, Tensor};
+
+const EPSILON: f64 = 1e-5;
+
+/// The most columns of scores at a time: of a few heads, if the text is long.
+const MOST_COLUMNS: usize = 512;
+
+pub(super) struct Fusion {
+    norm_v: LayerNorm,
+    norm_l: LayerNorm,
+    gamma_v: Tensor,
+    gamma_l: Tensor,
+    /// [heads, size, width] and [heads, size, 1].
+    query: (Tensor, Tensor),
+    key: Linear,
+    values_l: Linear,
+    /// [heads, size, width] and [heads, 1, size]: of the picture's values, transposed for each head.
+    values_v: (Tensor, Tensor),
+    /// [heads, size, width] and [width]: the output of each head, transposed.
+    out_v: (Tensor, Tensor),
+    out_l: Linear,
+    heads: usize,
+    size: usize,
+}
+
+impl Fusion {
+    pub(super) fn load(weights: &Scope<'_>, config: &HeadConfig, text: usize) -> std::result::Result<Self, LocalError> {
+        let (heads, size, width) = (config.fusion_heads, config.fusion_width, config.width);
+        let (inner, attn) = (heads * size, weights.sub("attn"));
+        let pair = |name: &str, shape: [usize; 2]| {
+            let part = attn.sub(name);
+            Ok::<_, LocalError>((part.state("weight", &shape)?, part.state("bias", &shape[..1])?))
+        };
+        let wrong = |error: candle_core::Error| attn.wrong("", &error);
+        let (query, query_bias) = pair("v_proj", [inner, width])?;
+        let (values, values_bias) = pair("values_v_proj", [inner, width])?;
+        let (out, out_bias) = pair("out_v_proj", [width, inner])?;
+        let by_head = |weight: &Tensor| weight.reshape((heads, size, width)).map_err(wrong);
+        Ok(Self {
+            norm_v: weights.layer_norm("layer_norm_v", width, EPSILON)?,
+            norm_l: weights.layer_norm("layer_norm_l", text, EPSILON)?,
+            gamma_v: weights.state("gamma_v", &[width])?,
+            gamma_l: weights.state("gamma_l", &[text])?,
+            query: (by_head(&query)?, query_bias.reshape((heads, size, 1)).map_err(wrong)?),
+            key: attn.linear("l_proj", text, inner)?,
+            values_l: attn.linear("values_l_proj", text, inner)?,
+            values_v: (by_head(&values)?, values_bias.reshape((heads, 1, size)).map_err(wrong)?),
+            out_v: (by_head(&out.t().and_then(|out| out.contiguous()).map_err(wrong)?)?, out_bias),
+            out_l: attn.linear("out_l_proj", inner, text)?,
+            heads,
+            size,
+        })
+    }
+
+    /// New features of positions [positions, width] and tokens [tokens, text].
+    pub(super) fn of(&self, vision: &Tensor, text: &Tensor) -> Result<(Tensor, Tensor)> {
+        let (v, l) = (self.norm_v.of(vision)?, self.norm_l.of(text)?);
+        let tokens = l.dim(0)?;
+        let split = |x: Tensor| x.reshape((tokens, self.heads, self.size))?.transpose(0, 1)?.contiguous();
+        let scale = 1.0 / (self.size as f64).sqrt();
+        // [heads, tokens, size]
+        let keys = (split(self.key.of(&l)?)? * scale)?;
+        // [heads, tokens, width]: what a position's features are multiplied with; [heads, tokens, 1]: what is added.
+        let folded = keys.matmul(&self.query.0)?;
+        let added = keys.matmul(&self.query.1)?;
+        // What the tokens give, as large as it is to be added.
+        let outputs = split(self.values_l.of(&l)?)?.matmul(&self.out_v.0)?.broadcast_mul(&self.gamma_v)?;
+        let bias = (&self.out_v.1 * &self.gamma_v)?;
+        // The residuals begin from the normed features.
+        let mut new_v = v.clone();
+        let mut pooled = Vec::new();
+        let each = (MOST_COLUMNS / tokens.max(1)).clamp(1, self.heads);
+        for begin in (0..self.heads).step_by(each) {
+            let heads = each.min(self.heads - begin);
+            let of_heads = |x: &Tensor| x.narrow(0, begin, heads)?.flatten_to(1);
+            let folded = of_heads(&folded)?;
+            // What is added to all positions alike does not change how they are weighed for a token.
+            let to_text = softmax(&times(&folded, &v.t()?)?)?;
+            pooled.push(times(&to_text, &v)?.reshape((heads, tokens, v.dim(1)?))?);
+            let added = of_heads(&added)?.reshape((1, heads * tokens))?;
+            let scores = times(&v, &folded.t()?)?.broadcast_add(&added)?;
+            let to_vision = softmax(&scores.reshape((v.dim(0)?, heads, tokens))?)?.flatten_from(1)?;
+            new_v = plus_times(&new_v, &to_vision, &of_heads(&outputs)?, (begin == 0).then_some(&bias))?;
+        }
+        let mixed = Tensor::cat(&pooled, 0)?.matmul(&self.values_v.0.transpose(1, D::Minus1)?.contiguous()?)?;
+        let mixed = mixed.broadcast_add(&self.values_v.1)?.transpose(0, 1)?.contiguous()?.flatten_from(1)?;
+        let to_l = self.out_l.of(&mixed)?;
+        Ok((new_v, (l + to_l.broadcast_mul(&self.gamma_l)?)?))
+    }
+}

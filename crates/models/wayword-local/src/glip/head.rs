@@ -1,0 +1,111 @@
+//! The head: rounds of fusion, text layer and convolutions; then for each position how well each token fits, a box, and how
+//! central it is in that box.
+
+use super::{config::Config, fusion::Fusion, numbers, pyramid::LEVELS, tower::Tower};
+use crate::{
+    LocalError, bert,
+    ops::{Linear, conv3::Map, matrix::times},
+    weights::Scope,
+};
+use candle_core::{DType, Result, Tensor};
+
+pub(super) struct Head {
+    rounds: Vec<Round>,
+    words: Linear,
+    /// What a token adds: by its state, and whatever it is.
+    word_bias: (Tensor, f64),
+    /// What the products of position and token are divided by.
+    divisor: f64,
+    /// The four distances of a box, and how central the position is in it.
+    boxes: Linear,
+    /// For each level, what its distances are multiplied with.
+    scales: Vec<f32>,
+}
+
+struct Round {
+    /// Variant A has none.
+    fusion: Option<(Fusion, bert::Layer)>,
+    tower: Tower,
+}
+
+/// What the head says of a level's positions.
+pub(super) struct Said {
+    pub(super) height: usize,
+    pub(super) width: usize,
+    /// [positions * tokens].
+    pub(super) logits: Vec<f32>,
+    /// [positions * 5]: the four distances of a box, and how central the position is.
+    pub(super) boxes: Vec<f32>,
+}
+
+impl Head {
+    pub(super) fn load(weights: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+        let (width, text) = (config.head.width, config.text.hidden_size());
+        let tower = weights.sub("dyhead_tower");
+        let fuses = tower.sub("0").has("b_attn.gamma_v");
+        let round = |at: usize| {
+            let part = |within: usize| tower.sub(if fuses { 3 * at + within } else { at });
+            let fusion = || {
+                let fusion = Fusion::load(&part(0).sub("b_attn"), &config.head, text)?;
+                Ok::<_, LocalError>((fusion, bert::Layer::load(&part(1), &config.text)?))
+            };
+            Ok::<_, LocalError>(Round {
+                fusion: fuses.then(fusion).transpose()?,
+                tower: Tower::load(&part(2), &config.head)?,
+            })
+        };
+        let wrong = |error: candle_core::Error| weights.wrong("bbox_pred.weight", &error);
+        let joined = |part: &str| {
+            let shape = |outputs: usize| if part == "weight" { vec![outputs, width, 1, 1] } else { vec![outputs] };
+            let distances = weights.tensor(&format!("bbox_pred.{part}"), &shape(4))?;
+            let centre = weights.tensor(&format!("centerness.{part}"), &shape(1))?;
+            Tensor::cat(&[distances, centre], 0).map_err(wrong)
+        };
+        let kernel = joined("weight")?.flatten_from(1).map_err(wrong)?;
+        let one = |name: &str| Ok::<_, LocalError>(numbers(weights, name, &[1])?[0]);
+        Ok(Self {
+            rounds: (0..config.head.rounds).map(round).collect::<std::result::Result<_, _>>()?,
+            words: weights.linear("dot_product_projection_text", text, width)?,
+            word_bias: (weights.state("bias_lang", &[text])?, f64::from(one("bias0")?)),
+            divisor: f64::from(one("log_scale")?).exp(),
+            boxes: Linear::new(&kernel, Some(joined("bias")?)).map_err(wrong)?,
+            scales: (0..LEVELS)
+                .map(|level| one(&format!("scales.{level}.scale")))
+                .collect::<std::result::Result<_, _>>()?,
+        })
+    }
+
+    /// From the levels of a picture and the states of a text [tokens, size].
+    pub(super) fn of(&self, levels: &[Map], text: &Tensor) -> Result<Vec<Said>> {
+        let (mut levels, mut text) = (levels.to_vec(), text.clone());
+        for round in &self.rounds {
+            if let Some((fusion, layer)) = &round.fusion {
+                let joined = Tensor::cat(&levels.iter().map(|level| &level.x).collect::<Vec<_>>(), 0)?;
+                let (vision, new) = fusion.of(&joined, &text)?;
+                text = layer.of(&new.unsqueeze(0)?, None)?.squeeze(0)?;
+                let mut begin = 0;
+                for level in &mut levels {
+                    level.x = vision.narrow(0, begin, level.count())?;
+                    begin += level.count();
+                }
+            }
+            levels = round.tower.of(&levels)?;
+        }
+        self.say(&levels, &text)
+    }
+
+    fn say(&self, levels: &[Map], text: &Tensor) -> Result<Vec<Said>> {
+        let length = text.sqr()?.sum_keepdim(1)?.sqrt()?.maximum(1e-12)?;
+        let e = text.broadcast_div(&length)?;
+        let words = (self.words.of(&(&e / 2.0)?)? / self.divisor)?.t()?.contiguous()?;
+        let bias = (e.broadcast_mul(&self.word_bias.0.unsqueeze(0)?)?.sum(1)? + self.word_bias.1)?.unsqueeze(0)?;
+        let numbers = |x: Tensor| x.to_dtype(DType::F32)?.flatten_all()?.to_vec1::<f32>();
+        let say = |(level, scale): (&Map, &f32)| {
+            let mut boxes = numbers(self.boxes.of(&level.x)?)?;
+            boxes.chunks_exact_mut(5).for_each(|row| row[..4].iter_mut().for_each(|distance| *distance *= scale));
+            let logits = numbers(times(&level.x, &words)?.broadcast_add(&bias)?)?;
+            Ok(Said { height: level.height, width: level.width, logits, boxes })
+        };
+        levels.iter().zip(&self.scales).map(say).collect()
+    }
+}

@@ -1,0 +1,32 @@
+//! GLIP: finds things in pictures by phrases, with text and picture joined at every layer of its head (GLIP-T and its
+//! variants A, B and C, from the original checkpoints).
+
+mod bend;
+mod boxes;
+mod config;
+mod detector;
+mod files;
+mod fusion;
+mod head;
+mod means;
+mod model;
+mod prompt;
+mod pyramid;
+mod tower;
+
+pub use detector::Glip;
+pub use files::GlipFiles;
+
+/// The repository whose `tokenizer.json` GLIP's texts are cut with: the checkpoints come without one.
+pub const GLIP_TOKENIZER: &str = "hf/google-bert/bert-base-uncased";
+
+/// What is to be said once to whoever uses the weights.
+pub const GLIP_LICENCE: &str = "GLIP's code has the MIT licence, but its makers state no licence for the weights: find out whether you may use them for your purpose, and do not pass them on";
+
+use crate::{LocalError, weights::Scope};
+
+/// A small tensor as numbers on the CPU.
+fn numbers(weights: &Scope<'_>, name: &str, shape: &[usize]) -> Result<Vec<f32>, LocalError> {
+    let read = |tensor: candle_core::Tensor| tensor.to_dtype(candle_core::DType::F32)?.flatten_all()?.to_vec1();
+    read(weights.tensor(name, shape)?).map_err(|error| weights.wrong(name, &error))
+}

@@ -1,0 +1,132 @@
+//! Phrases as prompts: joined by dots, as many as a prompt can hold.
+
+use crate::{LocalError, text::Tokenizer};
+
+/// The most tokens of a prompt.
+pub(super) const MOST_TOKENS: usize = 256;
+
+/// A prompt of one or more phrases.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Prompt {
+    pub(super) ids: Vec<u32>,
+    /// For each phrase, its number and its tokens. A phrase that has no token is in no prompt.
+    pub(super) phrases: Vec<(usize, Vec<usize>)>,
+}
+
+/// A phrase as the original cleans it: without underscores and what is in brackets.
+fn cleaned(phrase: &str) -> String {
+    let mut depth = 0_usize;
+    let kept = phrase.chars().filter(|&c| {
+        match c {
+            '(' => depth += 1,
+            ')' if depth > 0 => {
+                depth -= 1;
+                return false;
+            }
+            _ => {}
+        }
+        depth == 0
+    });
+    let kept: String = kept.map(|c| if c == '_' { ' ' } else { c }).collect();
+    kept.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The prompts of phrases, in their order: a prompt ends where the next phrase would not fit.
+///
+/// # Errors
+/// When a phrase alone is too long for a prompt.
+pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], most: usize) -> Result<Vec<Prompt>, LocalError> {
+    let cleaned: Vec<String> = phrases.iter().map(|phrase| cleaned(phrase)).collect();
+    let mut made: Vec<Prompt> = Vec::new();
+    let mut begin = 0;
+    while begin < cleaned.len() {
+        let mut end = begin + 1;
+        let mut prompt = joined(tokenizer, &cleaned, begin, end)?;
+        if prompt.ids.len() > most {
+            let problem = format!("the phrase {:?} has more than the {most} tokens of a prompt", phrases[begin]);
+            return Err(LocalError::Compute { model: "GLIP".to_owned(), problem });
+        }
+        // The length is first guessed by doubling, because each try cuts the whole text into tokens.
+        let mut step = cleaned.len() - end;
+        while step > 0 {
+            let next = joined(tokenizer, &cleaned, begin, (end + step).min(cleaned.len()))?;
+            if next.ids.len() <= most {
+                end = (end + step).min(cleaned.len());
+                prompt = next;
+                step = step.min(cleaned.len() - end);
+            } else {
+                step /= 2;
+            }
+        }
+        begin = end;
+        if !prompt.phrases.is_empty() {
+            made.push(prompt);
+        }
+    }
+    Ok(made)
+}
+
+/// One prompt of the phrases from `begin` to `end`.
+fn joined(tokenizer: &Tokenizer, phrases: &[String], begin: usize, end: usize) -> Result<Prompt, LocalError> {
+    let text = phrases[begin..end].join(". ");
+    let (ids, spans) = tokenizer.spans(&text)?;
+    let mut at = 0;
+    let mut of_phrases = Vec::new();
+    for (number, phrase) in phrases.iter().enumerate().take(end).skip(begin) {
+        let to = at + phrase.len();
+        let within = |(_, span): &(usize, &(usize, usize))| span.0 < to && span.1 > at;
+        let tokens: Vec<usize> = spans.iter().enumerate().filter(within).map(|(token, _)| token).collect();
+        if !tokens.is_empty() {
+            of_phrases.push((number, tokens));
+        }
+        at = to + 2;
+    }
+    Ok(Prompt { ids, phrases: of_phrases })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    fn tokenizer() -> Tokenizer {
+        Tokenizer::load(&PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures/glip")).unwrap()
+    }
+
+    #[test]
+    fn phrases_are_cleaned_as_in_the_original() {
+        for (phrase, kept) in
+            [("wooden_door", "wooden door"), ("rug (small)", "rug"), (" a  lamp ", "a lamp"), ("(x)", "")]
+        {
+            assert_eq!(cleaned(phrase), kept);
+        }
+    }
+
+    #[test]
+    fn a_phrase_has_the_tokens_of_its_letters() {
+        let made = prompts(&tokenizer(), &["fireplace", "", "Blue_chair"], 256).unwrap();
+        // [CLS] fire ##place . . blue chair [SEP]
+        assert_eq!(made.len(), 1);
+        assert_eq!(made[0].ids.len(), 8);
+        assert_eq!(made[0].phrases, [(0, vec![1, 2]), (2, vec![5, 6])]);
+    }
+
+    #[test]
+    fn what_does_not_fit_goes_into_the_next_prompt() {
+        // Each phrase has one token, and a dot between two.
+        let phrases = ["sink", "lamp", "rug", "door", "chair"];
+        for (most, sizes) in
+            [(3, vec![1, 1, 1, 1, 1]), (5, vec![2, 2, 1]), (7, vec![3, 2]), (10, vec![4, 1]), (11, vec![5])]
+        {
+            let made = prompts(&tokenizer(), &phrases, most).unwrap();
+            assert_eq!(made.iter().map(|prompt| prompt.phrases.len()).collect::<Vec<_>>(), sizes, "{most}");
+            let numbers: Vec<usize> = made.iter().flat_map(|prompt| prompt.phrases.iter().map(|(at, _)| *at)).collect();
+            assert_eq!(numbers, [0, 1, 2, 3, 4]);
+            assert!(made.iter().all(|prompt| prompt.ids.len() <= most));
+        }
+        let error = prompts(&tokenizer(), &["sink", "a wooden door"], 4).unwrap_err().to_string();
+        assert!(error.contains("a wooden door"), "{error}");
+        assert!(prompts(&tokenizer(), &[], 256).unwrap().is_empty());
+        assert!(prompts(&tokenizer(), &["", "()"], 256).unwrap().is_empty());
+    }
+}

@@ -1,0 +1,224 @@
+//! The convolutions of a round: each level sees itself and its neighbours through deformed kernels, weighs what it saw, and
+//! passes it through an activation that depends on the whole map.
+//!
+//! Norms, weights and the activation are affine for each channel, so only their coefficients are computed one after
+//! another; the map itself is read twice: for its means, and to write the result.
+
+use super::{bend::Enlarged, config::HeadConfig, means::Means, numbers};
+use crate::{
+    LocalError,
+    ops::{
+        conv3::{BENDS, Bends, Conv3, Map, mix, rows_between},
+        kernels::{is_ours, with_numbers},
+        tiles::{TILE, each_tile, room},
+    },
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+use rayon::prelude::*;
+
+const EPSILON: f64 = 1e-5;
+
+/// Which convolution is for the level below, itself, and above.
+const ABOVE: usize = 0;
+const SAME: usize = 1;
+const BELOW: usize = 2;
+
+pub(super) struct Tower {
+    convs: [Normed; 3],
+    bends: Conv3,
+    /// What a result's weight is made of: its channels' means.
+    weighs: (Vec<f32>, f32),
+    /// The two layers behind the activation's coefficients, rows of inputs and a bias.
+    squeeze: (Vec<f32>, Vec<f32>),
+    widen: (Vec<f32>, Vec<f32>),
+    groups: usize,
+    width: usize,
+}
+
+/// A convolution and the norm of groups of channels behind it.
+struct Normed {
+    conv: Conv3,
+    weight: Vec<f32>,
+    bias: Vec<f32>,
+}
+
+/// What one convolution gives for a level.
+struct Seen {
+    map: Map,
+    /// How it becomes as large as the level.
+    enlarged: Option<Enlarged>,
+    /// For each channel: what a number is multiplied with, what is then added, and the mean of the results.
+    scale: Vec<f32>,
+    shift: Vec<f32>,
+    mean: Vec<f32>,
+}
+
+/// The activation's coefficients for each channel: the larger of two lines, slope and height each.
+struct Lines([Vec<f32>; 4]);
+
+impl Tower {
+    pub(super) fn load(weights: &Scope<'_>, config: &HeadConfig) -> std::result::Result<Self, LocalError> {
+        let width = config.width;
+        let conv = |at: usize| {
+            let part = weights.sub("DyConv").sub(at);
+            Ok::<_, LocalError>(Normed {
+                conv: Conv3::load(&part.sub("conv"), width, width)?,
+                weight: numbers(&part, "bn.weight", &[width])?,
+                bias: numbers(&part, "bn.bias", &[width])?,
+            })
+        };
+        let bias = numbers(weights, "AttnConv.1.bias", &[1])?;
+        let relu = weights.sub("relu.fc");
+        let layer = |name: &str, inputs: usize, outputs: usize| {
+            let part = relu.sub(name);
+            Ok::<_, LocalError>((numbers(&part, "weight", &[outputs, inputs])?, numbers(&part, "bias", &[outputs])?))
+        };
+        Ok(Self {
+            convs: [conv(ABOVE)?, conv(SAME)?, conv(BELOW)?],
+            bends: Conv3::load(&weights.sub("offset"), width, BENDS)?,
+            weighs: (numbers(weights, "AttnConv.1.weight", &[1, width, 1, 1])?, bias[0]),
+            squeeze: layer("0", width, width / 4)?,
+            widen: layer("2", width / 4, 4 * width)?,
+            groups: config.groups,
+            width,
+        })
+    }
+
+    /// New levels from levels, the finest first.
+    pub(super) fn of(&self, levels: &[Map]) -> Result<Vec<Map>> {
+        (0..levels.len()).map(|at| self.level(levels, at)).collect()
+    }
+
+    fn level(&self, levels: &[Map], at: usize) -> Result<Map> {
+        let level = &levels[at];
+        let bends = Bends::new(&self.bends.plain(level, 1)?)?;
+        let mut seen = vec![self.see(SAME, level, 1, &bends, None)?];
+        if let Some(finer) = at.checked_sub(1).and_then(|below| levels.get(below)) {
+            seen.push(self.see(BELOW, finer, 2, &bends, None)?);
+        }
+        if let Some(coarser) = levels.get(at + 1) {
+            seen.push(self.see(ABOVE, coarser, 1, &bends, Some(level))?);
+        }
+        // The mean of the results, each with its weight: a sum of maps, each with a slope, and a height.
+        let mut height = vec![0.0; self.width];
+        let mut mean = vec![0.0; self.width];
+        let count = seen.len() as f32;
+        for seen in &mut seen {
+            let weight = self.weight(&seen.mean) / count;
+            seen.scale.iter_mut().for_each(|scale| *scale *= weight);
+            height.iter_mut().zip(&seen.shift).for_each(|(height, shift)| *height += shift * weight);
+            mean.iter_mut().zip(&seen.mean).for_each(|(sum, mean)| *sum += mean * weight);
+        }
+        let lines = self.lines(&mean);
+        let x = if is_ours(&level.x) {
+            self.joined(&seen, &height, &lines, level)?
+        } else {
+            on_device(&seen, &height, &lines, level)?
+        };
+        Ok(Map { x, ..*level })
+    }
+
+    /// A convolution's result, and what its norm does to it.
+    fn see(&self, which: usize, map: &Map, stride: usize, bends: &Bends, like: Option<&Map>) -> Result<Seen> {
+        let Normed { conv, weight, bias } = &self.convs[which];
+        let map = conv.deformed(map, stride, bends)?;
+        let enlarged = like.map(|like| Enlarged::new(&map, like.height, like.width));
+        let shares = enlarged.as_ref().map(|enlarged| enlarged.shares(&map));
+        let Means { plain, square, shared } = Means::of(&map, shares.as_deref())?;
+        let size = self.width / self.groups;
+        let (mut scale, mut shift, mut mean) = (weight.clone(), bias.clone(), vec![0.0; self.width]);
+        for group in 0..self.groups {
+            let channels = group * size..(group + 1) * size;
+            let of_group = |means: &[f64]| means[channels.clone()].iter().sum::<f64>() / size as f64;
+            let (centre, square) = (of_group(&plain), of_group(&square));
+            let by = 1.0 / ((square - centre * centre).max(0.0) + EPSILON).sqrt();
+            for channel in channels.clone() {
+                scale[channel] *= by as f32;
+                shift[channel] -= (centre * f64::from(scale[channel])) as f32;
+                mean[channel] = (shared[channel] * f64::from(scale[channel])) as f32 + shift[channel];
+            }
+        }
+        Ok(Seen { map, enlarged, scale, shift, mean })
+    }
+
+    /// The weight of a result by its channels' means.
+    fn weight(&self, mean: &[f32]) -> f32 {
+        let sum: f32 = self.weighs.0.iter().zip(mean).map(|(weight, mean)| weight * mean).sum();
+        hard_sigmoid((sum + self.weighs.1).max(0.0))
+    }
+
+    /// The activation's coefficients by the channels' means.
+    fn lines(&self, mean: &[f32]) -> Lines {
+        let layer = |(weight, bias): &(Vec<f32>, Vec<f32>), x: &[f32]| -> Vec<f32> {
+            let row = |(row, bias): (&[f32], &f32)| row.iter().zip(x).map(|(a, b)| a * b).sum::<f32>() + bias;
+            weight.chunks_exact(x.len()).zip(bias).map(row).collect()
+        };
+        let inner: Vec<f32> = layer(&self.squeeze, mean).into_iter().map(|number| number.max(0.0)).collect();
+        let made: Vec<f32> = layer(&self.widen, &inner).into_iter().map(|x| hard_sigmoid(x) - 0.5).collect();
+        let part = |at: usize, by: f32, and: f32| {
+            made[at * self.width..(at + 1) * self.width].iter().map(|number| number * by + and).collect()
+        };
+        Lines([part(0, 2.0, 1.0), part(1, 1.0, 0.0), part(2, 2.0, 0.0), part(3, 1.0, 0.0)])
+    }
+
+    /// The sum of what was seen, through the activation, in one pass.
+    fn joined(&self, seen: &[Seen], height: &[f32], lines: &Lines, level: &Map) -> Result<Tensor> {
+        let width = self.width;
+        let mut y = vec![0.0; level.count() * width];
+        for (at, seen) in seen.iter().enumerate() {
+            with_numbers(&seen.map.x, |x| {
+                each_tile(&mut y, width, |from, y, memory| {
+                    let [between] = room(memory, [width]);
+                    for (at_row, y) in y.chunks_exact_mut(width).enumerate() {
+                        let row = match &seen.enlarged {
+                            None => &x[(from + at_row) * width..(from + at_row + 1) * width],
+                            Some(enlarged) => {
+                                mix(x, width, &enlarged.corners(from + at_row), between);
+                                &*between
+                            }
+                        };
+                        let each = y.iter_mut().zip(row).zip(&seen.scale);
+                        match at {
+                            0 => each.zip(height).for_each(|(((y, x), scale), height)| *y = x * scale + height),
+                            _ => each.for_each(|((y, x), scale)| *y += x * scale),
+                        }
+                    }
+                    Ok(())
+                })
+            })?;
+        }
+        let [slope, at, other_slope, other_at] = &lines.0;
+        y.par_chunks_mut(width * TILE).flat_map_iter(|rows| rows.chunks_exact_mut(width)).for_each(|row| {
+            let lines = slope.iter().zip(at).zip(other_slope.iter().zip(other_at));
+            for (y, ((slope, at), (other_slope, other_at))) in row.iter_mut().zip(lines) {
+                *y = (*y * slope + at).max(*y * other_slope + other_at);
+            }
+        });
+        Tensor::from_vec(y, (level.count(), width), level.x.device())
+    }
+}
+
+/// The sum of what was seen, through the activation, by candle's operators.
+fn on_device(seen: &[Seen], height: &[f32], lines: &Lines, level: &Map) -> Result<Tensor> {
+    let (device, dtype) = (level.x.device(), level.x.dtype());
+    let row = |numbers: &[f32]| Tensor::from_slice(numbers, (1, numbers.len()), device)?.to_dtype(dtype);
+    let mut sum = row(height)?;
+    for seen in seen {
+        let x = match &seen.enlarged {
+            None => seen.map.x.clone(),
+            Some(enlarged) => {
+                let points: Vec<_> = (0..level.count()).map(|position| enlarged.corners(position)).collect();
+                rows_between(&seen.map.x, &points, 4, device)?
+            }
+        };
+        sum = x.broadcast_mul(&row(&seen.scale)?)?.broadcast_add(&sum)?;
+    }
+    let line = |slope: &[f32], at: &[f32]| sum.broadcast_mul(&row(slope)?)?.broadcast_add(&row(at)?);
+    let [slope, at, other_slope, other_at] = &lines.0;
+    line(slope, at)?.maximum(&line(other_slope, other_at)?)
+}
+
+fn hard_sigmoid(x: f32) -> f32 {
+    (x + 3.0).clamp(0.0, 6.0) / 6.0
+}

@@ -1,0 +1,110 @@
+//! Whether a file is the one that its makers published, or at least the one that was used before.
+//!
+//! The hub's hash protects a download, but not from a repository whose files were exchanged. A checkpoint that training
+//! left is a pickle; nothing in it is executed here, but its results may be anything. So its SHA-256 must be the one that
+//! is published, or that the user gave, or that was kept when the file was used first.
+
+use super::{
+    HubConfig, Progress,
+    cache::{beside, make_parent},
+    name::{ModelName, ModelSource},
+};
+use crate::LocalError;
+use sha2::{Digest, Sha256};
+use std::{
+    fs::{self, File},
+    io,
+    path::{Path, PathBuf},
+};
+
+/// SHA-256 of published checkpoints, by the names of their files.
+const PUBLISHED: [(&str, &str); 3] = [
+    ("glip_tiny_model_o365_goldg_cc_sbu.pth", "3bec0a3dea804fcb278d7106c5438de5116ee888e49dfae46270e7ad7bc4ccbf"),
+    (
+        "glip_tiny_model_o365_goldg_cc_sbu_lvisbest.pth",
+        "246ea2b91b9b3e20c1478a6cc6e0831ae1c4f75502cf885225a99caa2e8b996a",
+    ),
+    ("glip_tiny_model_o365_goldg.pth", "4274770c817b966621097df306c5ae857a2bdf3dfc242afc402382d9604382d3"),
+];
+
+/// Longest file in which a hash is kept, bytes.
+const LONGEST_KEPT: u64 = 100;
+
+/// Checks a file of a model, and tells what its hash was held against.
+///
+/// # Errors
+/// When it is not the file that it should be.
+pub(super) fn check(
+    config: &HubConfig,
+    name: &ModelName,
+    path: &Path,
+    progress: &dyn Progress,
+) -> Result<(), LocalError> {
+    let found = sha256(path).map_err(|error| LocalError::io(path, "read", error))?;
+    let other = |expected: &str, what: &str| LocalError::File {
+        file: path.to_owned(),
+        problem: format!("its SHA-256 is {found}, not {expected}, {what}"),
+        hint: "fetch the file again from its makers; if you know that this is the right one, say so with --trust and its SHA-256",
+    };
+    if let Some(given) = &config.trust {
+        let is_given = given.trim().eq_ignore_ascii_case(&found);
+        return if is_given { Ok(()) } else { Err(other(given, "which was given")) };
+    }
+    let file = path_name(name).unwrap_or_default();
+    if let Some((_, published)) = PUBLISHED.iter().find(|(published, _)| *published == file) {
+        return if *published == found { Ok(()) } else { Err(other(published, "which is the published one")) };
+    }
+    let kept = place(config, name, path);
+    match read(&kept) {
+        Some(first) if first == found => Ok(()),
+        Some(first) => Err(other(&first, &format!("as it was when it was first used (kept in {})", kept.display()))),
+        None => {
+            keep(&kept, &found)?;
+            progress.told(&format!(
+                "{name}: nobody is known to have published the SHA-256 of this file. It is {found}; from now on no other is taken ({})",
+                kept.display()
+            ));
+            Ok(())
+        }
+    }
+}
+
+/// The name of the file that a name is for.
+fn path_name(name: &ModelName) -> Option<&str> {
+    match &name.source {
+        ModelSource::Hub(model) => model.file.as_deref().and_then(|file| file.rsplit('/').next()),
+        ModelSource::File(path) => path.file_name()?.to_str(),
+        ModelSource::Folder(_) => None,
+    }
+}
+
+/// Where a file's hash is kept: beside the model in the cache, or for the user's own files by the hash of their path.
+fn place(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
+    match &name.source {
+        ModelSource::Hub(model) => {
+            let folder = config.cache.join(format!("models--{}--{}", model.org, model.name)).join(".trust");
+            beside(&folder.join(&model.revision).join(model.file.as_deref().unwrap_or_default()), ".sha256")
+        }
+        _ => {
+            let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+            let of_path = Sha256::digest(whole.as_os_str().as_encoded_bytes());
+            config.cache.join(".trust").join(format!("{of_path:x}.sha256"))
+        }
+    }
+}
+
+fn read(kept: &Path) -> Option<String> {
+    let is_short = fs::metadata(kept).ok()?.len() <= LONGEST_KEPT;
+    is_short.then(|| fs::read_to_string(kept).ok())?.map(|text| text.trim().to_owned())
+}
+
+fn keep(kept: &Path, hash: &str) -> Result<(), LocalError> {
+    make_parent(kept)?;
+    fs::write(kept, format!("{hash}\n")).map_err(|error| LocalError::io(kept, "write", error))
+}
+
+fn sha256(path: &Path) -> io::Result<String> {
+    let mut hasher = Sha256::new();
+    io::copy(&mut io::BufReader::with_capacity(1 << 20, File::open(path)?), &mut hasher)?;
+    Ok(format!("{:x}", hasher.finalize()))
+}

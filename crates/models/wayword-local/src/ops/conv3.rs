@@ -1,0 +1,220 @@
+//! Convolutions of 3 x 3 over channels-last maps, plain and deformed.
+//!
+//! On the CPU, tiles of positions are gathered, nine rows of channels for each, and multiplied while they are in the
+//! cache. On any other device it is gathers and a product of candle's.
+
+use super::{
+    Linear,
+    kernels::{is_ours, with_numbers},
+    tiles::{each_tile, room},
+};
+use crate::{LocalError, weights::Scope};
+use candle_core::{Result, Tensor};
+
+/// Taps of a kernel, row by row.
+const TAPS: usize = 9;
+
+/// Numbers that a deformed convolution needs for each position: two offsets (down, across) a tap, then the masks.
+pub(crate) const BENDS: usize = 3 * TAPS;
+
+/// A map of features: [height * width, channels], rows from the top.
+#[derive(Clone)]
+pub(crate) struct Map {
+    pub(crate) x: Tensor,
+    pub(crate) height: usize,
+    pub(crate) width: usize,
+}
+
+/// A convolution of 3 x 3 with a padding of 1.
+pub(crate) struct Conv3 {
+    linear: Linear,
+    inputs: usize,
+    outputs: usize,
+}
+
+/// The offsets and masks of a map: [`BENDS`] numbers for each position.
+pub(crate) struct Bends {
+    numbers: Vec<f32>,
+    height: usize,
+    width: usize,
+}
+
+/// Where a tap reads: rows of the map and their shares. What lies outside has a share of 0.
+type Corners = [(usize, f32); 4];
+
+impl Map {
+    pub(crate) fn count(&self) -> usize {
+        self.height * self.width
+    }
+
+    /// Its size after a convolution with this stride.
+    fn after(&self, stride: usize) -> (usize, usize) {
+        (self.height.div_ceil(stride), self.width.div_ceil(stride))
+    }
+}
+
+impl Bends {
+    /// From a map of [`BENDS`] channels, whose masks are not yet between 0 and 1.
+    pub(crate) fn new(map: &Map) -> Result<Self> {
+        let mut numbers = map.x.to_dtype(candle_core::DType::F32)?.flatten_all()?.to_vec1::<f32>()?;
+        for masks in numbers.chunks_exact_mut(BENDS).map(|row| &mut row[2 * TAPS..]) {
+            masks.iter_mut().for_each(|mask| *mask = 1.0 / (1.0 + (-*mask).exp()));
+        }
+        Ok(Self { numbers, height: map.height, width: map.width })
+    }
+
+    /// The offsets (down, across) and the mask of a tap at a position of a map of another size or the same.
+    ///
+    /// The published weights were trained with offsets of the wrong size in one place, which were read as memory is:
+    /// channel by channel, with the other map's size. So a map of another size must be read in that way here.
+    fn at(&self, size: (usize, usize), position: usize, tap: usize) -> (f32, f32, f32) {
+        let count = self.height * self.width;
+        if size == (self.height, self.width) {
+            let row = &self.numbers[position * BENDS..(position + 1) * BENDS];
+            return (row[2 * tap], row[2 * tap + 1], row[2 * TAPS + tap]);
+        }
+        let number = |first: usize, channel: usize| {
+            let at = channel * size.0 * size.1 + position;
+            self.numbers.get(at % count * BENDS + first + at / count).copied().unwrap_or_default()
+        };
+        (number(0, 2 * tap), number(0, 2 * tap + 1), number(2 * TAPS, tap))
+    }
+}
+
+impl Conv3 {
+    /// A convolution from a checkpoint's `weight` [outputs, inputs, 3, 3] and `bias`.
+    pub(crate) fn load(weights: &Scope<'_>, inputs: usize, outputs: usize) -> std::result::Result<Self, LocalError> {
+        let kernel = weights.tensor("weight", &[outputs, inputs, 3, 3])?;
+        let bias = weights.tensor("bias", &[outputs])?;
+        let rows = kernel.permute((0, 2, 3, 1)).and_then(|kernel| kernel.contiguous()?.flatten_from(1));
+        let linear = rows.and_then(|rows| Linear::new(&rows, Some(bias)));
+        Ok(Self { linear: linear.map_err(|error| weights.wrong("weight", &error))?, inputs, outputs })
+    }
+
+    /// The plain convolution.
+    pub(crate) fn plain(&self, map: &Map, stride: usize) -> Result<Map> {
+        let (height, width) = map.after(stride);
+        let corners = |position: usize, tap: usize| {
+            let (y, x) = place(position, tap, width, stride);
+            let inside = (0..map.height as isize).contains(&y) && (0..map.width as isize).contains(&x);
+            let row = if inside { y as usize * map.width + x as usize } else { 0 };
+            [(row, f32::from(u8::from(inside))), (0, 0.0), (0, 0.0), (0, 0.0)]
+        };
+        self.gathered(map, (height, width), 1, corners)
+    }
+
+    /// The modulated deformable convolution: each tap is moved by an offset, read between four positions, and weighted by
+    /// a mask.
+    pub(crate) fn deformed(&self, map: &Map, stride: usize, bends: &Bends) -> Result<Map> {
+        let size = map.after(stride);
+        let corners = |position: usize, tap: usize| {
+            let (y, x) = place(position, tap, size.1, stride);
+            let (down, across, mask) = bends.at(size, position, tap);
+            between(y as f32 + down, x as f32 + across, mask, map)
+        };
+        self.gathered(map, size, 4, corners)
+    }
+
+    /// The product of the kernel with what is read for each tap of each position; the first `used` corners count.
+    fn gathered(
+        &self,
+        map: &Map,
+        (height, width): (usize, usize),
+        used: usize,
+        corners: impl Fn(usize, usize) -> Corners + Sync,
+    ) -> Result<Map> {
+        let count = height * width;
+        if !is_ours(&map.x) {
+            let x = self.linear.of(&on_device(map, count, used, corners)?)?;
+            return Ok(Map { x, height, width });
+        }
+        let (inputs, row) = (self.inputs, TAPS * self.inputs);
+        let mut y = vec![0.0; count * self.outputs];
+        with_numbers(&map.x, |x| {
+            each_tile(&mut y, self.outputs, |from, y, memory| {
+                let [taps] = room(memory, [y.len() / self.outputs * row]);
+                for (at, taps) in taps.chunks_exact_mut(row).enumerate() {
+                    for (tap, into) in taps.chunks_exact_mut(inputs).enumerate() {
+                        mix(x, inputs, &corners(from + at, tap)[..used], into);
+                    }
+                }
+                self.linear.rows(taps, y)
+            })
+        })?;
+        let x = Tensor::from_vec(y, (count, self.outputs), map.x.device())?;
+        Ok(Map { x, height, width })
+    }
+}
+
+/// The row and column that a tap reads without an offset.
+fn place(position: usize, tap: usize, width: usize, stride: usize) -> (isize, isize) {
+    let at = |along: usize, tap: usize| (along * stride + tap).cast_signed() - 1;
+    (at(position / width, tap / 3), at(position % width, tap % 3))
+}
+
+/// The four positions around a point, with their shares.
+fn between(y: f32, x: f32, mask: f32, map: &Map) -> Corners {
+    // Far outside is as good as just outside, and cannot overflow.
+    let (y, x) = (y.clamp(-2.0, map.height as f32 + 1.0), x.clamp(-2.0, map.width as f32 + 1.0));
+    let (top, left) = (y.floor(), x.floor());
+    let (down, across) = (y - top, x - left);
+    let corner = |row: isize, column: isize, share: f32| {
+        let inside = (0..map.height as isize).contains(&row) && (0..map.width as isize).contains(&column);
+        if inside { (row as usize * map.width + column as usize, share * mask) } else { (0, 0.0) }
+    };
+    let (top, left) = (top as isize, left as isize);
+    [
+        corner(top, left, (1.0 - down) * (1.0 - across)),
+        corner(top, left + 1, (1.0 - down) * across),
+        corner(top + 1, left, down * (1.0 - across)),
+        corner(top + 1, left + 1, down * across),
+    ]
+}
+
+/// Writes the sum of rows of x with their shares.
+pub(crate) fn mix(x: &[f32], width: usize, corners: &[(usize, f32)], into: &mut [f32]) {
+    let row = |at: usize| &x[corners[at].0 * width..(corners[at].0 + 1) * width];
+    match corners {
+        [(_, share)] if *share == 1.0 => into.copy_from_slice(row(0)),
+        [a, b, c, d] => {
+            let rows = row(0).iter().zip(row(1)).zip(row(2).iter().zip(row(3)));
+            for (into, ((w, x), (y, z))) in into.iter_mut().zip(rows) {
+                *into = a.1 * w + b.1 * x + c.1 * y + d.1 * z;
+            }
+        }
+        _ => into.fill(0.0),
+    }
+}
+
+/// What is read for each tap of each position, [positions, taps * channels], by candle's operators.
+fn on_device(map: &Map, count: usize, used: usize, corners: impl Fn(usize, usize) -> Corners) -> Result<Tensor> {
+    let device = map.x.device();
+    let tap = |tap: usize| {
+        let all: Vec<Corners> = (0..count).map(|position| corners(position, tap)).collect();
+        rows_between(&map.x, &all, used, device)
+    };
+    Tensor::cat(&(0..TAPS).map(tap).collect::<Result<Vec<_>>>()?, 1)
+}
+
+/// The sum of four rows of x with their shares, for each of many points, by candle's operators.
+pub(crate) fn rows_between(
+    x: &Tensor,
+    points: &[[(usize, f32); 4]],
+    used: usize,
+    device: &candle_core::Device,
+) -> Result<Tensor> {
+    let mut sum: Option<Tensor> = None;
+    for corner in 0..used {
+        let rows = Tensor::from_vec(points.iter().map(|point| point[corner].0 as u32).collect(), points.len(), device)?;
+        let shares = Tensor::from_vec(points.iter().map(|point| point[corner].1).collect(), (points.len(), 1), device)?;
+        let part = x.index_select(&rows, 0)?.broadcast_mul(&shares.to_dtype(x.dtype())?)?;
+        sum = Some(match sum {
+            None => part,
+            Some(sum) => (sum + part)?,
+        });
+    }
+    sum.map_or_else(|| candle_core::bail!("no corner is used"), Ok)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,104 @@
+//! Products of two computed matrices, and softmax over rows.
+
+use super::kernels::{Options, is_ours, product, rows_per_piece, with_numbers};
+use candle_core::{Result, Tensor, bail};
+use rayon::prelude::*;
+use rten_gemm::{BiasVector, GemmInputA, GemmInputB};
+use rten_simd::SimdOp;
+use rten_tensor::NdTensorView;
+use rten_vecmath::Softmax;
+
+/// a [rows, inner] times b [inner, columns], which may be transposed.
+pub(crate) fn times(a: &Tensor, b: &Tensor) -> Result<Tensor> {
+    let shape = (a.dim(0)?, b.dim(1)?);
+    if !is_ours(a) {
+        return a.matmul(b);
+    }
+    let mut y = vec![0.0; shape.0 * shape.1];
+    into(&mut y, a, b, Options::default())?;
+    Tensor::from_vec(y, shape, a.device())
+}
+
+/// x + a b, plus a bias [columns] for each row.
+pub(crate) fn plus_times(x: &Tensor, a: &Tensor, b: &Tensor, bias: Option<&Tensor>) -> Result<Tensor> {
+    if !is_ours(a) {
+        let sum = (x + a.matmul(b)?)?;
+        return bias.map_or(Ok(sum.clone()), |bias| sum.broadcast_add(bias));
+    }
+    let mut y = with_numbers(x, |x| Ok(x.to_vec()))?;
+    let options = Options { beta: 1.0, ..Options::default() };
+    match bias {
+        None => into(&mut y, a, b, options)?,
+        Some(bias) => {
+            with_numbers(bias, |bias| into(&mut y, a, b, Options { bias: Some(BiasVector::Row(bias)), ..options }))?;
+        }
+    }
+    Tensor::from_vec(y, x.shape(), x.device())
+}
+
+fn into(y: &mut [f32], a: &Tensor, b: &Tensor, options: Options<'_>) -> Result<()> {
+    let ((rows, inner), (b_inner, columns)) = (a.dims2()?, b.dims2()?);
+    if inner != b_inner {
+        bail!("matrices {:?} and {:?} do not fit together", a.shape(), b.shape());
+    }
+    // A transposed matrix is read as it lies.
+    let is_turned = b.t()?.is_contiguous() && !b.is_contiguous();
+    let lies = if is_turned { b.t()? } else { b.contiguous()? };
+    with_numbers(a, |a| {
+        with_numbers(&lies, |b| {
+            let a = GemmInputA::Unpacked(NdTensorView::from_data([rows, inner], a));
+            let b = match is_turned {
+                true => NdTensorView::from_data([columns, inner], b).transposed(),
+                false => NdTensorView::from_data([inner, columns], b),
+            };
+            product(y, a, GemmInputB::Unpacked(b), options)
+        })
+    })
+}
+
+/// Softmax over the last axis.
+pub(crate) fn softmax(x: &Tensor) -> Result<Tensor> {
+    if !is_ours(x) {
+        return candle_nn::ops::softmax_last_dim(&x.contiguous()?);
+    }
+    let row = x.dim(candle_core::D::Minus1)?.max(1);
+    let mut y = with_numbers(x, |x| Ok(x.to_vec()))?;
+    y.par_chunks_mut(row * rows_per_piece(row)).for_each(|rows| {
+        for row in rows.chunks_exact_mut(row) {
+            Softmax::new_mut(row).dispatch();
+        }
+    });
+    Tensor::from_vec(y, x.shape(), x.device())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use candle_core::Device;
+
+    fn drawn(shape: &[usize], seed: u64) -> Tensor {
+        let draw = |at: u64| (wayword_core::seed::derive(seed + at, &["matrix"]) >> 40) as f32 / (1 << 23) as f32 - 1.0;
+        let count = shape.iter().product::<usize>() as u64;
+        Tensor::from_vec((0..count).map(draw).collect(), shape, &Device::Cpu).unwrap()
+    }
+
+    fn agree(ours: &Tensor, theirs: &Tensor) {
+        assert_eq!(ours.dims(), theirs.dims());
+        let off = (ours - theirs).unwrap().abs().unwrap().max_all().unwrap().to_scalar::<f32>().unwrap();
+        assert!(off < 1e-5, "{off}");
+    }
+
+    #[test]
+    fn they_are_candles() {
+        let (a, b, turned) = (drawn(&[70, 33], 1), drawn(&[33, 40], 2), drawn(&[40, 33], 3));
+        agree(&times(&a, &b).unwrap(), &a.matmul(&b).unwrap());
+        agree(&times(&a, &turned.t().unwrap()).unwrap(), &a.matmul(&turned.t().unwrap()).unwrap());
+        let (x, bias) = (drawn(&[70, 40], 4), drawn(&[40], 5));
+        let sum = (&x + a.matmul(&b).unwrap()).unwrap();
+        agree(&plus_times(&x, &a, &b, None).unwrap(), &sum);
+        agree(&plus_times(&x, &a, &b, Some(&bias)).unwrap(), &sum.broadcast_add(&bias).unwrap());
+        assert!(times(&a, &turned).is_err());
+        let x = drawn(&[3, 50, 7], 6);
+        agree(&softmax(&x).unwrap(), &candle_nn::ops::softmax_last_dim(&x).unwrap());
+    }
+}

@@ -1,0 +1,172 @@
+//! A checkpoint as training leaves it: an archive with a pickle, of which the weights under `model` alone are read.
+
+use super::pickle::Pickle;
+use crate::{LocalError, error::FETCH_AGAIN};
+use candle_core::{DType, Device, Tensor};
+use std::{
+    collections::BTreeMap,
+    fs::File,
+    io::{self, BufReader, Read},
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
+use zip::{CompressionMethod, ZipArchive};
+
+/// The table of the weights.
+const WEIGHTS: &str = "model";
+
+/// What the names of the weights begin with, if they were trained on several devices.
+const BEGIN: &str = "module.";
+
+/// Longest pickle, bytes. It has no numbers of tensors.
+const LONGEST_PICKLE: u64 = 32 << 20;
+
+/// An open archive, and where its weights lie.
+pub(super) struct Trained {
+    path: PathBuf,
+    archive: Mutex<ZipArchive<BufReader<File>>>,
+    /// The folder of the archive.
+    root: String,
+    tensors: BTreeMap<String, Lies>,
+    length: u64,
+}
+
+/// Where a tensor lies: numbers of an entry of the archive.
+struct Lies {
+    entry: String,
+    dtype: DType,
+    /// Numbers of the entry, and those before the tensor.
+    count: u64,
+    offset: u64,
+    shape: Vec<usize>,
+    strides: Vec<usize>,
+}
+
+impl Trained {
+    pub(super) fn open(path: &Path) -> Result<Self, LocalError> {
+        let io = |error| LocalError::io(path, "read", error);
+        let damaged = |problem: String| LocalError::File {
+            file: path.to_owned(),
+            problem: format!("it is cut off or not a checkpoint of PyTorch: {problem}"),
+            hint: FETCH_AGAIN,
+        };
+        let file = File::open(path).map_err(io)?;
+        let length = file.metadata().map_err(io)?.len();
+        let mut archive = ZipArchive::new(BufReader::new(file)).map_err(|error| damaged(error.to_string()))?;
+        let is_pickle = |name: &&str| name.split_once('/').is_some_and(|(_, file)| file == "data.pkl");
+        let names: Vec<String> = archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect();
+        let pickle = names.iter().map(String::as_str).find(is_pickle);
+        let root = pickle.and_then(|name| name.split_once('/')).map(|(root, _)| root.to_owned());
+        let root = root.ok_or_else(|| damaged("it has no data.pkl".to_owned()))?;
+        let bytes = entry(&mut archive, &format!("{root}/data.pkl"), |entry| {
+            if entry.size > LONGEST_PICKLE {
+                return Err(format!("its pickle has {} bytes", entry.size));
+            }
+            let mut bytes = Vec::new();
+            entry.read.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+            Ok(bytes)
+        });
+        let pickle = Pickle::read(&bytes.map_err(damaged)?).map_err(damaged)?;
+        let tensors = pickle.tensors(WEIGHTS).map_err(damaged)?.map(|(name, place)| {
+            let lies = Lies {
+                entry: place.storage.key.to_string(),
+                dtype: if place.storage.floats { DType::F32 } else { DType::I64 },
+                count: place.storage.count,
+                offset: place.offset,
+                shape: place.shape.clone(),
+                strides: place.strides.clone(),
+            };
+            (name.strip_prefix(BEGIN).unwrap_or(&name).to_owned(), lies)
+        });
+        let tensors = tensors.collect();
+        Ok(Self { path: path.to_owned(), archive: Mutex::new(archive), root, tensors, length })
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = String> {
+        self.tensors.keys().cloned()
+    }
+
+    pub(super) fn shape(&self, name: &str) -> Option<Vec<usize>> {
+        Some(self.tensors.get(name)?.shape.clone())
+    }
+
+    /// Reads a tensor, and checks its shape.
+    pub(super) fn read(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let wrong = |problem: String| LocalError::tensor(&self.path, name, problem);
+        let lies = self.tensors.get(name).ok_or_else(|| wrong("it is missing".to_owned()))?;
+        if lies.shape != shape {
+            return Err(wrong(format!("its shape is {:?}, not {shape:?}", lies.shape)));
+        }
+        let bytes = lies.range(self.length).and_then(|range| self.bytes(lies, range)).map_err(wrong)?;
+        Tensor::from_raw_buffer(&bytes, lies.dtype, shape, &Device::Cpu).map_err(|error| wrong(error.to_string()))
+    }
+
+    fn bytes(&self, lies: &Lies, (from, length): (u64, u64)) -> Result<Vec<u8>, String> {
+        let mut archive = self.archive.lock().unwrap_or_else(PoisonError::into_inner);
+        entry(&mut archive, &format!("{}/data/{}", self.root, lies.entry), |entry| {
+            let whole = lies.count * lies.dtype.size_in_bytes() as u64;
+            if entry.size != whole {
+                return Err(format!("its entry of the archive has {} bytes, not {whole}", entry.size));
+            }
+            let mut read = entry.read;
+            let told = |error: io::Error| error.to_string();
+            io::copy(&mut Read::take(&mut read, from), &mut io::sink()).map_err(told)?;
+            // The length was checked against that of the file.
+            let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+            Read::take(&mut read, length).read_to_end(&mut bytes).map_err(told)?;
+            // At the end of an entry its checksum is compared.
+            let more = if from + length == whole { io::copy(&mut read, &mut io::sink()).map_err(told)? } else { 0 };
+            if bytes.len() as u64 == length && more == 0 { Ok(bytes) } else { Err("it is cut off".to_owned()) }
+        })
+    }
+}
+
+impl Lies {
+    /// The bytes of the entry that are the tensor's: where they begin, and how many they are.
+    fn range(&self, file: u64) -> Result<(u64, u64), String> {
+        let numbers = self.shape.iter().try_fold(1_u64, |product, &length| product.checked_mul(length as u64));
+        let size = self.dtype.size_in_bytes() as u64;
+        let end = numbers.and_then(|numbers| self.offset.checked_add(numbers)).filter(|end| *end <= self.count);
+        let whole = self.count.checked_mul(size).filter(|whole| *whole <= file);
+        let (Some(numbers), Some(_), Some(_)) = (numbers, end, whole) else {
+            return Err(format!("it is larger than what the file of {file} bytes has of it"));
+        };
+        let mut step = 1;
+        for (&length, &stride) in self.shape.iter().zip(&self.strides).rev() {
+            if length > 1 && stride != step {
+                return Err(format!(
+                    "its numbers do not lie in order: shape {:?}, strides {:?}",
+                    self.shape, self.strides
+                ));
+            }
+            step *= length.max(1);
+        }
+        Ok((self.offset * size, numbers * size))
+    }
+}
+
+/// An entry of an archive.
+struct Entry<'a> {
+    size: u64,
+    read: &'a mut dyn Read,
+}
+
+/// Calls `then` with an entry that is not compressed: PyTorch compresses none, and so none can be larger than the file.
+fn entry<T>(
+    archive: &mut ZipArchive<BufReader<File>>,
+    name: &str,
+    then: impl FnOnce(Entry<'_>) -> Result<T, String>,
+) -> Result<T, String> {
+    let mut found = archive.by_name(name).map_err(|error| format!("{name}: {error}"))?;
+    if found.compression() != CompressionMethod::Stored || found.compressed_size() != found.size() {
+        return Err(format!("{name} is compressed"));
+    }
+    then(Entry { size: found.size(), read: &mut found })
+}
+
+#[cfg(test)]
+mod tests;
