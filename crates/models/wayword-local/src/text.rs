@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 /// Longest file of a tokenizer, bytes.
 const LONGEST: u64 = 64 << 20;
 
+/// Where a token's bytes begin and end in a text.
+pub(crate) type Span = (usize, usize);
+
 /// A checkpoint's tokenizer.
 pub(crate) struct Tokenizer {
     file: PathBuf,
@@ -49,7 +52,7 @@ impl Tokenizer {
     }
 
     /// The ids of a text with the special ones, and the bytes of the text that each stands for; none for special ones.
-    pub(crate) fn spans(&self, text: &str) -> Result<(Vec<u32>, Vec<(usize, usize)>), LocalError> {
+    pub(crate) fn spans(&self, text: &str) -> Result<(Vec<u32>, Vec<Span>), LocalError> {
         let encoding = self.inner.encode(text, true).map_err(|error| self.wrong(&error.to_string()))?;
         Ok((encoding.get_ids().to_vec(), encoding.get_offsets().to_vec()))
     }
