@@ -1,6 +1,6 @@
 //! Calls of a model in process, each made once and kept in the ledger, because they cost minutes, although no money.
 
-use crate::{EyeKind, LocalError, eyes::Eye, picture::digest};
+use crate::{EyeKind, eyes::Eye, picture::digest};
 use serde_json::{Value, json};
 use std::{
     sync::{Arc, Mutex, PoisonError},
@@ -11,11 +11,16 @@ use wayword_ledger::{Answer, Call, OnceError, Refused, Run};
 
 /// A model in process behind the ledger.
 pub struct LocalModel {
-    /// `hf/ORG/NAME`.
-    name: String,
-    /// The identity of the weights and their precision, which could change an answer too.
-    origin: String,
+    kept: Kept,
     eye: Arc<dyn Eye>,
+}
+
+/// How the calls of any model in process are made once and kept.
+pub(crate) struct Kept {
+    /// `hf/ORG/NAME`.
+    pub(crate) name: String,
+    /// The identity of the weights and their precision, which could change an answer too.
+    pub(crate) origin: String,
     /// Held during a call: each call uses all threads, and two at once would need twice the memory.
     turn: Mutex<()>,
     run: Run,
@@ -25,14 +30,14 @@ pub struct LocalModel {
 #[derive(Debug, thiserror::Error)]
 enum Unanswered {
     #[error(transparent)]
-    Failed(LocalError),
+    Failed(ModelError),
     #[error(transparent)]
     Refused(Refused),
 }
 
 impl LocalModel {
     pub(crate) fn new(name: &str, origin: String, eye: Arc<dyn Eye>, run: Run) -> Self {
-        Self { name: name.to_owned(), origin, eye, turn: Mutex::new(()), run }
+        Self { kept: Kept::new(name, origin, run), eye }
     }
 
     /// The form of request that it takes.
@@ -44,46 +49,60 @@ impl LocalModel {
     /// The identity of its weights, and their precision.
     #[must_use]
     pub fn origin(&self) -> &str {
-        &self.origin
+        &self.kept.origin
     }
 
     fn one(&self, request: &Request) -> Result<Reply, ModelError> {
-        let asked = self.run.once(&self.call(request), |attempts| {
+        let answer = self.kept.once(asked(request), request.replicate, || {
+            let failed = |reason| ModelError::Failed { model: self.kept.name.clone(), reason };
+            self.eye.reply(request).map_err(|error| failed(error.to_string()))
+        });
+        answer.map(reply)
+    }
+}
+
+/// What could change the reply to a request, for the ledger.
+fn asked(request: &Request) -> Value {
+    let message = |message: &Message| {
+        let picture = message.images.first().map(|image| hash(image));
+        json!({ "role": message.role, "text": message.text, "image_sha256": picture })
+    };
+    let messages: Vec<Value> = request.messages.iter().map(message).collect();
+    let sampling = &request.sampling;
+    json!({
+        "messages": messages,
+        "temperature": sampling.temperature,
+        "max_tokens": sampling.max_tokens,
+        "seed": sampling.seed,
+    })
+}
+
+impl Kept {
+    pub(crate) fn new(name: &str, origin: String, run: Run) -> Self {
+        Self { name: name.to_owned(), origin, turn: Mutex::new(()), run }
+    }
+
+    /// The answer to a request: the ledger's, or else a computed one, which the ledger keeps.
+    pub(crate) fn once(
+        &self,
+        request: Value,
+        replicate: u32,
+        compute: impl FnOnce() -> Result<String, ModelError>,
+    ) -> Result<Answer, ModelError> {
+        let call = Call { model: self.name.clone(), base_url: self.origin.clone(), request, replicate };
+        let asked = self.run.once(&call, |attempts| {
             let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
             attempts.begin(Some(0.0)).map_err(Unanswered::Refused)?;
             let begun = Instant::now();
-            let text = self.eye.reply(request).map_err(Unanswered::Failed)?;
-            Ok(answer(text, begun))
+            Ok(answer(compute().map_err(Unanswered::Failed)?, begun))
         });
-        asked.map(reply).map_err(|error| self.error(error))
-    }
-
-    /// The call for the ledger.
-    fn call(&self, request: &Request) -> Call {
-        let message = |message: &Message| {
-            let picture = message.images.first().map(|image| hash(image));
-            json!({ "role": message.role, "text": message.text, "image_sha256": picture })
-        };
-        let messages: Vec<Value> = request.messages.iter().map(message).collect();
-        let sampling = &request.sampling;
-        let request_json = json!({
-            "messages": messages,
-            "temperature": sampling.temperature,
-            "max_tokens": sampling.max_tokens,
-            "seed": sampling.seed,
-        });
-        Call {
-            model: self.name.clone(),
-            base_url: self.origin.clone(),
-            request: request_json,
-            replicate: request.replicate,
-        }
+        asked.map_err(|error| self.error(error))
     }
 
     fn error(&self, error: OnceError<Unanswered>) -> ModelError {
         let failed = |reason: String| ModelError::Failed { model: self.name.clone(), reason };
         let refused = match error {
-            OnceError::Call(Unanswered::Failed(error)) => return failed(error.to_string()),
+            OnceError::Call(Unanswered::Failed(error)) => return error,
             OnceError::Call(Unanswered::Refused(refused)) | OnceError::Refused(refused) => refused,
             OnceError::Ledger(error) => Refused::Ledger(error),
             // The item also failed when the recording was made.
@@ -99,7 +118,7 @@ impl LocalModel {
 
 impl LanguageModel for LocalModel {
     fn name(&self) -> &str {
-        &self.name
+        &self.kept.name
     }
 
     fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
@@ -126,6 +145,6 @@ fn reply(answer: Answer) -> Reply {
 }
 
 /// A picture's name in the ledger.
-fn hash(image: &Image) -> String {
+pub(crate) fn hash(image: &Image) -> String {
     digest(image).iter().map(|byte| format!("{byte:02x}")).collect()
 }

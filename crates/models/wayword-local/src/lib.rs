@@ -1,4 +1,4 @@
-//! Models in process, from the unchanged public checkpoints: MiniLM, CLIP, BLIP and BLIP-2.
+//! Models in process, from the unchanged public checkpoints: MiniLM, CLIP, BLIP, BLIP-2 and OWLv2.
 //!
 //! Tensors and devices are candle's. The models and their operators (`ops`) are this crate's own, because candle's
 //! models are several times slower on a CPU, and candle lacks half of them.
@@ -10,6 +10,7 @@ mod bert;
 mod blip;
 mod blip2;
 mod clip;
+mod detectors;
 mod device;
 mod error;
 mod eyes;
@@ -20,6 +21,7 @@ mod kept;
 mod memory;
 mod models;
 mod ops;
+mod owl;
 mod picture;
 mod text;
 mod weights;
@@ -28,9 +30,11 @@ pub use bert::SentenceEncoder;
 pub use blip::{BlipCaptioner, BlipVqa};
 pub use blip2::Blip2;
 pub use clip::{Clip, ClipGrounder};
+pub use detectors::LocalDetector;
 pub use device::{Device, Precision};
 pub use error::LocalError;
 pub use eyes::EyeKind;
 pub use hub::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs, Progress};
 pub use kept::LocalModel;
 pub use models::{Loading, Models};
+pub use owl::{Owl, OwlOutputs};

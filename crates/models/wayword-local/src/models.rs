@@ -4,6 +4,7 @@ use crate::{
     Device, LocalError, Precision,
     blip::{BlipCaptioner, BlipVqa},
     blip2::Blip2,
+    detectors::{self, LocalDetector},
     eyes::{Blip2Eye, BlipEye, Eye},
     hub::{Hub, ModelFolder, ModelName, Needs, Progress},
     json,
@@ -32,6 +33,7 @@ pub struct Models {
 #[derive(Default)]
 struct Loaded {
     models: BTreeMap<String, Arc<LocalModel>>,
+    detectors: BTreeMap<String, Arc<LocalDetector>>,
     budget: Budget,
 }
 
@@ -66,7 +68,7 @@ impl Models {
     #[must_use]
     pub fn new(hub: Hub, loading: Loading, progress: Box<dyn Progress + Send + Sync>, run: Run) -> Self {
         let Loading { device, precision, memory_bytes } = loading;
-        let loaded = Loaded { models: BTreeMap::new(), budget: Budget::new(memory_bytes) };
+        let loaded = Loaded { budget: Budget::new(memory_bytes), ..Loaded::default() };
         Self { hub, device, precision, progress, run, loaded: Mutex::new(loaded) }
     }
 
@@ -104,6 +106,47 @@ impl Models {
         let model = Arc::new(LocalModel::new(name, origin, eye, self.run.clone()));
         loaded.models.insert(name.to_owned(), Arc::clone(&model));
         Ok(model)
+    }
+
+    /// Checks whether a name could be that of a detector in process.
+    ///
+    /// # Errors
+    /// When it could not.
+    pub fn check_detector_name(name: &str) -> Result<(), LocalError> {
+        detector_name(name).map(drop)
+    }
+
+    /// Checks that a detector's files are on this machine and of a kind that detects, and fetches missing ones. Loads
+    /// nothing.
+    ///
+    /// # Errors
+    /// When the files cannot be fetched, or the model does not detect.
+    pub fn detector_at_hand(&self, name: &str) -> Result<(), LocalError> {
+        let part = detector_name(name)?;
+        let folder = self.hub.folder(&part, &Needs::of_any(&part), &*self.progress)?;
+        detectors::Kind::read(&folder).map(drop)
+    }
+
+    /// A detector by its name, `hf/ORG/NAME`. The first call fetches it, if it is not on this machine, and loads it.
+    ///
+    /// # Errors
+    /// When the model cannot be fetched, is damaged, does not fit into the memory, or does not detect.
+    pub fn detector(&self, name: &str) -> Result<Arc<LocalDetector>, LocalError> {
+        let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(detector) = loaded.detectors.get(name) {
+            return Ok(Arc::clone(detector));
+        }
+        let part = detector_name(name)?;
+        let folder = self.hub.folder(&part, &Needs::of_any(&part), &*self.progress)?;
+        let kind = detectors::Kind::read(&folder)?;
+        let precision = self.precision.unwrap_or_default();
+        let weights = memory::of_checkpoint(&folder.path, precision)?;
+        loaded.budget.take(name, weights.saturating_add(kind.kept_bytes()))?;
+        let ready = kind.load(name, &folder, &self.device, precision)?;
+        let origin = origin(std::slice::from_ref(&folder), precision);
+        let detector = Arc::new(LocalDetector::new(name, origin, ready, self.run.clone()));
+        loaded.detectors.insert(name.to_owned(), Arc::clone(&detector));
+        Ok(detector)
     }
 
     fn load(&self, name: &str, budget: &mut Budget) -> Result<(Arc<dyn Eye>, String), LocalError> {
@@ -180,6 +223,19 @@ fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
         return Err(no_name(name, "a name has at most two parts: one BLIP that answers and one that describes"));
     }
     Ok(parts)
+}
+
+/// The model of a detector's name.
+fn detector_name(name: &str) -> Result<ModelName, LocalError> {
+    let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
+    if rest.contains('+') {
+        return Err(no_name(name, "a detector is one model"));
+    }
+    let part = ModelName::parse(name)?;
+    if part.is_gguf() {
+        return Err(no_name(name, "a GGUF file cannot be used in process"));
+    }
+    Ok(part)
 }
 
 fn no_name(name: &str, problem: &str) -> LocalError {

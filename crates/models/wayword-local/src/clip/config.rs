@@ -1,45 +1,53 @@
-//! CLIP's `config.json`. Missing values are those that transformers takes.
+//! The `config.json` of CLIP, and of OWLv2, which has the same towers. Missing values are those that transformers takes.
 
-use crate::{LocalError, json, ops::Activation};
+use crate::{LocalError, json as files, ops::Activation};
 use serde::{Deserialize, de::DeserializeOwned};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// `config.json`, with missing values filled in.
 #[derive(Debug)]
-pub(super) struct Config {
-    pub(super) text: TextConfig,
-    pub(super) vision: VisionConfig,
+pub(crate) struct Config {
+    pub(crate) text: TextConfig,
+    pub(crate) vision: VisionConfig,
     /// How many numbers a vector has.
-    pub(super) projection_dim: usize,
+    pub(crate) projection_dim: usize,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct TextConfig {
+pub(crate) struct TextConfig {
     #[serde(flatten)]
-    pub(super) layers: LayersConfig,
-    pub(super) vocab_size: usize,
-    pub(super) max_position_embeddings: usize,
-    pub(super) eos_token_id: u32,
+    pub(crate) layers: LayersConfig,
+    pub(crate) vocab_size: usize,
+    pub(crate) max_position_embeddings: usize,
+    /// The token that ends a text. `None` for the one with the highest id, whatever it is.
+    pub(crate) eos_token_id: Option<u32>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct VisionConfig {
+pub(crate) struct VisionConfig {
     #[serde(flatten)]
-    pub(super) layers: LayersConfig,
-    pub(super) image_size: usize,
-    pub(super) patch_size: usize,
+    pub(crate) layers: LayersConfig,
+    pub(crate) image_size: usize,
+    pub(crate) patch_size: usize,
 }
 
 /// The settings that both towers have.
 #[derive(Debug, Deserialize)]
-pub(super) struct LayersConfig {
-    pub(super) hidden_size: usize,
-    pub(super) intermediate_size: usize,
-    pub(super) num_hidden_layers: usize,
-    pub(super) num_attention_heads: usize,
-    pub(super) hidden_act: Activation,
-    pub(super) layer_norm_eps: f64,
+pub(crate) struct LayersConfig {
+    pub(crate) hidden_size: usize,
+    pub(crate) intermediate_size: usize,
+    pub(crate) num_hidden_layers: usize,
+    pub(crate) num_attention_heads: usize,
+    pub(crate) hidden_act: Activation,
+    pub(crate) layer_norm_eps: f64,
+}
+
+/// A family of checkpoints with these towers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Family {
+    Clip,
+    Owl,
 }
 
 /// `config.json` as it is written.
@@ -59,38 +67,77 @@ struct Written {
 const LONGEST_EDGE: usize = 2048;
 
 impl Config {
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        let written: Written = json::read(folder, "config.json", "the configuration")?;
-        written.complete().map_err(|problem| LocalError::File {
+    pub(crate) fn read(folder: &Path, family: Family) -> Result<Self, LocalError> {
+        let written: Written = files::read(folder, "config.json", "the configuration")?;
+        written.complete(family).map_err(|problem| LocalError::File {
             file: folder.join("config.json"),
             problem,
-            hint: "choose a CLIP model, such as hf/openai/clip-vit-base-patch32; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
+            hint: family.hint(),
         })
     }
 }
 
-impl Written {
-    fn complete(self) -> Result<Config, String> {
-        if let Some(kind) = self.model_type.filter(|kind| kind != "clip") {
-            return Err(format!("model_type: {kind} is not clip"));
+impl Family {
+    /// `model_type` of such checkpoints.
+    fn model_type(self) -> &'static str {
+        match self {
+            Self::Clip => "clip",
+            Self::Owl => "owlv2",
         }
-        let text: TextConfig = overlaid(
-            "text_config",
-            self.text_config_dict.or(self.text_config),
-            serde_json::json!({
-                "vocab_size": 49408, "hidden_size": 512, "intermediate_size": 2048, "num_hidden_layers": 12,
-                "num_attention_heads": 8, "max_position_embeddings": 77, "hidden_act": "quick_gelu",
-                "layer_norm_eps": 1e-5, "eos_token_id": 49407,
-            }),
-        )?;
-        let vision: VisionConfig = overlaid(
-            "vision_config",
-            self.vision_config_dict.or(self.vision_config),
-            serde_json::json!({
-                "hidden_size": 768, "intermediate_size": 3072, "num_hidden_layers": 12, "num_attention_heads": 12,
-                "image_size": 224, "patch_size": 32, "hidden_act": "quick_gelu", "layer_norm_eps": 1e-5,
-            }),
-        )?;
+    }
+
+    fn hint(self) -> &'static str {
+        match self {
+            Self::Clip => {
+                "choose a CLIP model, such as hf/openai/clip-vit-base-patch32; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`"
+            }
+            Self::Owl => {
+                "choose an OWLv2 model, such as hf/google/owlv2-base-patch16-ensemble; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`"
+            }
+        }
+    }
+
+    /// The text tower, with the given values over the defaults.
+    fn text(self, given: Option<Map<String, Value>>) -> Result<TextConfig, String> {
+        let mut given = given.unwrap_or_default();
+        let (positions, end) = match self {
+            Self::Clip => (77, Some(49407)),
+            Self::Owl => {
+                // transformers does not read it, and some files have a list there.
+                given.remove("eos_token_id");
+                (16, None)
+            }
+        };
+        let defaults = json!({
+            "vocab_size": 49408, "hidden_size": 512, "intermediate_size": 2048, "num_hidden_layers": 12,
+            "num_attention_heads": 8, "max_position_embeddings": positions, "hidden_act": "quick_gelu",
+            "layer_norm_eps": 1e-5, "eos_token_id": end,
+        });
+        overlaid("text_config", given, defaults)
+    }
+
+    /// The vision tower, with the given values over the defaults.
+    fn vision(self, given: Option<Map<String, Value>>) -> Result<VisionConfig, String> {
+        let (edge, patch) = match self {
+            Self::Clip => (224, 32),
+            Self::Owl => (768, 16),
+        };
+        let defaults = json!({
+            "hidden_size": 768, "intermediate_size": 3072, "num_hidden_layers": 12, "num_attention_heads": 12,
+            "image_size": edge, "patch_size": patch, "hidden_act": "quick_gelu", "layer_norm_eps": 1e-5,
+        });
+        overlaid("vision_config", given.unwrap_or_default(), defaults)
+    }
+}
+
+impl Written {
+    fn complete(self, family: Family) -> Result<Config, String> {
+        let expected = family.model_type();
+        if let Some(kind) = self.model_type.filter(|kind| kind != expected) {
+            return Err(format!("model_type: {kind} is not {expected}"));
+        }
+        let text = family.text(self.text_config_dict.or(self.text_config))?;
+        let vision = family.vision(self.vision_config_dict.or(self.vision_config))?;
         text.layers.check("text_config")?;
         vision.layers.check("vision_config")?;
         let (edge, patch) = (vision.image_size, vision.patch_size);
@@ -118,8 +165,8 @@ impl LayersConfig {
 }
 
 /// The given values over the defaults.
-fn overlaid<T: DeserializeOwned>(part: &str, given: Option<Map<String, Value>>, defaults: Value) -> Result<T, String> {
+fn overlaid<T: DeserializeOwned>(part: &str, given: Map<String, Value>, defaults: Value) -> Result<T, String> {
     let Value::Object(mut all) = defaults else { return Err(format!("{part}: there are no defaults")) };
-    all.extend(given.into_iter().flatten().filter(|(_, value)| !value.is_null()));
+    all.extend(given.into_iter().filter(|(_, value)| !value.is_null()));
     serde_path_to_error::deserialize(Value::Object(all)).map_err(|error| format!("{part}: {error}"))
 }

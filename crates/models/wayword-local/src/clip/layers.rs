@@ -9,8 +9,8 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// Layers that give one token's state for each text or picture.
-pub(super) struct Layers {
+/// Layers that give the states of all tokens, or of one token of each text or picture.
+pub(crate) struct Layers {
     before: Vec<Layer>,
     last: Layer,
 }
@@ -28,19 +28,21 @@ struct Layer {
 
 impl Layers {
     /// The layers 0, 1, .. of a part of a checkpoint.
-    pub(super) fn load(weights: &Scope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
+    pub(crate) fn load(weights: &Scope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
         let layer = |at: usize| Layer::load(&weights.sub(at), config);
         let last = config.num_hidden_layers.saturating_sub(1);
         Ok(Self { before: (0..last).map(layer).collect::<std::result::Result<_, _>>()?, last: layer(last)? })
     }
 
+    /// From x [batch, length, size] and a mask [length, length], the states of all tokens.
+    pub(crate) fn all(&self, x: Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        self.before.iter().chain([&self.last]).try_fold(x, |x, layer| layer.all(&x, mask))
+    }
+
     /// From x [batch, length, size] and a mask [length, length], the state of token `at` of each, [batch, 1, size]. The
     /// last layer computes only this state.
-    pub(super) fn of(&self, x: Tensor, mask: Option<&Tensor>, at: &[u32]) -> Result<Tensor> {
-        let x = self.before.iter().try_fold(x, |x, layer| {
-            let qkv = layer.qkv.of(&layer.mix_norm.of(&x)?)?;
-            layer.of(&x, &qkv, &third(&qkv, 0)?, mask)
-        })?;
+    pub(crate) fn of(&self, x: Tensor, mask: Option<&Tensor>, at: &[u32]) -> Result<Tensor> {
+        let x = self.before.iter().try_fold(x, |x, layer| layer.all(&x, mask))?;
         let (batch, length, size) = x.dims3()?;
         let place = |(text, at): (usize, &u32)| (text * length) as u32 + at;
         let rows = Tensor::from_vec(at.iter().enumerate().map(place).collect(), batch, x.device())?;
@@ -77,6 +79,12 @@ impl Layer {
             heads: config.num_attention_heads,
             activation: config.hidden_act,
         })
+    }
+
+    /// The layer's output for all tokens x [batch, length, size].
+    fn all(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let qkv = self.qkv.of(&self.mix_norm.of(x)?)?;
+        self.of(x, &qkv, &third(&qkv, 0)?, mask)
     }
 
     /// The layer's output for x [batch, queries, size]. `q` are the queries of x, and `qkv` has the keys and values of

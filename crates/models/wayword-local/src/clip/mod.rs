@@ -7,5 +7,8 @@ mod model;
 mod text;
 mod vision;
 
+pub(crate) use config::{Config as TowersConfig, Family};
 pub use grounder::ClipGrounder;
 pub use model::Clip;
+pub(crate) use text::TextTower;
+pub(crate) use vision::VisionTower;

@@ -1,6 +1,10 @@
 //! Both towers of CLIP, and the projections into their common space.
 
-use super::{config::Config, text::TextTower, vision::VisionTower};
+use super::{
+    config::{Config, Family},
+    text::TextTower,
+    vision::VisionTower,
+};
 use crate::{
     Device, LocalError, Precision, error::FETCH_AGAIN, ops::Linear, picture::Processor, text::Tokenizer,
     weights::Weights,
@@ -33,7 +37,7 @@ impl Clip {
     /// # Errors
     /// When a file is missing or damaged, or the checkpoint has another architecture.
     pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
-        let config = Config::read(folder)?;
+        let config = Config::read(folder, Family::Clip)?;
         let processor = Processor::load(folder)?;
         let edge = config.vision.image_size;
         if processor.size_px() != (edge, edge) {
@@ -54,7 +58,8 @@ impl Clip {
             name: name.to_owned(),
             processor,
             tokenizer,
-            vision: VisionTower::load(&weights.scope("vision_model"), vision)?,
+            // The checkpoints have this misspelling.
+            vision: VisionTower::load(&weights.scope("vision_model"), vision, "pre_layrnorm")?,
             text: TextTower::load(&weights.scope("text_model"), text)?,
             visual_projection: all.linear("visual_projection", vision.layers.hidden_size, size)?,
             text_projection: all.linear("text_projection", text.layers.hidden_size, size)?,

@@ -12,16 +12,17 @@ use candle_core::{Result, Tensor};
 const WRONG_END: u32 = 2;
 
 /// Computes one state for each text.
-pub(super) struct TextTower {
+pub(crate) struct TextTower {
     words: Embedding,
     positions: Embedding,
     layers: Layers,
     norm: LayerNorm,
-    end: u32,
+    /// The token that ends a text. `None` for the one with the highest id.
+    end: Option<u32>,
 }
 
 impl TextTower {
-    pub(super) fn load(weights: &Scope<'_>, config: &TextConfig) -> std::result::Result<Self, LocalError> {
+    pub(crate) fn load(weights: &Scope<'_>, config: &TextConfig) -> std::result::Result<Self, LocalError> {
         let (size, epsilon) = (config.layers.hidden_size, config.layers.layer_norm_eps);
         let embeddings = weights.sub("embeddings");
         Ok(Self {
@@ -29,13 +30,13 @@ impl TextTower {
             positions: embeddings.embedding("position_embedding", config.max_position_embeddings, size)?,
             layers: Layers::load(&weights.sub("encoder.layers"), &config.layers)?,
             norm: weights.layer_norm("final_layer_norm", size, epsilon)?,
-            end: config.eos_token_id,
+            end: config.eos_token_id.filter(|&end| end != WRONG_END),
         })
     }
 
     /// From the ids of texts, the state of the token that ends each, [batch, 1, size]. Padding comes after the end of a
     /// text, so the mask hides it.
-    pub(super) fn of(&self, texts: &[&[u32]], device: &candle_core::Device) -> Result<Tensor> {
+    pub(crate) fn of(&self, texts: &[&[u32]], device: &candle_core::Device) -> Result<Tensor> {
         let length = texts.iter().map(|ids| ids.len()).max().unwrap_or(0).max(1);
         let padded = |ids: &&[u32]| ids.iter().copied().chain(std::iter::repeat(0)).take(length).collect::<Vec<_>>();
         let ids = Tensor::from_vec(texts.iter().flat_map(padded).collect(), (texts.len(), length), device)?;
@@ -46,10 +47,10 @@ impl TextTower {
         self.norm.of(&x)
     }
 
-    /// The position at which a text ends: the first end token or, if the configuration names the wrong one, the first
-    /// token with the highest id. 0 if there is none.
+    /// The position at which a text ends: the first end token or, if the configuration names none or the wrong one, the
+    /// first token with the highest id. 0 if there is none.
     fn end_of(&self, ids: &[u32]) -> u32 {
-        let end = if self.end == WRONG_END { ids.iter().max().copied() } else { Some(self.end) };
+        let end = self.end.or_else(|| ids.iter().max().copied());
         ids.iter().position(|&id| Some(id) == end).unwrap_or(0) as u32
     }
 }

@@ -8,8 +8,8 @@ use crate::{
 };
 use candle_core::{DType, Result, Tensor};
 
-/// Computes one state for each picture.
-pub(super) struct VisionTower {
+/// Computes one state for each picture, or the states of all its tokens.
+pub(crate) struct VisionTower {
     patch_size: usize,
     patches: Linear,
     /// The class token with its position, [1, 1, size]. It comes before the patches, and its state is the result.
@@ -22,7 +22,12 @@ pub(super) struct VisionTower {
 }
 
 impl VisionTower {
-    pub(super) fn load(weights: &Scope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
+    /// The tower of a part of a checkpoint. `first_norm` is the name of the norm before the layers.
+    pub(crate) fn load(
+        weights: &Scope<'_>,
+        config: &VisionConfig,
+        first_norm: &str,
+    ) -> std::result::Result<Self, LocalError> {
         let (size, patch, epsilon) = (config.layers.hidden_size, config.patch_size, config.layers.layer_norm_eps);
         let embeddings = weights.sub("embeddings");
         let count = (config.image_size / patch).pow(2);
@@ -36,22 +41,32 @@ impl VisionTower {
             patches: kernel.map_err(|error| embeddings.wrong("patch_embedding.weight", &error))?,
             class: placed.0,
             positions: placed.1,
-            // The checkpoints have this misspelling.
-            first_norm: weights.layer_norm("pre_layrnorm", size, epsilon)?,
+            first_norm: weights.layer_norm(first_norm, size, epsilon)?,
             layers: Layers::load(&weights.sub("encoder.layers"), &config.layers)?,
             last_norm: weights.layer_norm("post_layernorm", size, epsilon)?,
         })
     }
 
-    /// From pictures [batch, 3, height, width] in 32 bits, states [batch, 1, size].
-    pub(super) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
+    /// From pictures [batch, 3, height, width] in 32 bits, the states of the class token [batch, 1, size].
+    pub(crate) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
+        let x = self.layers.of(self.tokens(pictures)?, None, &vec![0; pictures.dim(0)?])?;
+        self.last_norm.of(&x)
+    }
+
+    /// From pictures [batch, 3, height, width] in 32 bits, the states of all tokens [batch, 1 + patches, size]: the class
+    /// token, then the patches, rows from the top.
+    pub(crate) fn all(&self, pictures: &Tensor) -> Result<Tensor> {
+        self.last_norm.of(&self.layers.all(self.tokens(pictures)?, None)?)
+    }
+
+    /// What the layers begin with, [batch, 1 + patches, size].
+    fn tokens(&self, pictures: &Tensor) -> Result<Tensor> {
         let batch = pictures.dim(0)?;
         let cut = patches(&pictures.to_dtype(self.positions.dtype())?, self.patch_size)?;
         let seen = self.patches.of(&cut)?.broadcast_add(&self.positions)?;
         let size = seen.dim(2)?;
         let x = Tensor::cat(&[&self.class.expand((batch, 1, size))?, &seen], 1)?;
-        let x = self.layers.of(self.first_norm.of(&x)?, None, &vec![0; batch])?;
-        self.last_norm.of(&x)
+        self.first_norm.of(&x)
     }
 }
 

@@ -1,0 +1,79 @@
+//! From logits and boxes of patches to what was found in a picture.
+
+use wayword_core::{Found, MOST_BOXES};
+
+/// The least score of a box that is reported. transformers' examples take a box for a find from 0.1.
+const LEAST_SCORE: f32 = 0.01;
+
+/// The share of their union from which a box counts as the same as a better one. transformers drops none; patches side
+/// by side often give one thing nearly the same box.
+const SAME: f32 = 0.7;
+
+/// What a phrase's logits and the boxes of a picture's patches say, the best first. Boxes are of centre, width and
+/// height, as shares of the longer edge, because the picture was made a square by black on the right or at the bottom.
+pub(super) fn found(logits: &[f32], boxes: &[[f32; 4]], (width, height): (u32, u32)) -> Vec<Found> {
+    let (width, height) = (width as f32, height as f32);
+    let edge = width.max(height);
+    let one = |(&logit, &[x, y, across, down]): (&f32, &[f32; 4])| {
+        let score = 1.0 / (1.0 + (-logit).exp());
+        let (left, right) = ((x - across / 2.0) * edge, (x + across / 2.0) * edge);
+        let (top, bottom) = ((y - down / 2.0) * edge, (y + down / 2.0) * edge);
+        let box_px =
+            [left.clamp(0.0, width), top.clamp(0.0, height), right.clamp(0.0, width), bottom.clamp(0.0, height)];
+        let is_there = box_px[2] > box_px[0] && box_px[3] > box_px[1];
+        (score >= LEAST_SCORE && is_there).then_some(Found { box_px, score })
+    };
+    let mut all: Vec<Found> = logits.iter().zip(boxes).filter_map(one).collect();
+    all.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let mut kept: Vec<Found> = Vec::new();
+    for found in all {
+        if kept.len() == MOST_BOXES {
+            break;
+        }
+        if kept.iter().all(|better| shared(better.box_px, found.box_px) <= SAME) {
+            kept.push(found);
+        }
+    }
+    kept
+}
+
+/// The area that two boxes share, as a share of their union.
+fn shared(a: [f32; 4], b: [f32; 4]) -> f32 {
+    let area = |[left, top, right, bottom]: [f32; 4]| (right - left).max(0.0) * (bottom - top).max(0.0);
+    let both = area([a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]);
+    let all = area(a) + area(b) - both;
+    if all > 0.0 { both / all } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_are_in_the_pictures_own_pixels_and_within_it() {
+        let boxes = [[0.25, 0.25, 0.5, 0.5], [0.9, 0.5, 0.4, 0.2], [0.5, 0.9, 0.2, 0.1]];
+        let told = found(&[1.0, 3.0, 2.0], &boxes, (100, 50));
+        // The third lies in the black below the picture.
+        assert_eq!(told.len(), 2);
+        let near = |ours: [f32; 4], theirs: [f32; 4]| ours.iter().zip(theirs).all(|(a, b)| (a - b).abs() < 1e-4);
+        assert!(near(told[0].box_px, [70.0, 40.0, 100.0, 50.0]), "{told:?}");
+        assert!(near(told[1].box_px, [0.0, 0.0, 50.0, 50.0]), "{told:?}");
+        assert!((told[0].score - 0.952_574).abs() < 1e-5 && told[0].score > told[1].score);
+    }
+
+    #[test]
+    fn a_box_like_a_better_one_is_dropped_and_one_beside_it_stays() {
+        let boxes = [[0.3, 0.3, 0.2, 0.2], [0.302, 0.3, 0.2, 0.2], [0.4, 0.3, 0.2, 0.2]];
+        let told = found(&[0.0, 1.0, -1.0], &boxes, (80, 80));
+        assert_eq!(told.len(), 2);
+        assert!(told[0].score > 0.7 && told[1].score < 0.3, "{told:?}");
+    }
+
+    #[test]
+    fn at_most_a_hundred_are_kept_and_none_below_the_floor() {
+        let boxes: Vec<[f32; 4]> = (0..300).map(|at| [at as f32 / 300.0, 0.5, 0.001, 0.001]).collect();
+        assert_eq!(found(&vec![0.0; 300], &boxes, (1000, 1000)).len(), MOST_BOXES);
+        assert!(found(&vec![-5.0; 300], &boxes, (1000, 1000)).is_empty());
+        assert!(found(&vec![f32::NAN; 300], &boxes, (1000, 1000)).is_empty());
+    }
+}

@@ -1,0 +1,234 @@
+//! OWLv2 as a whole, and as a detector.
+
+use super::{
+    KEPT_BYTES,
+    boxes::found,
+    heads::{BoxHead, ClassHead, Classes, unit},
+    picture::Processor,
+};
+use crate::{
+    Device, LocalError, Precision,
+    clip::{Family, TextTower, TowersConfig, VisionTower},
+    ops::{LayerNorm, Linear},
+    picture::digest,
+    text::Tokenizer,
+    weights::Weights,
+};
+use candle_core::{Result as Computed, Tensor};
+use std::{path::Path, sync::Arc};
+use wayword_core::{Detector, Found, Image, ModelError, Recent, Scoring, View};
+
+/// How many texts are computed at a time.
+const BATCH: usize = 32;
+
+/// How many texts' vectors are kept: about 2 kB each.
+const KEPT_TEXTS: usize = 4 << 10;
+
+/// OWLv2. Features of pictures are kept, up to 256 MiB, and the vectors of texts too.
+pub struct Owl {
+    name: String,
+    processor: Processor,
+    tokenizer: Tokenizer,
+    vision: VisionTower,
+    text: TextTower,
+    text_projection: Linear,
+    patch_norm: LayerNorm,
+    classes: ClassHead,
+    boxes: BoxHead,
+    edge: usize,
+    /// The most tokens of a text.
+    longest: usize,
+    device: Device,
+    seen: Recent<[u8; 32], Seen>,
+    said: Recent<String, Tensor>,
+}
+
+/// What the network says of a picture, whatever the texts.
+struct Seen {
+    classes: Classes,
+    /// Centre, width and height, as shares of the square's edge.
+    boxes: Vec<[f32; 4]>,
+}
+
+/// The network's own numbers for a picture and texts, for comparisons with other implementations.
+#[derive(Debug, Clone)]
+pub struct OwlOutputs {
+    /// For each text the logit of each patch, rows from the top.
+    pub logits: Vec<Vec<f32>>,
+    /// The box of each patch: centre, width and height, as shares of the longer edge of the picture.
+    pub boxes: Vec<[f32; 4]>,
+}
+
+impl Owl {
+    /// Reads `config.json`, `preprocessor_config.json`, `tokenizer.json` and the checkpoint of a folder. `name` is the
+    /// model's name: `hf/ORG/NAME`.
+    ///
+    /// # Errors
+    /// When a file is missing or damaged, or the checkpoint has another architecture.
+    pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+        let config = TowersConfig::read(folder, Family::Owl)?;
+        let (vision, text) = (&config.vision, &config.text);
+        let (seen, said) = (vision.layers.hidden_size, text.layers.hidden_size);
+        if config.projection_dim != said {
+            return Err(LocalError::File {
+                file: folder.join("config.json"),
+                problem: format!("projection_dim: {} is not text_config.hidden_size, {said}", config.projection_dim),
+                hint: "choose an OWLv2 model, such as hf/google/owlv2-base-patch16-ensemble",
+            });
+        }
+        let processor = Processor::load(folder, vision.image_size)?;
+        let tokenizer = Tokenizer::load(folder)?;
+        let weights = Weights::open(folder, device, precision)?;
+        let (all, side) = (weights.scope(""), vision.image_size / vision.patch_size);
+        // For each patch a class, its shift and its scale, and a box.
+        let picture_bytes = side * side * (said + 6) * size_of::<f32>();
+        Ok(Self {
+            name: name.to_owned(),
+            processor,
+            tokenizer,
+            vision: VisionTower::load(&weights.scope("owlv2.vision_model"), vision, "pre_layernorm")?,
+            text: TextTower::load(&weights.scope("owlv2.text_model"), text)?,
+            text_projection: all.linear("owlv2.text_projection", said, said)?,
+            patch_norm: all.layer_norm("layer_norm", seen, vision.layers.layer_norm_eps)?,
+            classes: ClassHead::load(&weights.scope("class_head"), seen, said)?,
+            boxes: BoxHead::load(&weights.scope("box_head"), seen, side, &device.0)?,
+            edge: vision.image_size,
+            longest: text.max_position_embeddings,
+            device: device.clone(),
+            seen: Recent::one_at_a_time((KEPT_BYTES / picture_bytes.max(1)).max(1)),
+            said: Recent::new(KEPT_TEXTS),
+        })
+    }
+
+    /// The width and height to which pictures are resized, pixels.
+    #[must_use]
+    pub fn edge_px(&self) -> usize {
+        self.edge
+    }
+
+    /// The network's numbers for a picture and texts, which are used as they are.
+    ///
+    /// # Errors
+    /// When the picture has no pixels, or the computation fails.
+    pub fn outputs(&self, image: &Image, texts: &[&str]) -> Result<OwlOutputs, LocalError> {
+        let seen = self.seen(image)?;
+        Ok(OwlOutputs { logits: self.logits(&seen, texts)?, boxes: seen.boxes.clone() })
+    }
+
+    /// Where phrases are in a picture: for each of them the best places first.
+    ///
+    /// # Errors
+    /// When the picture has no pixels, or the computation fails.
+    pub fn find(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<Found>>, LocalError> {
+        let seen = self.seen(image)?;
+        let texts: Vec<String> = phrases.iter().map(|phrase| prompt(phrase)).collect();
+        let logits = self.logits(&seen, &texts.iter().map(String::as_str).collect::<Vec<_>>())?;
+        let size = (image.width_px(), image.height_px());
+        Ok(logits.iter().map(|logits| found(logits, &seen.boxes, size)).collect())
+    }
+
+    fn logits(&self, seen: &Seen, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
+        if texts.is_empty() {
+            return Ok(Vec::new());
+        }
+        let said = self.said(texts)?;
+        let vectors: Vec<&Tensor> = said.iter().map(|vector| &**vector).collect();
+        let logits = Tensor::stack(&vectors, 0).and_then(|texts| seen.classes.logits(&texts));
+        logits.map_err(|error| LocalError::compute(&self.name, &error))
+    }
+
+    /// What the network says of a picture. It is computed once.
+    fn seen(&self, image: &Image) -> Result<Arc<Seen>, LocalError> {
+        self.seen.get_or_make(digest(image), || {
+            let picture = self.processor.tensor(image, &self.device)?;
+            self.look(&picture).map_err(|error| LocalError::compute(&self.name, &error))
+        })
+    }
+
+    fn look(&self, picture: &Tensor) -> Computed<Seen> {
+        let states = self.vision.all(picture)?;
+        let (class, patches) = (states.narrow(1, 0, 1)?, states.narrow(1, 1, states.dim(1)? - 1)?);
+        let patches = self.patch_norm.of(&patches.broadcast_mul(&class)?)?;
+        Ok(Seen { classes: self.classes.of(&patches)?, boxes: self.boxes.of(&patches)? })
+    }
+
+    /// The unit vectors of texts, in their order. Each is computed once, and those of similar length together.
+    fn said(&self, texts: &[&str]) -> Result<Vec<Arc<Tensor>>, LocalError> {
+        let mut known: Vec<Option<Arc<Tensor>>> = texts.iter().map(|&text| self.said.get(&text.to_owned())).collect();
+        let mut missing: Vec<(usize, Vec<u32>)> = Vec::new();
+        for (at, text) in texts.iter().enumerate().filter(|(at, _)| known[*at].is_none()) {
+            missing.push((at, self.tokenizer.ids(text, self.longest)?));
+        }
+        missing.sort_by_key(|(_, ids)| ids.len());
+        for batch in missing.chunks(BATCH) {
+            let ids: Vec<&[u32]> = batch.iter().map(|(_, ids)| &ids[..]).collect();
+            let vectors = self.vectors(&ids).map_err(|error| LocalError::compute(&self.name, &error))?;
+            for ((at, _), vector) in batch.iter().zip(vectors) {
+                known[*at] = Some(self.said.put(texts[*at].to_owned(), vector));
+            }
+        }
+        Ok(known.into_iter().flatten().collect())
+    }
+
+    fn vectors(&self, ids: &[&[u32]]) -> Computed<Vec<Tensor>> {
+        let states = self.text.of(ids, &self.device.0)?;
+        // transformers scales to length 1 twice.
+        let vectors = unit(&unit(&self.text_projection.of(&states)?.squeeze(1)?)?)?;
+        (0..ids.len()).map(|at| vectors.get(at)).collect()
+    }
+}
+
+/// The text for a phrase: "a photo of a sink", as in the checkpoints' documentation. An article of the phrase's own is
+/// left out.
+fn prompt(phrase: &str) -> String {
+    let phrase = phrase.trim();
+    let article = |(first, _): &(&str, &str)| ["a", "an", "the"].iter().any(|word| first.eq_ignore_ascii_case(word));
+    let thing = phrase.split_once(char::is_whitespace).filter(article).map_or(phrase, |(_, rest)| rest.trim_start());
+    format!("a photo of a {thing}")
+}
+
+impl Detector for Owl {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn scoring(&self) -> Scoring {
+        Scoring {
+            means: "OWLv2: the sigmoid of the best patch's logit for \"a photo of a PHRASE\", each phrase by itself",
+            found_from: 0.1,
+            phrases_meet: false,
+        }
+    }
+
+    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+        let one = |view: &&View| {
+            let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
+            let image = image.ok_or_else(|| ModelError::NothingToSee {
+                name: self.name.clone(),
+                needs: "a picture",
+                hint: "use a platform or data folder with pictures",
+            })?;
+            let failed = |error: LocalError| ModelError::Failed { model: self.name.clone(), reason: error.to_string() };
+            self.find(image, phrases).map_err(failed)
+        };
+        views.iter().map(one).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::prompt;
+
+    #[test]
+    fn a_phrase_is_put_into_the_documented_prompt_without_its_own_article() {
+        for (phrase, text) in [
+            ("sink", "a photo of a sink"),
+            ("the kitchen sink", "a photo of a kitchen sink"),
+            ("An  oven ", "a photo of a oven"),
+            ("a", "a photo of a a"),
+            ("theatre seat", "a photo of a theatre seat"),
+        ] {
+            assert_eq!(prompt(phrase), text);
+        }
+    }
+}
