@@ -118,3 +118,104 @@ impl Detector for LocalDetector {
         views.iter().map(|view| self.in_view(view, phrases)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{
+        f64::consts::FRAC_PI_2,
+        sync::{Arc, Mutex},
+    };
+    use wayword_core::{DVec3, Heading, Image, Pose};
+    use wayword_ledger::{Ledger, Limits};
+
+    /// The lists of phrases that were computed.
+    type Asked = Arc<Mutex<Vec<Vec<String>>>>;
+
+    /// Finds each phrase once, with its length as the left edge.
+    struct Scripted {
+        meets: bool,
+        asked: Asked,
+    }
+
+    impl Detector for Scripted {
+        fn name(&self) -> &str {
+            "hf/test/scripted"
+        }
+
+        fn scoring(&self) -> Scoring {
+            Scoring { means: "made up", found_from: 0.5, phrases_meet: self.meets }
+        }
+
+        fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+            self.asked.lock().unwrap().push(phrases.iter().map(|&phrase| phrase.to_owned()).collect());
+            let places = |phrase: &&str| vec![Found { box_px: [phrase.len() as f32, 0.1, 9.0, 9.0], score: 0.3 }; 150];
+            let found: Vec<Places> = phrases.iter().filter(|phrase| **phrase != "lost").map(places).collect();
+            views.iter().map(|_| Ok(found.clone())).collect()
+        }
+    }
+
+    fn detector(folder: &std::path::Path, meets: bool) -> (LocalDetector, Asked) {
+        let asked = Asked::default();
+        let run = Ledger::open(&folder.join("ledger.db")).unwrap().run("run", Limits::default()).unwrap();
+        let detector = Box::new(Scripted { meets, asked: Arc::clone(&asked) });
+        let ready = Ready { detector, size: "8 px".to_owned() };
+        (LocalDetector::new("hf/test/scripted", "in process: here".to_owned(), ready, run), asked)
+    }
+
+    fn view() -> View {
+        let image = Image::new(2, 2, vec![7; 12]).unwrap();
+        View::new(Pose::level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, Some(Arc::new(image)), None)
+    }
+
+    fn lefts(found: &Result<Vec<Places>, ModelError>) -> Vec<f32> {
+        found.as_ref().unwrap().iter().map(|places| places[0].box_px[0]).collect()
+    }
+
+    #[test]
+    fn phrases_that_do_not_meet_are_kept_one_by_one_and_computed_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let (detector, asked) = detector(folder.path(), false);
+        assert_eq!(lefts(&detector.detect(&[&view()], &["bb"])[0]), [2.0]);
+        let found = detector.detect(&[&view()], &["a", "bb", "ccc", "a"]);
+        assert_eq!(lefts(&found[0]), [1.0, 2.0, 3.0, 1.0]);
+        assert_eq!(found[0].as_ref().unwrap()[0].len(), MOST_BOXES);
+        assert_eq!(lefts(&detector.detect(&[&view()], &["ccc", "a"])[0]), [3.0, 1.0]);
+        assert_eq!(*asked.lock().unwrap(), [vec!["bb"], vec!["a", "bb", "ccc", "a"]]);
+        assert_eq!(detector.detect(&[&view()], &[]), [Ok(Vec::new())]);
+    }
+
+    #[test]
+    fn phrases_that_meet_are_kept_by_their_list() {
+        let folder = tempfile::tempdir().unwrap();
+        let (detector, asked) = detector(folder.path(), true);
+        for _ in 0..2 {
+            assert_eq!(lefts(&detector.detect(&[&view()], &["a", "bb"])[0]), [1.0, 2.0]);
+        }
+        assert_eq!(lefts(&detector.detect(&[&view()], &["bb", "a"])[0]), [2.0, 1.0]);
+        assert_eq!(*asked.lock().unwrap(), [["a", "bb"], ["bb", "a"]]);
+    }
+
+    #[test]
+    fn a_detector_with_the_wrong_number_of_results_keeps_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        for meets in [false, true] {
+            let (detector, asked) = detector(folder.path(), meets);
+            for _ in 0..2 {
+                let error = detector.detect(&[&view()], &["a", "lost"])[0].clone().unwrap_err().to_string();
+                assert!(error.contains("1 results for 2 phrases"), "{error}");
+            }
+            assert_eq!(asked.lock().unwrap().len(), 2);
+        }
+    }
+
+    #[test]
+    fn a_view_without_a_picture_is_not_asked_about() {
+        let folder = tempfile::tempdir().unwrap();
+        let (detector, asked) = detector(folder.path(), false);
+        let blank = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, None, None);
+        let found = detector.detect(&[&blank, &view()], &["a"]);
+        assert!(matches!(found[0], Err(ModelError::NothingToSee { .. })));
+        assert_eq!((lefts(&found[1]), asked.lock().unwrap().len()), (vec![1.0], 1));
+    }
+}

@@ -157,9 +157,10 @@ fn gaussian(sigma: f64) -> Vec<f64> {
 }
 
 fn window(at: usize, from: usize, scale: f64, blur: &[f64], seen: usize) -> Window {
-    let centre = ((at as f64 + 0.5) * scale - 0.5).max(0.0);
+    // In 32 bits, as in PyTorch: far from the corner this rounds visibly.
+    let centre = ((at as f32 + 0.5) * scale as f32 - 0.5).max(0.0);
     let first = (centre as usize).min(from - 1);
-    let share = centre - first as f64;
+    let share = f64::from(centre - first as f32);
     let reach = blur.len() - 1;
     let start = first.saturating_sub(reach);
     let mut weights = vec![0.0; (first + 1 + reach).min(from - 1) + 1 - start];
@@ -223,7 +224,7 @@ mod tests {
             assert_eq!(ours.len(), 3 * edge * edge);
             assert_eq!(ours.len().div_ceil(step), numbers.len());
             for (at, (ours, theirs)) in ours.iter().step_by(step).zip(&numbers).enumerate() {
-                assert!((ours - theirs).abs() < 2e-6, "{size:?} to {edge}, {at}: {ours} for {theirs}");
+                assert!((ours - theirs).abs() < 5e-6, "{size:?} to {edge}, {at}: {ours} for {theirs}");
             }
         }
     }

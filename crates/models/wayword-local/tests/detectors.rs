@@ -1,0 +1,104 @@
+//! Finds a detector in process by its name, and keeps its calls.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+
+use std::{
+    f64::consts::FRAC_PI_2,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+use wayword_core::{DVec3, Detector, Heading, Image, Pose, View};
+use wayword_ledger::{Filter, Ledger, Limits, Run};
+use wayword_local::{Device, Hub, HubConfig, Loading, Models, Precision};
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+}
+
+fn name(folder: &Path) -> String {
+    format!("hf/{}", folder.display())
+}
+
+fn models(run: Run, memory_bytes: Option<u64>, precision: Option<Precision>) -> Models {
+    let mut config = HubConfig::new(PathBuf::from("/nowhere"));
+    config.offline = true;
+    let loading = Loading { device: Device::cpu(), precision, memory_bytes };
+    Models::new(Hub::new(config).unwrap(), loading, Box::new(()), run)
+}
+
+fn run(ledger: &Ledger, id: &str) -> Run {
+    ledger.run(id, Limits::default()).unwrap()
+}
+
+fn view(shade: u8) -> View {
+    let bytes = (0..40 * 30 * 3_u32).map(|at| (at * 7 % 251) as u8 ^ shade).collect();
+    let image = Image::new(40, 30, bytes).unwrap();
+    View::new(Pose::level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, Some(Arc::new(image)), None)
+}
+
+#[test]
+fn a_detectors_answers_are_kept_by_view_and_phrase() {
+    let folder = tempfile::tempdir().unwrap();
+    let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
+    let (first, second) = (run(&ledger, "first"), run(&ledger, "second"));
+    let name = name(&fixture("owl"));
+    let (here, there) = (view(0), view(1));
+    let owl = models(first.clone(), None, None).detector(&name).unwrap();
+    assert_eq!(owl.name(), name);
+    assert!(owl.origin().contains("sha256:") && owl.origin().contains("f32"), "{}", owl.origin());
+    let computed = owl.detect(&[&here, &there], &["stairs", "red door", "sink"]);
+    assert_eq!((first.totals().answered, first.totals().hits), (6, 0));
+    // Another process, with another list of phrases.
+    let again = models(second.clone(), None, None).detector(&name).unwrap().detect(&[&there], &["sink", "lamp", "stairs"]);
+    assert_eq!((second.totals().answered, second.totals().hits), (1, 2));
+    let (again, computed) = (again[0].as_ref().unwrap(), computed[1].as_ref().unwrap());
+    assert_eq!((&again[0], &again[2]), (&computed[2], &computed[0]));
+    assert!(again.iter().all(|places| !places.is_empty()));
+    assert_eq!(ledger.list(&Filter::default()).unwrap().len(), 7);
+    assert_eq!(second.totals().usd, 0.0);
+    // Other weights have other answers.
+    let third = run(&ledger, "third");
+    models(third.clone(), None, Some(Precision::Bf16)).detector(&name).unwrap().detect(&[&there], &["sink"]);
+    assert_eq!(third.totals().hits, 0);
+}
+
+#[test]
+fn a_detector_is_loaded_once_and_looked_for_without_loading() {
+    let folder = tempfile::tempdir().unwrap();
+    let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
+    let models = models(run(&ledger, "run"), None, None);
+    let name = name(&fixture("owl"));
+    models.detector_at_hand(&name).unwrap();
+    assert!(Arc::ptr_eq(&models.detector(&name).unwrap(), &models.detector(&name).unwrap()));
+}
+
+#[test]
+fn what_does_not_detect_is_told_before_it_is_loaded() {
+    let folder = tempfile::tempdir().unwrap();
+    let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
+    let models = models(run(&ledger, "run"), None, None);
+    for (name, told) in [
+        (name(&fixture("clip")), vec!["config.json", "model_type clip", "owlv2-base-patch16-ensemble"]),
+        (name(&fixture("nothing")), vec!["config.json", "missing"]),
+        ("hf/a/b+c/d".to_owned(), vec!["a detector is one model"]),
+        ("openai/gpt".to_owned(), vec!["does not begin with hf/"]),
+        ("hf/a/b:c.gguf".to_owned(), vec!["GGUF"]),
+    ] {
+        let at_hand = models.detector_at_hand(&name).unwrap_err().to_string();
+        let loaded = models.detector(&name).err().expect("it is refused").to_string();
+        for error in [at_hand, loaded] {
+            assert!(told.iter().all(|told| error.contains(told)), "{error}");
+        }
+    }
+    assert!(Models::check_detector_name("hf/a/b").is_ok() && Models::check_detector_name("hf/a").is_err());
+}
+
+#[test]
+fn a_detector_that_does_not_fit_into_the_memory_is_refused_before_it_is_loaded() {
+    let folder = tempfile::tempdir().unwrap();
+    let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
+    // The weights are small: the features that it keeps are not.
+    let models = models(run(&ledger, "run"), Some(500 << 20), None);
+    let error = models.detector(&name(&fixture("owl"))).err().expect("it is refused").to_string();
+    assert!(error.contains("fixtures/owl") && error.contains("of memory"), "{error}");
+}
