@@ -190,7 +190,12 @@ fn damage_is_told_by_file_and_tensor() {
         ("config.json", "/model_type", "clip".into(), vec!["config.json", "clip is not owlv2"]),
         ("config.json", "/projection_dim", 21.into(), vec!["config.json", "projection_dim: 21"]),
         ("config.json", "/vision_config/hidden_size", 27.into(), vec![weights, "owlv2.vision_model.embeddings.", "27"]),
-        ("config.json", "/vision_config/patch_size", 6.into(), vec![weights, "patch_embedding.weight", "[24, 3, 8, 8]"]),
+        (
+            "config.json",
+            "/vision_config/patch_size",
+            6.into(),
+            vec![weights, "patch_embedding.weight", "[24, 3, 8, 8]"],
+        ),
         ("config.json", "/vision_config/num_hidden_layers", 3.into(), vec![weights, "layers.2.layer_norm1", "missing"]),
         ("config.json", "/vision_config/image_size", (1_u64 << 60).into(), vec!["config.json", "pixels"]),
         ("config.json", "/text_config/vocab_size", (1_u64 << 40).into(), vec![weights, "token_embedding.weight"]),
@@ -205,7 +210,11 @@ fn damage_is_told_by_file_and_tensor() {
 #[test]
 fn a_tensor_that_is_missing_or_swapped_is_named() {
     for (from, to, told) in [
-        ("class_head.logit_shift.weight", "class_head.logit_shift.wrongs", "class_head.logit_shift.weight: it is missing"),
+        (
+            "class_head.logit_shift.weight",
+            "class_head.logit_shift.wrongs",
+            "class_head.logit_shift.weight: it is missing",
+        ),
         ("box_head.dense2.weight", "box_head.dense9.weight", "box_head.dense2.weight: it is missing"),
         ("owlv2.vision_model.pre_layernorm.bias", "owlv2.vision_model.pre_layernorm.bios", "pre_layernorm.bias"),
     ] {

@@ -1,13 +1,13 @@
 //! Linear layers.
 
 use super::{
-    Activation,
+    Activation, LayerNorm,
     half::HalfMatrix,
-    kernels::{Options, packed, product, rows, slice},
+    kernels::{is_ours, rows, slice},
+    packed::Packed,
+    rows::{by_rows, with_spare},
 };
-use candle_core::{CpuStorage, CustomOp1, DType, Layout, Result, Shape, Tensor, bail};
-use rten_gemm::{BiasVector, GemmInputA, GemmInputB, PackedBMatrix};
-use rten_tensor::NdTensorView;
+use candle_core::{CpuStorage, CustomOp1, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
 
 /// x times a matrix, plus a bias: from [.., inputs] to [.., outputs].
 pub(crate) struct Linear {
@@ -19,7 +19,7 @@ pub(crate) struct Linear {
 /// Weights in the form for the computation. The checkpoint's own tensor is not kept in addition.
 enum Matrix {
     /// Packed once for the CPU kernels.
-    Packed(PackedBMatrix<f32>),
+    Packed(Packed),
     /// In 16 bits on the CPU: widened piece by piece for each product.
     Half(HalfMatrix),
     /// Transposed, for candle.
@@ -36,7 +36,7 @@ impl Linear {
             let weight = weight.contiguous()?;
             let (storage, layout) = weight.storage_and_layout();
             let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a weight is not on its device") };
-            Matrix::Packed(packed(slice::<f32>(storage, layout)?, outputs, inputs))
+            Matrix::Packed(Packed::new(slice::<f32>(storage, layout)?, outputs, inputs))
         } else {
             Matrix::Half(HalfMatrix::new(weight)?)
         };
@@ -47,21 +47,39 @@ impl Linear {
 
     /// The layer's output for x [.., inputs].
     pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
-        self.run(x, None)
+        self.run(x, None, None)
     }
 
     /// The layer's output for x, after an activation.
     pub(crate) fn of_then(&self, x: &Tensor, activation: Activation) -> Result<Tensor> {
-        self.run(x, Some(activation))
+        self.run(x, None, Some(activation))
     }
 
-    fn run(&self, x: &Tensor, activation: Option<Activation>) -> Result<Tensor> {
-        if let Matrix::Plain(weight_t) = &self.matrix {
-            let y = x.broadcast_matmul(weight_t)?;
-            let y = self.bias.as_ref().map_or(Ok(y.clone()), |bias| y.broadcast_add(bias))?;
-            return activation.map_or(Ok(y.clone()), |activation| activation.of(&y));
+    /// The layer's output for the norm of x.
+    pub(crate) fn of_normed(&self, x: &Tensor, norm: &LayerNorm) -> Result<Tensor> {
+        self.run(x, Some(norm), None)
+    }
+
+    /// The layer's output for x [.., inputs], plus y [.., outputs].
+    pub(crate) fn onto(&self, x: &Tensor, y: &Tensor) -> Result<Tensor> {
+        if matches!(self.matrix, Matrix::Packed(_)) && is_ours(y) && is_ours(x) {
+            return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &Onto(self));
         }
-        x.contiguous()?.apply_op1_no_bwd(&Product { layer: self, activation })
+        self.of(x)? + y
+    }
+
+    fn run(&self, x: &Tensor, norm: Option<&LayerNorm>, activation: Option<Activation>) -> Result<Tensor> {
+        match (&self.matrix, norm) {
+            (Matrix::Packed(_), _) | (Matrix::Half(_), None) => {
+                x.contiguous()?.apply_op1_no_bwd(&Product { layer: self, norm, activation })
+            }
+            (_, Some(norm)) => self.run(&norm.of(x)?, None, activation),
+            (Matrix::Plain(weight_t), None) => {
+                let y = x.broadcast_matmul(weight_t)?;
+                let y = self.bias.as_ref().map_or(Ok(y.clone()), |bias| y.broadcast_add(bias))?;
+                activation.map_or(Ok(y.clone()), |activation| activation.of(&y))
+            }
+        }
     }
 
     /// Calls `then` with the numbers of the bias, if there is one.
@@ -76,7 +94,25 @@ impl Linear {
 /// One product of a layer.
 struct Product<'a> {
     layer: &'a Linear,
+    norm: Option<&'a LayerNorm>,
     activation: Option<Activation>,
+}
+
+impl Product<'_> {
+    /// y = activation(norm(x) matrix + bias), for some rows.
+    fn some(&self, packed: &Packed, bias: Option<&[f32]>, x: &[f32], y: &mut [f32]) -> Result<()> {
+        match self.norm {
+            None => packed.product(x, bias, y, false)?,
+            Some(norm) => with_spare(x.len(), |normed| {
+                norm.rows(x, normed)?;
+                packed.product(normed, bias, y, false)
+            })?,
+        }
+        if let Some(activation) = self.activation {
+            activation.map(y);
+        }
+        Ok(())
+    }
 }
 
 impl CustomOp1 for Product<'_> {
@@ -90,21 +126,113 @@ impl CustomOp1 for Product<'_> {
         let outputs = self.layer.outputs;
         let mut y = vec![0.0; count * outputs];
         self.layer.with_bias(|bias| match &self.layer.matrix {
-            Matrix::Packed(packed) => {
-                let x = GemmInputA::Unpacked(NdTensorView::from_data([count, inputs], x));
-                let options = Options { bias: bias.map(BiasVector::Row), ..Options::default() };
-                product(&mut y, x, GemmInputB::Packed(packed), options)
+            Matrix::Packed(packed) => by_rows((x, inputs), (&mut y, outputs), |x, y| self.some(packed, bias, x, y)),
+            Matrix::Half(half) => {
+                half.product(x, inputs, bias, &mut y)?;
+                if let Some(activation) = self.activation {
+                    activation.map(&mut y);
+                }
+                Ok(())
             }
-            Matrix::Half(half) => half.product(x, inputs, bias, &mut y),
             Matrix::Plain(_) => bail!("candle computes this product"),
         })?;
-        if let Some(activation) = self.activation {
-            activation.map(&mut y);
+        Ok((CpuStorage::F32(y), wide(layout, outputs)))
+    }
+}
+
+/// A product of a layer that is added to something.
+struct Onto<'a>(&'a Linear);
+
+impl CustomOp2 for Onto<'_> {
+    fn name(&self) -> &'static str {
+        "linear-onto"
+    }
+
+    fn cpu_fwd(
+        &self,
+        x: &CpuStorage,
+        x_layout: &Layout,
+        onto: &CpuStorage,
+        onto_layout: &Layout,
+    ) -> Result<(CpuStorage, Shape)> {
+        let (layer, x) = (self.0, slice::<f32>(x, x_layout)?);
+        let (count, inputs) = rows(x_layout)?;
+        let mut y = slice::<f32>(onto, onto_layout)?.to_vec();
+        let Matrix::Packed(packed) = &layer.matrix else { bail!("candle computes this product") };
+        if y.len() != count * layer.outputs {
+            bail!("{:?} cannot be added to {} rows of {}", onto_layout.shape(), count, layer.outputs);
         }
-        let mut shape = layout.shape().dims().to_vec();
-        if let Some(last) = shape.last_mut() {
-            *last = outputs;
+        layer
+            .with_bias(|bias| by_rows((x, inputs), (&mut y, layer.outputs), |x, y| packed.product(x, bias, y, true)))?;
+        Ok((CpuStorage::F32(y), wide(x_layout, layer.outputs)))
+    }
+}
+
+/// The shape of a layer's output.
+fn wide(layout: &Layout, outputs: usize) -> Shape {
+    let mut shape = layout.shape().dims().to_vec();
+    if let Some(last) = shape.last_mut() {
+        *last = outputs;
+    }
+    shape.into()
+}
+
+/// x plus a narrow layer of the activation of a wide layer of the norm of x: the second half of a transformer's layer.
+pub(crate) struct Thought<'a> {
+    pub(crate) norm: &'a LayerNorm,
+    pub(crate) wide: &'a Linear,
+    pub(crate) activation: Activation,
+    pub(crate) narrow: &'a Linear,
+}
+
+impl Thought<'_> {
+    pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
+        match (&self.wide.matrix, &self.narrow.matrix) {
+            (Matrix::Packed(_), Matrix::Packed(_)) if is_ours(x) => x.contiguous()?.apply_op1_no_bwd(self),
+            _ => self.narrow.onto(&self.wide.of_then(&self.norm.of(x)?, self.activation)?, x),
         }
-        Ok((CpuStorage::F32(y), shape.into()))
+    }
+
+    /// Adds to y, for some rows.
+    fn some(
+        &self,
+        (wide, narrow): (&Packed, &Packed),
+        biases: [Option<&[f32]>; 2],
+        x: &[f32],
+        y: &mut [f32],
+    ) -> Result<()> {
+        let inner = y.len() / self.narrow.outputs.max(1) * self.wide.outputs;
+        with_spare(x.len(), |normed| {
+            self.norm.rows(x, normed)?;
+            with_spare(inner, |thought| {
+                wide.product(normed, biases[0], thought, false)?;
+                self.activation.map(thought);
+                narrow.product(thought, biases[1], y, true)
+            })
+        })
+    }
+}
+
+impl CustomOp1 for Thought<'_> {
+    fn name(&self) -> &'static str {
+        "thought"
+    }
+
+    fn cpu_fwd(&self, storage: &CpuStorage, layout: &Layout) -> Result<(CpuStorage, Shape)> {
+        let (Matrix::Packed(wide), Matrix::Packed(narrow)) = (&self.wide.matrix, &self.narrow.matrix) else {
+            bail!("candle computes this product")
+        };
+        let x = slice::<f32>(storage, layout)?;
+        let (_, size) = rows(layout)?;
+        if size != self.narrow.outputs {
+            bail!("{} outputs cannot be added to {size}", self.narrow.outputs);
+        }
+        let mut y = x.to_vec();
+        self.wide.with_bias(|first| {
+            self.narrow.with_bias(|second| {
+                by_rows((x, size), (&mut y, size), |x, y| self.some((wide, narrow), [first, second], x, y))
+            })
+        })?;
+        Ok((CpuStorage::F32(y), layout.shape().clone()))
     }
 }

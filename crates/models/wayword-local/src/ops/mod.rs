@@ -11,11 +11,14 @@ mod half;
 mod kernels;
 mod linear;
 mod norm;
+mod packed;
+mod rows;
+mod softmax;
 
 pub(crate) use activation::Activation;
 pub(crate) use attention::{Attention, Past, causal};
 pub(crate) use embedding::{Embedding, patches};
-pub(crate) use linear::Linear;
+pub(crate) use linear::{Linear, Thought};
 pub(crate) use norm::{LayerNorm, RmsNorm};
 
 #[cfg(test)]

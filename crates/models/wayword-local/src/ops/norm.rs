@@ -1,7 +1,7 @@
 //! Norms over the last axis.
 
 use super::kernels::{is_ours, rows, rows_per_piece, slice};
-use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
+use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Storage, Tensor, bail};
 use rayon::prelude::*;
 use rten_simd::SimdOp;
 use rten_vecmath::{Normalize, NormalizeOptions, Sum, SumSquare, SumSquareSub};
@@ -31,6 +31,19 @@ impl LayerNorm {
         }
         candle_nn::ops::layer_norm(&x.contiguous()?, &self.weight, &self.bias, self.epsilon as f32)
     }
+
+    /// Writes the norms of the rows of x into y, on this thread.
+    pub(super) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+        let (weight, weight_layout) = self.weight.storage_and_layout();
+        let (bias, bias_layout) = self.bias.storage_and_layout();
+        let (Storage::Cpu(weight), Storage::Cpu(bias)) = (&*weight, &*bias) else {
+            bail!("the weights of a norm are not on the CPU")
+        };
+        let (weight, bias) = (slice::<f32>(weight, weight_layout)?, slice::<f32>(bias, bias_layout)?);
+        y.copy_from_slice(x);
+        y.chunks_mut(weight.len().max(1)).for_each(|row| Standard(self.epsilon).row(row, weight, bias));
+        Ok(())
+    }
 }
 
 impl RmsNorm {
@@ -52,7 +65,24 @@ fn wide(weight: Tensor) -> Tensor {
     if weight.device().is_cpu() { weight.to_dtype(candle_core::DType::F32).unwrap_or(weight) } else { weight }
 }
 
+/// With this epsilon.
 struct Standard(f64);
+
+impl Standard {
+    fn row(&self, row: &mut [f32], weight: &[f32], bias: &[f32]) {
+        let size = row.len() as f32;
+        let mean = Sum::new(row).dispatch() / size;
+        let variance = SumSquareSub::new(row, mean).dispatch() / size;
+        let options = NormalizeOptions {
+            pre_scale_bias: mean,
+            scale: 1.0 / (variance + self.0 as f32).sqrt(),
+            element_scale: Some(weight),
+            element_bias: Some(bias),
+            ..NormalizeOptions::default()
+        };
+        Normalize::new_mut(row, options).dispatch();
+    }
+}
 
 impl CustomOp3 for Standard {
     fn name(&self) -> &'static str {
@@ -68,20 +98,8 @@ impl CustomOp3 for Standard {
         bias: &CpuStorage,
         bias_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let (_, size) = rows(x_layout)?;
         let (weight, bias) = (slice::<f32>(weight, weight_layout)?, slice::<f32>(bias, bias_layout)?);
-        let row = |row: &mut [f32]| {
-            let mean = Sum::new(row).dispatch() / size as f32;
-            let variance = SumSquareSub::new(row, mean).dispatch() / size as f32;
-            let options = NormalizeOptions {
-                pre_scale_bias: mean,
-                scale: 1.0 / (variance + self.0 as f32).sqrt(),
-                element_scale: Some(weight),
-                element_bias: Some(bias),
-                ..NormalizeOptions::default()
-            };
-            Normalize::new_mut(row, options).dispatch();
-        };
+        let row = |row: &mut [f32]| self.row(row, weight, bias);
         Ok((each_row(x, x_layout, row)?, x_layout.shape().clone()))
     }
 }
