@@ -4,7 +4,7 @@
 use super::config::LayersConfig;
 use crate::{
     LocalError,
-    ops::{Activation, Attention, LayerNorm, Linear, Thought},
+    ops::{Activation, Attention, FeedForward, LayerNorm, Linear},
     weights::Scope,
 };
 use candle_core::{Result, Tensor};
@@ -93,8 +93,8 @@ impl Layer {
         let scale = 1.0 / ((x.dim(2)? / self.heads) as f32).sqrt();
         let attention = Attention { heads: self.heads, scale, bias: mask };
         let mixed = attention.of(q, &third(qkv, 1)?, &third(qkv, 2)?)?;
-        let thought =
-            Thought { norm: &self.think_norm, wide: &self.wide, activation: self.activation, narrow: &self.narrow };
-        thought.of(&self.mixed.onto(&mixed, x)?)
+        let then =
+            FeedForward { norm: &self.think_norm, wide: &self.wide, activation: self.activation, narrow: &self.narrow };
+        then.of(&self.mixed.onto(&mixed, x)?)
     }
 }

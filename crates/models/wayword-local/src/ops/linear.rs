@@ -62,7 +62,7 @@ impl Linear {
 
     /// The layer's output for x [.., inputs], plus y [.., outputs].
     pub(crate) fn onto(&self, x: &Tensor, y: &Tensor) -> Result<Tensor> {
-        if matches!(self.matrix, Matrix::Packed(_)) && is_ours(y) && is_ours(x) {
+        if self.packed().is_some() && is_ours(y) && is_ours(x) {
             return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &Onto(self));
         }
         self.of(x)? + y
@@ -82,8 +82,21 @@ impl Linear {
         }
     }
 
+    /// The weights in the form for the CPU kernels, if they have it.
+    pub(super) fn packed(&self) -> Option<&Packed> {
+        match &self.matrix {
+            Matrix::Packed(packed) => Some(packed),
+            Matrix::Half(_) | Matrix::Plain(_) => None,
+        }
+    }
+
+    /// The number of outputs.
+    pub(super) fn outputs(&self) -> usize {
+        self.outputs
+    }
+
     /// Calls `then` with the numbers of the bias, if there is one.
-    fn with_bias<T>(&self, then: impl FnOnce(Option<&[f32]>) -> Result<T>) -> Result<T> {
+    pub(super) fn with_bias<T>(&self, then: impl FnOnce(Option<&[f32]>) -> Result<T>) -> Result<T> {
         let Some(bias) = &self.bias else { return then(None) };
         let (storage, layout) = bias.storage_and_layout();
         let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a bias is not on its device") };
@@ -158,7 +171,7 @@ impl CustomOp2 for Onto<'_> {
         let (layer, x) = (self.0, slice::<f32>(x, x_layout)?);
         let (count, inputs) = rows(x_layout)?;
         let mut y = slice::<f32>(onto, onto_layout)?.to_vec();
-        let Matrix::Packed(packed) = &layer.matrix else { bail!("candle computes this product") };
+        let Some(packed) = layer.packed() else { bail!("candle computes this product") };
         if y.len() != count * layer.outputs {
             bail!("{:?} cannot be added to {} rows of {}", onto_layout.shape(), count, layer.outputs);
         }
@@ -175,64 +188,4 @@ fn wide(layout: &Layout, outputs: usize) -> Shape {
         *last = outputs;
     }
     shape.into()
-}
-
-/// x plus a narrow layer of the activation of a wide layer of the norm of x: the second half of a transformer's layer.
-pub(crate) struct Thought<'a> {
-    pub(crate) norm: &'a LayerNorm,
-    pub(crate) wide: &'a Linear,
-    pub(crate) activation: Activation,
-    pub(crate) narrow: &'a Linear,
-}
-
-impl Thought<'_> {
-    pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
-        match (&self.wide.matrix, &self.narrow.matrix) {
-            (Matrix::Packed(_), Matrix::Packed(_)) if is_ours(x) => x.contiguous()?.apply_op1_no_bwd(self),
-            _ => self.narrow.onto(&self.wide.of_then(&self.norm.of(x)?, self.activation)?, x),
-        }
-    }
-
-    /// Adds to y, for some rows.
-    fn some(
-        &self,
-        (wide, narrow): (&Packed, &Packed),
-        biases: [Option<&[f32]>; 2],
-        x: &[f32],
-        y: &mut [f32],
-    ) -> Result<()> {
-        let inner = y.len() / self.narrow.outputs.max(1) * self.wide.outputs;
-        with_spare(x.len(), |normed| {
-            self.norm.rows(x, normed)?;
-            with_spare(inner, |thought| {
-                wide.product(normed, biases[0], thought, false)?;
-                self.activation.map(thought);
-                narrow.product(thought, biases[1], y, true)
-            })
-        })
-    }
-}
-
-impl CustomOp1 for Thought<'_> {
-    fn name(&self) -> &'static str {
-        "thought"
-    }
-
-    fn cpu_fwd(&self, storage: &CpuStorage, layout: &Layout) -> Result<(CpuStorage, Shape)> {
-        let (Matrix::Packed(wide), Matrix::Packed(narrow)) = (&self.wide.matrix, &self.narrow.matrix) else {
-            bail!("candle computes this product")
-        };
-        let x = slice::<f32>(storage, layout)?;
-        let (_, size) = rows(layout)?;
-        if size != self.narrow.outputs {
-            bail!("{} outputs cannot be added to {size}", self.narrow.outputs);
-        }
-        let mut y = x.to_vec();
-        self.wide.with_bias(|first| {
-            self.narrow.with_bias(|second| {
-                by_rows((x, size), (&mut y, size), |x, y| self.some((wide, narrow), [first, second], x, y))
-            })
-        })?;
-        Ok((CpuStorage::F32(y), layout.shape().clone()))
-    }
 }

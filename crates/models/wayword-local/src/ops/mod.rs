@@ -7,6 +7,7 @@
 mod activation;
 mod attention;
 mod embedding;
+mod feed_forward;
 mod half;
 mod kernels;
 mod linear;
@@ -18,7 +19,8 @@ mod softmax;
 pub(crate) use activation::Activation;
 pub(crate) use attention::{Attention, Past, causal};
 pub(crate) use embedding::{Embedding, patches};
-pub(crate) use linear::{Linear, Thought};
+pub(crate) use feed_forward::FeedForward;
+pub(crate) use linear::Linear;
 pub(crate) use norm::{LayerNorm, RmsNorm};
 
 #[cfg(test)]
