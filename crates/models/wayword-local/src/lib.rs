@@ -23,6 +23,7 @@ mod models;
 mod ops;
 mod owl;
 mod picture;
+mod swin;
 mod text;
 mod weights;
 

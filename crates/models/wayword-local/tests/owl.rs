@@ -7,6 +7,7 @@ use std::{
     f64::consts::FRAC_PI_2,
     path::{Path, PathBuf},
     sync::Arc,
+    time::Instant,
 };
 use wayword_core::{DVec3, Detector, Grounded, Grounder, Heading, Image, MOST_BOXES, ModelError, Pose, View};
 use wayword_local::{Device, LocalError, Owl, OwlOutputs, Precision};
@@ -246,6 +247,13 @@ fn a_file_that_is_cut_off_or_missing_is_named() {
     }
 }
 
+/// The seconds that all threads of this process have computed, on Linux.
+fn busy_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
+    fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
+}
+
 /// At the true size: `WAYWORD_OWL` is a folder by `make_owl.py --true`.
 #[test]
 #[ignore = "needs a folder of 600 MB"]
@@ -253,9 +261,14 @@ fn the_true_size_agrees_with_pytorch() {
     let folder = PathBuf::from(std::env::var_os("WAYWORD_OWL").expect("WAYWORD_OWL is a folder"));
     let (owl, expected) = (load(&folder).unwrap(), Expected::read(&folder));
     for OfPicture { size: (width, height), numbers } in &expected.pictures {
-        let (logits, boxes) = off(&owl.outputs(&drawn((*width, *height)), &expected.texts()).unwrap(), numbers);
+        let (begun, busy) = (Instant::now(), busy_s());
+        let ours = owl.outputs(&drawn((*width, *height)), &expected.texts()).unwrap();
+        let (wall, busy) = (begun.elapsed().as_secs_f64(), busy_s() - busy);
+        let (logits, boxes) = off(&ours, numbers);
         let px = boxes * (*width).max(*height) as f32;
-        eprintln!("{width} x {height}: logits {logits:.2e}, boxes {px:.2e} px");
+        eprintln!(
+            "{width} x {height}: logits {logits:.2e}, boxes {px:.2e} px, {wall:.2} s, {busy:.2} s of all threads"
+        );
         assert!(logits < 1e-4 && px < 1e-3);
     }
 }

@@ -81,8 +81,13 @@ impl Layer {
         let part = |at: usize| qkv.narrow(2, at * size, size);
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
         let mixed = Attention { heads: self.heads, scale, bias: None }.of(&part(0)?, &part(1)?, &part(2)?)?;
-        let then =
-            FeedForward { norm: &self.mixed_norm, wide: &self.wide, activation: self.activation, narrow: &self.narrow };
+        let then = FeedForward {
+            before: Some(&self.mixed_norm),
+            wide: &self.wide,
+            activation: self.activation,
+            narrow: &self.narrow,
+            after: None,
+        };
         then.of(&self.mixed.onto(&mixed, x)?)
     }
 }

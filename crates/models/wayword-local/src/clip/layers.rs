@@ -93,8 +93,13 @@ impl Layer {
         let scale = 1.0 / ((x.dim(2)? / self.heads) as f32).sqrt();
         let attention = Attention { heads: self.heads, scale, bias: mask };
         let mixed = attention.of(q, &third(qkv, 1)?, &third(qkv, 2)?)?;
-        let then =
-            FeedForward { norm: &self.think_norm, wide: &self.wide, activation: self.activation, narrow: &self.narrow };
+        let then = FeedForward {
+            before: Some(&self.think_norm),
+            wide: &self.wide,
+            activation: self.activation,
+            narrow: &self.narrow,
+            after: None,
+        };
         then.of(&self.mixed.onto(&mixed, x)?)
     }
 }

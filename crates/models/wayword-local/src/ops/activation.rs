@@ -48,14 +48,19 @@ impl Activation {
 
     /// Applies the function to each number, on all threads.
     pub(super) fn map(self, numbers: &mut [f32]) {
-        numbers.par_chunks_mut(PIECE).for_each(|piece| match self {
-            Self::Gelu => Gelu {}.map_mut(piece),
-            Self::GeluTanh => ApproxGelu {}.map_mut(piece),
-            Self::QuickGelu => Swish { alpha: 1.702 }.map_mut(piece),
-            Self::Relu => piece.iter_mut().for_each(|number| *number = number.max(0.0)),
-            Self::Silu => Silu {}.map_mut(piece),
-            Self::Sigmoid => Sigmoid {}.map_mut(piece),
-        });
+        numbers.par_chunks_mut(PIECE).for_each(|piece| self.map_here(piece));
+    }
+
+    /// Applies the function to each number, on this thread.
+    pub(crate) fn map_here(self, numbers: &mut [f32]) {
+        match self {
+            Self::Gelu => Gelu {}.map_mut(numbers),
+            Self::GeluTanh => ApproxGelu {}.map_mut(numbers),
+            Self::QuickGelu => Swish { alpha: 1.702 }.map_mut(numbers),
+            Self::Relu => numbers.iter_mut().for_each(|number| *number = number.max(0.0)),
+            Self::Silu => Silu {}.map_mut(numbers),
+            Self::Sigmoid => Sigmoid {}.map_mut(numbers),
+        }
     }
 }
 

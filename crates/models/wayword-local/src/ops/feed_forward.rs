@@ -1,4 +1,4 @@
-//! The second half of a transformer's layer, with the norm before it.
+//! The second half of a transformer's layer, with the norm before or after it.
 
 use super::{
     Activation, LayerNorm, Linear,
@@ -8,19 +8,25 @@ use super::{
 };
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor, bail};
 
-/// x plus a narrow layer of the activation of a wide layer of the norm of x.
+/// x plus a narrow layer of the activation of a wide layer of x. There is a norm of what goes into the wide layer, or of
+/// the sum.
 pub(crate) struct FeedForward<'a> {
-    pub(crate) norm: &'a LayerNorm,
+    pub(crate) before: Option<&'a LayerNorm>,
     pub(crate) wide: &'a Linear,
     pub(crate) activation: Activation,
     pub(crate) narrow: &'a Linear,
+    pub(crate) after: Option<&'a LayerNorm>,
 }
 
 impl FeedForward<'_> {
     pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
         match (self.wide.packed(), self.narrow.packed()) {
             (Some(_), Some(_)) if is_ours(x) => x.contiguous()?.apply_op1_no_bwd(self),
-            _ => self.narrow.onto(&self.wide.of_then(&self.norm.of(x)?, self.activation)?, x),
+            _ => {
+                let normed = self.before.map_or(Ok(x.clone()), |before| before.of(x))?;
+                let y = self.narrow.onto(&self.wide.of_then(&normed, self.activation)?, x)?;
+                self.after.map_or(Ok(y.clone()), |after| after.of(&y))
+            }
         }
     }
 
@@ -33,14 +39,18 @@ impl FeedForward<'_> {
         y: &mut [f32],
     ) -> Result<()> {
         let inner = y.len() / self.narrow.outputs().max(1) * self.wide.outputs();
-        with_spare(x.len(), |normed| {
-            self.norm.rows(x, normed)?;
-            with_spare(inner, |thought| {
-                wide.product(normed, biases[0], thought, false)?;
-                self.activation.map(thought);
-                narrow.product(thought, biases[1], y, true)
-            })
-        })
+        with_spare(inner, |thought| {
+            match self.before {
+                None => wide.product(x, biases[0], thought, false)?,
+                Some(before) => with_spare(x.len(), |normed| {
+                    before.rows(x, normed)?;
+                    wide.product(normed, biases[0], thought, false)
+                })?,
+            }
+            self.activation.map(thought);
+            narrow.product(thought, biases[1], y, true)
+        })?;
+        self.after.map_or(Ok(()), |after| after.rows_here(y))
     }
 }
 

@@ -10,10 +10,10 @@ thread_local! {
 }
 
 /// Options of a product.
-pub(super) type Options<'a> = GemmOptions<'a, f32, f32, f32>;
+pub(crate) type Options<'a> = GemmOptions<'a, f32, f32, f32>;
 
 /// Writes a times b into y, on all threads.
-pub(super) fn product(
+pub(crate) fn product(
     y: &mut [f32],
     a: GemmInputA<'_, f32>,
     b: GemmInputB<'_, f32>,
@@ -53,11 +53,19 @@ pub(super) fn rows(layout: &Layout) -> Result<(usize, usize)> {
 }
 
 /// Whether this crate's own operators compute with a tensor.
-pub(super) fn is_ours(tensor: &Tensor) -> bool {
+pub(crate) fn is_ours(tensor: &Tensor) -> bool {
     tensor.device().is_cpu() && tensor.dtype() == candle_core::DType::F32
 }
 
 /// How many rows of this length make a piece of work.
 pub(super) fn rows_per_piece(row: usize) -> usize {
     (PIECE / row.max(1)).max(1)
+}
+
+/// Calls `then` with the numbers of a tensor in 32 bits on the CPU.
+pub(crate) fn with_numbers<T>(x: &Tensor, then: impl FnOnce(&[f32]) -> Result<T>) -> Result<T> {
+    let x = x.contiguous()?;
+    let (storage, layout) = x.storage_and_layout();
+    let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a tensor is on another device") };
+    then(slice::<f32>(storage, layout)?)
 }

@@ -63,9 +63,17 @@ impl Linear {
     /// The layer's output for x [.., inputs], plus y [.., outputs].
     pub(crate) fn onto(&self, x: &Tensor, y: &Tensor) -> Result<Tensor> {
         if self.packed().is_some() && is_ours(y) && is_ours(x) {
-            return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &Onto(self));
+            return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &Onto { layer: self, after: None });
         }
         self.of(x)? + y
+    }
+
+    /// The norm of the layer's output for x [.., inputs], plus y [.., outputs].
+    pub(crate) fn onto_then(&self, x: &Tensor, y: &Tensor, after: &LayerNorm) -> Result<Tensor> {
+        if self.packed().is_some() && is_ours(y) && is_ours(x) {
+            return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &Onto { layer: self, after: Some(after) });
+        }
+        after.of(&self.onto(x, y)?)
     }
 
     fn run(&self, x: &Tensor, norm: Option<&LayerNorm>, activation: Option<Activation>) -> Result<Tensor> {
@@ -80,6 +88,16 @@ impl Linear {
                 activation.map_or(Ok(y.clone()), |activation| activation.of(&y))
             }
         }
+    }
+
+    /// Writes the layer's output for the rows of x into y, on the CPU.
+    pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+        let inputs = x.len() / (y.len() / self.outputs.max(1)).max(1);
+        self.with_bias(|bias| match &self.matrix {
+            Matrix::Packed(packed) => packed.product(x, bias, y, false),
+            Matrix::Half(half) => half.product(x, inputs, bias, y),
+            Matrix::Plain(_) => bail!("candle computes this product"),
+        })
     }
 
     /// The weights in the form for the CPU kernels, if they have it.
@@ -153,8 +171,11 @@ impl CustomOp1 for Product<'_> {
     }
 }
 
-/// A product of a layer that is added to something.
-struct Onto<'a>(&'a Linear);
+/// A product of a layer that is added to something, and the norm of it.
+struct Onto<'a> {
+    layer: &'a Linear,
+    after: Option<&'a LayerNorm>,
+}
 
 impl CustomOp2 for Onto<'_> {
     fn name(&self) -> &'static str {
@@ -168,15 +189,19 @@ impl CustomOp2 for Onto<'_> {
         onto: &CpuStorage,
         onto_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let (layer, x) = (self.0, slice::<f32>(x, x_layout)?);
+        let (layer, x) = (self.layer, slice::<f32>(x, x_layout)?);
         let (count, inputs) = rows(x_layout)?;
         let mut y = slice::<f32>(onto, onto_layout)?.to_vec();
         let Some(packed) = layer.packed() else { bail!("candle computes this product") };
         if y.len() != count * layer.outputs {
             bail!("{:?} cannot be added to {} rows of {}", onto_layout.shape(), count, layer.outputs);
         }
-        layer
-            .with_bias(|bias| by_rows((x, inputs), (&mut y, layer.outputs), |x, y| packed.product(x, bias, y, true)))?;
+        layer.with_bias(|bias| {
+            by_rows((x, inputs), (&mut y, layer.outputs), |x, y| {
+                packed.product(x, bias, y, true)?;
+                self.after.map_or(Ok(()), |after| after.rows_here(y))
+            })
+        })?;
         Ok((CpuStorage::F32(y), wide(x_layout, layer.outputs)))
     }
 }

@@ -9,12 +9,13 @@ mod attention;
 mod embedding;
 mod feed_forward;
 mod half;
-mod kernels;
+pub(crate) mod kernels;
 mod linear;
 mod norm;
 mod packed;
 mod rows;
 mod softmax;
+pub(crate) mod tiles;
 
 pub(crate) use activation::Activation;
 pub(crate) use attention::{Attention, Past, causal};

@@ -1,7 +1,7 @@
 //! Norms over the last axis.
 
-use super::kernels::{is_ours, rows, rows_per_piece, slice};
-use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Storage, Tensor, bail};
+use super::kernels::{is_ours, rows, rows_per_piece, slice, with_numbers};
+use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdOp;
 use rten_vecmath::{Normalize, NormalizeOptions, Sum, SumSquare, SumSquareSub};
@@ -32,17 +32,21 @@ impl LayerNorm {
         candle_nn::ops::layer_norm(&x.contiguous()?, &self.weight, &self.bias, self.epsilon as f32)
     }
 
-    /// Writes the norms of the rows of x into y, on this thread.
-    pub(super) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
-        let (weight, weight_layout) = self.weight.storage_and_layout();
-        let (bias, bias_layout) = self.bias.storage_and_layout();
-        let (Storage::Cpu(weight), Storage::Cpu(bias)) = (&*weight, &*bias) else {
-            bail!("the weights of a norm are not on the CPU")
-        };
-        let (weight, bias) = (slice::<f32>(weight, weight_layout)?, slice::<f32>(bias, bias_layout)?);
+    /// Writes the norm of the rows of x into y, on the CPU.
+    pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
         y.copy_from_slice(x);
-        y.chunks_mut(weight.len().max(1)).for_each(|row| Standard(self.epsilon).row(row, weight, bias));
-        Ok(())
+        self.rows_here(y)
+    }
+
+    /// Replaces the rows of y by their norms, on the CPU.
+    pub(super) fn rows_here(&self, y: &mut [f32]) -> Result<()> {
+        with_numbers(&self.weight, |weight| {
+            with_numbers(&self.bias, |bias| {
+                let standard = Standard(self.epsilon);
+                y.chunks_exact_mut(weight.len().max(1)).for_each(|row| standard.row(row, weight, bias));
+                Ok(())
+            })
+        })
     }
 }
 
@@ -65,7 +69,6 @@ fn wide(weight: Tensor) -> Tensor {
     if weight.device().is_cpu() { weight.to_dtype(candle_core::DType::F32).unwrap_or(weight) } else { weight }
 }
 
-/// With this epsilon.
 struct Standard(f64);
 
 impl Standard {

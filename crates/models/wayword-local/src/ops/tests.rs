@@ -112,8 +112,15 @@ fn steps_that_are_taken_together_give_what_they_give_one_by_one() {
             let thought = Activation::QuickGelu.of(&wide.of(&normed).unwrap()).unwrap();
             let one_by_one = (narrow.of(&thought).unwrap() + &x).unwrap();
             agree(&narrow.onto(&thought, &x).unwrap(), &one_by_one, 1e-4);
-            let then = FeedForward { norm: &norm, wide: &wide, activation: Activation::QuickGelu, narrow: &narrow };
-            agree(&then.of(&x).unwrap(), &one_by_one, 1e-4);
+            agree(&narrow.onto_then(&thought, &x, &norm).unwrap(), &norm.of(&one_by_one).unwrap(), 1e-4);
+            let then = |before, after| {
+                let activation = Activation::QuickGelu;
+                FeedForward { before, wide: &wide, activation, narrow: &narrow, after }.of(&x).unwrap()
+            };
+            agree(&then(Some(&norm), None), &one_by_one, 1e-4);
+            agree(&then(Some(&norm), Some(&norm)), &norm.of(&one_by_one).unwrap(), 1e-4);
+            let thought = Activation::QuickGelu.of(&wide.of(&x).unwrap()).unwrap();
+            agree(&then(None, None), &(narrow.of(&thought).unwrap() + &x).unwrap(), 1e-4);
         }
     }
 }

@@ -1,0 +1,36 @@
+//! Passes over the rows of a tensor by tiles, each of which goes through several layers while it is in the processor's
+//! cache.
+
+use candle_core::Result;
+use rayon::prelude::*;
+
+/// Rows of a tile: as many as the kernels take at a time.
+pub(crate) const TILE: usize = 64;
+
+/// Calls `tile` for each tile of rows of `width` numbers of y, on all threads: with the number of its first row, the
+/// rows, and memory to work in, which keeps what the last tile left there.
+pub(crate) fn each_tile(
+    y: &mut [f32],
+    width: usize,
+    tile: impl Fn(usize, &mut [f32], &mut Vec<f32>) -> Result<()> + Sync,
+) -> Result<()> {
+    // Few rows are spread over the threads.
+    let rows = y.len() / width.max(1);
+    let even = rows.div_ceil(rayon::current_num_threads()).next_multiple_of(8);
+    let tiles = y.par_chunks_mut(width.max(1) * even.min(TILE)).enumerate();
+    tiles.try_for_each_init(Vec::new, |memory, (at, y)| tile(at * even.min(TILE), y, memory))
+}
+
+/// Parts of these lengths of a memory, which grows if necessary.
+pub(crate) fn room<const N: usize>(memory: &mut Vec<f32>, lengths: [usize; N]) -> [&mut [f32]; N] {
+    let needed = lengths.iter().sum();
+    if memory.len() < needed {
+        memory.resize(needed, 0.0);
+    }
+    let mut rest = &mut memory[..];
+    lengths.map(|length| {
+        let (part, after) = std::mem::take(&mut rest).split_at_mut(length);
+        rest = after;
+        part
+    })
+}

@@ -1,0 +1,147 @@
+//! Attention within windows.
+
+use super::windows::{Windows, distances};
+use crate::{
+    LocalError,
+    ops::{
+        Attention,
+        kernels::{Options, product, with_numbers},
+    },
+    weights::Scope,
+};
+use candle_core::{Result, Tensor};
+use rayon::prelude::*;
+use rten_gemm::{GemmInputA, GemmInputB};
+use rten_simd::SimdOp;
+use rten_tensor::NdTensorView;
+use rten_vecmath::Softmax;
+
+/// What is added to the score of two places that do not see each other.
+const UNSEEN: f32 = -100.0;
+
+/// Attention within windows, with a bias by the distance of two places.
+pub(super) struct WindowAttention {
+    heads: usize,
+    /// [heads, places, places].
+    bias: Tensor,
+}
+
+impl WindowAttention {
+    pub(super) fn load(
+        weights: &Scope<'_>,
+        table: &str,
+        heads: usize,
+        edge: usize,
+    ) -> std::result::Result<Self, LocalError> {
+        let rows = (2 * edge - 1) * (2 * edge - 1);
+        let biases = weights.state(table, &[rows, heads])?;
+        let spread = || {
+            let rows = distances(edge).into_iter().map(|row| row as u32).collect::<Vec<_>>();
+            let rows = Tensor::from_vec(rows, edge * edge * edge * edge, biases.device())?;
+            biases.index_select(&rows, 0)?.t()?.contiguous()?.reshape((heads, edge * edge, edge * edge))
+        };
+        Ok(Self { heads, bias: spread().map_err(|error| weights.wrong(table, &error))? })
+    }
+
+    /// From queries, keys and values [positions, 3 * channels] of a map, and those of padding [3 * channels], the states
+    /// [places, channels] in the order of the windows.
+    pub(super) fn on_processor(&self, qkv: &Tensor, of_padding: &Tensor, windows: &Windows) -> Result<Tensor> {
+        let width = qkv.dim(1)? / 3;
+        let mut mixed = vec![0.0; windows.positions.len() * width];
+        with_numbers(qkv, |qkv| {
+            with_numbers(of_padding, |of_padding| {
+                with_numbers(&self.bias, |bias| {
+                    let attend = Windowed { qkv, of_padding, bias, windows, width, heads: self.heads };
+                    let each = mixed.par_chunks_mut(windows.size * width).enumerate();
+                    each.try_for_each_init(Vec::new, |room, (window, mixed)| attend.one(window, mixed, room))
+                })
+            })
+        })?;
+        Tensor::from_vec(mixed, (windows.positions.len(), width), qkv.device())
+    }
+
+    /// The same with candle's operators.
+    pub(super) fn on_device(&self, qkv: &Tensor, of_padding: &Tensor, windows: &Windows) -> Result<Tensor> {
+        let width = qkv.dim(1)? / 3;
+        let (count, size, device) = (windows.count(), windows.size, qkv.device());
+        let padding = qkv.dim(0)? as u32;
+        let rows = windows.positions.iter().map(|&at| at.min(padding)).collect();
+        let rows = Tensor::from_vec(rows, count * size, device)?;
+        let all = Tensor::cat(&[qkv, &of_padding.unsqueeze(0)?.to_dtype(qkv.dtype())?], 0)?;
+        let all = all.index_select(&rows, 0)?.reshape((count, size, 3 * width))?;
+        let part = |at: usize| all.narrow(2, at * width, width);
+        let mut hides = vec![0.0_f32; count * size * size];
+        for (window, hides) in hides.chunks_mut(size * size).enumerate() {
+            let Some(regions) = windows.regions_of(window) else { continue };
+            for (pair, hides) in hides.iter_mut().enumerate() {
+                *hides = if regions[pair / size] == regions[pair % size] { 0.0 } else { UNSEEN };
+            }
+        }
+        let hides = Tensor::from_vec(hides, (count, 1, size, size), device)?.to_dtype(self.bias.dtype())?;
+        let bias = hides.broadcast_add(&self.bias.unsqueeze(0)?)?;
+        let scale = 1.0 / ((width / self.heads) as f32).sqrt();
+        let attention = Attention { heads: self.heads, scale, bias: Some(&bias) };
+        attention.of(&part(0)?, &part(1)?, &part(2)?)?.reshape((count * size, width))
+    }
+}
+
+/// The inputs of one pass over all windows.
+struct Windowed<'a> {
+    qkv: &'a [f32],
+    of_padding: &'a [f32],
+    bias: &'a [f32],
+    windows: &'a Windows,
+    width: usize,
+    heads: usize,
+}
+
+impl Windowed<'_> {
+    /// The states of one window [places, channels]. `room` is memory to work in.
+    fn one(&self, window: usize, mixed: &mut [f32], room: &mut Vec<f32>) -> Result<()> {
+        let (size, width, row) = (self.windows.size, self.width, 3 * self.width);
+        let head_width = width / self.heads;
+        room.resize(size * row + size * size + size * head_width, 0.0);
+        let (seen, rest) = room.split_at_mut(size * row);
+        let (scores, of_head) = rest.split_at_mut(size * size);
+        let positions = &self.windows.positions[window * size..(window + 1) * size];
+        for (seen, &position) in seen.chunks_exact_mut(row).zip(positions) {
+            let from = position as usize * row;
+            seen.copy_from_slice(if position == Windows::PAD { self.of_padding } else { &self.qkv[from..from + row] });
+        }
+        let regions = self.windows.regions_of(window);
+        let scale = 1.0 / (head_width as f32).sqrt();
+        for head in 0..self.heads {
+            let part = |at: usize| {
+                let from = at * width + head * head_width;
+                let to = from + (size - 1) * row + head_width;
+                NdTensorView::from_data_with_strides([size, head_width], &seen[from..to], [row, 1])
+                    .map_err(candle_core::Error::wrap)
+            };
+            let options = Options { alpha: scale, ..Options::default() };
+            let keys = GemmInputB::Unpacked(part(1)?.transposed());
+            product(scores, GemmInputA::Unpacked(part(0)?), keys, options)?;
+            self.softmax(scores, head, regions);
+            let weights = GemmInputA::Unpacked(NdTensorView::from_data([size, size], &*scores));
+            product(of_head, weights, GemmInputB::Unpacked(part(2)?), Options::default())?;
+            for (mixed, of_head) in mixed.chunks_exact_mut(width).zip(of_head.chunks_exact(head_width)) {
+                mixed[head * head_width..(head + 1) * head_width].copy_from_slice(of_head);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the biases of a head to the scores of a window, hides what is no neighbour, and makes each row sum to 1.
+    fn softmax(&self, scores: &mut [f32], head: usize, regions: Option<&[u8]>) {
+        let size = self.windows.size;
+        let bias = &self.bias[head * size * size..(head + 1) * size * size];
+        for (at, (scores, bias)) in scores.chunks_exact_mut(size).zip(bias.chunks_exact(size)).enumerate() {
+            scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
+            if let Some(regions) = regions {
+                for (score, region) in scores.iter_mut().zip(regions) {
+                    *score += if *region == regions[at] { 0.0 } else { UNSEEN };
+                }
+            }
+            Softmax::new_mut(scores).dispatch();
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! The sizes of a Swin transformer, and the names of its tensors.
+
+use crate::json::size_problem;
+
+/// The sizes of a Swin transformer.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SwinConfig {
+    /// Channels of the first stage. Each further stage has twice as many.
+    pub(crate) width: usize,
+    /// Blocks of each stage.
+    pub(crate) depths: Vec<usize>,
+    /// Attention heads of each stage.
+    pub(crate) heads: Vec<usize>,
+    /// Edge of a window, positions.
+    pub(crate) window: usize,
+    /// The width between the two layers of a block, as a multiple of the block's own.
+    pub(crate) widening: usize,
+    /// The stages, from 0, whose outputs are the backbone's, through a norm each.
+    pub(crate) outputs: Vec<usize>,
+    /// Added to variances.
+    pub(crate) epsilon: f64,
+}
+
+/// The most stages and blocks of a stage. Published models have 4 and 18.
+const MOST_STAGES: usize = 8;
+const MOST_BLOCKS: usize = 64;
+
+/// The largest window. Published models have 7 and 12.
+const LARGEST_WINDOW: usize = 32;
+
+impl SwinConfig {
+    /// Swin-T: 28 million parameters, with the outputs at strides 8, 16 and 32.
+    pub(crate) fn tiny() -> Self {
+        Self {
+            width: 96,
+            depths: vec![2, 2, 6, 2],
+            heads: vec![3, 6, 12, 24],
+            window: 7,
+            widening: 4,
+            outputs: vec![1, 2, 3],
+            epsilon: 1e-5,
+        }
+    }
+
+    /// Channels of a stage.
+    pub(crate) fn width_of(&self, stage: usize) -> usize {
+        self.width << stage
+    }
+
+    /// What is wrong with the sizes, if anything is. Sizes without a problem are safe to compute with.
+    pub(crate) fn problem(&self) -> Option<String> {
+        let sizes = [("width", self.width), ("window", self.window), ("widening", self.widening)];
+        if let Some(problem) = size_problem(&sizes) {
+            return Some(problem);
+        }
+        let stages = self.depths.len();
+        if stages == 0 || stages > MOST_STAGES || self.heads.len() != stages {
+            return Some(format!(
+                "depths and heads: {stages} and {} stages are not 1 to {MOST_STAGES}",
+                self.heads.len()
+            ));
+        }
+        if self.window > LARGEST_WINDOW || self.widening > LARGEST_WINDOW {
+            return Some(format!(
+                "window, widening: {} and {} are not 1 to {LARGEST_WINDOW}",
+                self.window, self.widening
+            ));
+        }
+        if let Some(depth) = self.depths.iter().find(|depth| !(1..=MOST_BLOCKS).contains(*depth)) {
+            return Some(format!("depths: {depth} is not from 1 to {MOST_BLOCKS}"));
+        }
+        let uneven = |(stage, heads): &(usize, &usize)| **heads == 0 || !self.width_of(*stage).is_multiple_of(**heads);
+        if let Some((stage, heads)) = self.heads.iter().enumerate().find(uneven) {
+            return Some(format!("heads: {heads} does not divide the width {} of stage {stage}", self.width_of(stage)));
+        }
+        let outside = self.outputs.iter().find(|output| **output >= stages);
+        outside.map(|output| format!("outputs: there is no stage {output}"))
+    }
+}
+
+/// The names of a backbone's tensors within its part of a checkpoint.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Names {
+    pub(crate) patch: &'static str,
+    pub(crate) patch_norm: &'static str,
+    pub(crate) stages: &'static str,
+    /// The norm of a stage's output, by the stage from 0.
+    pub(crate) out_norm: fn(usize) -> String,
+    pub(super) mix_norm: &'static str,
+    /// Queries, keys and values: one layer or three.
+    pub(super) qkv: &'static [&'static str],
+    pub(super) mixed: &'static str,
+    pub(super) positions: &'static str,
+    pub(super) think_norm: &'static str,
+    pub(super) wide: &'static str,
+    pub(super) narrow: &'static str,
+}
+
+impl Names {
+    /// The names of the original implementation, which GLIP's checkpoints have.
+    pub(crate) const ORIGINAL: Self = Self {
+        patch: "patch_embed.proj",
+        patch_norm: "patch_embed.norm",
+        stages: "layers",
+        out_norm: |stage| format!("norm{stage}"),
+        mix_norm: "norm1",
+        qkv: &["attn.qkv"],
+        mixed: "attn.proj",
+        positions: "attn.relative_position_bias_table",
+        think_norm: "norm2",
+        wide: "mlp.fc1",
+        narrow: "mlp.fc2",
+    };
+
+    /// The names of transformers' checkpoints.
+    pub(crate) const TRANSFORMERS: Self = Self {
+        patch: "embeddings.patch_embeddings.projection",
+        patch_norm: "embeddings.norm",
+        stages: "encoder.layers",
+        out_norm: |stage| format!("hidden_states_norms.stage{}", stage + 1),
+        mix_norm: "layernorm_before",
+        qkv: &["attention.self.query", "attention.self.key", "attention.self.value"],
+        mixed: "attention.output.dense",
+        positions: "attention.self.relative_position_bias_table",
+        think_norm: "layernorm_after",
+        wide: "intermediate.dense",
+        narrow: "output.dense",
+    };
+}
