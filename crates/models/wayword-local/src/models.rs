@@ -4,7 +4,7 @@ use crate::{
     Device, LocalError, Precision,
     blip::{BlipCaptioner, BlipVqa},
     blip2::Blip2,
-    detectors::{self, LocalDetector},
+    detectors::{Checkpoint, LocalDetector},
     eyes::{Blip2Eye, BlipEye, Eye},
     hub::{Hub, ModelFolder, ModelName, Needs, Progress},
     json,
@@ -123,8 +123,7 @@ impl Models {
     /// When the files cannot be fetched, or the model does not detect.
     pub fn detector_at_hand(&self, name: &str) -> Result<(), LocalError> {
         let part = detector_name(name)?;
-        let folder = self.hub.folder(&part, &Needs::of_any(&part), &*self.progress)?;
-        detectors::Kind::read(&folder).map(drop)
+        Checkpoint::find(&self.hub, &part, &*self.progress).map(drop)
     }
 
     /// A detector by its name, `hf/ORG/NAME`. The first call fetches it, if it is not on this machine, and loads it.
@@ -137,13 +136,11 @@ impl Models {
             return Ok(Arc::clone(detector));
         }
         let part = detector_name(name)?;
-        let folder = self.hub.folder(&part, &Needs::of_any(&part), &*self.progress)?;
-        let kind = detectors::Kind::read(&folder)?;
+        let checkpoint = Checkpoint::find(&self.hub, &part, &*self.progress)?;
         let precision = self.precision.unwrap_or_default();
-        let weights = memory::of_checkpoint(&folder.path, precision)?;
-        loaded.budget.take(name, weights.saturating_add(kind.kept_bytes()))?;
-        let ready = kind.load(name, &folder, &self.device, precision)?;
-        let origin = origin(std::slice::from_ref(&folder), precision);
+        loaded.budget.take(name, checkpoint.bytes(precision)?)?;
+        let ready = checkpoint.load(name, &self.device, precision)?;
+        let origin = origin(&[checkpoint.identity()], precision);
         let detector = Arc::new(LocalDetector::new(name, origin, ready, self.run.clone()));
         loaded.detectors.insert(name.to_owned(), Arc::clone(&detector));
         Ok(detector)
@@ -161,7 +158,8 @@ impl Models {
             budget.take(name, memory::of_checkpoint(&folder.path, precision)?)?;
         }
         let paths: Vec<&Path> = folders.iter().map(|folder| folder.path.as_path()).collect();
-        Ok((self.eye(name, &paths, &roles, precision)?, origin(&folders, precision)))
+        let identities: Vec<&str> = folders.iter().map(|folder| folder.identity.as_str()).collect();
+        Ok((self.eye(name, &paths, &roles, precision)?, origin(&identities, precision)))
     }
 
     fn eye(
@@ -246,7 +244,6 @@ fn no_name(name: &str, problem: &str) -> LocalError {
 }
 
 /// What could change a model's answers: its weights and their precision.
-fn origin(folders: &[ModelFolder], precision: Precision) -> String {
-    let identities: Vec<&str> = folders.iter().map(|folder| folder.identity.as_str()).collect();
+fn origin(identities: &[&str], precision: Precision) -> String {
     format!("in process: {} ({})", identities.join("+"), format!("{precision:?}").to_lowercase())
 }

@@ -49,7 +49,8 @@ fn a_detectors_answers_are_kept_by_view_and_phrase() {
     let computed = owl.detect(&[&here, &there], &["stairs", "red door", "sink"]);
     assert_eq!((first.totals().answered, first.totals().hits), (6, 0));
     // Another process, with another list of phrases.
-    let again = models(second.clone(), None, None).detector(&name).unwrap().detect(&[&there], &["sink", "lamp", "stairs"]);
+    let again =
+        models(second.clone(), None, None).detector(&name).unwrap().detect(&[&there], &["sink", "lamp", "stairs"]);
     assert_eq!((second.totals().answered, second.totals().hits), (1, 2));
     let (again, computed) = (again[0].as_ref().unwrap(), computed[1].as_ref().unwrap());
     assert_eq!((&again[0], &again[2]), (&computed[2], &computed[0]));

@@ -278,7 +278,7 @@ fn damage_is_told_by_file_and_tensor() {
         ),
         ("config.json", "/backbone_config/patch_size", 2.into(), vec!["backbone_config.patch_size"]),
         ("preprocessor_config.json", "/image_processor_type", "CLIPImageProcessor".into(), vec!["CLIPImageProcessor"]),
-        ("preprocessor_config.json", "/size/longest_edge", huge.clone(), vec!["size: edges of 72"]),
+        ("preprocessor_config.json", "/size/longest_edge", huge, vec!["size: edges of 72"]),
         ("preprocessor_config.json", "/size/shortest_edge", 0.into(), vec!["size: edges of 0"]),
         ("preprocessor_config.json", "/resample", 3.into(), vec!["resample: 3"]),
         ("preprocessor_config.json", "/image_std", serde_json::json!([1.0, 0.0, 1.0]), vec!["image_std"]),

@@ -7,6 +7,7 @@ use std::{
     f64::consts::FRAC_PI_2,
     path::{Path, PathBuf},
     sync::Arc,
+    time::Instant,
 };
 use wayword_core::{DVec3, Detector, Grounded, Grounder, Heading, Image, MOST_BOXES, ModelError, Pose, View};
 use wayword_local::{Device, LocalError, Owl, OwlOutputs, Precision};
@@ -190,7 +191,12 @@ fn damage_is_told_by_file_and_tensor() {
         ("config.json", "/model_type", "clip".into(), vec!["config.json", "clip is not owlv2"]),
         ("config.json", "/projection_dim", 21.into(), vec!["config.json", "projection_dim: 21"]),
         ("config.json", "/vision_config/hidden_size", 27.into(), vec![weights, "owlv2.vision_model.embeddings.", "27"]),
-        ("config.json", "/vision_config/patch_size", 6.into(), vec![weights, "patch_embedding.weight", "[24, 3, 8, 8]"]),
+        (
+            "config.json",
+            "/vision_config/patch_size",
+            6.into(),
+            vec![weights, "patch_embedding.weight", "[24, 3, 8, 8]"],
+        ),
         ("config.json", "/vision_config/num_hidden_layers", 3.into(), vec![weights, "layers.2.layer_norm1", "missing"]),
         ("config.json", "/vision_config/image_size", (1_u64 << 60).into(), vec!["config.json", "pixels"]),
         ("config.json", "/text_config/vocab_size", (1_u64 << 40).into(), vec![weights, "token_embedding.weight"]),
@@ -205,7 +211,11 @@ fn damage_is_told_by_file_and_tensor() {
 #[test]
 fn a_tensor_that_is_missing_or_swapped_is_named() {
     for (from, to, told) in [
-        ("class_head.logit_shift.weight", "class_head.logit_shift.wrongs", "class_head.logit_shift.weight: it is missing"),
+        (
+            "class_head.logit_shift.weight",
+            "class_head.logit_shift.wrongs",
+            "class_head.logit_shift.weight: it is missing",
+        ),
         ("box_head.dense2.weight", "box_head.dense9.weight", "box_head.dense2.weight: it is missing"),
         ("owlv2.vision_model.pre_layernorm.bias", "owlv2.vision_model.pre_layernorm.bios", "pre_layernorm.bias"),
     ] {
@@ -237,6 +247,13 @@ fn a_file_that_is_cut_off_or_missing_is_named() {
     }
 }
 
+/// The seconds that all threads of this process have computed, on Linux.
+fn busy_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
+    fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
+}
+
 /// At the true size: `WAYWORD_OWL` is a folder by `make_owl.py --true`.
 #[test]
 #[ignore = "needs a folder of 600 MB"]
@@ -244,9 +261,14 @@ fn the_true_size_agrees_with_pytorch() {
     let folder = PathBuf::from(std::env::var_os("WAYWORD_OWL").expect("WAYWORD_OWL is a folder"));
     let (owl, expected) = (load(&folder).unwrap(), Expected::read(&folder));
     for OfPicture { size: (width, height), numbers } in &expected.pictures {
-        let (logits, boxes) = off(&owl.outputs(&drawn((*width, *height)), &expected.texts()).unwrap(), numbers);
+        let (begun, busy) = (Instant::now(), busy_s());
+        let ours = owl.outputs(&drawn((*width, *height)), &expected.texts()).unwrap();
+        let (wall, busy) = (begun.elapsed().as_secs_f64(), busy_s() - busy);
+        let (logits, boxes) = off(&ours, numbers);
         let px = boxes * (*width).max(*height) as f32;
-        eprintln!("{width} x {height}: logits {logits:.2e}, boxes {px:.2e} px");
+        eprintln!(
+            "{width} x {height}: logits {logits:.2e}, boxes {px:.2e} px, {wall:.2} s, {busy:.2} s of all threads"
+        );
         assert!(logits < 1e-4 && px < 1e-3);
     }
 }

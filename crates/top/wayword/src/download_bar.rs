@@ -37,6 +37,10 @@ impl Progress for DownloadBar {
     fn waiting(&self, file: &str) {
         self.output.say(format_args!("waiting for another process that fetches {file}"));
     }
+
+    fn told(&self, note: &str) {
+        self.output.say(note);
+    }
 }
 
 impl Drop for DownloadBar {

@@ -3,7 +3,7 @@
 use super::config::Config;
 use crate::{
     LocalError,
-    ops::{Activation, Attention, Embedding, LayerNorm, Linear},
+    ops::{Activation, Attention, Embedding, FeedForward, LayerNorm, Linear},
     weights::Scope,
 };
 use candle_core::{Result, Tensor};
@@ -84,8 +84,13 @@ impl Layer {
         let part = |at: usize| qkv.narrow(2, at * size, size);
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
         let mixed = Attention { heads: self.heads, scale, bias: mask }.of(&part(0)?, &part(1)?, &part(2)?)?;
-        let x = self.mixed_norm.of(&(self.mixed.of(&mixed)? + x)?)?;
-        let wide = self.wide.of_then(&x, self.activation)?;
-        self.norm.of(&(self.narrow.of(&wide)? + x)?)
+        let then = FeedForward {
+            before: None,
+            wide: &self.wide,
+            activation: self.activation,
+            narrow: &self.narrow,
+            after: Some(&self.norm),
+        };
+        then.of(&self.mixed.onto_then(&mixed, x, &self.mixed_norm)?)
     }
 }

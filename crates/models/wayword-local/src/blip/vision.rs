@@ -3,7 +3,7 @@
 use super::config::VisionConfig;
 use crate::{
     LocalError,
-    ops::{Activation, Attention, LayerNorm, Linear, patches},
+    ops::{Activation, Attention, FeedForward, LayerNorm, Linear, patches},
     weights::Scope,
 };
 use candle_core::{Result, Tensor};
@@ -77,12 +77,17 @@ impl Layer {
 
     fn of(&self, x: &Tensor) -> Result<Tensor> {
         let size = x.dim(2)?;
-        let qkv = self.qkv.of(&self.norm.of(x)?)?;
+        let qkv = self.qkv.of_normed(x, &self.norm)?;
         let part = |at: usize| qkv.narrow(2, at * size, size);
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
         let mixed = Attention { heads: self.heads, scale, bias: None }.of(&part(0)?, &part(1)?, &part(2)?)?;
-        let x = (self.mixed.of(&mixed)? + x)?;
-        let wide = self.wide.of_then(&self.mixed_norm.of(&x)?, self.activation)?;
-        self.narrow.of(&wide)? + x
+        let then = FeedForward {
+            before: Some(&self.mixed_norm),
+            wide: &self.wide,
+            activation: self.activation,
+            narrow: &self.narrow,
+            after: None,
+        };
+        then.of(&self.mixed.onto(&mixed, x)?)
     }
 }

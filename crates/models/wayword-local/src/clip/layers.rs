@@ -4,7 +4,7 @@
 use super::config::LayersConfig;
 use crate::{
     LocalError,
-    ops::{Activation, Attention, LayerNorm, Linear},
+    ops::{Activation, Attention, FeedForward, LayerNorm, Linear},
     weights::Scope,
 };
 use candle_core::{Result, Tensor};
@@ -54,7 +54,7 @@ impl Layers {
             let at = Tensor::new(at, x.device())?;
             mask.index_select(&at, 0)?.reshape((batch, 1, 1, length))
         });
-        let qkv = self.last.qkv.of(&self.last.mix_norm.of(&x)?)?;
+        let qkv = self.last.qkv.of_normed(&x, &self.last.mix_norm)?;
         let q = picked(&qkv)?.narrow(2, 0, size)?;
         self.last.of(&picked(&x)?, &qkv, &q, mask.transpose()?.as_ref())
     }
@@ -83,7 +83,7 @@ impl Layer {
 
     /// The layer's output for all tokens x [batch, length, size].
     fn all(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
-        let qkv = self.qkv.of(&self.mix_norm.of(x)?)?;
+        let qkv = self.qkv.of_normed(x, &self.mix_norm)?;
         self.of(x, &qkv, &third(&qkv, 0)?, mask)
     }
 
@@ -93,8 +93,13 @@ impl Layer {
         let scale = 1.0 / ((x.dim(2)? / self.heads) as f32).sqrt();
         let attention = Attention { heads: self.heads, scale, bias: mask };
         let mixed = attention.of(q, &third(qkv, 1)?, &third(qkv, 2)?)?;
-        let x = (self.mixed.of(&mixed)? + x)?;
-        let wide = self.wide.of_then(&self.think_norm.of(&x)?, self.activation)?;
-        self.narrow.of(&wide)? + x
+        let then = FeedForward {
+            before: Some(&self.think_norm),
+            wide: &self.wide,
+            activation: self.activation,
+            narrow: &self.narrow,
+            after: None,
+        };
+        then.of(&self.mixed.onto(&mixed, x)?)
     }
 }

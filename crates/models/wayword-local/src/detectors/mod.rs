@@ -1,7 +1,7 @@
 //! Detectors in process: which kinds of checkpoints detect, and how their calls are kept.
 //!
-//! To add an architecture: a kind in [`Kind`], the line by which [`Kind::read`] knows it, and its line in
-//! [`Kind::load`].
+//! To add an architecture: a kind in [`Checkpoint`], the line by which [`Checkpoint::find`] knows it, its line in
+//! [`Checkpoint::load`], and what it keeps.
 
 mod kept;
 
@@ -9,17 +9,22 @@ pub use kept::LocalDetector;
 
 use crate::{
     Device, LocalError, Precision,
-    hub::ModelFolder,
+    dino::{self, Dino},
+    glip::{self, Glip, GlipFiles},
+    hub::{Hub, ModelFolder, ModelName, Needs, Progress},
     json,
     owl::{self, Owl},
+    weights::Weights,
 };
 use serde::Deserialize;
 use wayword_core::Detector;
 
-/// The kind of a checkpoint that detects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Owl,
+/// The files of a detector, by its kind.
+#[derive(Debug)]
+pub(crate) enum Checkpoint {
+    Glip(GlipFiles),
+    Dino(ModelFolder),
+    Owl(ModelFolder),
 }
 
 /// A loaded detector.
@@ -36,40 +41,61 @@ struct Config {
     model_type: Option<String>,
 }
 
-impl Kind {
-    /// The kind of a model's files.
-    pub(crate) fn read(folder: &ModelFolder) -> Result<Self, LocalError> {
+impl Checkpoint {
+    /// The files of a detector's name; what is missing is fetched. A file as training leaves it (`.pth`) is GLIP's; else
+    /// `config.json` says what a model is.
+    pub(crate) fn find(hub: &Hub, name: &ModelName, progress: &dyn Progress) -> Result<Self, LocalError> {
+        if name.is_trained() {
+            return GlipFiles::find(hub, name, progress).map(Self::Glip);
+        }
+        let folder = hub.folder(name, &Needs::of_any(name), progress)?;
         let config: Config = json::read(&folder.path, "config.json", "the configuration")?;
         match config.model_type.as_deref() {
-            Some("owlv2") => Ok(Self::Owl),
+            Some("owlv2") => Ok(Self::Owl(folder)),
+            Some("grounding-dino" | "mm-grounding-dino") => Ok(Self::Dino(folder)),
             other => Err(LocalError::File {
                 file: folder.path.join("config.json"),
                 problem: format!("model_type {}: such a model cannot detect in process", other.unwrap_or("(none)")),
-                hint: "choose a detector, such as hf/google/owlv2-base-patch16-ensemble",
+                hint: "choose a detector, such as hf/iSEE-Laboratory/llmdet_tiny or hf/google/owlv2-base-patch16-ensemble",
             }),
         }
     }
 
     /// Loads a detector. `name` is its name, `hf/ORG/NAME`.
-    pub(crate) fn load(
-        self,
-        name: &str,
-        folder: &ModelFolder,
-        device: &Device,
-        precision: Precision,
-    ) -> Result<Ready, LocalError> {
+    pub(crate) fn load(&self, name: &str, device: &Device, precision: Precision) -> Result<Ready, LocalError> {
         match self {
-            Self::Owl => {
+            Self::Glip(files) => {
+                let edge_px = Glip::SHORT_EDGE_PX;
+                let glip = Glip::load(name, files, edge_px, device, precision)?;
+                Ok(Ready { size: format!("{edge_px} px, short edge"), detector: Box::new(glip) })
+            }
+            Self::Dino(folder) => {
+                let dino = Dino::load(name, &folder.path, device, precision)?;
+                Ok(Ready { size: "as its preprocessor says".to_owned(), detector: Box::new(dino) })
+            }
+            Self::Owl(folder) => {
                 let owl = Owl::load(name, &folder.path, device, precision)?;
                 Ok(Ready { size: format!("{} px", owl.edge_px()), detector: Box::new(owl) })
             }
         }
     }
 
-    /// The bytes of pictures' features that such a detector keeps beside its weights.
-    pub(crate) fn kept_bytes(self) -> u64 {
+    /// Distinguishes checkpoints of the same name.
+    pub(crate) fn identity(&self) -> &str {
         match self {
-            Self::Owl => owl::KEPT_BYTES as u64,
+            Self::Glip(files) => &files.identity,
+            Self::Dino(folder) | Self::Owl(folder) => &folder.identity,
         }
+    }
+
+    /// The bytes of its weights at a precision, and of the pictures' features that it keeps beside them.
+    pub(crate) fn bytes(&self, precision: Precision) -> Result<u64, LocalError> {
+        let cpu = Device::cpu();
+        let (weights, kept) = match self {
+            Self::Glip(files) => (Weights::of_file(&files.weights, &cpu, precision)?, glip::FEATURES_BYTES),
+            Self::Dino(folder) => (Weights::open(&folder.path, &cpu, precision)?, dino::KEPT_BYTES),
+            Self::Owl(folder) => (Weights::open(&folder.path, &cpu, precision)?, owl::KEPT_BYTES),
+        };
+        Ok(weights.bytes().saturating_add(kept as u64))
     }
 }

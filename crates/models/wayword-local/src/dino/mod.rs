@@ -19,6 +19,7 @@ mod queries;
 mod text;
 
 pub use model::Dino;
+pub(crate) use model::KEPT_BYTES;
 
 #[cfg(test)]
 mod tests;

@@ -16,7 +16,7 @@ use std::{path::Path, sync::Arc};
 use wayword_core::{Image, Recent};
 
 /// The memory that the features of recent pictures may take, bytes.
-const KEPT_BYTES: usize = 256 << 20;
+pub(crate) const KEPT_BYTES: usize = 256 << 20;
 
 /// Pixels of an edge of the patches that the backbone begins with.
 const PATCH_PX: usize = 4;

@@ -21,7 +21,7 @@ use std::path::Path;
 use wayword_core::{Detector, Found, Image, ModelError, Recent, Scoring, View};
 
 /// The most memory for the features of pictures that were seen lately, bytes.
-const FEATURES_BYTES: usize = 512 << 20;
+pub(crate) const FEATURES_BYTES: usize = 512 << 20;
 
 /// Means and deviations of blue, green and red, of bytes.
 const MEAN: [f32; 3] = [103.53, 116.28, 123.675];

@@ -14,6 +14,7 @@ mod prompt;
 mod pyramid;
 mod tower;
 
+pub(crate) use detector::FEATURES_BYTES;
 pub use detector::Glip;
 pub use files::GlipFiles;
 

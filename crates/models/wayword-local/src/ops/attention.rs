@@ -1,12 +1,24 @@
 //! Multi-head attention.
 
-use super::kernels::{Options, is_ours, product, slice};
+use super::{
+    kernels::{Options, is_ours, pack, product, slice},
+    rows::with_spare,
+    softmax::exponentials,
+};
 use candle_core::{CpuStorage, CustomOp3, Device, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
-use rten_gemm::{GemmInputA, GemmInputB};
-use rten_simd::SimdOp;
+use rten_gemm::{GemmInputA, GemmInputB, PackedBMatrix};
 use rten_tensor::NdTensorView;
-use rten_vecmath::Softmax;
+use std::ops::Range;
+
+/// Most scores that are computed at a time: about as many as fit into a core's cache.
+const SCORES: usize = 384 << 10;
+
+/// Most queries that are computed at a time.
+const MOST_QUERIES: usize = 96;
+
+/// With fewer queries at a time, keys and values are not packed beforehand.
+const LEAST_PACKED: usize = 24;
 
 /// softmax(q kᵀ * scale + bias) v, for each head.
 pub(crate) struct Attention<'a> {
@@ -103,39 +115,83 @@ impl<'a> Rows<'a> {
         Ok(Self { numbers, batch, count, width, batch_step, row_step })
     }
 
-    /// One head of one batch, [count, size].
-    fn head(&self, batch: usize, head: usize, heads: usize) -> Result<NdTensorView<'a, f32, 2>> {
+    /// Some rows of one head of one batch, [rows, size].
+    fn head(&self, batch: usize, head: usize, heads: usize, rows: Range<usize>) -> Result<NdTensorView<'a, f32, 2>> {
         let size = self.width / heads;
-        let from = batch * self.batch_step + head * size;
-        let to = from + self.count.saturating_sub(1) * self.row_step + size;
+        let from = batch * self.batch_step + rows.start * self.row_step + head * size;
+        let to = from + rows.len().saturating_sub(1) * self.row_step + size;
         let Some(numbers) = self.numbers.get(from..to) else { bail!("a tensor has fewer numbers than its shape") };
-        NdTensorView::from_data_with_strides([self.count, size], numbers, [self.row_step, 1])
+        NdTensorView::from_data_with_strides([rows.len(), size], numbers, [self.row_step, 1])
             .map_err(candle_core::Error::wrap)
     }
 }
 
+/// A head's keys, transposed, and values, packed for all queries. Without them they are packed for each product.
+type Packed = (PackedBMatrix<f32>, PackedBMatrix<f32>);
+
 impl Heads<'_> {
-    /// One head of one batch: [queries, size].
-    fn head(&self, q: &Rows<'_>, k: &Rows<'_>, v: &Rows<'_>, at: usize) -> Result<Vec<f32>> {
-        let (batch, head) = (at / self.heads, at % self.heads);
-        let (queries, keys) = (q.count, k.count);
-        let mut scores = vec![0.0; queries * keys];
-        let a = GemmInputA::Unpacked(q.head(batch, head, self.heads)?);
-        let b = k.head(batch, head, self.heads)?;
-        let options = Options { alpha: self.scale, ..Options::default() };
-        product(&mut scores, a, GemmInputB::Unpacked(b.transposed()), options)?;
-        if let Some(bias) = self.bias {
-            let bias = &bias[at * queries * keys..(at + 1) * queries * keys];
-            scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
+    /// Writes the states of some queries, from query `from` of a batch on, into `mixed` [queries, width].
+    fn some(&self, of: &Inputs<'_>, packed: &[Packed], batch: usize, from: usize, mixed: &mut [f32]) -> Result<()> {
+        let (width, keys) = (of.v.width, of.k.count);
+        let (size, queries) = (width / self.heads, mixed.len() / width.max(1));
+        with_spare(queries * keys, |scores| {
+            with_spare(queries * size, |states| {
+                for head in 0..self.heads {
+                    let at = batch * self.heads + head;
+                    let q = GemmInputA::Unpacked(of.q.head(batch, head, self.heads, from..from + queries)?);
+                    let (k, v) = match packed.get(at) {
+                        Some((k, v)) => (GemmInputB::Packed(k), GemmInputB::Packed(v)),
+                        None => (
+                            GemmInputB::Unpacked(of.k.head(batch, head, self.heads, 0..keys)?.transposed()),
+                            GemmInputB::Unpacked(of.v.head(batch, head, self.heads, 0..keys)?),
+                        ),
+                    };
+                    product(scores, q, k, Options { alpha: self.scale, ..Options::default() })?;
+                    if let Some(bias) = self.bias {
+                        let bias = &bias[(at * of.q.count + from) * keys..];
+                        scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
+                    }
+                    // The shares are divided by their sum where they are few: after the product with the values.
+                    let sums: Vec<f32> = scores.chunks_mut(keys).map(exponentials).collect();
+                    let scores = GemmInputA::Unpacked(NdTensorView::from_data([queries, keys], &*scores));
+                    product(states, scores, v, Options::default())?;
+                    for ((to, state), sum) in mixed.chunks_mut(width).zip(states.chunks(size)).zip(sums) {
+                        let to = &mut to[head * size..(head + 1) * size];
+                        to.iter_mut().zip(state).for_each(|(to, state)| *to = state / sum);
+                    }
+                }
+                Ok(())
+            })
+        })
+    }
+
+    /// The keys and values of all heads, packed, where each is used by several pieces of the queries.
+    fn packed(&self, of: &Inputs<'_>, queries: usize) -> Result<Vec<Packed>> {
+        if queries >= of.q.count || queries < LEAST_PACKED {
+            return Ok(Vec::new());
         }
-        for row in scores.chunks_mut(keys) {
-            Softmax::new_mut(row).dispatch();
-        }
-        let mut mixed = vec![0.0; queries * v.width / self.heads];
-        let a = GemmInputA::Unpacked(NdTensorView::from_data([queries, keys], &scores[..]));
-        let b = GemmInputB::Unpacked(v.head(batch, head, self.heads)?);
-        product(&mut mixed, a, b, Options::default())?;
-        Ok(mixed)
+        let one = |at: usize| {
+            let (batch, head) = (at / self.heads, at % self.heads);
+            let k = of.k.head(batch, head, self.heads, 0..of.k.count)?;
+            Ok((pack(k.transposed()), pack(of.v.head(batch, head, self.heads, 0..of.v.count)?)))
+        };
+        (0..of.q.batch * self.heads).into_par_iter().map(one).collect()
+    }
+}
+
+/// Queries, keys and values.
+struct Inputs<'a> {
+    q: Rows<'a>,
+    k: Rows<'a>,
+    v: Rows<'a>,
+}
+
+impl Inputs<'_> {
+    /// How many queries of a batch a thread takes at a time: few enough that their scores stay in the cache, and that no
+    /// thread is without work.
+    fn at_a_time(&self) -> usize {
+        let least = rayon::current_num_threads().div_ceil(self.q.batch.max(1));
+        (SCORES / self.k.count.max(1)).clamp(LEAST_PACKED, MOST_QUERIES).min(self.q.count.div_ceil(least)).max(1)
     }
 }
 
@@ -153,21 +209,21 @@ impl CustomOp3 for Heads<'_> {
         v: &CpuStorage,
         v_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let (q, k, v) = (Rows::new(q, q_layout)?, Rows::new(k, k_layout)?, Rows::new(v, v_layout)?);
-        if k.batch != q.batch || v.batch != q.batch || v.count != k.count || k.width != q.width || k.count == 0 {
+        let of = Inputs { q: Rows::new(q, q_layout)?, k: Rows::new(k, k_layout)?, v: Rows::new(v, v_layout)? };
+        let Inputs { q, k, v } = &of;
+        let fit = k.batch == q.batch && v.batch == q.batch && v.count == k.count && k.width == q.width;
+        if !fit || k.count == 0 || v.width < self.heads {
             bail!("queries {:?}, keys {:?} and values {:?} do not fit together", q_layout, k_layout, v_layout);
         }
-        let heads: Vec<Vec<f32>> =
-            (0..q.batch * self.heads).into_par_iter().map(|at| self.head(&q, &k, &v, at)).collect::<Result<_>>()?;
-        let size = v.width / self.heads;
         let mut mixed = vec![0.0; q.batch * q.count * v.width];
-        for (at, head) in heads.iter().enumerate() {
-            let from = at / self.heads * q.count * v.width + at % self.heads * size;
-            for (row, numbers) in head.chunks(size).enumerate() {
-                let from = from + row * v.width;
-                mixed[from..from + size].copy_from_slice(numbers);
-            }
-        }
+        let queries = of.at_a_time();
+        let packed = self.packed(&of, queries)?;
+        let batches = mixed.par_chunks_mut((q.count * v.width).max(1)).enumerate();
+        let pieces = batches.flat_map(|(batch, mixed)| {
+            let pieces = mixed.par_chunks_mut(queries * v.width).with_max_len(1).enumerate();
+            pieces.map(move |(at, mixed)| (batch, at * queries, mixed))
+        });
+        pieces.try_for_each(|(batch, from, mixed)| self.some(&of, &packed, batch, from, mixed))?;
         Ok((CpuStorage::F32(mixed), (q.batch, q.count, v.width).into()))
     }
 }

@@ -24,8 +24,12 @@ pub(crate) fn product(
 
 /// A weight [outputs, inputs], packed as the right factor of products.
 pub(super) fn packed(weight: &[f32], outputs: usize, inputs: usize) -> PackedBMatrix<f32> {
-    let weight = NdTensorView::from_data([outputs, inputs], weight).transposed();
-    KERNELS.with(|kernels| kernels.prepack_b(weight))
+    pack(NdTensorView::from_data([outputs, inputs], weight).transposed())
+}
+
+/// A matrix [inputs, outputs], packed as the right factor of products.
+pub(super) fn pack(matrix: NdTensorView<'_, f32, 2>) -> PackedBMatrix<f32> {
+    KERNELS.with(|kernels| kernels.prepack_b(matrix))
 }
 
 /// Smallest piece of work for a thread, numbers. For less, another thread costs more time than it saves.

@@ -1,13 +1,13 @@
 //! Linear layers.
 
 use super::{
-    Activation,
+    Activation, LayerNorm,
     half::HalfMatrix,
-    kernels::{Options, packed, product, rows, slice},
+    kernels::{is_ours, rows, slice},
+    packed::Packed,
+    rows::{by_rows, with_spare},
 };
-use candle_core::{CpuStorage, CustomOp1, DType, Layout, Result, Shape, Tensor, bail};
-use rten_gemm::{BiasVector, GemmInputA, GemmInputB, PackedBMatrix};
-use rten_tensor::NdTensorView;
+use candle_core::{CpuStorage, CustomOp1, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
 
 /// x times a matrix, plus a bias: from [.., inputs] to [.., outputs].
 pub(crate) struct Linear {
@@ -19,7 +19,7 @@ pub(crate) struct Linear {
 /// Weights in the form for the computation. The checkpoint's own tensor is not kept in addition.
 enum Matrix {
     /// Packed once for the CPU kernels.
-    Packed(PackedBMatrix<f32>),
+    Packed(Packed),
     /// In 16 bits on the CPU: widened piece by piece for each product.
     Half(HalfMatrix),
     /// Transposed, for candle.
@@ -36,7 +36,7 @@ impl Linear {
             let weight = weight.contiguous()?;
             let (storage, layout) = weight.storage_and_layout();
             let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a weight is not on its device") };
-            Matrix::Packed(packed(slice::<f32>(storage, layout)?, outputs, inputs))
+            Matrix::Packed(Packed::new(slice::<f32>(storage, layout)?, outputs, inputs))
         } else {
             Matrix::Half(HalfMatrix::new(weight)?)
         };
@@ -47,56 +47,89 @@ impl Linear {
 
     /// The layer's output for x [.., inputs].
     pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
-        self.run(x, None)
+        self.run(x, None, None)
     }
 
     /// The layer's output for x, after an activation.
     pub(crate) fn of_then(&self, x: &Tensor, activation: Activation) -> Result<Tensor> {
-        self.run(x, Some(activation))
+        self.run(x, None, Some(activation))
     }
 
-    fn run(&self, x: &Tensor, activation: Option<Activation>) -> Result<Tensor> {
-        if let Matrix::Plain(weight_t) = &self.matrix {
-            let y = x.broadcast_matmul(weight_t)?;
-            let y = self.bias.as_ref().map_or(Ok(y.clone()), |bias| y.broadcast_add(bias))?;
-            return activation.map_or(Ok(y.clone()), |activation| activation.of(&y));
+    /// The layer's output for the norm of x.
+    pub(crate) fn of_normed(&self, x: &Tensor, norm: &LayerNorm) -> Result<Tensor> {
+        self.run(x, Some(norm), None)
+    }
+
+    /// The layer's output for x [.., inputs], plus y [.., outputs].
+    pub(crate) fn onto(&self, x: &Tensor, y: &Tensor) -> Result<Tensor> {
+        if self.packed().is_some() && is_ours(y) && is_ours(x) {
+            return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &Onto { layer: self, after: None });
         }
-        x.contiguous()?.apply_op1_no_bwd(&Product { layer: self, activation })
+        self.of(x)? + y
+    }
+
+    /// The norm of the layer's output for x [.., inputs], plus y [.., outputs].
+    pub(crate) fn onto_then(&self, x: &Tensor, y: &Tensor, after: &LayerNorm) -> Result<Tensor> {
+        if self.packed().is_some() && is_ours(y) && is_ours(x) {
+            return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &Onto { layer: self, after: Some(after) });
+        }
+        after.of(&self.onto(x, y)?)
+    }
+
+    fn run(&self, x: &Tensor, norm: Option<&LayerNorm>, activation: Option<Activation>) -> Result<Tensor> {
+        match (&self.matrix, norm) {
+            (Matrix::Packed(_), _) | (Matrix::Half(_), None) => {
+                x.contiguous()?.apply_op1_no_bwd(&Product { layer: self, norm, activation })
+            }
+            (_, Some(norm)) => self.run(&norm.of(x)?, None, activation),
+            (Matrix::Plain(weight_t), None) => {
+                let y = x.broadcast_matmul(weight_t)?;
+                let y = self.bias.as_ref().map_or(Ok(y.clone()), |bias| y.broadcast_add(bias))?;
+                activation.map_or(Ok(y.clone()), |activation| activation.of(&y))
+            }
+        }
     }
 
     /// Writes the layer's output for the rows of x into y, on the CPU.
     pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
-        self.into(x, y, 0.0)
+        self.into(x, y, false)
     }
 
     /// Adds the layer's output for the rows of x to y, on the CPU.
     pub(crate) fn add_rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
-        self.into(x, y, 1.0)
+        self.into(x, y, true)
     }
 
-    /// The layer's output for the rows of x, plus a multiple of y.
-    fn into(&self, x: &[f32], y: &mut [f32], beta: f32) -> Result<()> {
-        let count = y.len() / self.outputs.max(1);
-        let inputs = x.len() / count.max(1);
+    fn into(&self, x: &[f32], y: &mut [f32], adds: bool) -> Result<()> {
+        let inputs = x.len() / (y.len() / self.outputs.max(1)).max(1);
         self.with_bias(|bias| match &self.matrix {
-            Matrix::Packed(packed) => {
-                let x = GemmInputA::Unpacked(NdTensorView::from_data([count, inputs], x));
-                let options = Options { bias: bias.map(BiasVector::Row), beta, ..Options::default() };
-                product(y, x, GemmInputB::Packed(packed), options)
-            }
-            Matrix::Half(half) if beta == 0.0 => half.product(x, inputs, bias, y),
+            Matrix::Packed(packed) => packed.product(x, bias, y, adds),
+            Matrix::Half(half) if !adds => half.product(x, inputs, bias, y),
             Matrix::Half(half) => {
                 let mut more = vec![0.0; y.len()];
                 half.product(x, inputs, bias, &mut more)?;
-                y.iter_mut().zip(more).for_each(|(y, more)| *y = *y * beta + more);
+                y.iter_mut().zip(more).for_each(|(y, more)| *y += more);
                 Ok(())
             }
             Matrix::Plain(_) => bail!("candle computes this product"),
         })
     }
 
+    /// The weights in the form for the CPU kernels, if they have it.
+    pub(super) fn packed(&self) -> Option<&Packed> {
+        match &self.matrix {
+            Matrix::Packed(packed) => Some(packed),
+            Matrix::Half(_) | Matrix::Plain(_) => None,
+        }
+    }
+
+    /// The number of outputs.
+    pub(super) fn outputs(&self) -> usize {
+        self.outputs
+    }
+
     /// Calls `then` with the numbers of the bias, if there is one.
-    fn with_bias<T>(&self, then: impl FnOnce(Option<&[f32]>) -> Result<T>) -> Result<T> {
+    pub(super) fn with_bias<T>(&self, then: impl FnOnce(Option<&[f32]>) -> Result<T>) -> Result<T> {
         let Some(bias) = &self.bias else { return then(None) };
         let (storage, layout) = bias.storage_and_layout();
         let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a bias is not on its device") };
@@ -107,7 +140,25 @@ impl Linear {
 /// One product of a layer.
 struct Product<'a> {
     layer: &'a Linear,
+    norm: Option<&'a LayerNorm>,
     activation: Option<Activation>,
+}
+
+impl Product<'_> {
+    /// y = activation(norm(x) matrix + bias), for some rows.
+    fn some(&self, packed: &Packed, bias: Option<&[f32]>, x: &[f32], y: &mut [f32]) -> Result<()> {
+        match self.norm {
+            None => packed.product(x, bias, y, false)?,
+            Some(norm) => with_spare(x.len(), |normed| {
+                norm.rows(x, normed)?;
+                packed.product(normed, bias, y, false)
+            })?,
+        }
+        if let Some(activation) = self.activation {
+            activation.map(y);
+        }
+        Ok(())
+    }
 }
 
 impl CustomOp1 for Product<'_> {
@@ -117,17 +168,64 @@ impl CustomOp1 for Product<'_> {
 
     fn cpu_fwd(&self, storage: &CpuStorage, layout: &Layout) -> Result<(CpuStorage, Shape)> {
         let x = slice::<f32>(storage, layout)?;
-        let (count, _) = rows(layout)?;
+        let (count, inputs) = rows(layout)?;
         let outputs = self.layer.outputs;
         let mut y = vec![0.0; count * outputs];
-        self.layer.rows(x, &mut y)?;
-        if let Some(activation) = self.activation {
-            activation.map(&mut y);
-        }
-        let mut shape = layout.shape().dims().to_vec();
-        if let Some(last) = shape.last_mut() {
-            *last = outputs;
-        }
-        Ok((CpuStorage::F32(y), shape.into()))
+        self.layer.with_bias(|bias| match &self.layer.matrix {
+            Matrix::Packed(packed) => by_rows((x, inputs), (&mut y, outputs), |x, y| self.some(packed, bias, x, y)),
+            Matrix::Half(half) => {
+                half.product(x, inputs, bias, &mut y)?;
+                if let Some(activation) = self.activation {
+                    activation.map(&mut y);
+                }
+                Ok(())
+            }
+            Matrix::Plain(_) => bail!("candle computes this product"),
+        })?;
+        Ok((CpuStorage::F32(y), wide(layout, outputs)))
     }
+}
+
+/// A product of a layer that is added to something, and the norm of it.
+struct Onto<'a> {
+    layer: &'a Linear,
+    after: Option<&'a LayerNorm>,
+}
+
+impl CustomOp2 for Onto<'_> {
+    fn name(&self) -> &'static str {
+        "linear-onto"
+    }
+
+    fn cpu_fwd(
+        &self,
+        x: &CpuStorage,
+        x_layout: &Layout,
+        onto: &CpuStorage,
+        onto_layout: &Layout,
+    ) -> Result<(CpuStorage, Shape)> {
+        let (layer, x) = (self.layer, slice::<f32>(x, x_layout)?);
+        let (count, inputs) = rows(x_layout)?;
+        let mut y = slice::<f32>(onto, onto_layout)?.to_vec();
+        let Some(packed) = layer.packed() else { bail!("candle computes this product") };
+        if y.len() != count * layer.outputs {
+            bail!("{:?} cannot be added to {} rows of {}", onto_layout.shape(), count, layer.outputs);
+        }
+        layer.with_bias(|bias| {
+            by_rows((x, inputs), (&mut y, layer.outputs), |x, y| {
+                packed.product(x, bias, y, true)?;
+                self.after.map_or(Ok(()), |after| after.rows_here(y))
+            })
+        })?;
+        Ok((CpuStorage::F32(y), wide(x_layout, layer.outputs)))
+    }
+}
+
+/// The shape of a layer's output.
+fn wide(layout: &Layout, outputs: usize) -> Shape {
+    let mut shape = layout.shape().dims().to_vec();
+    if let Some(last) = shape.last_mut() {
+        *last = outputs;
+    }
+    shape.into()
 }

@@ -8,16 +8,21 @@ mod activation;
 mod attention;
 pub(crate) mod conv3;
 mod embedding;
+mod feed_forward;
 mod half;
 pub(crate) mod kernels;
 mod linear;
 pub(crate) mod matrix;
 mod norm;
+mod packed;
+mod rows;
+mod softmax;
 pub(crate) mod tiles;
 
 pub(crate) use activation::Activation;
 pub(crate) use attention::{Attention, Past, causal};
 pub(crate) use embedding::{Embedding, patches};
+pub(crate) use feed_forward::FeedForward;
 pub(crate) use linear::Linear;
 pub(crate) use norm::{LayerNorm, RmsNorm};
 

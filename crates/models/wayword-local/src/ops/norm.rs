@@ -35,6 +35,11 @@ impl LayerNorm {
     /// Writes the norm of the rows of x into y, on the CPU.
     pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
         y.copy_from_slice(x);
+        self.rows_here(y)
+    }
+
+    /// Replaces the rows of y by their norms, on the CPU.
+    pub(super) fn rows_here(&self, y: &mut [f32]) -> Result<()> {
         with_numbers(&self.weight, |weight| {
             with_numbers(&self.bias, |bias| {
                 let standard = Standard(self.epsilon);

@@ -81,6 +81,51 @@ fn attention_agrees_with_masks_and_parts_of_a_wider_tensor() {
 }
 
 #[test]
+fn attention_over_many_keys_is_computed_in_pieces() {
+    // More scores than are computed at a time, and keys that are packed for several pieces of the queries.
+    for (batch, queries, keys) in [(2, 500, 500), (1, 1, 900), (1, 130, 7), (3, 97, 1)] {
+        let (q, k, v) =
+            (random(&[batch, queries, 12], 1), random(&[batch, keys, 12], 2), random(&[batch, keys, 12], 3));
+        let mask = random(&[batch, 3, queries, keys], 4);
+        for bias in [None, Some(&mask)] {
+            let ours = Attention { heads: 3, scale: 0.5, bias }.of(&q, &k, &v).unwrap();
+            let wide_bias = bias.map(wide);
+            let in_64 = Attention { heads: 3, scale: 0.5, bias: wide_bias.as_ref() };
+            agree(&ours, &in_64.of(&wide(&q), &wide(&k), &wide(&v)).unwrap(), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn steps_that_are_taken_together_give_what_they_give_one_by_one() {
+    let norm = LayerNorm::new(random(&[48], 1), random(&[48], 2), 1e-5);
+    for dtype in [DType::F32, DType::BF16] {
+        let layer = |outputs: usize, inputs: usize, seed| {
+            let weight = random(&[outputs, inputs], seed).to_dtype(dtype).unwrap();
+            Linear::new(&weight, Some(random(&[outputs], seed + 1))).unwrap()
+        };
+        let (wide, narrow) = (layer(200, 48, 3), layer(48, 200, 5));
+        for count in [1, 5, 150, 431] {
+            let x = random(&[1, count, 48], 7);
+            let normed = norm.of(&x).unwrap();
+            agree(&wide.of_normed(&x, &norm).unwrap(), &wide.of(&normed).unwrap(), 1e-5);
+            let thought = Activation::QuickGelu.of(&wide.of(&normed).unwrap()).unwrap();
+            let one_by_one = (narrow.of(&thought).unwrap() + &x).unwrap();
+            agree(&narrow.onto(&thought, &x).unwrap(), &one_by_one, 1e-4);
+            agree(&narrow.onto_then(&thought, &x, &norm).unwrap(), &norm.of(&one_by_one).unwrap(), 1e-4);
+            let then = |before, after| {
+                let activation = Activation::QuickGelu;
+                FeedForward { before, wide: &wide, activation, narrow: &narrow, after }.of(&x).unwrap()
+            };
+            agree(&then(Some(&norm), None), &one_by_one, 1e-4);
+            agree(&then(Some(&norm), Some(&norm)), &norm.of(&one_by_one).unwrap(), 1e-4);
+            let thought = Activation::QuickGelu.of(&wide.of(&x).unwrap()).unwrap();
+            agree(&then(None, None), &(narrow.of(&thought).unwrap() + &x).unwrap(), 1e-4);
+        }
+    }
+}
+
+#[test]
 fn a_query_sees_itself_and_what_was_before() {
     let mask = causal(2, 3, &Device::Cpu).unwrap().to_vec2::<f32>().unwrap();
     assert_eq!(mask, [[0.0, 0.0, f32::NEG_INFINITY], [0.0, 0.0, 0.0]]);

@@ -40,6 +40,10 @@ group! {
         /// Limit of the memory that all models inside this program take, in GiB. [default: the free memory of the machine]
         #[arg(long, value_name = "GIB")]
         pub memory_gib: Option<f64>,
+        /// SHA-256 that a checkpoint file (.pth) has to have, where its makers published none that is known here. Without it, that of
+        /// the first use is kept and held against later ones.
+        #[arg(long, value_name = "SHA256")]
+        pub trust: Option<String>,
         /// File with your own prices, TOML (see docs/MODELS.md).
         #[arg(long, value_name = "FILE")]
         pub prices: Option<PathBuf>,

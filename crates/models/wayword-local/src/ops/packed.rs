@@ -1,0 +1,116 @@
+//! Weights in 32 bits, packed for the CPU kernels.
+
+use super::{
+    kernels::{Options, packed, product},
+    rows::with_spare,
+};
+use candle_core::{Result, bail};
+use rten_gemm::{BiasVector, GemmInputA, GemmInputB, PackedBMatrix};
+use rten_tensor::NdTensorView;
+
+/// The most columns that the kernels give to a thread at a time.
+const COLUMNS: usize = 1024;
+
+/// Columns that the kernels compute together.
+const TILE: usize = 32;
+
+/// A matrix [outputs, inputs].
+///
+/// The kernels share out blocks of columns. If there are some more blocks than threads, one thread works last and alone,
+/// as with 3072 columns on 2 threads; so the columns are packed in as many pieces as make the blocks come out even.
+pub(super) struct Packed {
+    /// Each with the number of its columns.
+    pieces: Vec<(PackedBMatrix<f32>, usize)>,
+    inputs: usize,
+    outputs: usize,
+}
+
+impl Packed {
+    pub(super) fn new(weight: &[f32], outputs: usize, inputs: usize) -> Self {
+        let columns = at_a_time(outputs, rayon::current_num_threads());
+        let pieces = weight.chunks((columns * inputs).max(1));
+        let piece = |weight: &[f32]| {
+            let columns = weight.len() / inputs.max(1);
+            (packed(weight, columns, inputs), columns)
+        };
+        Self { pieces: pieces.map(piece).collect(), inputs, outputs }
+    }
+
+    /// Writes x [count, inputs] times the matrix, plus a bias, into y [count, outputs], or adds it.
+    pub(super) fn product(&self, x: &[f32], bias: Option<&[f32]>, y: &mut [f32], adds: bool) -> Result<()> {
+        let count = x.len() / self.inputs.max(1);
+        if x.len() != count * self.inputs || y.len() != count * self.outputs {
+            bail!("{} and {} numbers are not rows of {} and {}", x.len(), y.len(), self.inputs, self.outputs);
+        }
+        let x = || GemmInputA::Unpacked(NdTensorView::from_data([count, self.inputs], x));
+        let part = |matrix, from: usize, columns: usize, y: &mut [f32], adds: bool| {
+            let bias = bias.map(|bias| BiasVector::Row(&bias[from..from + columns]));
+            let options = Options { bias, beta: if adds { 1.0 } else { 0.0 }, ..Options::default() };
+            product(y, x(), GemmInputB::Packed(matrix), options)
+        };
+        if let [(matrix, columns)] = &self.pieces[..] {
+            return part(matrix, 0, *columns, y, adds);
+        }
+        let mut from = 0;
+        for (matrix, columns) in &self.pieces {
+            with_spare(count * columns, |piece| {
+                part(matrix, from, *columns, piece, false)?;
+                for (y, piece) in y.chunks_mut(self.outputs).zip(piece.chunks(*columns)) {
+                    let y = &mut y[from..from + columns];
+                    match adds {
+                        true => y.iter_mut().zip(piece).for_each(|(y, piece)| *y += piece),
+                        false => y.copy_from_slice(piece),
+                    }
+                }
+                Ok::<_, candle_core::Error>(())
+            })?;
+            from += columns;
+        }
+        Ok(())
+    }
+}
+
+/// How many columns a piece has.
+fn at_a_time(outputs: usize, threads: usize) -> usize {
+    let pieces = outputs.div_ceil(threads * COLUMNS);
+    if threads < 2 || pieces < 2 { outputs } else { outputs.div_ceil(pieces).next_multiple_of(threads * TILE) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_come_out_even() {
+        for (outputs, threads, columns) in [
+            (3072, 2, 1536),
+            (2304, 2, 1152),
+            (768, 2, 768),
+            (3072, 1, 3072),
+            (3072, 4, 3072),
+            (5, 2, 5),
+            (2049, 2, 1088),
+        ] {
+            assert_eq!(at_a_time(outputs, threads), columns, "{outputs} on {threads}");
+        }
+    }
+
+    #[test]
+    fn pieces_are_one_matrix() {
+        // Numbers whose products are exact.
+        let (outputs, inputs) = (5000, 3);
+        let weight: Vec<f32> = (0..outputs * inputs).map(|at| (at % 11) as f32).collect();
+        let bias: Vec<f32> = (0..outputs).map(|at| (at % 7) as f32).collect();
+        let matrix = Packed::new(&weight, outputs, inputs);
+        let x = [1.0, 2.0, 3.0, 0.5, 0.0, 1.0];
+        let dot = |x: &[f32], w: &[f32]| w.iter().zip(x).map(|(w, x)| w * x).sum::<f32>();
+        let row = |x: &[f32]| weight.chunks(inputs).zip(&bias).map(|(w, b)| dot(x, w) + b).collect::<Vec<_>>();
+        let expected: Vec<f32> = x.chunks(inputs).flat_map(row).collect();
+        let mut y = vec![0.0; 2 * outputs];
+        matrix.product(&x, Some(&bias), &mut y, false).unwrap();
+        assert_eq!(y, expected);
+        matrix.product(&x, Some(&bias), &mut y, true).unwrap();
+        assert!(y.iter().zip(&expected).all(|(y, expected)| *y == 2.0 * expected));
+        assert!(matrix.product(&x[1..], None, &mut y, false).is_err());
+    }
+}

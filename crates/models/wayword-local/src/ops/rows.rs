@@ -1,0 +1,98 @@
+//! Shares the rows of a computation out to threads.
+//!
+//! A layer takes some rows at a time through all of its steps, so that what lies between the steps stays in the cache
+//! and is never allocated for all rows.
+
+use candle_core::Result;
+use rayon::prelude::*;
+use std::cell::RefCell;
+
+/// Fewest and most rows that a thread takes at a time. With fewer a product's own columns are shared out instead.
+const LEAST: usize = 48;
+const MOST: usize = 144;
+
+/// The kernels compute this many rows at a time.
+const TILE: usize = 6;
+
+thread_local! {
+    /// Memory that was used before.
+    static SPARE: RefCell<Vec<Vec<f32>>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Calls `each` with some rows of x, of length `inputs`, and the same rows of y, of length `outputs`, on all threads.
+pub(super) fn by_rows(
+    (x, inputs): (&[f32], usize),
+    (y, outputs): (&mut [f32], usize),
+    each: impl Fn(&[f32], &mut [f32]) -> Result<()> + Sync,
+) -> Result<()> {
+    if inputs == 0 || outputs == 0 {
+        return each(x, y);
+    }
+    match at_a_time(x.len() / inputs, rayon::current_num_threads()) {
+        None => each(x, y),
+        Some(rows) => {
+            let parts = y.par_chunks_mut(rows * outputs).zip(x.par_chunks(rows * inputs));
+            parts.with_max_len(1).try_for_each(|(y, x)| each(x, y))
+        }
+    }
+}
+
+/// How many of `count` rows a thread takes at a time, so that all threads end at about the same time. `None` if the rows
+/// are too few to be shared out.
+fn at_a_time(count: usize, threads: usize) -> Option<usize> {
+    if threads < 2 || count < threads * LEAST {
+        return (threads < 2 && count > MOST).then_some(MOST);
+    }
+    let longest = |rows: &usize| count.div_ceil(*rows).div_ceil(threads) * rows;
+    (LEAST / TILE..=MOST / TILE).rev().map(|tiles| tiles * TILE).min_by_key(longest)
+}
+
+/// Calls `then` with `length` numbers of any value.
+pub(super) fn with_spare<T>(length: usize, then: impl FnOnce(&mut [f32]) -> T) -> T {
+    let mut spare = SPARE.with(|spare| spare.borrow_mut().pop()).unwrap_or_default();
+    if spare.len() < length {
+        spare.resize(length, 0.0);
+    }
+    let result = then(&mut spare[..length]);
+    SPARE.with(|kept| kept.borrow_mut().push(spare));
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_threads_end_at_about_the_same_time() {
+        assert_eq!([at_a_time(95, 2), at_a_time(700, 16), at_a_time(144, 1)], [None; 3]);
+        for (count, threads) in [(96, 2), (400, 2), (3601, 2), (3601, 16), (830, 2), (3601, 1)] {
+            let rows = at_a_time(count, threads).unwrap();
+            let longest = count.div_ceil(rows).div_ceil(threads) * rows;
+            assert!(longest * threads < count + count / 12 + TILE * threads, "{count} on {threads}: {rows}");
+        }
+    }
+
+    #[test]
+    fn every_row_is_computed_once() {
+        for count in [0, 1, 7, 150, 1000] {
+            let x: Vec<f32> = (0..count * 2).map(|at| at as f32).collect();
+            let mut y = vec![0.0; count];
+            let sum = |x: &[f32], y: &mut [f32]| {
+                y.iter_mut().zip(x.chunks(2)).for_each(|(y, x)| *y += x[0] + x[1]);
+                Ok(())
+            };
+            by_rows((&x, 2), (&mut y, 1), sum).unwrap();
+            assert!(y.iter().enumerate().all(|(at, &y)| y == (4 * at + 1) as f32));
+        }
+    }
+
+    #[test]
+    fn spare_memory_may_be_asked_for_within_itself() {
+        let sum = with_spare(3, |outer| {
+            outer.fill(1.0);
+            with_spare(5, |inner| inner.fill(2.0));
+            outer.iter().sum::<f32>()
+        });
+        assert_eq!(sum, 3.0);
+    }
+}
