@@ -106,7 +106,7 @@ impl Spot {
         let half_px = f64::from(width_px) / 2.0;
         let [left, _, right, _] = found.box_px.map(f64::from);
         let off = ((left + right) / 2.0 - half_px) / half_px.max(0.5);
-        Self { found, off_rad: (off * (horizontal_fov_rad / 2.0).tan()).atan() }
+        Self { found, off_rad: libm::atan(off * libm::tan(horizontal_fov_rad / 2.0)) }
     }
 }
 

@@ -56,7 +56,7 @@ fn place(view: &View) -> String {
 fn found(view: &View, off_rad: f64) -> Found {
     let (width, height) = view.image.as_ref().map_or((1, 1), |image| (image.width_px(), image.height_px()));
     let (width, height) = (f64::from(width), f64::from(height));
-    let middle = 0.5 + 0.5 * off_rad.tan() / (view.horizontal_fov_rad / 2.0).tan();
+    let middle = 0.5 + 0.5 * libm::tan(off_rad) / libm::tan(view.horizontal_fov_rad / 2.0);
     let left = (middle - HALF).clamp(0.0, 1.0) * width;
     let right = (middle + HALF).clamp(0.0, 1.0) * width;
     Found { box_px: [left, 0.4 * height, right, 0.6 * height].map(|edge| edge as f32), score: SCORE }

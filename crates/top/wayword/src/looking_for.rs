@@ -60,6 +60,16 @@ impl Lookout {
     }
 }
 
+/// Refuses files for the detector of the settings that cannot be used, before a folder is made.
+///
+/// # Errors
+/// When a file cannot be read, names nothing, or was made for another detector.
+pub(crate) fn check(settings: &Settings, styles: &[Measured]) -> Result<(), Error> {
+    let Some(name) = &settings.roles.detector else { return Ok(()) };
+    nouns(settings, styles)?;
+    measured(settings.detector_figures.as_deref(), name).map(drop)
+}
+
 /// The names that the detector of the settings looks for by itself.
 ///
 /// # Errors
@@ -78,7 +88,12 @@ pub(crate) fn nouns(settings: &Settings, styles: &[Measured]) -> Result<Vec<Stri
 /// What was measured of a detector, or what is assumed.
 pub(crate) fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<DetectorFigures, Error> {
     let (name, found_from) = (detector.name(), detector.scoring().found_from);
-    let Some(file) = file else { return Ok(DetectorFigures::assumed(name, found_from)) };
+    Ok(measured(file, name)?.unwrap_or_else(|| DetectorFigures::assumed(name, found_from)))
+}
+
+/// What was measured of the detector of that name.
+fn measured(file: Option<&Path>, name: &str) -> Result<Option<DetectorFigures>, Error> {
+    let Some(file) = file else { return Ok(None) };
     let hint = format!("make it with: wayword perceive --detector {name} --platform PLATFORM --figures FILE");
     let figures = DetectorFigures::read(&text_file::read(file, "read the detector's figures")?).map_err(|error| {
         Error::usage(format!("{} has no figures of a detector: {}", file.display(), error.message()), &*hint)
@@ -87,5 +102,5 @@ pub(crate) fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<De
         let problem = format!("{} was measured with {}, and not with {name}", file.display(), figures.detector);
         return Err(Error::usage(problem, hint));
     }
-    Ok(figures)
+    Ok(Some(figures))
 }

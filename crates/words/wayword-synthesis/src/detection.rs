@@ -35,7 +35,7 @@ pub struct Seeker<'a> {
 /// text claims it, and where it is only a proposal.
 const NAMED: f64 = 0.7;
 const CLAIMED: f64 = 0.5;
-const PROPOSED: f64 = 0.05;
+const PROPOSED: f64 = 0.01;
 
 /// Boxes that share more of what they cover together are of the same thing.
 const SAME: f64 = 0.5;
@@ -59,8 +59,12 @@ enum Purpose {
     Claims,
 }
 
+/// The frame and the number of a look.
+type Place = (usize, usize);
+type Places = BTreeSet<Place>;
+
 /// The finds of one name, look by look.
-type Finds = BTreeMap<(usize, usize), Vec<Spot>>;
+type Finds = BTreeMap<Place, Vec<Spot>>;
 
 /// Looks for what captions named and for what is proposed, in every view that was captioned, and corrects the captions.
 ///
@@ -141,16 +145,16 @@ fn testify(
     }
     let names: Vec<&str> = wanted.keys().map(String::as_str).collect();
     let finds = finds(&seen, &names, seeker)?;
-    let by = seeker.detector.name();
+    let (by, looked_at) = (seeker.detector.name(), seen.iter().map(|seen| (seen.frame, seen.look)).collect());
     let was: Vec<Vec<Sighting>> = looks(observations).map(|look| look.caption.sightings.clone()).collect();
     for ((name, before), finds) in wanted.iter().zip(finds) {
         let judged = judge(seeker.figures.of(name), &frames(&seen, &finds), *before);
         let is_proposal = *before <= PROPOSED;
         match (judged, purpose) {
-            (Judged::There, _) => found(observations, name, &finds, by),
+            (Judged::There, _) => found(observations, name, &finds, &looked_at, by),
             _ if is_proposal => {}
             (Judged::Absent, Purpose::Captions) => struck_out(observations, name, by),
-            (Judged::Open, Purpose::Captions) => doubted(observations, name, &finds, by),
+            (Judged::Open, Purpose::Captions) => doubted(observations, name, &finds, &looked_at, by),
             (Judged::Absent, Purpose::Claims) => said_of_all(observations, name, Witness::Denied, by),
             (Judged::Open, Purpose::Claims) => said_of_all(observations, name, Witness::Unsure, by),
         }
@@ -218,20 +222,17 @@ fn frames(seen: &[Seen], finds: &Finds) -> Vec<bool> {
     looked_at.iter().map(|frame| finds.keys().any(|(of, _)| of == frame)).collect()
 }
 
-/// The sightings of that name, and of names for the same thing.
+/// The sightings of that name.
 fn of<'a>(caption: &'a mut Caption, name: &'a str) -> impl Iterator<Item = &'a mut Sighting> {
     caption.sightings.iter_mut().filter(move |sighting| normal(&sighting.name) == name)
 }
 
 /// It is there: it is seen wherever it was found.
-fn found(observations: &mut [Observation], name: &str, finds: &Finds, by: &str) {
-    each(observations, |at, look| {
+fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
+    each(observations, looked_at, |at, look| {
         let Some(spots) = finds.get(&at) else {
-            // A caption that saw it from a frame beside one that shows it saw a part of it, or saw it from afar.
-            let is_near = finds.keys().any(|(frame, _)| frame.abs_diff(at.0) <= 1);
-            if !is_near {
-                doubt(look, name, by);
-            }
+            // It is somewhere along the path; who saw it here may be wrong all the same.
+            doubt(look, name, by);
             return;
         };
         let best = spots[0];
@@ -261,8 +262,8 @@ fn struck_out(observations: &mut [Observation], name: &str, by: &str) {
 }
 
 /// It may be there: where a caption saw it and the detector did not, that is a guess.
-fn doubted(observations: &mut [Observation], name: &str, finds: &Finds, by: &str) {
-    each(observations, |at, look| {
+fn doubted(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
+    each(observations, looked_at, |at, look| {
         if !finds.contains_key(&at) {
             doubt(look, name, by);
         }
@@ -281,10 +282,11 @@ fn doubt(look: &mut Look, name: &str, by: &str) {
     }
 }
 
-fn each(observations: &mut [Observation], mut change: impl FnMut((usize, usize), &mut Look)) {
-    for (frame, observation) in observations.iter_mut().enumerate() {
-        for (at, look) in observation.looks.iter_mut().enumerate() {
-            change((frame, at), look);
+/// Changes the looks at which the detector looked.
+fn each(observations: &mut [Observation], looked_at: &Places, mut change: impl FnMut(Place, &mut Look)) {
+    for (frame, look) in looked_at {
+        if let Some(found) = observations.get_mut(*frame).and_then(|seen| seen.looks.get_mut(*look)) {
+            change((*frame, *look), found);
         }
     }
 }

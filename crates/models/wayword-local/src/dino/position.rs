@@ -14,7 +14,7 @@ fn lengths(count: usize, temperature: f32) -> Vec<f32> {
 fn waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
     for (at, (number, length)) in to.iter_mut().zip(lengths).enumerate() {
         let angle = phase / length;
-        *number = if at % 2 == 0 { angle.sin() } else { angle.cos() };
+        *number = if at % 2 == 0 { libm::sinf(angle) } else { libm::cosf(angle) };
     }
 }
 

@@ -27,7 +27,9 @@ impl Local {
 
     /// The hub, its cache and the device by the environment and the settings.
     pub(super) fn open(job: &Job, run: Run, output: &Output) -> Result<Self, Error> {
-        let hub = Hub::new(HubConfig { trust: job.service.trust.clone(), ..HubConfig::from_env()? })?;
+        let mut config = HubConfig::from_env()?;
+        config.trust.clone_from(&job.service.trust);
+        let hub = Hub::new(config)?;
         Ok(Self { models: Models::new(hub, loading(job)?, Box::new(DownloadBar::new(output)), run) })
     }
 

@@ -50,8 +50,8 @@ pub struct Compare {
     )]
     pub agents: Vec<String>,
     /// What scores how well a phrase fits a view: labels/lexical (compares words, no weights), labels (with a text encoder), a CLIP
-    /// model as hf/ORG/NAME, a detector by its name, or detector (that of --detector). With a CLIP model, glip-nav takes its scores
-    /// from --detector.
+    /// model as hf/ORG/NAME, detector (that of --detector), or GLIP as hf/ORG/NAME:FILE.pth, which is then the detector too.
+    /// glip-nav takes the boxes of --detector.
     #[arg(long, value_name = "GROUNDER", default_value = "labels/lexical")]
     pub grounder: String,
     /// Detector that finds things in pictures, as hf/ORG/NAME: a phrase scores as its best box does.

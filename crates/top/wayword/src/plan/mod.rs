@@ -8,6 +8,7 @@ use crate::{
     calls::Calls,
     error::Error,
     item::{Item, check_names, items},
+    looking_for,
     output::Output,
     settings::{Job, Settings},
     styles::{self, Measured},
@@ -48,9 +49,10 @@ impl<'a> Plan<'a> {
     /// A run that writes instructions for paths.
     ///
     /// # Errors
-    /// When a style cannot be read, there are no such paths, two share a name, or a model is not known.
+    /// When a style or a detector's file cannot be read, there are no such paths, two share a name, or a model is not known.
     pub fn writing(job: &'a Job, platform: &'a dyn Platform) -> Result<Self, Error> {
         let styles = styles::find(&job.settings.style)?;
+        looking_for::check(&job.settings, &styles)?;
         let items = items(&job.settings, platform)?;
         check_names(&items)?;
         Ok(Self { job, platform, items, styles, models: Models::of(job)? })

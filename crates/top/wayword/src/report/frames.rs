@@ -8,11 +8,17 @@ use super::{
 use crate::run::WalkRecord;
 use serde::Serialize;
 use wayword_core::{
-    Climb, Compass, Exchange, Heading, Look, Move, Observation, Sighting, Trouble, Turn, Where, Witness,
+    Climb, Compass, Exchange, Found, Heading, Look, Move, Observation, Sighting, Trouble, Turn, Where, Witness,
 };
 
 /// Most sightings that a frame's card names.
 const MOST_ON_CARD: usize = 6;
+
+/// Most boxes that are drawn on a picture.
+const MOST_BOXES: usize = 8;
+
+/// Directions that differ by less are the same.
+const SAME_RAD: f64 = 0.01;
 
 /// A frame.
 #[derive(Debug, Serialize)]
@@ -22,6 +28,8 @@ pub(super) struct FrameView {
     anchor: String,
     colour: Colour,
     picture: Option<Picture>,
+    /// What a detector found in the picture, the surest first.
+    boxes: Vec<BoxView>,
     /// The picture in words, for readers who do not see it.
     alt: String,
     room: Option<String>,
@@ -35,6 +43,17 @@ pub(super) struct FrameView {
     turn: Option<&'static str>,
     then: Option<String>,
     looks: Vec<LookView>,
+}
+
+/// A box that a detector found, in the picture's pixels.
+#[derive(Debug, PartialEq, Serialize)]
+struct BoxView {
+    name: String,
+    percent: u8,
+    left: f32,
+    top: f32,
+    width: f32,
+    height: f32,
 }
 
 /// A view that was asked about.
@@ -72,6 +91,7 @@ pub(super) fn frames(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut
             anchor: frame_anchor(item, at),
             colour: colour(at, shown),
             picture: if walk.has_pictures { pictures.take(&walk.path.id, at) } else { None },
+            boxes: boxes(&observation.looks, frame.pose.heading),
             alt: format!("View at frame {at}. {}", observation.summary),
             room: observation.looks.iter().find_map(|look| look.caption.room.clone()),
             level: frame.level.filter(|_| walk.path.motion.is_known()),
@@ -88,6 +108,24 @@ pub(super) fn frames(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut
 
 fn sightings(looks: &[Look], witness: Witness) -> impl Iterator<Item = &Sighting> {
     looks.iter().flat_map(|look| &look.caption.sightings).filter(move |sighting| sighting.witness == witness)
+}
+
+/// What a detector found in the view ahead, which is the one that the picture shows.
+fn boxes(looks: &[Look], heading: Heading) -> Vec<BoxView> {
+    let ahead = looks.iter().filter(|look| look.gaze.heading.turn_to(heading).abs() < SAME_RAD);
+    let seen = ahead.flat_map(|look| &look.caption.sightings).filter(|sighting| sighting.witness == Witness::Seen);
+    let mut found: Vec<(&Sighting, Found)> =
+        seen.filter_map(|sighting| Some((sighting, sighting.spot?.found))).collect();
+    found.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
+    let view = |(sighting, Found { box_px: [left, top, right, bottom], score }): (&Sighting, Found)| BoxView {
+        name: sighting.name.clone(),
+        percent: (100.0 * score).clamp(0.0, 100.0) as u8,
+        left,
+        top,
+        width: (right - left).max(0.0),
+        height: (bottom - top).max(0.0),
+    };
+    found.into_iter().take(MOST_BOXES).map(view).collect()
 }
 
 fn sighting_words(sighting: &Sighting) -> String {
@@ -138,7 +176,7 @@ fn exchange_view(exchange: &Exchange) -> ExchangeView {
 
 /// Where a gaze looks: ahead if it follows the heading, else by the compass or by the agent's side.
 fn direction(gaze: Heading, walker: Heading) -> &'static str {
-    let is = |other: Heading| gaze.turn_to(other).abs() < 0.01;
+    let is = |other: Heading| gaze.turn_to(other).abs() < SAME_RAD;
     if is(walker) {
         return "ahead";
     }
@@ -180,6 +218,7 @@ fn move_words(step: &Move) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wayword_core::{Caption, Gaze, Spot};
 
     fn step(deg: f64, rise_m: f64) -> Move {
         Move { turn_rad: deg.to_radians(), distance_m: 2.04, rise_m }
@@ -196,6 +235,26 @@ mod tests {
             "turn around (170° left), go 2.0 m, 2.0 m down",
         ];
         assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn boxes_are_drawn_on_the_picture_that_they_are_in_the_surest_first() {
+        let spot = |score| Some(Spot::new(Found { box_px: [1.0, 2.0, 4.0, 8.0], score }, 10, 1.0));
+        let seen = |name: &str, score| Sighting { spot: spot(score), ..Sighting::new(name, Witness::Seen, "d") };
+        let look = |heading, sightings| Look {
+            gaze: Gaze::quarter(heading),
+            caption: Caption { sightings, ..Caption::default() },
+        };
+        let denied = Sighting { spot: spot(0.9), ..Sighting::new("bed", Witness::Denied, "d") };
+        let told = Sighting::new("rug", Witness::Seen, "eye");
+        let heading = Heading::new(1.0).unwrap();
+        let looks = [
+            look(heading, vec![seen("lamp", 0.4), seen("sofa", 0.8), denied, told]),
+            look(heading.turned(1.5), vec![seen("door", 0.9)]),
+        ];
+        let drawn = boxes(&looks, heading);
+        assert_eq!(drawn.iter().map(|drawn| &*drawn.name).collect::<Vec<_>>(), ["sofa", "lamp"]);
+        assert_eq!((drawn[0].percent, drawn[0].width, drawn[0].height), (80, 3.0, 6.0));
     }
 
     #[test]

@@ -47,20 +47,18 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
         without_route: args.no_route,
         reject_ambiguous: args.reject_ambiguous,
         calibration: args.calibration.as_deref(),
-        eyes: None,
-        sources: None,
     };
     if let Some(run) = &args.run {
         return of_run::check_file(&args.file, run, how);
     }
     let settings = Asked::from(args.platform.clone()).resolve()?;
     let eyes = Eyes::open(&args.detecting, &settings, output)?;
-    let how = How { eyes: eyes.as_ref(), sources: args.detecting.evidence, ..how };
-    check_file(&args.file, &settings, how, output)
+    let sources = args.detecting.evidence.unwrap_or(Sources::usual(true));
+    check_by(&args.file, &settings, how, (eyes.as_ref(), sources), output)
 }
 
 /// How the texts of a file are checked.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct How<'a> {
     /// The style that every text has to keep to.
     pub style: Option<&'a str>,
@@ -74,10 +72,6 @@ pub struct How<'a> {
     pub reject_ambiguous: bool,
     /// A file of what the user's own data says of single names.
     pub calibration: Option<&'a FilePath>,
-    /// What looks for what the texts name.
-    eyes: Option<&'a Eyes>,
-    /// Whether labels count, and the detector; both where `None`.
-    sources: Option<Sources>,
 }
 
 /// Checks every instruction of a file.
@@ -86,6 +80,16 @@ pub struct How<'a> {
 /// When the file, the platform's data, the style or the calibration cannot be read. A path that does not fit the data is an error too,
 /// because nothing about it could be checked.
 pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &Output) -> Result<CheckReport, Error> {
+    check_by(file, settings, how, (None, Sources::default()), output)
+}
+
+fn check_by(
+    file: &FilePath,
+    settings: &Settings,
+    how: How<'_>,
+    (eyes, sources): (Option<&Eyes>, Sources),
+    output: &Output,
+) -> Result<CheckReport, Error> {
     let platform = platforms::open(settings)?;
     let calibration = how.calibration.map(|file| calibration::read(file, platform.name())).transpose()?;
     let held = Held::to(how.style)?;
@@ -94,6 +98,8 @@ pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &O
         platform: platform.as_ref(),
         held: &held,
         how,
+        eyes,
+        sources,
         calibration: calibration.as_ref(),
         scenes: KnownScenes::new(),
     };
@@ -135,18 +141,21 @@ struct Checking<'a> {
     platform: &'a dyn Platform,
     held: &'a Held,
     how: How<'a>,
+    /// What looks for what the texts name.
+    eyes: Option<&'a Eyes>,
+    /// Whether labels count, and the detector.
+    sources: Sources,
     calibration: Option<&'a Calibration>,
     scenes: KnownScenes,
 }
 
 impl Checking<'_> {
     fn check(&self, walk: &Walk) -> Result<CheckedWalk, Error> {
-        let Self { platform, how, .. } = *self;
+        let Self { platform, how, eyes, sources, .. } = *self;
         let world = Remembering::new(platform);
         let views = panoramas(&world, &walk.path)?;
-        let sources = how.sources.unwrap_or(Sources::usual(true));
         let labels = if sources.labels { Evidence::from_labels(&walk.path, &views) } else { None };
-        let detected = match how.eyes.filter(|_| labels.is_none() && sources.detector) {
+        let detected = match eyes.filter(|_| labels.is_none() && sources.detector) {
             Some(eyes) => eyes.evidence(&world, walk)?,
             None => None,
         };

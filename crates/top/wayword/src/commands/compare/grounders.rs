@@ -19,40 +19,40 @@ pub(super) struct Grounders {
 }
 
 impl Grounders {
-    /// The grounders that a comparison names.
+    /// The grounders that a comparison names, before its detector is loaded.
     ///
     /// # Errors
     /// When there is none of that name, or its model cannot be loaded.
-    pub(super) fn open(kept: &Kept, calls: Option<&Calls>, output: &Output) -> Result<Self, Error> {
-        let detector = kept.detector.as_deref().zip(calls).map(|(name, calls)| calls.detector(name)).transpose()?;
-        if kept.detects_views() {
-            return Self::by_detector(detector);
-        }
-        let (score, need_pictures) = (detector.as_ref().map(score), detector.is_some());
-        let detector = detector.map(|detector| Box::new(Grounded::new(detector)) as Box<dyn Grounder>);
-        let of = |labels: &dyn Fn(Sees) -> Box<dyn Grounder>, detector: Option<Box<dyn Grounder>>| Self {
+    pub(super) fn open(kept: &Kept, output: &Output) -> Result<Self, Error> {
+        let of = |labels: &dyn Fn(Sees) -> Box<dyn Grounder>| Self {
             views: labels(Sees::Views),
-            boxes: detector.unwrap_or_else(|| labels(Sees::Boxes)),
-            score: score.clone(),
-            need_pictures,
+            boxes: labels(Sees::Boxes),
+            score: None,
+            need_pictures: false,
         };
+        let lexical = || of(&|sees| Box::new(Lexical::new(sees)));
         match (kept.grounder.as_str(), &kept.encoder) {
+            // The detector takes the place of both.
+            _ if kept.detects_views() && kept.detector.is_some() => Ok(lexical()),
+            _ if kept.detects_views() => Err(Error::usage(
+                "--grounder detector: no detector is named",
+                "name one, as in --detector hf/google/owlv2-base-patch16-ensemble",
+            )),
             ("labels", Some(encoder)) => {
                 let encoder = Arc::from(encoder::encoder(encoder)?);
-                Ok(of(&|sees| Box::new(Similar::new(sees, Arc::clone(&encoder))), detector))
+                Ok(of(&|sees| Box::new(Similar::new(sees, Arc::clone(&encoder)))))
             }
-            ("labels/lexical", _) => Ok(of(&|sees| Box::new(Lexical::new(sees)), detector)),
+            ("labels/lexical", _) => Ok(lexical()),
             (name, _) if name.starts_with("hf/") => {
                 let walks_by_boxes = kept.agents.iter().any(|agent| agent == super::agents::BY_DETECTOR);
-                if walks_by_boxes && detector.is_none() {
+                if walks_by_boxes && kept.detector.is_none() {
                     return Err(Error::usage(
                         format!("--grounder {name}: glip-nav needs a detector, and none is named"),
                         "name one, as in --detector hf/google/owlv2-base-patch16-ensemble, or leave glip-nav out with --agents clip-nav,seq-clip-nav",
                     ));
                 }
                 // Without a detector, no agent looks for boxes.
-                let boxes = detector.unwrap_or_else(|| Box::new(Lexical::new(Sees::Boxes)));
-                Ok(Self { views: clip(name, output)?, boxes, score, need_pictures: true })
+                Ok(Self { views: clip(name, output)?, need_pictures: true, ..lexical() })
             }
             (name, _) => Err(Error::usage(
                 format!("--grounder {name}: there is no such grounder"),
@@ -61,17 +61,16 @@ impl Grounders {
         }
     }
 
-    /// The detector scores whole views too.
-    fn by_detector(detector: Option<Arc<dyn Detector>>) -> Result<Self, Error> {
-        let Some(detector) = detector else {
-            return Err(Error::usage(
-                "--grounder detector: no detector is named",
-                "name one, as in --detector hf/google/owlv2-base-patch16-ensemble",
-            ));
-        };
-        let score = Some(score(&detector));
-        let views = Box::new(Grounded::new(Arc::clone(&detector)));
-        Ok(Self { views, boxes: Box::new(Grounded::new(detector)), score, need_pictures: true })
+    /// The same with the comparison's detector, if it names one.
+    ///
+    /// # Errors
+    /// When it cannot be loaded.
+    pub(super) fn with_detector(self, kept: &Kept, calls: Option<&Calls>) -> Result<Self, Error> {
+        let Some((name, calls)) = kept.detector.as_deref().zip(calls) else { return Ok(self) };
+        let detector = calls.detector(name)?;
+        let grounded = || Box::new(Grounded::new(Arc::clone(&detector)));
+        let views: Box<dyn Grounder> = if kept.detects_views() { grounded() } else { self.views };
+        Ok(Self { views, boxes: grounded(), score: Some(score(&detector)), need_pictures: true })
     }
 }
 

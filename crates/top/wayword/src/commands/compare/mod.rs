@@ -81,11 +81,12 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
         ));
     }
     let models = Models::of(&job)?;
+    let grounders = Grounders::open(&kept, output)?;
     fs::create_dir_all(&args.out).map_err(Error::io(&args.out, "make the folder"))?;
     let _lock = run::hold(&args.out)?;
     run::keep_config(&args.out, &kept)?;
     let calls = models.open(|| run::id_of(&args.out, "compare"), output)?;
-    let grounders = Grounders::open(&kept, calls.as_ref(), output)?;
+    let grounders = grounders.with_detector(&kept, calls.as_ref())?;
     let splitter = splitter(&kept.split, calls.as_ref())?;
     let agents = Agent::all(&kept, args.prior.unwrap_or_default());
     let surveys = Recent::new(SCENES_KEPT);

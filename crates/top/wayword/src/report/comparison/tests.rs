@@ -62,6 +62,7 @@ fn comparison() -> Comparison {
             episodes: "episodes_val.json".into(),
             grounder: "labels".into(),
             detector: "labels/detector".into(),
+            detector_score: None,
             encoder: Some("some-encoder".into()),
             splitter: "rules".into(),
             rule: Rule::Visible,
