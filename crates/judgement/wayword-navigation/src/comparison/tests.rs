@@ -39,6 +39,7 @@ fn about() -> About {
         episodes: "e.json".into(),
         grounder: "labels".into(),
         detector: "labels/detector".into(),
+        detector_score: None,
         encoder: None,
         splitter: "rules".into(),
         rule: Rule::Distance,

@@ -85,7 +85,7 @@ pub(super) fn order<'a>(
 
 /// Observers that ask by fixed queries; labels answer.
 pub(super) fn observers<'a>(asker: &'a RulesAsker, answerer: &'a Labels) -> Observers<'a> {
-    Observers { asker, answerer, summariser: &RulesSummariser, mode: Mode::Fixed, prompts_hash: None }
+    Observers { asker, answerer, summariser: &RulesSummariser, mode: Mode::Fixed, prompts_hash: None, detector: None }
 }
 
 fn outcome(
@@ -117,6 +117,7 @@ fn outcome_against(
         summariser: &RulesSummariser,
         mode,
         prompts_hash: Some("hash"),
+        detector: None,
     };
     let writer = Scripted::new(texts);
     let finisher = finisher.then_some(&RulesWriter as &dyn Writer);
@@ -208,6 +209,7 @@ fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
         summariser: &RulesSummariser,
         mode: Mode::Fixed,
         prompts_hash: None,
+        detector: None,
     };
     for room in [None, Some("kitchen")] {
         let mut walk = along(&[(0.0, 0.0)], &["sink"]);

@@ -39,6 +39,7 @@ fn seen(answers: &[&str], questions: usize) -> (Caption, Vec<String>) {
         summariser: &RulesSummariser,
         mode: Mode::Structured { questions },
         prompts_hash: None,
+        detector: None,
     };
     let caption = talk_about(&view, observers).unwrap();
     (caption, answerer.asked.into_inner().unwrap())
