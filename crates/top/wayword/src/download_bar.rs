@@ -2,7 +2,10 @@
 
 use crate::output::Output;
 use indicatif::{HumanBytes, ProgressBar};
-use std::sync::{Mutex, PoisonError};
+use std::{
+    collections::BTreeSet,
+    sync::{Mutex, PoisonError},
+};
 use wayword_local::Progress;
 
 /// A bar for the current file, or a line for each file if standard error is not a terminal.
@@ -39,7 +42,11 @@ impl Progress for DownloadBar {
     }
 
     fn told(&self, note: &str) {
-        self.output.say(note);
+        // A model is looked for before a run and loaded in it; its user needs to read a note once.
+        static TOLD: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+        if TOLD.lock().unwrap_or_else(PoisonError::into_inner).insert(note.to_owned()) {
+            self.output.say(note);
+        }
     }
 }
 

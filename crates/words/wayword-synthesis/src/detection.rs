@@ -140,6 +140,14 @@ fn testify(
     purpose: Purpose,
 ) -> Result<(), ObserveError> {
     let seen = views(platform, path, observations)?;
+    if seen.is_empty() && purpose == Purpose::Captions {
+        return Err(ModelError::NothingToSee {
+            name: seeker.detector.name().to_owned(),
+            needs: "a picture",
+            hint: "use a platform or data folder with pictures, or leave --detector out",
+        }
+        .into());
+    }
     if seen.is_empty() || wanted.is_empty() {
         return Ok(());
     }

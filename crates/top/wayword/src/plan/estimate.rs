@@ -294,7 +294,8 @@ impl fmt::Display for Estimate {
             )?;
         }
         if self.models.is_empty() {
-            return write!(f, "no model takes part, so the run costs nothing");
+            let who = if self.detector.is_some() { "no other model" } else { "no model" };
+            return write!(f, "{who} takes part, so the run costs nothing");
         }
         writeln!(
             f,

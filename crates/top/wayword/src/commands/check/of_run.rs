@@ -38,7 +38,8 @@ enum Wants {
 /// When the file or the run cannot be read, or a text is about a path that the run does not have.
 pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: How<'_>) -> Result<CheckReport, Error> {
     let held = Held::of_run(how.style, &settings_of(run)?)?;
-    let captions_were_evidence = checked_against(run)?.as_deref() == Some("captions");
+    // What a detector found is in the captions.
+    let captions_were_evidence = matches!(checked_against(run)?.as_deref(), Some("captions" | "detector"));
     let mut wanted: Vec<Option<Wanted>> = wanted(texts)?.into_iter().map(Some).collect();
     let mut found: Vec<(usize, CheckedText, Vec<Finding>)> = Vec::new();
     let mut report = CheckReport::default();
