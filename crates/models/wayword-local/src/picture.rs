@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use resample::{Axis, Filter, resample};
 use sha2::{Digest, Sha256};
 use std::path::Path;
-use wayword_core::Image;
+use wayword_core::{Image, ModelError, View};
 
 /// Prepares pictures for a model.
 pub(crate) struct Processor {
@@ -94,6 +94,16 @@ impl Processor {
 /// The longer edge when the shorter one becomes `edge`, in Python's arithmetic.
 fn longer(edge: usize, long: usize, short: usize) -> usize {
     ((edge * long) as f64 / short as f64) as usize
+}
+
+/// The picture of a view, for the model named `by`.
+pub(crate) fn of_view<'a>(view: &'a View, by: &str) -> Result<&'a Image, ModelError> {
+    let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
+    image.ok_or_else(|| ModelError::NothingToSee {
+        name: by.to_owned(),
+        needs: "a picture",
+        hint: "use a platform or data folder with pictures",
+    })
 }
 
 /// A hash of a picture's size and pixels.

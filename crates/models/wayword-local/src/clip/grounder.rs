@@ -1,7 +1,10 @@
 //! CLIP as a model that says how well phrases fit views.
 
 use super::Clip;
-use crate::{LocalError, picture::digest};
+use crate::{
+    LocalError,
+    picture::{digest, of_view},
+};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, sync::Arc};
 use wayword_core::{Grounder, Image, ModelError, Recent, View};
@@ -31,16 +34,6 @@ impl ClipGrounder {
     fn failed(&self, error: &LocalError) -> ModelError {
         ModelError::Failed { model: self.clip.name().to_owned(), reason: error.to_string() }
     }
-
-    /// The picture of a view.
-    fn image<'a>(&self, view: &'a View) -> Result<&'a Image, ModelError> {
-        let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
-        image.ok_or_else(|| ModelError::NothingToSee {
-            name: self.clip.name().to_owned(),
-            needs: "a picture",
-            hint: "use a platform or data folder with pictures",
-        })
-    }
 }
 
 impl Grounder for ClipGrounder {
@@ -49,7 +42,8 @@ impl Grounder for ClipGrounder {
     }
 
     fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
-        let images: Vec<Result<&Image, ModelError>> = views.iter().map(|view| self.image(view)).collect();
+        let images: Vec<Result<&Image, ModelError>> =
+            views.iter().map(|view| of_view(view, self.clip.name())).collect();
         let seen: Vec<&Image> = images.iter().filter_map(|image| image.as_ref().ok().copied()).collect();
         let vectors = vectors(&self.images, &seen, digest, |images| self.clip.image_features(images))
             .and_then(|seen| {

@@ -1,7 +1,10 @@
 //! Calls of a detector in process, each made once and kept in the ledger.
 
 use super::Ready;
-use crate::kept::{Kept, hash};
+use crate::{
+    kept::{Kept, hash},
+    picture::of_view,
+};
 use serde_json::{Value, json};
 use std::{cell::RefCell, collections::VecDeque};
 use wayword_core::{Detector, Found, MOST_BOXES, ModelError, Scoring, View};
@@ -32,13 +35,7 @@ impl LocalDetector {
     }
 
     fn in_view(&self, view: &View, phrases: &[&str]) -> Result<Vec<Places>, ModelError> {
-        let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
-        let image = image.ok_or_else(|| ModelError::NothingToSee {
-            name: self.kept.name.clone(),
-            needs: "a picture",
-            hint: "use a platform or data folder with pictures",
-        })?;
-        let picture = hash(image);
+        let picture = hash(of_view(view, &self.kept.name)?);
         match phrases {
             [] => Ok(Vec::new()),
             _ if self.scoring().phrases_meet => self.together(view, &picture, phrases),

@@ -1,7 +1,7 @@
 //! The family as a [`Detector`].
 
 use super::{config::Family, decoder::Seen, model::Dino, prompt::Prompt, queries::sigmoid, text::Text};
-use crate::LocalError;
+use crate::{LocalError, picture::of_view};
 use candle_core::DType;
 use wayword_core::{Detector, Found, Image, MOST_BOXES, ModelError, Scoring, View};
 
@@ -9,16 +9,6 @@ use wayword_core::{Detector, Found, Image, MOST_BOXES, ModelError, Scoring, View
 const FOUND_FROM: f32 = 0.25;
 
 impl Dino {
-    /// The picture of a view.
-    fn image<'a>(&self, view: &'a View) -> Result<&'a Image, ModelError> {
-        let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
-        image.ok_or_else(|| ModelError::NothingToSee {
-            name: self.name.clone(),
-            needs: "a picture",
-            hint: "use a platform or data folder with pictures",
-        })
-    }
-
     fn failed(&self, error: &LocalError) -> ModelError {
         ModelError::Failed { model: self.name.clone(), reason: error.to_string() }
     }
@@ -92,11 +82,11 @@ impl Detector for Dino {
 
     fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
         let prompts = self.prompts(phrases).map_err(|error| self.failed(&error));
-        let of_view = |view: &&View| {
-            let image = self.image(view)?;
+        let one = |view: &&View| {
+            let image = of_view(view, &self.name)?;
             let prompts = prompts.as_ref().map_err(Clone::clone)?;
             self.view(image, prompts, phrases.len()).map_err(|error| self.failed(&error))
         };
-        views.iter().map(of_view).collect()
+        views.iter().map(one).collect()
     }
 }

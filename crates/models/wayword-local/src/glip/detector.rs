@@ -12,7 +12,7 @@ use crate::{
     Device, LocalError, Precision,
     memory::Budget,
     ops::conv3::Map,
-    picture::{Edges, digest},
+    picture::{Edges, digest, of_view},
     text::Tokenizer,
     weights::Weights,
 };
@@ -165,16 +165,6 @@ impl Glip {
     fn wrong(&self, problem: &str) -> LocalError {
         LocalError::Compute { model: self.name.clone(), problem: problem.to_owned() }
     }
-
-    /// The picture of a view.
-    fn image<'a>(&self, view: &'a View) -> Result<&'a Image, ModelError> {
-        let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
-        image.ok_or_else(|| ModelError::NothingToSee {
-            name: self.name.clone(),
-            needs: "a picture",
-            hint: "use a platform or data folder with pictures",
-        })
-    }
 }
 
 impl Detector for Glip {
@@ -199,7 +189,7 @@ impl Detector for Glip {
         };
         let read = read().map_err(failed);
         let one = |view: &&View| {
-            let image = self.image(view)?;
+            let image = of_view(view, &self.name)?;
             let (prompts, texts) = read.as_ref().map_err(Clone::clone)?;
             self.find_all(image, phrases.len(), prompts, texts).map_err(failed)
         };

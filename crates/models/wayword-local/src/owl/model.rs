@@ -10,7 +10,7 @@ use crate::{
     Device, LocalError, Precision,
     clip::{Family, TextTower, TowersConfig, VisionTower},
     ops::{LayerNorm, Linear},
-    picture::digest,
+    picture::{digest, of_view},
     text::Tokenizer,
     weights::Weights,
 };
@@ -202,12 +202,7 @@ impl Detector for Owl {
 
     fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
         let one = |view: &&View| {
-            let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
-            let image = image.ok_or_else(|| ModelError::NothingToSee {
-                name: self.name.clone(),
-                needs: "a picture",
-                hint: "use a platform or data folder with pictures",
-            })?;
+            let image = of_view(view, &self.name)?;
             let failed = |error: LocalError| ModelError::Failed { model: self.name.clone(), reason: error.to_string() };
             self.find(image, phrases).map_err(failed)
         };
