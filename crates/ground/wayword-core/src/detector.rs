@@ -30,6 +30,18 @@ impl Found {
     }
 }
 
+/// The finds that share at most `most_overlap` (0 to 1) with each better one that stays. They come the best first.
+pub fn apart(found: impl IntoIterator<Item = Found>, most_overlap: f64) -> impl Iterator<Item = Found> {
+    let mut kept: Vec<Found> = Vec::new();
+    found.into_iter().filter(move |found| {
+        let is_apart = kept.iter().all(|better| better.overlap(found) <= most_overlap);
+        if is_apart {
+            kept.push(*found);
+        }
+        is_apart
+    })
+}
+
 /// What the scores of a detector mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scoring {
@@ -221,6 +233,15 @@ mod tests {
         assert!(scores[0].is_err());
         assert_eq!(scores[1], Ok(vec![0.9, 0.0]));
         assert_eq!(Grounded::new(Meets { meets: false }).ground(&[&shown], &[]), [Ok(Vec::new())]);
+    }
+
+    #[test]
+    fn a_find_that_covers_a_better_one_is_left_out() {
+        let find = |left: f32, score: f32| Found { box_px: [left, 0.0, left + 10.0, 10.0], score };
+        // The second shares 9 of 11 parts with the first; the third would share as much with the second, and 8 of 12 with the first.
+        let all = [find(0.0, 0.9), find(1.0, 0.8), find(2.0, 0.7), find(10.0, 0.6)];
+        let left: Vec<Found> = apart(all, 0.7).collect();
+        assert_eq!(left, [all[0], all[2], all[3]]);
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub use caption::{
     Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Spot, Trouble, WayOut, Where, Witness,
 };
 pub use contain::contained;
-pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring};
+pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring, apart};
 pub use encoder::{Grounder, TextEncoder};
 pub use failure::Failure;
 pub use from_above::FromAbove;

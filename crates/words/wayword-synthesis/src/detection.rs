@@ -15,8 +15,8 @@ use crate::{
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_checks::detected::{DetectorFigures, Judged, judge};
 use wayword_core::{
-    Caption, Detector, Found, Look, ModelError, Observation, Path, Platform, PlatformError, Sighting, Spot, View,
-    Where, Witness,
+    Caption, Detector, Look, ModelError, Observation, Path, Platform, PlatformError, Sighting, Spot, View, Where,
+    Witness, apart,
 };
 use wayword_language::lexicon::{agree, normal, thing};
 
@@ -204,24 +204,13 @@ fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result<Vec<Finds>
         for (finds, boxes) in found.iter_mut().zip(answer?) {
             let sure = boxes.into_iter().filter(|found| found.score >= seeker.figures.found_from);
             let spots: Vec<Spot> =
-                apart(sure).map(|found| Spot::new(found, width_px, seen.view.horizontal_fov_rad)).collect();
+                apart(sure, SAME).map(|found| Spot::new(found, width_px, seen.view.horizontal_fov_rad)).collect();
             if !spots.is_empty() {
                 finds.insert((seen.frame, seen.look), spots);
             }
         }
     }
     Ok(found)
-}
-
-/// The boxes of different things, the best first.
-fn apart(found: impl Iterator<Item = Found>) -> impl Iterator<Item = Found> {
-    let mut kept: Vec<Found> = Vec::new();
-    for found in found {
-        if !kept.iter().any(|other| other.overlap(&found) > SAME) {
-            kept.push(found);
-        }
-    }
-    kept.into_iter()
 }
 
 /// For each frame that was looked at, whether the name was found from it.

@@ -1,13 +1,13 @@
 //! From logits and boxes of patches to what was found in a picture.
 
-use wayword_core::{Found, MOST_BOXES};
+use wayword_core::{Found, MOST_BOXES, apart};
 
 /// The least score of a box that is reported. transformers' examples take a box for a find from 0.1.
 const LEAST_SCORE: f32 = 0.01;
 
 /// The share of their union from which a box counts as the same as a better one. transformers drops none; patches side
 /// by side often give one thing nearly the same box.
-const SAME: f32 = 0.7;
+const SAME: f64 = 0.7;
 
 /// What a phrase's logits and the boxes of a picture's patches say, the best first. Boxes are of centre, width and
 /// height, as shares of the longer edge, because the picture was made a square by black on the right or at the bottom.
@@ -25,24 +25,7 @@ pub(super) fn found(logits: &[f32], boxes: &[[f32; 4]], (width, height): (u32, u
     };
     let mut all: Vec<Found> = logits.iter().zip(boxes).filter_map(one).collect();
     all.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut kept: Vec<Found> = Vec::new();
-    for found in all {
-        if kept.len() == MOST_BOXES {
-            break;
-        }
-        if kept.iter().all(|better| shared(better.box_px, found.box_px) <= SAME) {
-            kept.push(found);
-        }
-    }
-    kept
-}
-
-/// The area that two boxes share, as a share of their union.
-fn shared(a: [f32; 4], b: [f32; 4]) -> f32 {
-    let area = |[left, top, right, bottom]: [f32; 4]| (right - left).max(0.0) * (bottom - top).max(0.0);
-    let both = area([a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]);
-    let all = area(a) + area(b) - both;
-    if all > 0.0 { both / all } else { 0.0 }
+    apart(all, SAME).take(MOST_BOXES).collect()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@ use super::*;
 use std::sync::Arc;
 use wayword_checks::{Evidence, Source, Subject, check, detected::Rates};
 use wayword_core::{
-    Check, DVec3, Exchange, Frame, Gaze, Image, Motion, ObjectId, PathRequest, SceneId, Scoring, Style, Verdict,
+    Check, DVec3, Exchange, Found, Frame, Gaze, Image, Motion, ObjectId, PathRequest, SceneId, Scoring, Style, Verdict,
     ViewpointGraph, ViewpointId, path::Stop,
 };
 
