@@ -47,6 +47,11 @@ pub(crate) fn of_checkpoint(folder: &Path, precision: Precision) -> Result<u64, 
     Ok(Weights::open(folder, &Device::cpu(), precision)?.bytes())
 }
 
+/// The same of a checkpoint that is one file.
+pub(crate) fn of_file(file: &Path, precision: Precision) -> Result<u64, LocalError> {
+    Ok(Weights::of_file(file, &Device::cpu(), precision)?.bytes())
+}
+
 fn gibibytes(bytes: u64) -> String {
     format!("{:.1} GiB", bytes as f64 / (1_u64 << 30) as f64)
 }

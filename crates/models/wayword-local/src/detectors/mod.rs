@@ -12,9 +12,8 @@ use crate::{
     dino::{self, Dino},
     glip::{self, Glip, GlipFiles},
     hub::{Hub, ModelFolder, ModelName, Needs, Progress},
-    json,
+    json, memory,
     owl::{self, Owl},
-    weights::Weights,
 };
 use serde::Deserialize;
 use wayword_core::Detector;
@@ -90,12 +89,11 @@ impl Checkpoint {
 
     /// The bytes of its weights at a precision, and of the pictures' features that it keeps beside them.
     pub(crate) fn bytes(&self, precision: Precision) -> Result<u64, LocalError> {
-        let cpu = Device::cpu();
         let (weights, kept) = match self {
-            Self::Glip(files) => (Weights::of_file(&files.weights, &cpu, precision)?, glip::FEATURES_BYTES),
-            Self::Dino(folder) => (Weights::open(&folder.path, &cpu, precision)?, dino::KEPT_BYTES),
-            Self::Owl(folder) => (Weights::open(&folder.path, &cpu, precision)?, owl::KEPT_BYTES),
+            Self::Glip(files) => (memory::of_file(&files.weights, precision)?, glip::FEATURES_BYTES),
+            Self::Dino(folder) => (memory::of_checkpoint(&folder.path, precision)?, dino::KEPT_BYTES),
+            Self::Owl(folder) => (memory::of_checkpoint(&folder.path, precision)?, owl::KEPT_BYTES),
         };
-        Ok(weights.bytes().saturating_add(kept as u64))
+        Ok(weights.saturating_add(kept as u64))
     }
 }

@@ -10,7 +10,6 @@ use super::{
 };
 use crate::{
     Device, LocalError, Precision,
-    memory::Budget,
     ops::conv3::Map,
     picture::{Edges, digest, of_view},
     text::Tokenizer,
@@ -77,7 +76,6 @@ impl Glip {
             });
         }
         let weights = Weights::of_file(&files.weights, device, precision)?;
-        Budget::default().take(name, weights.bytes())?;
         let model = Model::load(&weights, &config)?;
         let kept = (FEATURES_BYTES / model.bytes(edges.most_pixels()).max(1)).max(1);
         Ok(Self {
