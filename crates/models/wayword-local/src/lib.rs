@@ -35,7 +35,7 @@ pub use blip2::Blip2;
 pub use clip::{Clip, ClipGrounder};
 pub use detectors::LocalDetector;
 pub use device::{Device, Precision};
-pub use dino::Dino;
+pub use dino::{Dino, DinoOutputs};
 pub use error::LocalError;
 pub use eyes::EyeKind;
 pub use glip::{GLIP_LICENCE, GLIP_TOKENIZER, Glip, GlipFiles};

@@ -16,6 +16,8 @@ mod judged;
 mod key;
 #[cfg(test)]
 mod made_up;
+#[cfg(feature = "full")]
+mod parity;
 mod people;
 mod provider;
 mod reader_figures;
@@ -104,6 +106,9 @@ enum What {
     /// Hold right and seeded wrong landmarks against a detector whose finds and misses are drawn by labels, and count the objects
     /// that a flawed eye hallucinates in texts, with that detector and without.
     Detector(detector::Flags),
+    /// Compare a detector in process with one in PyTorch, on random weights of the true size: numbers, times, memory.
+    #[cfg(feature = "full")]
+    Parity(parity::Flags),
     /// Fit the weights that say how much the silence of labels says about a claim, on people's texts.
     FitEvidence {
         /// Folder of Matterport3D's and REVERIE's data.
@@ -235,6 +240,8 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
         What::Claims(flags) => claims::measure(&flags, output),
         What::Detector(flags) => detector::measure(&flags, output),
+        #[cfg(feature = "full")]
+        What::Parity(flags) => parity::measure(&flags, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
         What::People(flags) => people::measure(flags, output),

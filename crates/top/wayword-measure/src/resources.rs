@@ -20,8 +20,18 @@ pub(super) fn cpu() -> Duration {
 
 /// Resident memory of this process, MiB. Zero on systems without `/proc`.
 pub(super) fn resident_mib() -> f64 {
+    memory_mib("VmRSS:")
+}
+
+/// The most resident memory of this process so far, MiB. Zero on systems without `/proc`.
+#[cfg(feature = "full")]
+pub(super) fn peak_mib() -> f64 {
+    memory_mib("VmHWM:")
+}
+
+fn memory_mib(name: &str) -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_default();
     line.split_whitespace().next().and_then(|kib| kib.parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
 }
 

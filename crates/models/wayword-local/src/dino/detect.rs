@@ -13,6 +13,14 @@ impl Dino {
         ModelError::Failed { model: self.name.clone(), reason: error.to_string() }
     }
 
+    /// Where phrases are in a picture: for each of them the best boxes first.
+    ///
+    /// # Errors
+    /// When a phrase is too long, the picture has no pixels, or the computation fails.
+    pub fn find(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<Found>>, LocalError> {
+        self.view(image, &self.prompts(phrases)?, phrases.len())
+    }
+
     fn view(&self, image: &Image, prompts: &[(Prompt, Text)], phrases: usize) -> Result<Vec<Vec<Found>>, LocalError> {
         let mut found = vec![Vec::new(); phrases];
         let features = self.features(image)?;

@@ -18,8 +18,8 @@ mod prompt;
 mod queries;
 mod text;
 
-pub use model::Dino;
 pub(crate) use model::KEPT_BYTES;
+pub use model::{Dino, DinoOutputs};
 
 #[cfg(test)]
 mod tests;

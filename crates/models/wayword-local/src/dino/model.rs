@@ -10,8 +10,8 @@ use super::{
     queries::Chooser,
     text::{Text, TextTower},
 };
-use crate::{Device, LocalError, Precision, memory::Budget, picture::digest, text::Tokenizer, weights::Weights};
-use candle_core::{Result as Computed, Tensor};
+use crate::{Device, LocalError, Precision, picture::digest, text::Tokenizer, weights::Weights};
+use candle_core::{DType, Result as Computed, Tensor};
 use std::{path::Path, sync::Arc};
 use wayword_core::{Image, Recent};
 
@@ -40,18 +40,28 @@ pub struct Dino {
     kept: Recent<[u8; 32], Features>,
 }
 
+/// The network's own numbers for a picture and a prompt, for comparisons with other implementations.
+#[derive(Debug, Clone)]
+pub struct DinoOutputs {
+    /// The best candidate cells, the best first, whether or not they became queries.
+    pub picked: Vec<u32>,
+    /// For each query the logit of each token.
+    pub logits: Vec<Vec<f32>>,
+    /// The box of each query: middle, width and height, as shares of the picture's width and height.
+    pub boxes: Vec<[f32; 4]>,
+}
+
 impl Dino {
     /// Reads `config.json`, `preprocessor_config.json`, `tokenizer.json` and the checkpoint of a folder. `name` is the
     /// model's name: `hf/ORG/NAME`.
     ///
     /// # Errors
-    /// When a file is missing or damaged, the checkpoint has another architecture, or the memory does not suffice.
+    /// When a file is missing or damaged, or the checkpoint has another architecture.
     pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
         let config = Config::read(folder)?;
         let shown = Shown::load(folder)?;
         let tokenizer = Tokenizer::load(folder)?;
         let weights = Weights::open(folder, device, precision)?;
-        Budget::new(None).take(name, weights.bytes().saturating_add(KEPT_BYTES as u64))?;
         let (all, model) = (weights.scope(""), weights.scope("model"));
         let layer = |at: usize| EncoderLayer::load(&model.sub("encoder.layers").sub(at), &config);
         // The finest level, and a quarter as many cells for each coarser one.
@@ -129,6 +139,28 @@ impl Dino {
         self.decoder.of(self.chooser.boxes(&candidates, &picked)?, cells, read, levels)
     }
 
+    /// The network's own numbers for a picture and phrases of one prompt. `order` says which candidates become queries
+    /// instead of the best ones, and in which order: two equal candidates that change places change the result.
+    ///
+    /// # Errors
+    /// When the phrases are too many for one prompt, or the computation fails.
+    pub fn outputs(&self, image: &Image, phrases: &[&str], order: Option<&[u32]>) -> Result<DinoOutputs, LocalError> {
+        let prompts = self.prompts(phrases)?;
+        let [(_, text)] = &prompts[..] else {
+            let problem = "these phrases are not one prompt".to_owned();
+            return Err(LocalError::Compute { model: self.name.clone(), problem });
+        };
+        let features = self.features(image)?;
+        let mut picked = Vec::new();
+        let seen = self.look(&features, text, |best| {
+            picked.clone_from(&best);
+            order.map_or(best, <[u32]>::to_vec)
+        });
+        let numbers = seen.and_then(|seen| Ok((seen.logits.to_dtype(DType::F32)?.to_vec2()?, seen.boxes)));
+        let (logits, boxes) = numbers.map_err(|error| self.wrong(&error))?;
+        Ok(DinoOutputs { picked, logits, boxes })
+    }
+
     fn wrong(&self, error: &candle_core::Error) -> LocalError {
         LocalError::compute(&self.name, error)
     }
@@ -144,19 +176,5 @@ impl Dino {
     pub(super) fn candidates(&self, features: &Features, text: &Text) -> Computed<Vec<f32>> {
         let (cells, read) = self.encoded(features, text)?;
         Ok(self.chooser.candidates(&cells, &read, &features.levels)?.scores)
-    }
-
-    /// Sets the edges of pictures.
-    pub(super) fn shows(&mut self, shortest: usize, longest: usize) {
-        self.shown.set_edges(shortest, longest);
-    }
-
-    /// Features that are not kept.
-    pub(super) fn fresh(&self, image: &Image) -> Computed<Features> {
-        self.eye.of(&self.pixels(image))
-    }
-
-    pub(super) fn seen_behind(&self, features: &Features, (cells, read): (&Tensor, &Tensor)) -> Computed<Seen> {
-        self.decoded((cells, read), &features.levels, |best| best)
     }
 }

@@ -85,11 +85,6 @@ impl Shown {
         Tensor::from_vec(numbers, (1, 3, height, width), &device.0).map_err(|error| wrong(error.to_string()))
     }
 
-    #[cfg(test)]
-    pub(super) fn set_edges(&mut self, shortest: usize, longest: usize) {
-        (self.shortest, self.longest) = (shortest, longest);
-    }
-
     /// The height and width of a picture for the model, in Python's arithmetic.
     fn size_of(&self, height: usize, width: usize) -> (usize, usize) {
         let (short, long) = (height.min(width), height.max(width));

@@ -1,7 +1,5 @@
 //! Compares each stage with PyTorch (`fixtures/make_dino.py`), and the operators with each other.
 
-mod true_sizes;
-
 use super::{
     model::Dino,
     prompt::{Prompt, prompts},
