@@ -1,20 +1,8 @@
 //! Compares BLIP with PyTorch: `fixtures/make_blip.py` made the numbers.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test fails by panicking"
-)]
-
-use std::path::{Path, PathBuf};
-use wayword_core::Image;
+use crate::common::{self, copy, drawn, fixture, refused};
+use std::path::Path;
 use wayword_local::{BlipCaptioner, BlipVqa, Device, LocalError, Precision};
-
-fn fixture(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
-}
 
 fn captioner(folder: &Path) -> Result<BlipCaptioner, LocalError> {
     BlipCaptioner::load("hf/test/blip", folder, &Device::cpu(), Precision::F32)
@@ -22,15 +10,6 @@ fn captioner(folder: &Path) -> Result<BlipCaptioner, LocalError> {
 
 fn vqa(folder: &Path) -> Result<BlipVqa, LocalError> {
     BlipVqa::load("hf/test/blip", folder, &Device::cpu(), Precision::F32)
-}
-
-/// The same formula as in `fixtures/make_blip.py`.
-fn drawn((width, height): (u32, u32)) -> Image {
-    let byte = |at: u32| {
-        let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
-        ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
-    };
-    Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
 }
 
 fn expected<T: serde::de::DeserializeOwned>(name: &str) -> T {
@@ -119,13 +98,8 @@ fn changed<T>(
     change: impl FnOnce(Vec<u8>) -> Vec<u8>,
     load: impl FnOnce(&Path) -> Result<T, LocalError>,
 ) -> Result<T, LocalError> {
-    let folder = tempfile::tempdir().unwrap();
-    for entry in std::fs::read_dir(fixture(name)).unwrap() {
-        let entry = entry.unwrap();
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
-    }
-    let path = folder.path().join(file);
-    std::fs::write(&path, change(std::fs::read(&path).unwrap())).unwrap();
+    let folder = copy(name);
+    common::change(folder.path(), file, change);
     load(folder.path())
 }
 
@@ -135,7 +109,7 @@ fn damaged<T>(
     change: impl FnOnce(Vec<u8>) -> Vec<u8>,
     load: impl FnOnce(&Path) -> Result<T, LocalError>,
 ) -> String {
-    changed(name, file, change, load).err().expect("it is refused").to_string()
+    refused(changed(name, file, change, load))
 }
 
 fn replaced(from: &'static str, to: &'static str) -> impl FnOnce(Vec<u8>) -> Vec<u8> {
@@ -176,6 +150,6 @@ fn words_attend_to_states_of_the_vision_models_width_whatever_the_text_model_is_
 
 #[test]
 fn one_that_describes_is_not_taken_for_one_that_answers() {
-    let error = vqa(&fixture("blip_caption")).err().expect("it is refused").to_string();
+    let error = refused(vqa(&fixture("blip_caption")));
     assert!(error.contains("text_encoder.") && error.contains("missing"), "{error}");
 }

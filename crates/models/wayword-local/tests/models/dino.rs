@@ -1,22 +1,12 @@
 //! Compares the Grounding DINO family with PyTorch: `fixtures/make_dino.py` made the numbers.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
-
-use std::{
-    collections::BTreeMap,
-    f64::consts::FRAC_PI_2,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
-use wayword_core::{DVec3, Detector, Found, Heading, Image, ModelError, Pose, View};
+use crate::common::{copy, damaged_files_are_named, drawn, fixture, refused, set, view};
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::{Detector, Found, Image, ModelError, View};
 use wayword_local::{Device, Dino, LocalError, Precision};
 
 /// With heads of their own for the two layers of the decoder, and with shared ones.
 const MODELS: [&str; 2] = ["dino_mm", "dino"];
-
-fn fixture(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
-}
 
 fn load(folder: &Path) -> Result<Dino, LocalError> {
     Dino::load("hf/test/dino", folder, &Device::cpu(), Precision::F32)
@@ -60,19 +50,6 @@ impl Seen {
 
 fn expected(name: &str) -> Expected {
     serde_json::from_str(&std::fs::read_to_string(fixture(name).join("expected.json")).unwrap()).unwrap()
-}
-
-/// The same formula as in `fixtures/make_dino.py`.
-fn drawn((width, height): (u32, u32)) -> Image {
-    let byte = |at: u32| {
-        let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
-        ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
-    };
-    Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
-}
-
-fn view(image: Option<Image>) -> View {
-    View::new(Pose::level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, image.map(Arc::new), None)
 }
 
 /// The largest differences of scores, and of boxes in pixels.
@@ -219,24 +196,6 @@ fn sixteen_bits_come_near() {
     assert!((1e-6..0.1).contains(&off), "{off}");
 }
 
-/// A copy of a fixture.
-fn copy(name: &str) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for entry in std::fs::read_dir(fixture(name)).unwrap() {
-        let entry = entry.unwrap();
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
-    }
-    folder
-}
-
-/// Changes a value of a JSON file.
-fn set(folder: &Path, file: &str, place: &str, value: serde_json::Value) {
-    let path = folder.join(file);
-    let mut json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
-    *json.pointer_mut(place).unwrap() = value;
-    std::fs::write(&path, json.to_string()).unwrap();
-}
-
 #[test]
 fn damage_is_told_by_file_and_tensor() {
     let mut untold = Vec::new();
@@ -296,19 +255,7 @@ fn damage_is_told_by_file_and_tensor() {
 
 #[test]
 fn a_file_that_is_cut_off_or_missing_is_named() {
-    for file in ["model.safetensors", "config.json", "preprocessor_config.json", "tokenizer.json"] {
-        let folder = copy("dino_mm");
-        let path = folder.path().join(file);
-        let whole = std::fs::read(&path).unwrap();
-        for length in [0, 7, whole.len() / 2, whole.len() - 2] {
-            std::fs::write(&path, &whole[..length]).unwrap();
-            let error = load(folder.path()).err().expect("it is refused").to_string();
-            assert!(error.contains(file), "{error}");
-        }
-        std::fs::remove_file(&path).unwrap();
-        let error = load(folder.path()).err().expect("it is refused").to_string();
-        assert!(error.contains(file) && error.contains("missing"), "{error}");
-    }
+    damaged_files_are_named("dino_mm", load);
 }
 
 #[test]
@@ -316,7 +263,7 @@ fn a_checkpoint_of_another_model_names_the_first_tensor_that_it_lacks() {
     let folder = copy("dino_mm");
     for other in ["dino", "bert"] {
         std::fs::copy(fixture(other).join("model.safetensors"), folder.path().join("model.safetensors")).unwrap();
-        let error = load(folder.path()).err().expect("it is refused").to_string();
+        let error = refused(load(folder.path()));
         assert!(error.contains("model.safetensors: tensor model."), "{error}");
     }
 }

@@ -1,7 +1,6 @@
 //! Finds a detector in process by its name, and keeps its calls.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
-
+use crate::common::{fixture, refused};
 use std::{
     f64::consts::FRAC_PI_2,
     path::{Path, PathBuf},
@@ -10,10 +9,6 @@ use std::{
 use wayword_core::{DVec3, Detector, Heading, Image, Pose, View};
 use wayword_ledger::{Filter, Ledger, Limits, Run};
 use wayword_local::{Device, Hub, HubConfig, Loading, Models, Precision};
-
-fn fixture(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
-}
 
 fn name(folder: &Path) -> String {
     format!("hf/{}", folder.display())
@@ -86,7 +81,7 @@ fn what_does_not_detect_is_told_before_it_is_loaded() {
         ("hf/a/b:c.gguf".to_owned(), vec!["GGUF"]),
     ] {
         let at_hand = models.detector_at_hand(&name).unwrap_err().to_string();
-        let loaded = models.detector(&name).err().expect("it is refused").to_string();
+        let loaded = refused(models.detector(&name));
         for error in [at_hand, loaded] {
             assert!(told.iter().all(|told| error.contains(told)), "{error}");
         }
@@ -100,6 +95,6 @@ fn a_detector_that_does_not_fit_into_the_memory_is_refused_before_it_is_loaded()
     let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
     // The weights are small: the features that it keeps are not.
     let models = models(run(&ledger, "run"), Some(500 << 20), None);
-    let error = models.detector(&name(&fixture("owl"))).err().expect("it is refused").to_string();
+    let error = refused(models.detector(&name(&fixture("owl"))));
     assert!(error.contains("fixtures/owl") && error.contains("of memory"), "{error}");
 }

@@ -1,20 +1,9 @@
 //! Compares OWLv2 with PyTorch (`fixtures/make_owl.py` made the numbers), and tries it as a detector in process.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr, reason = "a test fails by panicking")]
-
-use std::{
-    collections::BTreeMap,
-    f64::consts::FRAC_PI_2,
-    path::{Path, PathBuf},
-    sync::Arc,
-    time::Instant,
-};
-use wayword_core::{DVec3, Detector, Grounded, Grounder, Heading, Image, MOST_BOXES, ModelError, Pose, View};
+use crate::common::{copy, damaged_files_are_named, drawn, fixture, refused, set, view};
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::{Detector, Grounded, Grounder, MOST_BOXES, ModelError};
 use wayword_local::{Device, LocalError, Owl, OwlOutputs, Precision};
-
-fn fixture() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/owl")
-}
 
 fn load(folder: &Path) -> Result<Owl, LocalError> {
     Owl::load("hf/test/owl", folder, &Device::cpu(), Precision::F32)
@@ -51,15 +40,6 @@ impl Expected {
     }
 }
 
-/// The same formula as in `fixtures/make_owl.py`.
-fn drawn((width, height): (u32, u32)) -> Image {
-    let byte = |at: u32| {
-        let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
-        ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
-    };
-    Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
-}
-
 /// The largest difference of logits and of boxes.
 #[track_caller]
 fn off(ours: &OwlOutputs, theirs: &Numbers) -> (f32, f32) {
@@ -73,13 +53,9 @@ fn off(ours: &OwlOutputs, theirs: &Numbers) -> (f32, f32) {
     )
 }
 
-fn view(image: Option<Image>) -> View {
-    View::new(Pose::level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, image.map(Arc::new), None)
-}
-
 #[test]
 fn logits_and_boxes_agree_with_pytorch() {
-    let (owl, expected) = (load(&fixture()).unwrap(), Expected::read(&fixture()));
+    let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     assert_eq!(owl.edge_px(), 48);
     for OfPicture { size, numbers } in &expected.pictures {
         let ours = owl.outputs(&drawn(*size), &expected.texts()).unwrap();
@@ -90,7 +66,7 @@ fn logits_and_boxes_agree_with_pytorch() {
 
 #[test]
 fn no_known_mistake_is_made() {
-    let (owl, expected) = (load(&fixture()).unwrap(), Expected::read(&fixture()));
+    let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     let ours = owl.outputs(&drawn(expected.pictures[1].size), &expected.texts()).unwrap();
     assert_eq!(expected.traps.len(), 8);
     for (mistake, numbers) in &expected.traps {
@@ -101,11 +77,11 @@ fn no_known_mistake_is_made() {
 
 #[test]
 fn a_text_scores_the_same_alone_and_among_others() {
-    let (owl, expected) = (load(&fixture()).unwrap(), Expected::read(&fixture()));
+    let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     let OfPicture { size, numbers } = &expected.pictures[0];
     for (text, logits) in expected.texts.iter().zip(&numbers.logits).rev() {
         // Another model, so that nothing was computed before.
-        let alone = load(&fixture()).unwrap().outputs(&drawn(*size), &[text]).unwrap();
+        let alone = load(&fixture("owl")).unwrap().outputs(&drawn(*size), &[text]).unwrap();
         let kept = owl.outputs(&drawn(*size), &[text]).unwrap();
         for ours in [alone, kept] {
             let off = ours.logits[0].iter().zip(logits).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
@@ -117,7 +93,7 @@ fn a_text_scores_the_same_alone_and_among_others() {
 
 #[test]
 fn what_is_found_is_a_score_and_a_box_in_the_pictures_own_pixels() {
-    let (owl, expected) = (load(&fixture()).unwrap(), Expected::read(&fixture()));
+    let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     let OfPicture { size: (width, height), numbers } = &expected.pictures[1];
     let shown = view(Some(drawn((*width, *height))));
     let found = owl.detect(&[&shown], &["the red door", "sink"]).remove(0).unwrap();
@@ -145,7 +121,7 @@ fn what_is_found_is_a_score_and_a_box_in_the_pictures_own_pixels() {
 
 #[test]
 fn a_view_without_a_picture_does_not_fail_the_others() {
-    let owl = load(&fixture()).unwrap();
+    let owl = load(&fixture("owl")).unwrap();
     let (blank, shown) = (view(None), view(Some(drawn((40, 30)))));
     let found = owl.detect(&[&blank, &shown], &["stairs"]);
     assert!(matches!(&found[0], Err(ModelError::NothingToSee { name, .. }) if name == "hf/test/owl"));
@@ -156,32 +132,11 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
 
 #[test]
 fn sixteen_bits_come_near() {
-    let half = Owl::load("hf/test/owl", &fixture(), &Device::cpu(), Precision::Bf16).unwrap();
-    let expected = Expected::read(&fixture());
+    let half = Owl::load("hf/test/owl", &fixture("owl"), &Device::cpu(), Precision::Bf16).unwrap();
+    let expected = Expected::read(&fixture("owl"));
     let OfPicture { size, numbers } = &expected.pictures[0];
     let (logits, boxes) = off(&half.outputs(&drawn(*size), &expected.texts()).unwrap(), numbers);
     assert!((1e-4..1.0).contains(&logits) && (1e-6..0.05).contains(&boxes), "{logits}, {boxes}");
-}
-
-/// A copy of the fixture.
-fn copy() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for entry in std::fs::read_dir(fixture()).unwrap() {
-        let entry = entry.unwrap();
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
-    }
-    folder
-}
-
-/// The error of loading after one value of a JSON file was changed.
-#[track_caller]
-fn refused(file: &str, place: &str, value: serde_json::Value) -> String {
-    let folder = copy();
-    let path = folder.path().join(file);
-    let mut json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
-    *json.pointer_mut(place).unwrap() = value;
-    std::fs::write(&path, json.to_string()).unwrap();
-    load(folder.path()).err().expect("it is refused").to_string()
 }
 
 #[test]
@@ -203,7 +158,9 @@ fn damage_is_told_by_file_and_tensor() {
         ("preprocessor_config.json", "/size/height", 40.into(), vec!["preprocessor_config.json", "sees 48 x 48"]),
         ("preprocessor_config.json", "/do_pad", false.into(), vec!["preprocessor_config.json", "do_pad"]),
     ] {
-        let error = refused(file, place, value);
+        let folder = copy("owl");
+        set(folder.path(), file, place, value);
+        let error = refused(load(folder.path()));
         assert!(told.iter().all(|told| error.contains(told)), "{error}");
     }
 }
@@ -219,56 +176,18 @@ fn a_tensor_that_is_missing_or_swapped_is_named() {
         ("box_head.dense2.weight", "box_head.dense9.weight", "box_head.dense2.weight: it is missing"),
         ("owlv2.vision_model.pre_layernorm.bias", "owlv2.vision_model.pre_layernorm.bios", "pre_layernorm.bias"),
     ] {
-        let folder = copy();
+        let folder = copy("owl");
         let path = folder.path().join("model.safetensors");
         let mut bytes = std::fs::read(&path).unwrap();
         let at = bytes.windows(from.len()).position(|window| window == from.as_bytes()).unwrap();
         bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
         std::fs::write(&path, bytes).unwrap();
-        let error = load(folder.path()).err().expect("it is refused").to_string();
+        let error = refused(load(folder.path()));
         assert!(error.contains("model.safetensors") && error.contains(told), "{error}");
     }
 }
 
 #[test]
 fn a_file_that_is_cut_off_or_missing_is_named() {
-    for file in ["model.safetensors", "config.json", "preprocessor_config.json", "tokenizer.json"] {
-        let folder = copy();
-        let path = folder.path().join(file);
-        let whole = std::fs::read(&path).unwrap();
-        for length in [0, 7, whole.len() / 2, whole.len() - 1] {
-            std::fs::write(&path, &whole[..length]).unwrap();
-            let error = load(folder.path()).err().expect("it is refused").to_string();
-            assert!(error.contains(file), "{error}");
-        }
-        std::fs::remove_file(&path).unwrap();
-        let error = load(folder.path()).err().expect("it is refused").to_string();
-        assert!(error.contains(file) && error.contains("missing"), "{error}");
-    }
-}
-
-/// The seconds that all threads of this process have computed, on Linux.
-fn busy_s() -> f64 {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
-    fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
-}
-
-/// At the true size: `WAYWORD_OWL` is a folder by `make_owl.py --true`.
-#[test]
-#[ignore = "needs a folder of 600 MB"]
-fn the_true_size_agrees_with_pytorch() {
-    let folder = PathBuf::from(std::env::var_os("WAYWORD_OWL").expect("WAYWORD_OWL is a folder"));
-    let (owl, expected) = (load(&folder).unwrap(), Expected::read(&folder));
-    for OfPicture { size: (width, height), numbers } in &expected.pictures {
-        let (begun, busy) = (Instant::now(), busy_s());
-        let ours = owl.outputs(&drawn((*width, *height)), &expected.texts()).unwrap();
-        let (wall, busy) = (begun.elapsed().as_secs_f64(), busy_s() - busy);
-        let (logits, boxes) = off(&ours, numbers);
-        let px = boxes * (*width).max(*height) as f32;
-        eprintln!(
-            "{width} x {height}: logits {logits:.2e}, boxes {px:.2e} px, {wall:.2} s, {busy:.2} s of all threads"
-        );
-        assert!(logits < 1e-4 && px < 1e-3);
-    }
+    damaged_files_are_named("owl", load);
 }

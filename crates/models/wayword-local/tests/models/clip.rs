@@ -1,18 +1,9 @@
 //! Compares CLIP with PyTorch: `fixtures/make_clip.py` made the numbers.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
-
-use std::{
-    f64::consts::FRAC_PI_2,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
-use wayword_core::{DVec3, Grounder, Heading, Image, ModelError, Pose, View};
+use crate::common::{copy, damaged_files_are_named, drawn, fixture, refused, set, view};
+use std::path::Path;
+use wayword_core::{Grounder, Image, ModelError, View};
 use wayword_local::{Clip, ClipGrounder, Device, LocalError, Precision};
-
-fn fixture() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/clip")
-}
 
 fn load(folder: &Path) -> Result<Clip, LocalError> {
     Clip::load("hf/test/clip", folder, &Device::cpu(), Precision::F32)
@@ -38,16 +29,7 @@ struct OfText {
 }
 
 fn expected() -> Expected {
-    serde_json::from_str(&std::fs::read_to_string(fixture().join("expected.json")).unwrap()).unwrap()
-}
-
-/// The same formula as in `fixtures/make_clip.py`.
-fn drawn((width, height): (u32, u32)) -> Image {
-    let byte = |at: u32| {
-        let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
-        ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
-    };
-    Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
+    serde_json::from_str(&std::fs::read_to_string(fixture("clip").join("expected.json")).unwrap()).unwrap()
 }
 
 #[track_caller]
@@ -67,7 +49,7 @@ fn texts_agree(clip: &Clip, expected: &[OfText]) {
 
 #[test]
 fn pictures_agree_with_pytorch_alone_and_among_others() {
-    let (clip, expected) = (load(&fixture()).unwrap(), expected().images);
+    let (clip, expected) = (load(&fixture("clip")).unwrap(), expected().images);
     let images: Vec<Image> = expected.iter().map(|one| drawn(one.size)).collect();
     let together = clip.image_features(&images.iter().collect::<Vec<_>>()).unwrap();
     for ((image, ours), one) in images.iter().zip(&together).zip(&expected) {
@@ -83,17 +65,13 @@ fn pictures_agree_with_pytorch_alone_and_among_others() {
 
 #[test]
 fn texts_agree_with_pytorch() {
-    texts_agree(&load(&fixture()).unwrap(), &expected().texts);
+    texts_agree(&load(&fixture("clip")).unwrap(), &expected().texts);
 }
 
 #[test]
 fn texts_agree_where_the_configuration_names_the_wrong_end() {
-    let folder = copy();
-    change(folder.path(), "config.json", |text| {
-        let mut config: serde_json::Value = serde_json::from_str(&text).unwrap();
-        config["text_config"]["eos_token_id"] = 2.into();
-        config.to_string()
-    });
+    let folder = copy("clip");
+    set(folder.path(), "config.json", "/text_config/eos_token_id", 2.into());
     let clip = load(folder.path()).unwrap();
     texts_agree(&clip, &expected().legacy);
     // The two rules differ for a text with a token whose id is higher than the end token's.
@@ -103,7 +81,7 @@ fn texts_agree_where_the_configuration_names_the_wrong_end() {
 
 #[test]
 fn sixteen_bits_come_near() {
-    let half = Clip::load("hf/test/clip", &fixture(), &Device::cpu(), Precision::Bf16).unwrap();
+    let half = Clip::load("hf/test/clip", &fixture("clip"), &Device::cpu(), Precision::Bf16).unwrap();
     let expected = expected();
     let image = half.image_features(&[&drawn(expected.images[0].size)]).unwrap().remove(0);
     let text = half.text_features(&[&expected.texts[0].text]).unwrap().remove(0);
@@ -113,14 +91,9 @@ fn sixteen_bits_come_near() {
     }
 }
 
-fn view(image: Option<Image>) -> View {
-    let pose = Pose::level(DVec3::ZERO, Heading::NORTH);
-    View::new(pose, FRAC_PI_2, image.map(Arc::new), None)
-}
-
 #[test]
 fn a_score_is_the_cosine_of_picture_and_phrase() {
-    let (grounder, expected) = (ClipGrounder::new(load(&fixture()).unwrap()), expected());
+    let (grounder, expected) = (ClipGrounder::new(load(&fixture("clip")).unwrap()), expected());
     assert_eq!(grounder.name(), "hf/test/clip");
     let views: Vec<View> = expected.images.iter().map(|one| view(Some(drawn(one.size)))).collect();
     let phrases: Vec<&str> = expected.texts.iter().map(|one| &one.text[..]).collect();
@@ -136,7 +109,7 @@ fn a_score_is_the_cosine_of_picture_and_phrase() {
 
 #[test]
 fn a_view_without_a_picture_does_not_fail_the_others() {
-    let (grounder, expected) = (ClipGrounder::new(load(&fixture()).unwrap()), expected());
+    let (grounder, expected) = (ClipGrounder::new(load(&fixture("clip")).unwrap()), expected());
     let drawn = |at: usize| view(Some(drawn(expected.images[at].size)));
     let (blank, empty) = (view(None), view(Some(Image::new(0, 3, Vec::new()).unwrap())));
     let (first, last) = (drawn(0), drawn(1));
@@ -144,39 +117,12 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
     for at in [1, 3] {
         assert!(matches!(&scores[at], Err(ModelError::NothingToSee { name, .. }) if name == "hf/test/clip"));
     }
-    let alone = |view: &View| ClipGrounder::new(load(&fixture()).unwrap()).ground(&[view], &["stairs"]).remove(0);
+    let alone = |view: &View| ClipGrounder::new(load(&fixture("clip")).unwrap()).ground(&[view], &["stairs"]).remove(0);
     for (at, view) in [(0, &first), (2, &first), (4, &last)] {
         near(scores[at].as_ref().unwrap(), &alone(view).unwrap(), "a score among others");
     }
     assert_eq!(grounder.ground(&[&first], &[]), [Ok(Vec::new())]);
     assert!(grounder.ground(&[], &["stairs"]).is_empty());
-}
-
-/// A copy of the fixture.
-fn copy() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for entry in std::fs::read_dir(fixture()).unwrap() {
-        let entry = entry.unwrap();
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
-    }
-    folder
-}
-
-fn change(folder: &Path, file: &str, change: impl FnOnce(String) -> String) {
-    let path = folder.join(file);
-    std::fs::write(&path, change(std::fs::read_to_string(&path).unwrap())).unwrap();
-}
-
-/// The error of loading after one value of a JSON file was changed.
-#[track_caller]
-fn refused(file: &str, place: &str, value: serde_json::Value) -> String {
-    let folder = copy();
-    change(folder.path(), file, |text| {
-        let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
-        *json.pointer_mut(place).unwrap() = value;
-        json.to_string()
-    });
-    load(folder.path()).err().expect("it is refused").to_string()
 }
 
 #[test]
@@ -201,7 +147,9 @@ fn damage_is_told_by_file_and_tensor() {
         ("config.json", "/vision_config/hidden_act", "mish".into(), vec!["vision_config", "mish"]),
         ("preprocessor_config.json", "/crop_size", 24.into(), vec!["24 x 24 pixels", "sees 32 x 32"]),
     ] {
-        let error = refused(file, place, value);
+        let folder = copy("clip");
+        set(folder.path(), file, place, value);
+        let error = refused(load(folder.path()));
         assert!(
             told.iter().all(|told| error.contains(told)) && error.contains(".json") | error.contains("safetensors"),
             "{error}"
@@ -211,17 +159,5 @@ fn damage_is_told_by_file_and_tensor() {
 
 #[test]
 fn a_file_that_is_cut_off_or_missing_is_named() {
-    for file in ["model.safetensors", "config.json", "preprocessor_config.json", "tokenizer.json"] {
-        let folder = copy();
-        let path = folder.path().join(file);
-        let whole = std::fs::read(&path).unwrap();
-        for length in [0, 7, whole.len() / 2, whole.len() - 1] {
-            std::fs::write(&path, &whole[..length]).unwrap();
-            let error = load(folder.path()).err().expect("it is refused").to_string();
-            assert!(error.contains(file), "{error}");
-        }
-        std::fs::remove_file(&path).unwrap();
-        let error = load(folder.path()).err().expect("it is refused").to_string();
-        assert!(error.contains(file) && error.contains("missing"), "{error}");
-    }
+    damaged_files_are_named("clip", load);
 }

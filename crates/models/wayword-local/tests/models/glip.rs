@@ -1,19 +1,10 @@
 //! Compares GLIP with an oracle in PyTorch: `fixtures/make_glip.py` made the numbers.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
-
+use crate::common::{copy, drawn, fixture, refused, set, view};
 use candle_core::{Device as On, Tensor, safetensors};
-use std::{
-    collections::HashMap,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
-use wayword_core::{DVec3, Detector, Grounded, Grounder, Heading, Image, ModelError, Pose, View};
+use std::{collections::HashMap, path::Path};
+use wayword_core::{Detector, Grounded, Grounder, ModelError};
 use wayword_local::{Device, Glip, GlipFiles, Hub, HubConfig, LocalError, ModelName, Precision, Progress};
-
-fn fixture() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/glip")
-}
 
 fn load_from(folder: &Path, short: usize) -> Result<Glip, LocalError> {
     let files = GlipFiles { weights: folder.join("glip.pth"), tokenizer: folder.to_owned(), identity: String::new() };
@@ -35,24 +26,15 @@ impl Case {
 }
 
 fn cases() -> Vec<Case> {
-    serde_json::from_str(&std::fs::read_to_string(fixture().join("expected.json")).unwrap()).unwrap()
+    serde_json::from_str(&std::fs::read_to_string(fixture("glip").join("expected.json")).unwrap()).unwrap()
 }
 
 fn expected() -> HashMap<String, Tensor> {
-    safetensors::load(fixture().join("expected.safetensors"), &On::Cpu).unwrap()
+    safetensors::load(fixture("glip").join("expected.safetensors"), &On::Cpu).unwrap()
 }
 
 fn numbers(tensor: &Tensor) -> Vec<f32> {
     tensor.flatten_all().unwrap().to_vec1().unwrap()
-}
-
-/// The same formula as in `fixtures/make_glip.py`.
-fn drawn((width, height): (u32, u32)) -> Image {
-    let byte = |at: u32| {
-        let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
-        ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
-    };
-    Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
 }
 
 fn off(ours: &[f32], theirs: &[f32]) -> f32 {
@@ -74,7 +56,7 @@ fn agrees(glip: &Glip, case: &Case, expected: &HashMap<String, Tensor>, at: &str
 fn what_the_head_says_is_the_oracles() {
     let expected = expected();
     for (at, case) in cases().iter().enumerate() {
-        agrees(&load_from(&fixture(), case.short).unwrap(), case, &expected, &at.to_string());
+        agrees(&load_from(&fixture("glip"), case.short).unwrap(), case, &expected, &at.to_string());
     }
 }
 
@@ -83,7 +65,8 @@ fn no_trap_is_fallen_into() {
     // The oracle with each trap gives other logits, from which we are far.
     let expected = expected();
     for (at, case) in cases().iter().enumerate() {
-        let (logits, _) = load_from(&fixture(), case.short).unwrap().raw(&drawn(case.size), &case.phrases()).unwrap();
+        let (logits, _) =
+            load_from(&fixture("glip"), case.short).unwrap().raw(&drawn(case.size), &case.phrases()).unwrap();
         for trap in ["offsets", "corners", "residual"] {
             let off = off(&logits, &numbers(&expected[&format!("{trap}{at}")]));
             assert!(off > 0.1, "{trap}{at}: {off}");
@@ -94,7 +77,7 @@ fn no_trap_is_fallen_into() {
 #[test]
 fn boxes_and_scores_are_the_oracles() {
     for case in cases() {
-        let glip = load_from(&fixture(), case.short).unwrap();
+        let glip = load_from(&fixture("glip"), case.short).unwrap();
         let found = glip.find(&drawn(case.size), &case.phrases()).unwrap();
         assert_eq!(found.len(), case.boxes.len());
         for (found, expected) in found.iter().zip(&case.boxes) {
@@ -105,10 +88,6 @@ fn boxes_and_scores_are_the_oracles() {
             }
         }
     }
-}
-
-fn view(image: Option<Image>) -> View {
-    View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.5, image.map(Arc::new), None)
 }
 
 /// Remembers what was told.
@@ -129,10 +108,10 @@ fn a_file_is_found_by_its_name_and_the_licence_is_told() {
     let mut config = HubConfig::new(cache.path().to_owned());
     config.offline = true;
     let hub = Hub::new(config).unwrap();
-    let name = |file: &str| ModelName::parse(&format!("hf/{}", fixture().join(file).display())).unwrap();
+    let name = |file: &str| ModelName::parse(&format!("hf/{}", fixture("glip").join(file).display())).unwrap();
     let notes = Notes::default();
     let files = GlipFiles::find(&hub, &name("glip.pth"), &notes).unwrap();
-    assert_eq!((files.weights, files.tokenizer), (fixture().join("glip.pth"), fixture()));
+    assert_eq!((files.weights, files.tokenizer), (fixture("glip").join("glip.pth"), fixture("glip")));
     let notes = notes.0.into_inner().unwrap();
     assert!(notes.len() == 2 && notes[0].contains("SHA-256") && notes[1] == wayword_local::GLIP_LICENCE, "{notes:?}");
     let error = GlipFiles::find(&hub, &name(""), &()).unwrap_err().to_string();
@@ -141,7 +120,7 @@ fn a_file_is_found_by_its_name_and_the_licence_is_told() {
 
 #[test]
 fn a_view_without_a_picture_does_not_fail_the_others() {
-    let (glip, case) = (load_from(&fixture(), 96).unwrap(), &cases()[0]);
+    let (glip, case) = (load_from(&fixture("glip"), 96).unwrap(), &cases()[0]);
     let (shown, blank) = (view(Some(drawn(case.size))), view(None));
     let found = glip.detect(&[&shown, &blank, &shown], &["blue chair", "", "sink"]);
     assert!(matches!(&found[1], Err(ModelError::NothingToSee { name, .. }) if name == glip.name()));
@@ -160,7 +139,7 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
 
 #[test]
 fn a_phrase_is_grounded_by_itself() {
-    let (glip, case) = (load_from(&fixture(), 96).unwrap(), &cases()[0]);
+    let (glip, case) = (load_from(&fixture("glip"), 96).unwrap(), &cases()[0]);
     assert!(glip.scoring().phrases_meet);
     let alone = glip.find(&drawn(case.size), &["sink"]).unwrap()[0][0].score;
     let together = glip.find(&drawn(case.size), &["blue chair", "sink"]).unwrap()[1][0].score;
@@ -173,7 +152,7 @@ fn a_phrase_is_grounded_by_itself() {
 #[test]
 fn many_phrases_go_into_several_prompts() {
     // The fixture's texts have at most 64 tokens.
-    let (glip, case) = (load_from(&fixture(), 96).unwrap(), &cases()[0]);
+    let (glip, case) = (load_from(&fixture("glip"), 96).unwrap(), &cases()[0]);
     let phrases = vec!["wooden door"; 50];
     let found = glip.find(&drawn(case.size), &phrases).unwrap();
     assert!(found.len() == 50 && found.iter().all(|found| !found.is_empty()));
@@ -187,7 +166,8 @@ fn many_phrases_go_into_several_prompts() {
 #[test]
 fn sixteen_bits_come_near() {
     let case = &cases()[0];
-    let files = GlipFiles { weights: fixture().join("glip.pth"), tokenizer: fixture(), identity: String::new() };
+    let files =
+        GlipFiles { weights: fixture("glip").join("glip.pth"), tokenizer: fixture("glip"), identity: String::new() };
     let half = Glip::load("half", &files, 96, &Device::cpu(), Precision::Bf16).unwrap();
     let (logits, _) = half.raw(&drawn(case.size), &case.phrases()).unwrap();
     let expected = numbers(&expected()["logits0"]);
@@ -197,14 +177,8 @@ fn sixteen_bits_come_near() {
 
 /// A copy of the fixture in which one value of the configuration was changed.
 fn changed(place: &str, value: serde_json::Value) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for file in ["glip.pth", "config.json", "tokenizer.json"] {
-        std::fs::copy(fixture().join(file), folder.path().join(file)).unwrap();
-    }
-    let path = folder.path().join("config.json");
-    let mut json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
-    *json.pointer_mut(place).unwrap() = value;
-    std::fs::write(&path, json.to_string()).unwrap();
+    let folder = copy("glip");
+    set(folder.path(), "config.json", place, value);
     folder
 }
 
@@ -230,13 +204,13 @@ fn damage_is_told_by_file_and_tensor() {
         ("/head/fusion_width", 4.into(), vec!["b_attn.attn.v_proj.weight", "[32, 16], not [16, 16]"]),
     ] {
         let folder = changed(place, value);
-        let error = load_from(folder.path(), 96).err().expect("it is refused").to_string();
+        let error = refused(load_from(folder.path(), 96));
         assert!(told.iter().all(|told| error.contains(told)), "{place}: {error}");
     }
     // Without a configuration the sizes are those of GLIP-T.
     let folder = changed("/model_type", "glip".into());
     std::fs::remove_file(folder.path().join("config.json")).unwrap();
-    let error = load_from(folder.path(), 800).err().expect("it is refused").to_string();
+    let error = refused(load_from(folder.path(), 800));
     assert!(error.contains("[4, 3, 4, 4], not [96, 3, 4, 4]"), "{error}");
-    assert!(load_from(&fixture(), 0).is_err());
+    assert!(load_from(&fixture("glip"), 0).is_err());
 }

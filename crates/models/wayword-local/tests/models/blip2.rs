@@ -1,34 +1,13 @@
 //! Compares BLIP-2 with PyTorch: `fixtures/make_blip2.py` made the numbers.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test fails by panicking"
-)]
-
-use std::path::{Path, PathBuf};
-use wayword_core::Image;
+use crate::common::{self, copy, drawn, fixture, refused};
+use std::path::Path;
 use wayword_local::{Blip2, Device, LocalError, Precision};
 
 const BOTH: [&str; 2] = ["blip2_t5", "blip2_opt"];
 
-fn fixture(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
-}
-
 fn load(folder: &Path) -> Result<Blip2, LocalError> {
     Blip2::load("hf/test/blip2", folder, &Device::cpu(), Precision::F32)
-}
-
-/// The same formula as in `fixtures/make_blip2.py`.
-fn drawn((width, height): (u32, u32)) -> Image {
-    let byte = |at: u32| {
-        let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
-        ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
-    };
-    Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
 }
 
 #[derive(serde::Deserialize)]
@@ -85,16 +64,13 @@ fn sixteen_bits_come_near() {
 
 /// The error of loading the fixture with its configuration changed.
 fn changed(name: &str, from: &str, to: &str) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    for entry in std::fs::read_dir(fixture(name)).unwrap() {
-        let entry = entry.unwrap();
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
-    }
-    let path = folder.path().join("config.json");
-    let text = std::fs::read_to_string(&path).unwrap();
-    assert!(text.contains(from), "{from}");
-    std::fs::write(&path, text.replace(from, to)).unwrap();
-    load(folder.path()).err().expect("it is refused").to_string()
+    let folder = copy(name);
+    common::change(folder.path(), "config.json", |bytes| {
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to).into_bytes()
+    });
+    refused(load(folder.path()))
 }
 
 #[test]

@@ -1,19 +1,8 @@
 //! Compares sentence encoders with PyTorch: `fixtures/make_bert.py` made the numbers.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test fails by panicking"
-)]
-
+use crate::common::{self, copy, fixture, refused};
 use std::path::{Path, PathBuf};
 use wayword_local::{Device, Precision, SentenceEncoder};
-
-fn fixture() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/bert")
-}
 
 fn load(folder: &Path) -> Result<SentenceEncoder, wayword_local::LocalError> {
     SentenceEncoder::load("hf/test/bert", folder, &Device::cpu(), Precision::F32)
@@ -43,7 +32,7 @@ fn agrees(encoder: &SentenceEncoder, expected: &Path) {
 
 #[test]
 fn vectors_agree_with_pytorch() {
-    agrees(&load(&fixture()).unwrap(), &fixture().join("expected.json"));
+    agrees(&load(&fixture("bert")).unwrap(), &fixture("bert").join("expected.json"));
 }
 
 /// Real sentences with the real weights: needs a folder with all-MiniLM-L6-v2 and the `expected.json` of `make_bert.py
@@ -61,8 +50,8 @@ fn real_weights_agree_with_pytorch() {
 
 #[test]
 fn sixteen_bits_come_near() {
-    let whole = load(&fixture()).unwrap();
-    let half = SentenceEncoder::load("hf/test/bert", &fixture(), &Device::cpu(), Precision::Bf16).unwrap();
+    let whole = load(&fixture("bert")).unwrap();
+    let half = SentenceEncoder::load("hf/test/bert", &fixture("bert"), &Device::cpu(), Precision::Bf16).unwrap();
     let text = "Go past the table and stop at the sink.";
     let (whole, half) = (whole.vectors(&[text]).unwrap(), half.vectors(&[text]).unwrap());
     let cosine: f32 = whole[0].iter().zip(&half[0]).map(|(a, b)| a * b).sum();
@@ -71,14 +60,9 @@ fn sixteen_bits_come_near() {
 
 /// The error of loading a copy of the fixture with one file changed.
 fn damaged(file: &str, change: impl FnOnce(Vec<u8>) -> Vec<u8>) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    for entry in std::fs::read_dir(fixture()).unwrap() {
-        let entry = entry.unwrap();
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
-    }
-    let path = folder.path().join(file);
-    std::fs::write(&path, change(std::fs::read(&path).unwrap())).unwrap();
-    load(folder.path()).err().expect("it is refused").to_string()
+    let folder = copy("bert");
+    common::change(folder.path(), file, change);
+    refused(load(folder.path()))
 }
 
 #[test]
