@@ -22,10 +22,13 @@ pub(crate) enum Proposals<'a> {
     File(&'a Path),
 }
 
+/// The value of `--proposals` that leaves them out.
+pub(crate) const NO_PROPOSALS: &str = "off";
+
 /// What the settings say of it; `None` for the built-in names.
 pub(crate) fn proposals(settings: &Settings) -> Option<Proposals<'_>> {
     let asked = settings.proposals.as_deref()?;
-    Some(if asked == Path::new("off") { Proposals::Off } else { Proposals::File(asked) })
+    Some(if asked == Path::new(NO_PROPOSALS) { Proposals::Off } else { Proposals::File(asked) })
 }
 
 impl Lookout {
@@ -86,7 +89,7 @@ pub(crate) fn nouns(settings: &Settings, styles: &[Measured]) -> Result<Vec<Stri
 }
 
 /// What was measured of a detector, or what is assumed.
-pub(crate) fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<DetectorFigures, Error> {
+fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<DetectorFigures, Error> {
     let (name, found_from) = (detector.name(), detector.scoring().found_from);
     Ok(measured(file, name)?.unwrap_or_else(|| DetectorFigures::assumed(name, found_from)))
 }
