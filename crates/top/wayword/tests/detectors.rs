@@ -432,7 +432,22 @@ fn a_check_refuses_what_does_not_fit_its_detector() {
     assert!(ran.refused().contains("and not with"), "{ran:?}");
     assert!(check(&building, &file, "ollama/x", &[]).refused().contains("detectors run inside this program"));
     assert!(check(&building, &file, &fixture("clip"), &[]).refused().contains("model_type clip"));
-    for args in [["--evidence", "detector"], ["--detector-figures", "of_dino.toml"], ["--ledger", "ledger.db"]] {
+    let glip = glip();
+    for (detector, args, told) in [
+        (&owl, ["--memory-gib", "0.1"], "GiB are left"),
+        (&owl, ["--memory-gib", "0"], "--memory-gib is out of range"),
+        (&glip, ["--trust", "0123"], "not 0123, which was given"),
+    ] {
+        let ran = check(&building, &file, detector, &args);
+        assert!(ran.refused().contains(told), "{args:?}: {ran:?}");
+    }
+    for args in [
+        ["--evidence", "detector"],
+        ["--detector-figures", "of_dino.toml"],
+        ["--ledger", "ledger.db"],
+        ["--memory-gib", "8"],
+        ["--trust", "0123"],
+    ] {
         let ran =
             building.wayword(&[&["check", &file, "--platform", "matterport", "--data", "data"], &args[..]].concat());
         assert!(ran.code == Some(2) && ran.err.contains("--detector <MODEL>"), "{args:?}: {ran:?}");

@@ -74,6 +74,13 @@ pub struct Detecting {
     /// Device that it runs on: cpu, cuda, cuda:1 or metal. [default: cpu]
     #[arg(long, value_name = "DEVICE", requires = "detector")]
     pub device: Option<String>,
+    /// Limit of the memory that it takes, in GiB. [default: the free memory of the machine]
+    #[arg(long, value_name = "GIB", requires = "detector")]
+    pub memory_gib: Option<f64>,
+    /// SHA-256 that a checkpoint file (.pth) has to have, where its makers published none that is known here. Without it, that of
+    /// the first use is kept and held against later ones.
+    #[arg(long, value_name = "SHA256", requires = "detector")]
+    pub trust: Option<String>,
     /// File of the ledger, which keeps what it found. [default: wayword/ledger.db in the data folder of your system]
     #[arg(long, value_name = "FILE", requires = "detector")]
     pub ledger: Option<PathBuf>,
@@ -90,7 +97,13 @@ impl Detecting {
                 proposals: Some(NO_PROPOSALS.into()),
                 ..Writing::default()
             },
-            service: Service { device: self.device.clone(), ledger: self.ledger.clone(), ..Service::default() },
+            service: Service {
+                device: self.device.clone(),
+                memory_gib: self.memory_gib,
+                trust: self.trust.clone(),
+                ledger: self.ledger.clone(),
+                ..Service::default()
+            },
             ..Asked::default()
         }
     }
