@@ -9,7 +9,7 @@ pub use nouns::{listed, usual};
 
 use crate::{
     dialogue::{RulesSummariser, Summariser},
-    observe::{CONDENSED_WORDS, ObserveError},
+    observe::{CONDENSED_WORDS, ObserveError, gazes_around},
     seeing::caption_text,
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -81,20 +81,22 @@ pub fn seek(
     testify(platform, path, observations, seeker, &wanted, Purpose::Captions)
 }
 
-/// Looks for what texts claim along a path of which nothing else is known: captions without words. `looks` holds the views
-/// of each frame.
+/// Looks for what texts claim all around the frames of a path of which nothing else is known: captions without words.
 ///
 /// # Errors
 /// When a view cannot be had, or the detector fails.
 pub fn seek_claims(
     platform: &dyn Platform,
     path: &Path,
-    looks: Vec<Vec<Look>>,
     claims: &BTreeSet<String>,
     seeker: Seeker<'_>,
 ) -> Result<Vec<Observation>, ObserveError> {
-    let mut observations: Vec<Observation> =
-        looks.into_iter().map(|looks| Observation { looks, ..Observation::default() }).collect();
+    let look = |gaze| Look { gaze, caption: Caption::default() };
+    let around = |frame| Observation {
+        looks: gazes_around(path, frame).into_iter().map(look).collect(),
+        ..Observation::default()
+    };
+    let mut observations: Vec<Observation> = path.frames.iter().map(around).collect();
     let wanted = claims.iter().map(|claim| (normal(claim), CLAIMED)).collect();
     testify(platform, path, &mut observations, seeker, &wanted, Purpose::Claims)?;
     Ok(observations)

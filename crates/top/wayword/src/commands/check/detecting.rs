@@ -6,7 +6,7 @@ use crate::{
 };
 use std::collections::BTreeSet;
 use wayword_checks::Evidence;
-use wayword_core::{Caption, Frame, Gaze, Look, Motion, Platform};
+use wayword_core::Platform;
 use wayword_language::{
     lexicon::thing,
     reading::{What, read},
@@ -27,15 +27,7 @@ pub(super) fn lookout(args: &Detecting, output: &Output) -> Result<Option<Lookou
 /// What a detector says of all things that the texts of a path name. `None` where they name none, or there are no pictures.
 pub(super) fn evidence(lookout: &Lookout, platform: &dyn Platform, walk: &Walk) -> Result<Option<Evidence>, Error> {
     let claims: BTreeSet<String> = walk.texts.iter().flat_map(|text| things(&text.words)).collect();
-    let gazes = |frame: &Frame| match walk.path.motion {
-        Motion::Known => Gaze::around(frame.pose.heading).to_vec(),
-        Motion::Unknown => vec![Gaze::quarter(frame.pose.heading)],
-    };
-    let looks = |frame: &Frame| -> Vec<Look> {
-        gazes(frame).into_iter().map(|gaze| Look { gaze, caption: Caption::default() }).collect()
-    };
-    let looks = walk.path.frames.iter().map(looks).collect();
-    let seen = seek_claims(platform, &walk.path, looks, &claims, lookout.seeker())?;
+    let seen = seek_claims(platform, &walk.path, &claims, lookout.seeker())?;
     Ok(Evidence::from_detector(&walk.path, &seen))
 }
 
