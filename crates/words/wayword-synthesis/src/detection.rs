@@ -15,7 +15,7 @@ use crate::{
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_checks::detected::{DetectorFigures, Judged, judge};
 use wayword_core::{
-    Caption, Detector, Found, Look, ModelError, Observation, Path, Platform, PlatformError, Sighting, Spot, View,
+    Caption, Detector, Found, Gaze, Look, ModelError, Observation, Path, Platform, PlatformError, Sighting, Spot, View,
     Where, Witness,
 };
 use wayword_language::lexicon::{agree, normal, thing};
@@ -76,9 +76,26 @@ pub fn seek(
     observations: &mut [Observation],
     seeker: Seeker<'_>,
 ) -> Result<(), ObserveError> {
+    let seen = views(platform, path, observations)?;
+    correct(&seen, observations, seeker)
+}
+
+/// The same for the caption of one view that is at hand.
+///
+/// # Errors
+/// When it has no picture, or the detector fails.
+pub fn seek_in(view: &View, caption: Caption, seeker: Seeker<'_>) -> Result<Caption, ObserveError> {
+    let gaze = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
+    let mut observation = Observation { looks: vec![Look { gaze, caption }], ..Observation::default() };
+    let seen = view.image.is_some().then(|| Seen { frame: 0, look: 0, view: view.clone() });
+    correct(seen.as_slice(), std::slice::from_mut(&mut observation), seeker)?;
+    Ok(observation.looks.pop().map(|look| look.caption).unwrap_or_default())
+}
+
+fn correct(seen: &[Seen], observations: &mut [Observation], seeker: Seeker<'_>) -> Result<(), ObserveError> {
     let mut wanted: Wanted = seeker.nouns.iter().map(|noun| (normal(noun), PROPOSED)).collect();
     wanted.extend(named(observations));
-    testify(platform, path, observations, seeker, &wanted, Purpose::Captions)
+    testify(seen, observations, seeker, &wanted, Purpose::Captions)
 }
 
 /// Looks for what texts claim all around the frames of a path of which nothing else is known: captions without words.
@@ -98,7 +115,8 @@ pub fn seek_claims(
     };
     let mut observations: Vec<Observation> = path.frames.iter().map(around).collect();
     let wanted = claims.iter().map(|claim| (normal(claim), CLAIMED)).collect();
-    testify(platform, path, &mut observations, seeker, &wanted, Purpose::Claims)?;
+    let seen = views(platform, path, &observations)?;
+    testify(&seen, &mut observations, seeker, &wanted, Purpose::Claims)?;
     Ok(observations)
 }
 
@@ -134,14 +152,12 @@ fn named(observations: &[Observation]) -> Wanted {
 }
 
 fn testify(
-    platform: &dyn Platform,
-    path: &Path,
+    seen: &[Seen],
     observations: &mut [Observation],
     seeker: Seeker<'_>,
     wanted: &Wanted,
     purpose: Purpose,
 ) -> Result<(), ObserveError> {
-    let seen = views(platform, path, observations)?;
     if seen.is_empty() && purpose == Purpose::Captions {
         return Err(ModelError::NothingToSee {
             name: seeker.detector.name().to_owned(),
@@ -154,11 +170,11 @@ fn testify(
         return Ok(());
     }
     let names: Vec<&str> = wanted.keys().map(String::as_str).collect();
-    let finds = finds(&seen, &names, seeker)?;
+    let finds = finds(seen, &names, seeker)?;
     let (by, looked_at) = (seeker.detector.name(), seen.iter().map(|seen| (seen.frame, seen.look)).collect());
     let was: Vec<Vec<Sighting>> = looks(observations).map(|look| look.caption.sightings.clone()).collect();
     for ((name, before), finds) in wanted.iter().zip(finds) {
-        let judged = judge(seeker.figures.of(name), &frames(&seen, &finds), *before);
+        let judged = judge(seeker.figures.of(name), &frames(seen, &finds), *before);
         let is_proposal = *before <= PROPOSED;
         match (judged, purpose) {
             (Judged::There, _) => found(observations, name, &finds, &looked_at, by),

@@ -8,8 +8,6 @@ use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
 /// A view with what its labels say.
 pub(super) struct Labelled {
     pub(super) scene: SceneId,
-    /// A path of the one frame that it is seen from.
-    pub(super) path: Path,
     pub(super) view: View,
     pub(super) labels: Vec<SeenThing>,
 }
@@ -64,5 +62,5 @@ fn labelled(platform: &dyn Platform, path: &Path, frame: &Frame) -> Result<Optio
     let evidence = Evidence::from_labels(&one, &[vec![view.clone()]]);
     let labels = evidence.and_then(|evidence| evidence.frames.into_iter().next()).map(|frame| frame.things);
     let labels = labels.filter(|labels| !labels.is_empty());
-    Ok(labels.map(|labels| Labelled { scene: path.scene.clone(), path: one, view, labels }))
+    Ok(labels.map(|labels| Labelled { scene: path.scene.clone(), view, labels }))
 }
