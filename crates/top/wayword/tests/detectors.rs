@@ -350,6 +350,24 @@ fn figures_are_measured_kept_and_taken() {
 }
 
 #[test]
+fn what_a_check_looks_at_is_measured_in_four_directions() {
+    let building = building();
+    let headings = |args: &[&str]| {
+        let ran = perceive(&building, &owl(), &[&["--show", "6"], args].concat());
+        let measured = ran.json();
+        let shown = measured["shown"].as_array().unwrap().iter();
+        let headings: BTreeSet<u64> = shown.map(|shown| shown["heading_deg"].as_f64().unwrap() as u64).collect();
+        (headings, measured["detector"]["views"].as_u64().unwrap())
+    };
+    let compass: BTreeSet<u64> = [0, 90, 180, 270].into();
+    let (around, views) = headings(&["--frames", "panoramic"]);
+    assert!(around.len() > 1 && around.is_subset(&compass), "{around:?}");
+    assert!(views % 4 == 0, "the detector looks in all directions, also where labels show nothing: {views}");
+    let ahead = headings(&[]).0;
+    assert!(!ahead.is_subset(&compass), "without the flag it looks along the headings: {ahead:?}");
+}
+
+#[test]
 fn a_detector_is_measured_only_on_pictures_with_labels() {
     let without_pictures = Building::new();
     let ran = perceive(&without_pictures, &owl(), &["--figures", "owl.toml"]);
