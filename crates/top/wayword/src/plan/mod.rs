@@ -100,14 +100,12 @@ impl<'a> Models<'a> {
         Ok(Self { job, prices: Calls::rehearse(job)? })
     }
 
-    /// Opens the way to the models; `None` if there are none. `run` gives the name of the run that the calls belong to.
-    /// It is called only if there are models: without them nothing is spent, and the same run gives the same folder
-    /// byte for byte.
+    /// Opens the way to the models; `None` if there are none. `run` is the name of the run that the calls belong to.
     ///
     /// # Errors
-    /// When the run has no name, or the ledger cannot be opened.
-    pub fn open(&self, run: impl FnOnce() -> Result<String, Error>, output: &Output) -> Result<Option<Calls>, Error> {
-        if self.prices.is_empty() { Ok(None) } else { Calls::open(self.job, &run()?, output) }
+    /// When the ledger cannot be opened.
+    pub fn open(&self, run: &str, output: &Output) -> Result<Option<Calls>, Error> {
+        if self.prices.is_empty() { Ok(None) } else { Calls::open(self.job, run, output) }
     }
 
     /// What a model costs, if that is known.

@@ -20,7 +20,7 @@ pub(super) fn lookout(args: &Detecting, output: &Output) -> Result<Option<Lookou
     }
     let job = args.asked().job()?;
     Calls::ready(&job, output)?;
-    let calls = Models::of(&job)?.open(|| Ok(fresh_id("check")), output)?;
+    let calls = Models::of(&job)?.open(&fresh_id("check"), output)?;
     Lookout::of(&job.settings, calls.as_ref(), &[])
 }
 

@@ -112,7 +112,7 @@ pub fn perceive(
 ) -> Result<Measured, Error> {
     let plan = Plan::looking(job, platform)?;
     let views = labelled_views(&plan, extent.views)?;
-    let calls = plan.models.open(|| Ok(fresh_id("perceive")), output)?;
+    let calls = plan.models.open(&fresh_id("perceive"), output)?;
     let _graceful = interrupt::finish_first(calls.as_ref());
     let mut measured = Measured {
         platform: job.settings.platform.clone(),
