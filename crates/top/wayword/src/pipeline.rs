@@ -75,7 +75,7 @@ pub fn make(
     };
     let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
     if let Some(lookout) = team.lookout() {
-        seek(&world, &path, &mut observations, lookout.seeker())?;
+        lookout.has_looked_at(seek(&world, &path, &mut observations, lookout.seeker())?);
     }
     let walk = Walk::new(path, observations);
     let detector = team.lookout().map(Lookout::name);

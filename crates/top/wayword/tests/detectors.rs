@@ -72,6 +72,13 @@ fn figures(building: &Building, file: &str, detector: &str, found_from: f32) {
     building.write(file, format!("{head}\n\n[all]\n{rates}\n"));
 }
 
+/// The number of views that a run's walks hold.
+fn looks(building: &Building, run: &str) -> u64 {
+    let walks = building.lines(&format!("{run}/walks.jsonl"));
+    let frames = walks.iter().flat_map(|walk| walk["observations"].as_array().unwrap());
+    frames.map(|frame| frame["looks"].as_array().unwrap().len() as u64).sum()
+}
+
 /// All sightings of a run's walks.
 fn sightings(building: &Building, run: &str) -> Vec<Value> {
     let mut all = Vec::new();
@@ -94,6 +101,11 @@ fn each_view_is_searched_once_and_texts_name_the_detector() {
     assert_eq!((first.code, &summary["errors"]), (Some(0), &0.into()), "{first:?}");
     let (answered, kept) = spent(&summary);
     assert!(answered > 100 && summary["spent"]["usd"] == 0.0, "{summary}");
+    let searched = &summary["detector"];
+    assert!(
+        searched["model"] == owl.as_str() && summary["roles"].as_str().unwrap().contains(&format!("finds by {owl},"))
+    );
+    assert_eq!(searched["views"], looks(&building, "first"), "{summary}");
     for line in building.lines("first/instructions.jsonl") {
         let told = line["provenance"]["detector"].as_str().unwrap();
         let (name, score) = told.split_once(" (").unwrap();
@@ -103,6 +115,7 @@ fn each_view_is_searched_once_and_texts_name_the_detector() {
 
     let second = generate(&building, &owl, "second", &[]).json();
     assert_eq!(spent(&second), (0, answered + kept), "{second}");
+    assert_eq!(&second["detector"], searched, "what the ledger knows is counted too");
     for name in ["walks.jsonl", "instructions.jsonl"] {
         let read = |run: &str| fs::read_to_string(building.path(run).join(name)).unwrap();
         assert_eq!(read("first"), read("second"), "{name}");
@@ -126,11 +139,8 @@ fn phrases_that_meet_are_searched_together() {
         let ran = generate(&building, &name, out, &args);
         let summary = ran.json();
         assert_eq!(summary["errors"], 0, "{ran:?}");
-        let walks = building.lines(&format!("{out}/walks.jsonl"));
-        let frames = walks[0]["observations"].as_array().unwrap();
-        let views: usize = frames.iter().map(|frame| frame["looks"].as_array().unwrap().len()).sum();
         let (answered, kept) = spent(&summary);
-        assert_eq!(answered + kept, views as u64, "one call for each view: {summary}");
+        assert_eq!(answered + kept, looks(&building, out), "one call for each view: {summary}");
     }
 }
 

@@ -66,7 +66,8 @@ type Places = BTreeSet<Place>;
 /// The finds of one name, look by look.
 type Finds = BTreeMap<Place, Vec<Spot>>;
 
-/// Looks for what captions named and for what is proposed, in every view that was captioned, and corrects the captions.
+/// Looks for what captions named and for what is proposed, in every view that was captioned, and corrects the captions. Gives
+/// the number of views that the detector looked at.
 ///
 /// # Errors
 /// When a view cannot be had, or the detector fails.
@@ -75,7 +76,7 @@ pub fn seek(
     path: &Path,
     observations: &mut [Observation],
     seeker: Seeker<'_>,
-) -> Result<(), ObserveError> {
+) -> Result<usize, ObserveError> {
     let seen = views(platform, path, observations)?;
     correct(&seen, observations, seeker)
 }
@@ -92,10 +93,11 @@ pub fn seek_in(view: &View, caption: Caption, seeker: Seeker<'_>) -> Result<Capt
     Ok(observation.looks.pop().map(|look| look.caption).unwrap_or_default())
 }
 
-fn correct(seen: &[Seen], observations: &mut [Observation], seeker: Seeker<'_>) -> Result<(), ObserveError> {
+fn correct(seen: &[Seen], observations: &mut [Observation], seeker: Seeker<'_>) -> Result<usize, ObserveError> {
     let mut wanted: Wanted = seeker.nouns.iter().map(|noun| (normal(noun), PROPOSED)).collect();
     wanted.extend(named(observations));
-    testify(seen, observations, seeker, &wanted, Purpose::Captions)
+    testify(seen, observations, seeker, &wanted, Purpose::Captions)?;
+    Ok(if wanted.is_empty() { 0 } else { seen.len() })
 }
 
 /// Looks for what texts claim all around the frames of a path of which nothing else is known: captions without words.

@@ -35,7 +35,7 @@ use std::{
 };
 use wayword_core::{PathRequest, Platform, PlatformError};
 
-pub use summary::Summary;
+pub use summary::{Searched, Summary};
 
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
@@ -139,9 +139,9 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
         output.say(format_args!("continuing: {done} of {all} done and kept, {left} to do"));
     }
     let _graceful = interrupt::finish_first(calls.as_ref());
-    let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
+    let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref(), team.lookout());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
-    let expected = if calls.is_some() { plan.calls_per_item(&left)? } else { 0.0 };
+    let expected = if calls.is_some() { plan.calls_per_item(&left, team.lookout())? } else { 0.0 };
     let pace = Pace::new(left.len(), workers, expected);
     let world = RunPlatform { platform: platform.as_ref(), data: Some(&data), scenes: &KnownScenes::new() };
     let unmade = AtomicUsize::new(left.len());
@@ -175,6 +175,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
         calls.record()?;
     }
     let mut summary = summary::summary(folder, &run, items.len(), calls.as_ref().map(Calls::spent), stopped)?;
+    summary.detector = team.lookout().map(Searched::by);
     summary.calibration = settings.calibration.as_ref().map(|file| file.display().to_string());
     Ok(summary)
 }
