@@ -2,8 +2,8 @@ use super::*;
 use std::sync::Arc;
 use wayword_checks::{Evidence, Source, Subject, check, detected::Rates};
 use wayword_core::{
-    Check, DVec3, Exchange, Frame, Gaze, Image, Motion, ObjectId, PathRequest, SceneId, Scoring, Style, Verdict,
-    ViewpointGraph, ViewpointId, path::Stop,
+    Check, DVec3, Exchange, Found, Frame, Image, ModelError, Motion, ObjectId, PathRequest, PlatformError, SceneId,
+    Scoring, Style, Verdict, ViewpointGraph, ViewpointId, Where, path::Stop,
 };
 
 /// Three frames straight ahead, with a picture each.
