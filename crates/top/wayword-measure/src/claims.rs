@@ -59,7 +59,7 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let stage = Stage::new(&flags.world, flags.hallucinated)?;
     let job = job(&stage, flags)?;
     let plan = Plan::looking(&job, &stage.world)?;
-    let calls = plan.models.open(|| Ok(fresh_id("claims")), output)?;
+    let calls = plan.models.open(&fresh_id("claims"), output)?;
     let team = Team::new(&job.settings, calls.as_ref(), &stage.world)?;
     let known: Vec<Known> = plan
         .items

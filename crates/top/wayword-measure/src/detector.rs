@@ -18,7 +18,7 @@ use wayword::{
     settings::{Job, Perception, Settings},
 };
 use wayword_checks::{Evidence, Subject, check, detected::DetectorFigures};
-use wayword_core::{Caption, Check, Gaze, Look, Path, Style, Verdict, rng};
+use wayword_core::{Check, Path, Style, Verdict, rng};
 use wayword_language::lexicon::{agree, normal, thing};
 use wayword_synthesis::{
     detection::{seek_claims, usual},
@@ -146,11 +146,7 @@ fn detected<'a>(
     names: impl Iterator<Item = &'a String>,
     lookout: &Lookout,
 ) -> Result<Evidence, Error> {
-    let looks = path.frames.iter().map(|frame| {
-        let gazes = Gaze::around(frame.pose.heading).into_iter();
-        gazes.map(|gaze| Look { gaze, caption: Caption::default() }).collect()
-    });
-    let seen = seek_claims(world, path, looks.collect(), &names.cloned().collect(), lookout.seeker())?;
+    let seen = seek_claims(world, path, &names.cloned().collect(), lookout.seeker())?;
     Ok(Evidence::from_detector(path, &seen).unwrap_or_else(|| Evidence::of_path_alone(path)))
 }
 

@@ -122,7 +122,7 @@ impl Stage {
         lookout: Option<Lookout>,
     ) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
         let plan = Plan::writing(job, &self.world)?;
-        let calls = plan.models.open(|| Ok(fresh_id("measure")), &Output::new(false, true))?;
+        let calls = plan.models.open(&fresh_id("measure"), &Output::new(false, true))?;
         let team = Team::new(&job.settings, calls.as_ref(), &self.world)?.with(lookout);
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };

@@ -1,7 +1,13 @@
 //! The detector of a run, what is known of it, and what it looks for by itself.
 
 use crate::{calls::Calls, error::Error, settings::Settings, styles::Measured, text_file};
-use std::{path::Path, sync::Arc};
+use std::{
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
 use wayword_checks::detected::DetectorFigures;
 use wayword_core::Detector;
 use wayword_synthesis::detection::{Seeker, listed, usual};
@@ -11,7 +17,13 @@ pub struct Lookout {
     detector: Arc<dyn Detector>,
     figures: DetectorFigures,
     nouns: Vec<String>,
+    /// Views that it has looked at.
+    views: AtomicUsize,
 }
+
+/// Names that captions of a path add to those that a detector looks for by itself, roughly: a walk through a home names about so
+/// many things.
+const NAMED: usize = 15;
 
 /// What a detector looks for by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,17 +34,20 @@ pub(crate) enum Proposals<'a> {
     File(&'a Path),
 }
 
+/// The value of `--proposals` that leaves them out.
+pub(crate) const NO_PROPOSALS: &str = "off";
+
 /// What the settings say of it; `None` for the built-in names.
 pub(crate) fn proposals(settings: &Settings) -> Option<Proposals<'_>> {
     let asked = settings.proposals.as_deref()?;
-    Some(if asked == Path::new("off") { Proposals::Off } else { Proposals::File(asked) })
+    Some(if asked == Path::new(NO_PROPOSALS) { Proposals::Off } else { Proposals::File(asked) })
 }
 
 impl Lookout {
     /// A detector with what was measured of it, which looks for these names by itself.
     #[must_use]
     pub fn new(detector: Arc<dyn Detector>, figures: DetectorFigures, nouns: Vec<String>) -> Self {
-        Self { detector, figures, nouns }
+        Self { detector, figures, nouns, views: AtomicUsize::new(0) }
     }
 
     /// The detector of the settings; `None` where they name none.
@@ -51,6 +66,22 @@ impl Lookout {
     #[must_use]
     pub fn seeker(&self) -> Seeker<'_> {
         Seeker { detector: self.detector.as_ref(), figures: &self.figures, nouns: &self.nouns }
+    }
+
+    /// Takes note of views that it has looked at.
+    pub(crate) fn has_looked_at(&self, views: usize) {
+        self.views.fetch_add(views, Ordering::Relaxed);
+    }
+
+    /// How many views it has looked at.
+    #[must_use]
+    pub fn views(&self) -> usize {
+        self.views.load(Ordering::Relaxed)
+    }
+
+    /// About how many calls a view takes: one for all names where these meet in one prompt, else one for each.
+    pub(crate) fn calls_per_view(&self) -> u64 {
+        if self.detector.scoring().phrases_meet { 1 } else { (self.nouns.len() + NAMED) as u64 }
     }
 
     /// The detector's name.
@@ -86,7 +117,7 @@ pub(crate) fn nouns(settings: &Settings, styles: &[Measured]) -> Result<Vec<Stri
 }
 
 /// What was measured of a detector, or what is assumed.
-pub(crate) fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<DetectorFigures, Error> {
+fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<DetectorFigures, Error> {
     let (name, found_from) = (detector.name(), detector.scoring().found_from);
     Ok(measured(file, name)?.unwrap_or_else(|| DetectorFigures::assumed(name, found_from)))
 }

@@ -14,10 +14,10 @@ use crate::{
     team::Team,
 };
 use wayword_checks::{Checked, Evidence, Memory, Source};
-use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Motion, Path, Platform, PlatformError, SceneId, View};
+use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
     detection::{alone, seek},
-    observe::{Planned, observe_with, talk_about},
+    observe::{Planned, gazes_around, observe_with, talk_about},
     offline::{around, describe},
     repair::{Follow, Order, Outcome, write_and_repair},
     walk::Walk,
@@ -75,7 +75,7 @@ pub fn make(
     };
     let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
     if let Some(lookout) = team.lookout() {
-        seek(&world, &path, &mut observations, lookout.seeker())?;
+        lookout.has_looked_at(seek(&world, &path, &mut observations, lookout.seeker())?);
     }
     let walk = Walk::new(path, observations);
     let detector = team.lookout().map(Lookout::name);
@@ -201,7 +201,7 @@ pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result
 /// no more is known.
 fn describe_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), Error> {
     let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) else { return Ok(()) };
-    let seen = around(last, &look_around(platform, &path.scene, last)?);
+    let seen = around(last, &labels_at(platform, &path.scene, last, &Gaze::around(last.pose.heading))?);
     if !seen.knows(last) {
         return Ok(());
     }
@@ -215,16 +215,17 @@ fn describe_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScene
 /// # Errors
 /// When a view cannot be had.
 pub fn panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
-    let ahead = |frame: &Frame| platform.look_without_picture(&path.scene, frame, Gaze::quarter(frame.pose.heading));
-    let views = |frame: &Frame| match path.motion {
-        Motion::Known => look_around(platform, &path.scene, frame),
-        Motion::Unknown => ahead(frame).map(|view| vec![view]),
-    };
+    let views = |frame: &Frame| labels_at(platform, &path.scene, frame, &gazes_around(path, frame));
     path.frames.iter().map(views).collect()
 }
 
-fn look_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<View>, PlatformError> {
-    Gaze::around(frame.pose.heading).map(|gaze| platform.look_without_picture(scene, frame, gaze)).into_iter().collect()
+fn labels_at(
+    platform: &dyn Platform,
+    scene: &SceneId,
+    frame: &Frame,
+    gazes: &[Gaze],
+) -> Result<Vec<View>, PlatformError> {
+    gazes.iter().map(|gaze| platform.look_without_picture(scene, frame, *gaze)).collect()
 }
 
 /// The view ahead of each frame.

@@ -72,6 +72,13 @@ fn figures(building: &Building, file: &str, detector: &str, found_from: f32) {
     building.write(file, format!("{head}\n\n[all]\n{rates}\n"));
 }
 
+/// The number of views that a run's walks hold.
+fn looks(building: &Building, run: &str) -> u64 {
+    let walks = building.lines(&format!("{run}/walks.jsonl"));
+    let frames = walks.iter().flat_map(|walk| walk["observations"].as_array().unwrap());
+    frames.map(|frame| frame["looks"].as_array().unwrap().len() as u64).sum()
+}
+
 /// All sightings of a run's walks.
 fn sightings(building: &Building, run: &str) -> Vec<Value> {
     let mut all = Vec::new();
@@ -94,6 +101,11 @@ fn each_view_is_searched_once_and_texts_name_the_detector() {
     assert_eq!((first.code, &summary["errors"]), (Some(0), &0.into()), "{first:?}");
     let (answered, kept) = spent(&summary);
     assert!(answered > 100 && summary["spent"]["usd"] == 0.0, "{summary}");
+    let searched = &summary["detector"];
+    assert!(
+        searched["model"] == owl.as_str() && summary["roles"].as_str().unwrap().contains(&format!("finds by {owl},"))
+    );
+    assert_eq!(searched["views"], looks(&building, "first"), "{summary}");
     for line in building.lines("first/instructions.jsonl") {
         let told = line["provenance"]["detector"].as_str().unwrap();
         let (name, score) = told.split_once(" (").unwrap();
@@ -103,6 +115,7 @@ fn each_view_is_searched_once_and_texts_name_the_detector() {
 
     let second = generate(&building, &owl, "second", &[]).json();
     assert_eq!(spent(&second), (0, answered + kept), "{second}");
+    assert_eq!(&second["detector"], searched, "what the ledger knows is counted too");
     for name in ["walks.jsonl", "instructions.jsonl"] {
         let read = |run: &str| fs::read_to_string(building.path(run).join(name)).unwrap();
         assert_eq!(read("first"), read("second"), "{name}");
@@ -126,11 +139,8 @@ fn phrases_that_meet_are_searched_together() {
         let ran = generate(&building, &name, out, &args);
         let summary = ran.json();
         assert_eq!(summary["errors"], 0, "{ran:?}");
-        let walks = building.lines(&format!("{out}/walks.jsonl"));
-        let frames = walks[0]["observations"].as_array().unwrap();
-        let views: usize = frames.iter().map(|frame| frame["looks"].as_array().unwrap().len()).sum();
         let (answered, kept) = spent(&summary);
-        assert_eq!(answered + kept, views as u64, "one call for each view: {summary}");
+        assert_eq!(answered + kept, looks(&building, out), "one call for each view: {summary}");
     }
 }
 
@@ -260,13 +270,12 @@ fn what_is_no_detector_or_has_none_is_refused_and_leaves_no_folder() {
         (&owl, &["--detector-figures", "nowhere.toml"], "nowhere.toml"),
         (&owl, &["--proposals", "nowhere.txt"], "nowhere.txt"),
         (&owl, &["--device", "cuda"], "--features cuda"),
+        (&owl, &["--memory-gib", "0.1"], "GiB are left"),
     ] {
         let ran = generate(&building, detector, "run", args);
         assert!(ran.refused().contains(told), "{detector} {args:?}: {ran:?}");
         assert!(!building.path("run").exists(), "{detector} {args:?}: {ran:?}");
     }
-    let tight = generate(&building, &owl, "tight", &["--memory-gib", "0.1"]);
-    assert!(tight.refused().contains("GiB"), "{tight:?}");
     for args in [&["--evidence", "detector"], &["--detector-figures", "of_owl.toml"], &["--proposals", "off"]] {
         let ran = building.generate("run", &[&["--paths", "1"], &args[..]].concat());
         assert!(ran.refused().contains("has no effect without a detector"), "{args:?}: {ran:?}");
@@ -347,6 +356,24 @@ fn figures_are_measured_kept_and_taken() {
     let ran = wayword(&building, &[&args[..], &more].concat());
     assert!(ran.out.contains("missed always") && ran.out.contains("with the detector"), "{ran:?}");
     assert!(ran.err.contains("models: 0 calls"), "what was asked once is in the ledger: {ran:?}");
+}
+
+#[test]
+fn what_a_check_looks_at_is_measured_in_four_directions() {
+    let building = building();
+    let headings = |args: &[&str]| {
+        let ran = perceive(&building, &owl(), &[&["--show", "6"], args].concat());
+        let measured = ran.json();
+        let shown = measured["shown"].as_array().unwrap().iter();
+        let headings: BTreeSet<u64> = shown.map(|shown| shown["heading_deg"].as_f64().unwrap() as u64).collect();
+        (headings, measured["detector"]["views"].as_u64().unwrap())
+    };
+    let compass: BTreeSet<u64> = [0, 90, 180, 270].into();
+    let (around, views) = headings(&["--frames", "panoramic"]);
+    assert!(around.len() > 1 && around.is_subset(&compass), "{around:?}");
+    assert!(views % 4 == 0, "the detector looks in all directions, also where labels show nothing: {views}");
+    let ahead = headings(&[]).0;
+    assert!(!ahead.is_subset(&compass), "without the flag it looks along the headings: {ahead:?}");
 }
 
 #[test]
@@ -432,7 +459,22 @@ fn a_check_refuses_what_does_not_fit_its_detector() {
     assert!(ran.refused().contains("and not with"), "{ran:?}");
     assert!(check(&building, &file, "ollama/x", &[]).refused().contains("detectors run inside this program"));
     assert!(check(&building, &file, &fixture("clip"), &[]).refused().contains("model_type clip"));
-    for args in [["--evidence", "detector"], ["--detector-figures", "of_dino.toml"], ["--ledger", "ledger.db"]] {
+    let glip = glip();
+    for (detector, args, told) in [
+        (&owl, ["--memory-gib", "0.1"], "GiB are left"),
+        (&owl, ["--memory-gib", "0"], "--memory-gib is out of range"),
+        (&glip, ["--trust", "0123"], "not 0123, which was given"),
+    ] {
+        let ran = check(&building, &file, detector, &args);
+        assert!(ran.refused().contains(told), "{args:?}: {ran:?}");
+    }
+    for args in [
+        ["--evidence", "detector"],
+        ["--detector-figures", "of_dino.toml"],
+        ["--ledger", "ledger.db"],
+        ["--memory-gib", "8"],
+        ["--trust", "0123"],
+    ] {
         let ran =
             building.wayword(&[&["check", &file, "--platform", "matterport", "--data", "data"], &args[..]].concat());
         assert!(ran.code == Some(2) && ran.err.contains("--detector <MODEL>"), "{args:?}: {ran:?}");
@@ -523,15 +565,16 @@ fn all_agents_walk_by_one_detector_and_views_need_not_be_its() {
 }
 
 #[test]
-fn agents_are_refused_a_detector_that_is_none() {
+fn agents_are_refused_a_detector_that_is_none_or_does_not_fit() {
     let building = building();
-    let clip = fixture("clip");
+    let (clip, owl) = (fixture("clip"), owl());
     for (args, told) in [
         (vec!["--grounder", "detector"], "no detector is named"),
         (vec!["--grounder", "detector", "--detector", "ollama/x"], "detectors run inside this program"),
         (vec!["--grounder", "detector", "--detector", &clip], "model_type clip"),
         (vec!["--grounder", &clip], "glip-nav needs a detector"),
         (vec!["--grounder", "hf/org/name:none.pth"], "none.pth"),
+        (vec!["--grounder", "detector", "--detector", &owl, "--memory-gib", "0.1"], "GiB are left"),
     ] {
         let ran = compare(&building, "walked", &args);
         assert!(ran.refused().contains(told), "{args:?}: {ran:?}");

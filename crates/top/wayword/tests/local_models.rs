@@ -59,6 +59,7 @@ fn what_does_not_fit_or_is_none_is_refused_before_anything_is_asked() {
     let eye = eye();
     let tight = generate(&building, &eye, "tight", &["--memory-gib", "0.1"]);
     assert!(tight.refused().contains("GiB are left"), "{tight:?}");
+    assert!(!building.path("tight").exists());
     let cuda = generate(&building, &eye, "cuda", &["--device", "cuda"]);
     assert!(cuda.refused().contains("--features cuda"), "{cuda:?}");
     for (at, (name, told)) in [

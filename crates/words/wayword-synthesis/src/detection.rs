@@ -3,22 +3,19 @@
 //! What it found is seen, with its box. What captions named and it did not find becomes doubtful or is struck out, by what is
 //! known of its recall ([`DetectorFigures`]). What was proposed and not found is left out.
 
+mod finds;
 mod nouns;
+mod testimony;
 
 pub use nouns::{listed, usual};
 
-use crate::{
-    dialogue::{RulesSummariser, Summariser},
-    observe::{CONDENSED_WORDS, ObserveError},
-    seeing::caption_text,
-};
+use crate::observe::{ObserveError, gazes_around};
+use finds::{Seen, views};
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_checks::detected::{DetectorFigures, Judged, judge};
-use wayword_core::{
-    Caption, Detector, Look, ModelError, Observation, Path, Platform, PlatformError, Sighting, Spot, View, Where,
-    Witness, apart,
-};
-use wayword_language::lexicon::{agree, normal, thing};
+use testimony::{Purpose, testify};
+use wayword_checks::detected::DetectorFigures;
+use wayword_core::{Caption, Detector, Gaze, Look, Observation, Path, Platform, Sighting, View, Witness};
+use wayword_language::lexicon::{normal, thing};
 
 /// What looks for things, and what is known of it.
 #[derive(Clone, Copy)]
@@ -37,36 +34,11 @@ const NAMED: f64 = 0.7;
 const CLAIMED: f64 = 0.5;
 const PROPOSED: f64 = 0.01;
 
-/// Boxes that share more of what they cover together are of the same thing.
-const SAME: f64 = 0.5;
-
-/// A view of an observation's look.
-struct Seen {
-    frame: usize,
-    look: usize,
-    view: View,
-}
-
 /// What is looked for: how it is called, and how probable it is beforehand.
 type Wanted = BTreeMap<String, f64>;
 
-/// What the finds are for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Purpose {
-    /// Captions are corrected and completed.
-    Captions,
-    /// Claims are judged of which no caption tells.
-    Claims,
-}
-
-/// The frame and the number of a look.
-type Place = (usize, usize);
-type Places = BTreeSet<Place>;
-
-/// The finds of one name, look by look.
-type Finds = BTreeMap<Place, Vec<Spot>>;
-
-/// Looks for what captions named and for what is proposed, in every view that was captioned, and corrects the captions.
+/// Looks for what captions named and for what is proposed, in every view that was captioned, and corrects the captions. Gives
+/// the number of views that the detector looked at.
 ///
 /// # Errors
 /// When a view cannot be had, or the detector fails.
@@ -75,28 +47,49 @@ pub fn seek(
     path: &Path,
     observations: &mut [Observation],
     seeker: Seeker<'_>,
-) -> Result<(), ObserveError> {
-    let mut wanted: Wanted = seeker.nouns.iter().map(|noun| (normal(noun), PROPOSED)).collect();
-    wanted.extend(named(observations));
-    testify(platform, path, observations, seeker, &wanted, Purpose::Captions)
+) -> Result<usize, ObserveError> {
+    let seen = views(platform, path, observations)?;
+    correct(&seen, observations, seeker)
 }
 
-/// Looks for what texts claim along a path of which nothing else is known: captions without words. `looks` holds the views
-/// of each frame.
+/// The same for the caption of one view that is at hand.
+///
+/// # Errors
+/// When it has no picture, or the detector fails.
+pub fn seek_in(view: &View, caption: Caption, seeker: Seeker<'_>) -> Result<Caption, ObserveError> {
+    let gaze = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
+    let mut observation = Observation { looks: vec![Look { gaze, caption }], ..Observation::default() };
+    let seen = view.image.is_some().then(|| Seen { frame: 0, look: 0, view: view.clone() });
+    correct(seen.as_slice(), std::slice::from_mut(&mut observation), seeker)?;
+    Ok(observation.looks.pop().map(|look| look.caption).unwrap_or_default())
+}
+
+fn correct(seen: &[Seen], observations: &mut [Observation], seeker: Seeker<'_>) -> Result<usize, ObserveError> {
+    let mut wanted: Wanted = seeker.nouns.iter().map(|noun| (normal(noun), PROPOSED)).collect();
+    wanted.extend(named(observations));
+    testify(seen, observations, seeker, &wanted, Purpose::Captions)?;
+    Ok(if wanted.is_empty() { 0 } else { seen.len() })
+}
+
+/// Looks for what texts claim all around the frames of a path of which nothing else is known: captions without words.
 ///
 /// # Errors
 /// When a view cannot be had, or the detector fails.
 pub fn seek_claims(
     platform: &dyn Platform,
     path: &Path,
-    looks: Vec<Vec<Look>>,
     claims: &BTreeSet<String>,
     seeker: Seeker<'_>,
 ) -> Result<Vec<Observation>, ObserveError> {
-    let mut observations: Vec<Observation> =
-        looks.into_iter().map(|looks| Observation { looks, ..Observation::default() }).collect();
+    let look = |gaze| Look { gaze, caption: Caption::default() };
+    let around = |frame| Observation {
+        looks: gazes_around(path, frame).into_iter().map(look).collect(),
+        ..Observation::default()
+    };
+    let mut observations: Vec<Observation> = path.frames.iter().map(around).collect();
     let wanted = claims.iter().map(|claim| (normal(claim), CLAIMED)).collect();
-    testify(platform, path, &mut observations, seeker, &wanted, Purpose::Claims)?;
+    let seen = views(platform, path, &observations)?;
+    testify(&seen, &mut observations, seeker, &wanted, Purpose::Claims)?;
     Ok(observations)
 }
 
@@ -129,191 +122,6 @@ fn named(observations: &[Observation]) -> Wanted {
         }
     }
     wanted
-}
-
-fn testify(
-    platform: &dyn Platform,
-    path: &Path,
-    observations: &mut [Observation],
-    seeker: Seeker<'_>,
-    wanted: &Wanted,
-    purpose: Purpose,
-) -> Result<(), ObserveError> {
-    let seen = views(platform, path, observations)?;
-    if seen.is_empty() && purpose == Purpose::Captions {
-        return Err(ModelError::NothingToSee {
-            name: seeker.detector.name().to_owned(),
-            needs: "a picture",
-            hint: "use a platform or data folder with pictures, or leave --detector out",
-        }
-        .into());
-    }
-    if seen.is_empty() || wanted.is_empty() {
-        return Ok(());
-    }
-    let names: Vec<&str> = wanted.keys().map(String::as_str).collect();
-    let finds = finds(&seen, &names, seeker)?;
-    let (by, looked_at) = (seeker.detector.name(), seen.iter().map(|seen| (seen.frame, seen.look)).collect());
-    let was: Vec<Vec<Sighting>> = looks(observations).map(|look| look.caption.sightings.clone()).collect();
-    for ((name, before), finds) in wanted.iter().zip(finds) {
-        let judged = judge(seeker.figures.of(name), &frames(&seen, &finds), *before);
-        let is_proposal = *before <= PROPOSED;
-        match (judged, purpose) {
-            (Judged::There, _) => found(observations, name, &finds, &looked_at, by),
-            _ if is_proposal => {}
-            (Judged::Absent, Purpose::Captions) => struck_out(observations, name, by),
-            (Judged::Open, Purpose::Captions) => doubted(observations, name, &finds, &looked_at, by),
-            (Judged::Absent, Purpose::Claims) => said_of_all(observations, name, Witness::Denied, by),
-            (Judged::Open, Purpose::Claims) => said_of_all(observations, name, Witness::Unsure, by),
-        }
-    }
-    if purpose == Purpose::Captions {
-        let mut was = was.into_iter();
-        observations.iter_mut().try_for_each(|observation| retell(observation, &mut was))?;
-    }
-    Ok(())
-}
-
-fn looks(observations: &mut [Observation]) -> impl Iterator<Item = &mut Look> {
-    observations.iter_mut().flat_map(|seen| &mut seen.looks)
-}
-
-/// The pictures of all looks. A look without one is left out: the detector cannot have missed anything there.
-fn views(platform: &dyn Platform, path: &Path, observations: &[Observation]) -> Result<Vec<Seen>, PlatformError> {
-    let mut seen = Vec::new();
-    for (frame, (at, observation)) in path.frames.iter().zip(observations).enumerate() {
-        for (look, gaze) in observation.looks.iter().map(|look| look.gaze).enumerate() {
-            let view = platform.look(&path.scene, at, gaze)?;
-            seen.extend(view.image.is_some().then_some(Seen { frame, look, view }));
-        }
-    }
-    Ok(seen)
-}
-
-/// The finds of each name.
-fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result<Vec<Finds>, ModelError> {
-    let views: Vec<&View> = seen.iter().map(|seen| &seen.view).collect();
-    let mut found: Vec<Finds> = vec![Finds::new(); names.len()];
-    let answers = seeker.detector.detect(&views, names);
-    if answers.len() != views.len() {
-        let model = seeker.detector.name().to_owned();
-        return Err(ModelError::Failed { model, reason: "it gave no answer".to_owned() });
-    }
-    for (seen, answer) in seen.iter().zip(answers) {
-        let width_px = seen.view.image.as_ref().map_or(0, |image| image.width_px());
-        for (finds, boxes) in found.iter_mut().zip(answer?) {
-            let sure = boxes.into_iter().filter(|found| found.score >= seeker.figures.found_from);
-            let spots: Vec<Spot> =
-                apart(sure, SAME).map(|found| Spot::new(found, width_px, seen.view.horizontal_fov_rad)).collect();
-            if !spots.is_empty() {
-                finds.insert((seen.frame, seen.look), spots);
-            }
-        }
-    }
-    Ok(found)
-}
-
-/// For each frame that was looked at, whether the name was found from it.
-fn frames(seen: &[Seen], finds: &Finds) -> Vec<bool> {
-    let looked_at: BTreeSet<usize> = seen.iter().map(|seen| seen.frame).collect();
-    looked_at.iter().map(|frame| finds.keys().any(|(of, _)| of == frame)).collect()
-}
-
-/// The sightings of that name.
-fn of<'a>(caption: &'a mut Caption, name: &'a str) -> impl Iterator<Item = &'a mut Sighting> {
-    caption.sightings.iter_mut().filter(move |sighting| normal(&sighting.name) == name)
-}
-
-/// It is there: it is seen wherever it was found.
-fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
-    each(observations, looked_at, |at, look| {
-        let Some(spots) = finds.get(&at) else {
-            // It is somewhere along the path; who saw it here may be wrong all the same.
-            doubt(look, name, by);
-            return;
-        };
-        let best = spots[0];
-        let place = Some(Where::at(best.off_rad, look.gaze.horizontal_fov_rad));
-        let mut is_named = false;
-        for sighting in of(&mut look.caption, name) {
-            is_named = true;
-            (sighting.witness, sighting.place, sighting.spot) = (Witness::Seen, place, Some(best));
-        }
-        // A more exact name for it was perhaps said ("dining table"): it stays, and nothing is said twice.
-        let is_said = |sighting: &Sighting| sighting.witness == Witness::Seen && agree(&sighting.name, name);
-        if !is_named && !look.caption.sightings.iter().any(is_said) {
-            let several = spots.len() > 1;
-            let spot = Some(best);
-            look.caption.sightings.push(Sighting { place, spot, several, ..Sighting::new(name, Witness::Seen, by) });
-        }
-    });
-}
-
-/// It is nowhere: whoever named it was wrong.
-fn struck_out(observations: &mut [Observation], name: &str, by: &str) {
-    for look in looks(observations) {
-        for sighting in of(&mut look.caption, name) {
-            *sighting = Sighting::new(name, Witness::Denied, by);
-        }
-    }
-}
-
-/// It may be there: where a caption saw it and the detector did not, that is a guess.
-fn doubted(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
-    each(observations, looked_at, |at, look| {
-        if !finds.contains_key(&at) {
-            doubt(look, name, by);
-        }
-    });
-}
-
-/// What the detector says of a claim, in every look.
-fn said_of_all(observations: &mut [Observation], name: &str, witness: Witness, by: &str) {
-    looks(observations).for_each(|look| look.caption.sightings.push(Sighting::new(name, witness, by)));
-}
-
-fn doubt(look: &mut Look, name: &str, by: &str) {
-    for sighting in of(&mut look.caption, name).filter(|sighting| sighting.witness == Witness::Seen) {
-        sighting.witness = Witness::Unsure;
-        by.clone_into(&mut sighting.by);
-    }
-}
-
-/// Changes the looks at which the detector looked.
-fn each(observations: &mut [Observation], looked_at: &Places, mut change: impl FnMut(Place, &mut Look)) {
-    for (frame, look) in looked_at {
-        if let Some(found) = observations.get_mut(*frame).and_then(|seen| seen.looks.get_mut(*look)) {
-            change((*frame, *look), found);
-        }
-    }
-}
-
-/// What a detector changed is told again by rules, so that no words name what the caption does not hold. `was` gives the
-/// sightings of each look as they were.
-fn retell(observation: &mut Observation, was: &mut impl Iterator<Item = Vec<Sighting>>) -> Result<(), ModelError> {
-    let mut is_changed = false;
-    for (look, was) in observation.looks.iter_mut().zip(was) {
-        let caption = &mut look.caption;
-        if caption.sightings == was {
-            continue;
-        }
-        is_changed = true;
-        caption.text = caption_text(caption.room.as_deref(), &caption.perhaps_rooms, &caption.sightings, &caption.ways);
-        if !caption.is_structured {
-            caption.by = Some(RulesSummariser.name().to_owned());
-        }
-    }
-    if !is_changed {
-        return Ok(());
-    }
-    if let [only] = &observation.looks[..] {
-        observation.summary.clone_from(&only.caption.text);
-        return Ok(());
-    }
-    let captions: Vec<(&str, &Caption)> = observation.looks.iter().map(|look| ("", &look.caption)).collect();
-    observation.summary = RulesSummariser.condense(&captions, CONDENSED_WORDS)?.text;
-    observation.by = Some(RulesSummariser.name().to_owned());
-    Ok(())
 }
 
 #[cfg(test)]

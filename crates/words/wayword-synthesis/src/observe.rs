@@ -6,7 +6,7 @@ use crate::{
     walk::FrameSelection,
 };
 use wayword_core::{
-    AnswerForm, Answerer, Ask, Caption, Exchange, Frame, Gaze, Look, ModelError, Observation, Path, Platform,
+    AnswerForm, Answerer, Ask, Caption, Exchange, Frame, Gaze, Look, ModelError, Motion, Observation, Path, Platform,
     PlatformError, Side, View, Witness,
 };
 
@@ -145,6 +145,16 @@ pub fn gazes(frame: &Frame, selection: FrameSelection) -> Vec<Gaze> {
     match selection {
         FrameSelection::Central => vec![Gaze::quarter(frame.pose.heading)],
         FrameSelection::Panoramic => Gaze::compass().to_vec(),
+    }
+}
+
+/// Where to look all around a frame: ahead, right, behind, left. Only ahead if the motion is unknown, because nothing says then
+/// where the other directions are.
+#[must_use]
+pub fn gazes_around(path: &Path, frame: &Frame) -> Vec<Gaze> {
+    match path.motion {
+        Motion::Known => Gaze::around(frame.pose.heading).to_vec(),
+        Motion::Unknown => vec![Gaze::quarter(frame.pose.heading)],
     }
 }
 

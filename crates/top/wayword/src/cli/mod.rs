@@ -1,5 +1,6 @@
 //! The command line as the user types it.
 
+mod check;
 mod compare;
 mod doctor;
 mod evaluate;
@@ -9,14 +10,12 @@ mod perceive;
 mod similarity;
 mod view;
 
-use crate::{
-    settings::{Asked, AskedPlatform, Sources},
-    styles,
-};
-use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
+use crate::settings::{Asked, AskedPlatform};
+use clap::{Args, Parser, Subcommand, builder::PossibleValuesParser};
 use std::path::PathBuf;
 use wayword_formats::Format;
 
+pub use check::{AskedWorld, Check, Detecting};
 pub use compare::{AskedPrior, Compare, SuccessRule, SwapName};
 pub use doctor::Doctor;
 pub use evaluate::Evaluate;
@@ -149,54 +148,6 @@ pub struct Generate {
     pub asked: Asked,
 }
 
-/// `wayword check`.
-#[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  wayword check REVERIE_val_seen.json --platform matterport --data DATA --style reverie
-  wayword check R2R_val_seen.json --platform matterport --data DATA --style r2r --json
-  wayword check runs/houses/instructions.jsonl --platform house --style r2r
-  wayword check edited.json --run runs/houses")]
-pub struct Check {
-    /// File of instructions: R2R, REVERIE, RxR or Wayword.
-    pub file: PathBuf,
-    /// The platform.
-    #[command(flatten)]
-    pub platform: AskedPlatform,
-    /// Check against what this run saw: its folder has the paths and their captions, so no platform is needed. For texts of a run
-    /// that somebody changed after `wayword export`. A text is held against a closed world where captions were the run's
-    /// evidence; labels are not kept in a run, so what the captions lack is unverified there.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["platform", "data", "at", "island", "calibration"])]
-    pub run: Option<PathBuf>,
-    /// Check that every text keeps to this style. Without it, a text written by Wayword is checked against the built-in style that
-    /// it was written in, and any other text only against its path.
-    #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
-    pub style: Option<String>,
-    /// What the evidence does not show is wrong in a closed world. In an open one, it counts only if the evidence would have shown
-    /// it.
-    #[arg(long, value_name = "WORLD", value_enum, default_value_t)]
-    pub world: AskedWorld,
-    /// Let a text fail although another text about the same path says the same.
-    #[arg(long)]
-    pub no_witnesses: bool,
-    /// Do not follow the texts: no check of where they lead, of their turns in an open world, and of how many places they
-    /// may mean.
-    #[arg(long)]
-    pub no_route: bool,
-    /// Let a text fail that may mean several places, or several objects at the end of its path.
-    #[arg(long, conflicts_with = "no_route")]
-    pub reject_ambiguous: bool,
-    /// Shares by the names of objects and rooms that `wayword calibrate` made.
-    #[arg(long, value_name = "FILE")]
-    pub calibration: Option<PathBuf>,
-    /// A detector that looks for what the texts name.
-    #[command(flatten)]
-    pub detecting: Detecting,
-    /// Show at most this many of the instructions that did not pass.
-    #[arg(long, value_name = "N", default_value_t = 10)]
-    pub show: usize,
-}
-
 /// `wayword calibrate`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
@@ -213,41 +164,6 @@ pub struct Calibrate {
     /// File to write.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-}
-
-/// The detector of `wayword check`.
-#[derive(Debug, Default, Args)]
-#[command(next_help_heading = "Detector")]
-pub struct Detecting {
-    /// Look for the things that the texts name in the pictures along their paths, where the platform has no labels: a model as
-    /// hf/ORG/NAME, which runs inside this program.
-    #[arg(long, value_name = "MODEL", conflicts_with = "run")]
-    pub detector: Option<String>,
-    /// What `wayword perceive --detector` measured of it. Without it nothing that it misses is taken to be absent.
-    #[arg(long, value_name = "FILE", requires = "detector")]
-    pub detector_figures: Option<PathBuf>,
-    /// What counts: labels, detector, or both separated by a comma (the detector where there are no labels).
-    /// [default: labels,detector]
-    #[arg(long, value_name = "SOURCES", requires = "detector")]
-    pub evidence: Option<Sources>,
-    /// Device that it runs on: cpu, cuda, cuda:1 or metal. [default: cpu]
-    #[arg(long, value_name = "DEVICE", requires = "detector")]
-    pub device: Option<String>,
-    /// File of the ledger, which keeps what it found. [default: wayword/ledger.db in the data folder of your system]
-    #[arg(long, value_name = "FILE", requires = "detector")]
-    pub ledger: Option<PathBuf>,
-}
-
-/// The world that texts are held against, as the user asks for it.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum AskedWorld {
-    /// Closed for texts that were written from the evidence at hand, open for all others.
-    #[default]
-    Auto,
-    /// Open for all texts.
-    Open,
-    /// Closed for all texts.
-    Closed,
 }
 
 /// `wayword export`.

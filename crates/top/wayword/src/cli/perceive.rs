@@ -1,6 +1,6 @@
 //! `wayword perceive` as the user types it.
 
-use crate::settings::{Asked, AskedPlatform, AskedRoles, Draw, Perception, Service, Walks, Writing};
+use crate::settings::{Asked, AskedPlatform, AskedRoles, Draw, Frames, Perception, Service, Walks, Writing};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -12,8 +12,9 @@ Examples:
       Compare fixed queries, a single request, the structured request and the dialogue on the same 100 views, and say
       which pays.
   wayword perceive --platform matterport --data DATA --see openai/gpt-4.1-mini --perception single --max-usd 1
-  wayword perceive --platform matterport --data DATA --detector hf/google/owlv2-base-patch16-ensemble --figures owl.toml
-      How much of what the labels list a detector finds, and how often it finds what is not there.
+  wayword perceive --platform matterport --data DATA --detector hf/google/owlv2-base-patch16-ensemble \\
+      --frames panoramic --figures owl.toml
+      How much of what the labels list a detector finds, and how often it finds what is not there, in four directions.
   wayword perceive --perception dialogue --show 5
       Without a model: ground-truth labels answer, and rules ask and summarise.")]
 pub struct Perceive {
@@ -32,6 +33,9 @@ pub struct Perceive {
     /// Use only this scene. May be given several times.
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<Vec<String>>,
+    /// At each frame, look along the heading, or in all four directions, as `check` does with a detector. [default: central]
+    #[arg(long)]
+    pub frames: Option<Frames>,
     /// Use only this kind of perception. May be given several times. [default: all; a model in process is not asked for JSON]
     #[arg(long)]
     pub perception: Option<Vec<Perception>>,
@@ -62,7 +66,7 @@ impl Perceive {
         Asked {
             platform: self.platform.clone(),
             walks: Walks { episodes: self.episodes.clone(), scan: self.scan.clone(), ..Walks::default() },
-            writing: Writing { questions: self.questions, ..Writing::default() },
+            writing: Writing { frames: self.frames, questions: self.questions, ..Writing::default() },
             draw: Draw { seed: self.seed, ..Draw::default() },
             roles: self.roles.clone(),
             service: self.service.clone(),

@@ -27,7 +27,7 @@ use crate::{
 };
 
 pub use check::{AmbiguousText, CheckReport, CheckedText, Counts, How, check_file, checked};
-pub use generate::{Summary, generate_into};
+pub use generate::{Searched, Summary, generate_into};
 pub use perceive::{Extent, Measured, OfDetector, Row, measure_detector, perceive};
 
 /// Runs a command.

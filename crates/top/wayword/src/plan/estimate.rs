@@ -99,9 +99,9 @@ impl Estimate {
         Self::of_items(plan, plan.items.iter())
     }
 
-    /// All calls.
-    pub(super) fn calls(&self) -> u64 {
-        self.models.iter().map(|asked| asked.calls).sum()
+    /// All calls, with those of a detector for each view.
+    pub(super) fn calls(&self, per_view: u64) -> u64 {
+        self.models.iter().map(|asked| asked.calls).sum::<u64>() + per_view * self.views as u64
     }
 
     /// The same for some of the items.

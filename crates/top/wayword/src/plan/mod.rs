@@ -8,7 +8,7 @@ use crate::{
     calls::Calls,
     error::Error,
     item::{Item, check_names, items},
-    looking_for,
+    looking_for::{self, Lookout},
     output::Output,
     settings::{Job, Settings},
     styles::{self, Measured},
@@ -66,13 +66,14 @@ impl<'a> Plan<'a> {
         Ok(Settings { inputs: inputs::inputs(self.job, &self.styles)?, ..self.job.settings.clone() })
     }
 
-    /// How many calls an item takes, if nothing is asked twice: the mean of the first few of these.
+    /// How many calls an item takes, if nothing is asked twice: the mean of the first few of these. A detector looks at each view.
     ///
     /// # Errors
     /// When a prompt cannot be used.
-    pub fn calls_per_item(&self, items: &[&Item]) -> Result<f64, Error> {
+    pub fn calls_per_item(&self, items: &[&Item], lookout: Option<&Lookout>) -> Result<f64, Error> {
         let few = &items[..items.len().min(FEW)];
-        Ok(Estimate::of_items(self, few.iter().copied())?.calls() as f64 / few.len().max(1) as f64)
+        let calls = Estimate::of_items(self, few.iter().copied())?.calls(lookout.map_or(0, Lookout::calls_per_view));
+        Ok(calls as f64 / few.len().max(1) as f64)
     }
 
     /// What the run would ask of models, and what that would cost.
@@ -100,14 +101,12 @@ impl<'a> Models<'a> {
         Ok(Self { job, prices: Calls::rehearse(job)? })
     }
 
-    /// Opens the way to the models; `None` if there are none. `run` gives the name of the run that the calls belong to.
-    /// It is called only if there are models: without them nothing is spent, and the same run gives the same folder
-    /// byte for byte.
+    /// Opens the way to the models; `None` if there are none. `run` is the name of the run that the calls belong to.
     ///
     /// # Errors
-    /// When the run has no name, or the ledger cannot be opened.
-    pub fn open(&self, run: impl FnOnce() -> Result<String, Error>, output: &Output) -> Result<Option<Calls>, Error> {
-        if self.prices.is_empty() { Ok(None) } else { Calls::open(self.job, &run()?, output) }
+    /// When the ledger cannot be opened.
+    pub fn open(&self, run: &str, output: &Output) -> Result<Option<Calls>, Error> {
+        if self.prices.is_empty() { Ok(None) } else { Calls::open(self.job, run, output) }
     }
 
     /// What a model costs, if that is known.

@@ -28,8 +28,7 @@ use std::{
 };
 use wayword_world::files;
 
-use held::Held;
-pub(crate) use held::hold;
+pub(crate) use held::{Held, hold};
 pub use journal::{Journal, read_lines};
 pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, text_name};
 pub use world_data::WorldData;
@@ -102,14 +101,6 @@ impl RunFolder {
         })
     }
 
-    /// The name under which the ledger keeps the run's spending.
-    ///
-    /// # Errors
-    /// When it cannot be read or written.
-    pub fn id(&self) -> Result<String, Error> {
-        id_of(&self.folder, "run")
-    }
-
     /// Where pictures of frames go.
     #[must_use]
     pub fn frames(&self) -> PathBuf {
@@ -174,19 +165,32 @@ impl RunFolder {
     }
 }
 
-/// The name under which the ledger keeps a folder's spending: made when it is first asked for, and kept in the folder.
+/// The name under which the ledger keeps a folder's spending: the one that the folder keeps, else a new one. Nothing is
+/// written, so that models can be loaded before the folder is made; [`keep_id`] writes it.
 /// A new run in place of a deleted one has another name, so it starts without spending.
 ///
 /// # Errors
-/// When it cannot be read or written.
+/// When it cannot be read.
 pub(crate) fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
-    let path = folder.join(file::ID);
-    if path.exists() {
-        return Ok(text_file::read(&path, "read the run's name")?.trim().to_owned());
+    Ok(kept_id(folder)?.unwrap_or_else(|| fresh_id(kind)))
+}
+
+/// Keeps in a folder the name under which the ledger keeps its spending.
+///
+/// # Errors
+/// When it cannot be read or written, or another process has kept its own since [`id_of`] gave this one.
+pub(crate) fn keep_id(folder: &Path, id: &str) -> Result<(), Error> {
+    match kept_id(folder)? {
+        None => write_whole(&folder.join(file::ID), id),
+        Some(kept) if kept == id => Ok(()),
+        Some(_) => Err(Error::Busy(folder.to_owned())),
     }
-    let id = fresh_id(kind);
-    write_whole(&path, &id)?;
-    Ok(id)
+}
+
+fn kept_id(folder: &Path) -> Result<Option<String>, Error> {
+    let path = folder.join(file::ID);
+    let read = || text_file::read(&path, "read the run's name");
+    if path.exists() { Ok(Some(read()?.trim().to_owned())) } else { Ok(None) }
 }
 
 /// The items in `errors.jsonl`.

@@ -144,7 +144,7 @@ impl Perception {
         matches!(self, Self::Structured | Self::FollowUp)
     }
 
-    /// How a model, or labels, are asked where nobody says.
+    /// How a model, or labels, are asked where the settings do not say.
     fn of(see: &str) -> Self {
         if is_model(see) && !is_in_process(see) { Self::Structured } else { Self::Dialogue }
     }
@@ -213,7 +213,7 @@ impl Asked {
         Ok(Job { settings, service, providers })
     }
 
-    /// Resolves it; what nobody asked for gets its default.
+    /// Resolves it; what is not asked for gets its default.
     ///
     /// # Errors
     /// When a range cannot be read, or two settings exclude each other.
@@ -237,7 +237,7 @@ impl Asked {
         }
         if writing.reject_ambiguous == Some(true) && writing.no_route == Some(true) {
             return Err(Error::usage(
-                "--reject-ambiguous and --no-route cannot be combined: a text that nobody follows is not known to be ambiguous",
+                "--reject-ambiguous and --no-route cannot be combined: a text that is not followed is not known to be ambiguous",
                 "give one of them",
             ));
         }

@@ -6,9 +6,9 @@ use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Who answers from ground-truth labels.
+/// The name of the role that answers from ground-truth labels.
 pub const LABELS: &str = "labels";
-/// Who works by rules.
+/// The name of a role that works by rules.
 pub const RULES: &str = "rules";
 
 /// Default for the longer side of the pictures that models are sent, pixels.
@@ -45,8 +45,8 @@ group! {
         /// --write openai/gpt-4.1-mini --write-sees. A provider that takes no pictures is refused.
         #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
         pub write_sees: Option<bool>,
-        /// Who writes the instruction if all texts of the model failed a check: rules, or nobody (it is rejected). The provenance
-        /// says who wrote it. [default: rules]
+        /// What happens if all texts of the model failed a check: rules write the instruction, or with `nobody` it is rejected. The
+        /// provenance names the writer. [default: rules]
         #[arg(long)]
         pub finish: Option<Finish>,
         /// Base URL of the provider. For several providers use [providers.NAME] in the settings file.
@@ -77,11 +77,11 @@ pub enum Precision {
     F16,
 }
 
-/// Who writes if all of a model's texts failed.
+/// What happens if all of a model's texts failed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Finish {
-    /// The writer that works by rules.
+    /// The writer that works by rules finishes.
     #[default]
     Rules,
     /// The instruction is rejected.
@@ -100,13 +100,13 @@ pub struct Roles {
     pub summarise: String,
     /// Who writes.
     pub write: String,
-    /// Who looks for things in the pictures, if anybody does.
+    /// The detector that looks for things in the pictures; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detector: Option<String>,
     /// Whether the model that writes is shown the pictures of the frames.
     #[serde(default, skip_serializing_if = "is_false")]
     pub write_sees: bool,
-    /// Who writes if all texts of a model failed.
+    /// What happens if all texts of a model failed.
     pub finish: Finish,
     /// Base URL, if there is one provider.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -149,7 +149,7 @@ impl AskedRoles {
         self.over(file)
     }
 
-    /// Resolves it; what nobody asked for gets its default.
+    /// Resolves it; what is not asked for gets its default.
     ///
     /// # Errors
     /// When a name is neither built in nor provider/model.

@@ -2,8 +2,8 @@ use super::*;
 use std::sync::Arc;
 use wayword_checks::{Evidence, Source, Subject, check, detected::Rates};
 use wayword_core::{
-    Check, DVec3, Exchange, Found, Frame, Gaze, Image, Motion, ObjectId, PathRequest, SceneId, Scoring, Style, Verdict,
-    ViewpointGraph, ViewpointId, path::Stop,
+    Check, DVec3, Exchange, Found, Frame, Image, ModelError, Motion, ObjectId, PathRequest, PlatformError, SceneId,
+    Scoring, Style, Verdict, ViewpointGraph, ViewpointId, Where, path::Stop,
 };
 
 /// Three frames straight ahead, with a picture each.
@@ -149,16 +149,11 @@ fn proposals_are_added_where_they_were_found_often_enough_and_else_left_out() {
 #[test]
 fn claims_about_a_path_that_nobody_described_pass_fail_or_stay_open() {
     let path = path();
-    let looks: Vec<Vec<Look>> = path
-        .frames
-        .iter()
-        .map(|frame| vec![Look { gaze: Gaze::quarter(frame.pose.heading), caption: Caption::default() }])
-        .collect();
     let claims = ["sofa", "piano", "lamp"].map(str::to_owned).into();
     let mut figures = figures();
     figures.names.insert("lamp".into(), Rates { found: 600, missed_again: 70, ..figures.all.clone() });
     let seeker = Seeker { detector: &Finds(vec![("sofa", vec![0, 1])]), figures: &figures, nouns: &[] };
-    let seen = seek_claims(&Corridor, &path, looks, &claims, seeker).unwrap();
+    let seen = seek_claims(&Corridor, &path, &claims, seeker).unwrap();
     let evidence = Evidence::from_detector(&path, &seen).unwrap();
     assert_eq!(evidence.source, Source::Detector);
     let style = Style { name: "s".into(), ..Style::default() };
@@ -171,5 +166,19 @@ fn claims_about_a_path_that_nobody_described_pass_fail_or_stay_open() {
         let checked = check(text, Subject::closed(&evidence, &style, None));
         let places = checked.findings.iter().filter(|finding| finding.check == Check::Landmarks);
         assert_eq!(places.map(|finding| finding.verdict).max(), Some(wanted), "{text}");
+    }
+}
+
+#[test]
+fn claims_are_looked_for_all_around_where_it_is_known_where_that_is() {
+    let claims = ["sofa".to_owned()].into();
+    let (finds, figures) = (Finds(Vec::new()), figures());
+    for (motion, directions) in [(Motion::Known, 4), (Motion::Unknown, 1)] {
+        let path = Path { motion, ..path() };
+        let seeker = Seeker { detector: &finds, figures: &figures, nouns: &[] };
+        let seen = seek_claims(&Corridor, &path, &claims, seeker).unwrap();
+        let looks: Vec<usize> = seen.iter().map(|seen| seen.looks.len()).collect();
+        assert_eq!(looks, [directions; 3]);
+        assert_eq!(seen[0].looks[0].gaze, Gaze::quarter(path.frames[0].pose.heading), "ahead comes first");
     }
 }

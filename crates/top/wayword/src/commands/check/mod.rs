@@ -12,12 +12,12 @@ use crate::{
     cli::{AskedWorld, Check as Args},
     error::{Error, Exit},
     follow::{Followed, KnownScenes, Told, rejection},
+    looking_for::Lookout,
     output::Output,
     pipeline::panoramas,
     platforms::{self, Remembering},
     settings::{Asked, Settings, Sources},
 };
-use detecting::Eyes;
 use held::Held;
 use rayon::prelude::*;
 use report::Shown;
@@ -52,9 +52,9 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
         return of_run::check_file(&args.file, run, how);
     }
     let settings = Asked::from(args.platform.clone()).resolve()?;
-    let eyes = Eyes::open(&args.detecting, &settings, output)?;
+    let lookout = detecting::lookout(&args.detecting, output)?;
     let sources = args.detecting.evidence.unwrap_or(Sources::usual(true));
-    check_by(&args.file, &settings, how, (eyes.as_ref(), sources), output)
+    check_by(&args.file, &settings, how, (lookout.as_ref(), sources), output)
 }
 
 /// How the texts of a file are checked.
@@ -87,7 +87,7 @@ fn check_by(
     file: &FilePath,
     settings: &Settings,
     how: How<'_>,
-    (eyes, sources): (Option<&Eyes>, Sources),
+    (lookout, sources): (Option<&Lookout>, Sources),
     output: &Output,
 ) -> Result<CheckReport, Error> {
     let platform = platforms::open(settings)?;
@@ -98,7 +98,7 @@ fn check_by(
         platform: platform.as_ref(),
         held: &held,
         how,
-        eyes,
+        lookout,
         sources,
         calibration: calibration.as_ref(),
         scenes: KnownScenes::new(),
@@ -142,7 +142,7 @@ struct Checking<'a> {
     held: &'a Held,
     how: How<'a>,
     /// What looks for what the texts name.
-    eyes: Option<&'a Eyes>,
+    lookout: Option<&'a Lookout>,
     /// Whether labels count, and the detector.
     sources: Sources,
     calibration: Option<&'a Calibration>,
@@ -151,12 +151,12 @@ struct Checking<'a> {
 
 impl Checking<'_> {
     fn check(&self, walk: &Walk) -> Result<CheckedWalk, Error> {
-        let Self { platform, how, eyes, sources, .. } = *self;
+        let Self { platform, how, lookout, sources, .. } = *self;
         let world = Remembering::new(platform);
         let views = panoramas(&world, &walk.path)?;
         let labels = if sources.labels { Evidence::from_labels(&walk.path, &views) } else { None };
-        let detected = match eyes.filter(|_| labels.is_none() && sources.detector) {
-            Some(eyes) => eyes.evidence(&world, walk)?,
+        let detected = match lookout.filter(|_| labels.is_none() && sources.detector) {
+            Some(lookout) => detecting::evidence(lookout, &world, walk)?,
             None => None,
         };
         let mut evidence = labels.or(detected).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));

@@ -82,12 +82,16 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     }
     let models = Models::of(&job)?;
     let grounders = Grounders::open(&kept, output)?;
-    fs::create_dir_all(&args.out).map_err(Error::io(&args.out, "make the folder"))?;
-    let _lock = run::hold(&args.out)?;
-    run::keep_config(&args.out, &kept)?;
-    let calls = models.open(|| run::id_of(&args.out, "compare"), output)?;
+    // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
+    let begun = run::is_begun(&args.out).then(|| begin(&args.out, &kept)).transpose()?;
+    let id = run::id_of(&args.out, "compare")?;
+    let calls = models.open(&id, output)?;
     let grounders = grounders.with_detector(&kept, calls.as_ref())?;
     let splitter = splitter(&kept.split, calls.as_ref())?;
+    let _held = begun.map_or_else(|| begin(&args.out, &kept), Ok)?;
+    if calls.is_some() {
+        run::keep_id(&args.out, &id)?;
+    }
     let agents = Agent::all(&kept, args.prior.unwrap_or_default());
     let surveys = Recent::new(SCENES_KEPT);
     let crew = Crew {
@@ -123,6 +127,14 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
             .say(format_args!("the submissions cover {walked} of {of}; score them with `wayword evaluate --partial`"));
     }
     Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
+}
+
+/// Makes or continues the folder, and keeps other processes out of it.
+fn begin(folder: &Path, kept: &Kept) -> Result<run::Held, Error> {
+    fs::create_dir_all(folder).map_err(Error::io(folder, "make the folder"))?;
+    let held = run::hold(folder)?;
+    run::keep_config(folder, kept)?;
+    Ok(held)
 }
 
 /// What splits instructions into phrases.

@@ -20,7 +20,7 @@ use crate::{
     pipeline::{RunPlatform, make},
     plan::Plan,
     platforms::{self, has_hops},
-    run::{RunFolder, WorldData, continued, is_begun, text_name},
+    run::{RunFolder, WorldData, continued, id_of, is_begun, keep_id, text_name},
     settings::{Job, Settings},
     styles::Measured,
     team::Team,
@@ -35,7 +35,7 @@ use std::{
 };
 use wayword_core::{PathRequest, Platform, PlatformError};
 
-pub use summary::Summary;
+pub use summary::{Searched, Summary};
 
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
@@ -113,12 +113,19 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     if !is_begun(folder) {
         refuse_impossible_paths(&plan.items, settings, platform.as_ref())?;
     }
-    let mut run = RunFolder::open(folder, settings)?;
-    let data = WorldData::of(folder)?;
-    let calls = plan.models.open(|| run.id(), output)?;
+    // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
+    let begun = is_begun(folder).then(|| RunFolder::open(folder, settings)).transpose()?;
+    let id = id_of(folder, "run")?;
+    let calls = plan.models.open(&id, output)?;
     let Plan { items, styles, .. } = &plan;
     let lookout = Lookout::of(settings, calls.as_ref(), styles)?;
     let team = Team::new(settings, calls.as_ref(), platform.as_ref())?.with(lookout);
+    let mut run = begun.map_or_else(|| RunFolder::open(folder, settings), Ok)?;
+    // Without models nothing is spent, and the same run gives the same folder byte for byte.
+    if calls.is_some() {
+        keep_id(folder, &id)?;
+    }
+    let data = WorldData::of(folder)?;
 
     let numbers = |measured: &Measured| {
         let style = measured.style.name.clone();
@@ -132,9 +139,9 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
         output.say(format_args!("continuing: {done} of {all} done and kept, {left} to do"));
     }
     let _graceful = interrupt::finish_first(calls.as_ref());
-    let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref());
+    let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref(), team.lookout());
     let workers = calls.as_ref().map_or_else(cores, Calls::workers);
-    let expected = if calls.is_some() { plan.calls_per_item(&left)? } else { 0.0 };
+    let expected = if calls.is_some() { plan.calls_per_item(&left, team.lookout())? } else { 0.0 };
     let pace = Pace::new(left.len(), workers, expected);
     let world = RunPlatform { platform: platform.as_ref(), data: Some(&data), scenes: &KnownScenes::new() };
     let unmade = AtomicUsize::new(left.len());
@@ -168,6 +175,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
         calls.record()?;
     }
     let mut summary = summary::summary(folder, &run, items.len(), calls.as_ref().map(Calls::spent), stopped)?;
+    summary.detector = team.lookout().map(Searched::by);
     summary.calibration = settings.calibration.as_ref().map(|file| file.display().to_string());
     Ok(summary)
 }

@@ -3,8 +3,10 @@
 use super::keep::Fate;
 use crate::{
     calls::Calls,
+    count::count,
     error::{Error, Exit},
     interrupt,
+    looking_for::Lookout,
     losses::{Losses, MOST_IN_A_ROW},
     output::Output,
     run::RunFolder,
@@ -25,6 +27,8 @@ pub(super) struct Stop {
 pub(super) struct Progress<'a> {
     bar: ProgressBar,
     calls: Option<&'a Calls>,
+    /// Looks for things along the paths.
+    lookout: Option<&'a Lookout>,
     /// Items that are not finished yet.
     left: usize,
     unflushed: usize,
@@ -35,7 +39,13 @@ pub(super) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    pub(super) fn new(output: &Output, items: usize, left: usize, calls: Option<&'a Calls>) -> Self {
+    pub(super) fn new(
+        output: &Output,
+        items: usize,
+        left: usize,
+        calls: Option<&'a Calls>,
+        lookout: Option<&'a Lookout>,
+    ) -> Self {
         // With models the calls tell how long it takes: an item may take minutes.
         let bar = if calls.is_some() { output.progress_by_calls(items) } else { output.progress(items, "items") };
         bar.set_position((items - left) as u64);
@@ -44,6 +54,7 @@ impl<'a> Progress<'a> {
         Self {
             bar,
             calls,
+            lookout,
             left,
             unflushed: 0,
             losses: Losses::default(),
@@ -115,6 +126,9 @@ impl<'a> Progress<'a> {
         let mut done = format!("{} written, {} rejected", run.instructions.len(), run.rejected.len());
         if !run.errors.is_empty() {
             done += &format!(", {} failed", run.errors.len());
+        }
+        if let Some(lookout) = self.lookout {
+            done += &format!(", {} searched", count(lookout.views(), "view"));
         }
         self.calls.map_or(done.clone(), |calls| format!("{done}; {}", calls.spent()))
     }

@@ -5,6 +5,7 @@ use crate::{
     calls::Spent,
     count::count,
     error::{Error, Exit},
+    looking_for::Lookout,
     output::tame,
     run::{FailedItem, Rejected, RunFolder, file, lines},
 };
@@ -48,6 +49,9 @@ pub struct Summary {
     pub first_loss: Option<String>,
     /// Who asked, answered, summarised and wrote.
     pub roles: String,
+    /// What a detector did in this command, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detector: Option<Searched>,
     /// The file of `--calibration`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<String>,
@@ -60,6 +64,22 @@ pub struct Summary {
     /// The exit code that says so.
     #[serde(skip)]
     pub exit: Exit,
+}
+
+/// What a detector did.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Searched {
+    /// The detector.
+    pub model: String,
+    /// The views that it looked at, also where the ledger knew what it found there.
+    pub views: usize,
+}
+
+impl Searched {
+    /// What a detector has done so far.
+    pub(super) fn by(lookout: &Lookout) -> Self {
+        Self { model: lookout.name().to_owned(), views: lookout.views() }
+    }
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
@@ -113,6 +133,7 @@ pub(super) fn summary(
             failed => failed,
         },
         roles: roles.unwrap_or_default(),
+        detector: None,
         calibration: None,
         spent,
         stopped: stopped.map(|stop| stop.reason),
@@ -174,8 +195,11 @@ struct Seen {
 }
 
 fn told(provenance: &Provenance) -> String {
+    // The detector's name stands before what its scores mean.
+    let detector = provenance.detector.as_deref().and_then(|told| told.split(" (").next());
+    let finds = detector.map_or(String::new(), |name| format!(", finds by {name}"));
     format!(
-        "questions by {}, answers by {}, summary by {}, text by {}; checked against {}",
+        "questions by {}, answers by {}{finds}, summary by {}, text by {}; checked against {}",
         provenance.asker,
         provenance.answerer,
         provenance.summariser,
@@ -207,6 +231,9 @@ impl fmt::Display for Summary {
         }
         if !self.roles.is_empty() {
             writeln!(f, "roles: {}", self.roles)?;
+        }
+        if let Some(Searched { model, views }) = &self.detector {
+            writeln!(f, "detector: {model} looked at {}", count(*views, "view"))?;
         }
         if self.finished_by_rules > 0 {
             let finished = count(self.finished_by_rules, "instruction");

@@ -25,9 +25,9 @@ use std::path::Path;
 use table::{Table, WithDetector};
 use views::{Labelled, labelled_views};
 use wayword_checks::detected::DetectorFigures;
-use wayword_core::{Caption, Gaze, Look, ModelError, Observation, Platform};
+use wayword_core::{Caption, ModelError, Platform};
 use wayword_synthesis::{
-    detection::{Seeker, seek},
+    detection::{Seeker, seek_in},
     observe::talk_about,
     perception::{Score, score},
 };
@@ -112,7 +112,7 @@ pub fn perceive(
 ) -> Result<Measured, Error> {
     let plan = Plan::looking(job, platform)?;
     let views = labelled_views(&plan, extent.views)?;
-    let calls = plan.models.open(|| Ok(fresh_id("perceive")), output)?;
+    let calls = plan.models.open(&fresh_id("perceive"), output)?;
     let _graceful = interrupt::finish_first(calls.as_ref());
     let mut measured = Measured {
         platform: job.settings.platform.clone(),
@@ -125,12 +125,10 @@ pub fn perceive(
     let lookout = Lookout::of(&job.settings, calls.as_ref(), &[])?;
     measured.detector =
         lookout.as_ref().map(|lookout| measure_detector(&plan, extent.views, lookout, output)).transpose()?;
+    let mut by_way = Vec::new();
     for &perception in ways {
         let settings = Settings { perception, ..job.settings.clone() };
-        let (captions, mut row) = measure(platform, &settings, calls.as_ref(), &views, output)?;
-        if let Some(lookout) = &lookout {
-            row.with_detector = Some(corrected(platform, &captions, &views, lookout)?);
-        }
+        let (captions, row) = measure(platform, &settings, calls.as_ref(), &views, output)?;
         measured.rows.push(row);
         let shown = captions.iter().zip(&views).filter_map(|(captioned, view)| {
             let Captioned { caption, score } = captioned.as_ref()?;
@@ -143,6 +141,13 @@ pub fn perceive(
             })
         });
         measured.shown.extend(shown.take(extent.show));
+        by_way.push(captions);
+    }
+    if let Some(lookout) = &lookout {
+        let corrected = corrected(&by_way, &views, lookout, output)?;
+        for (row, with) in measured.rows.iter_mut().zip(corrected) {
+            row.with_detector = Some(with);
+        }
     }
     if let Some(calls) = &calls {
         calls.record()?;
@@ -193,24 +198,32 @@ fn measure(
     Ok((captions, row))
 }
 
-/// How well the captions fit after a detector looked at each view: what it did not find is left out of their words.
+/// How well the captions of each way of asking fit after a detector looked at the views: what it did not find is left out of
+/// their words. It looks at one view for all ways before it goes on to the next, because it remembers what it made of the last
+/// pictures.
 fn corrected(
-    platform: &dyn Platform,
-    captions: &[Option<Captioned>],
+    by_way: &[Vec<Option<Captioned>>],
     views: &[Labelled],
     lookout: &Lookout,
-) -> Result<WithDetector, Error> {
+    output: &Output,
+) -> Result<Vec<WithDetector>, Error> {
     let seeker = Seeker { nouns: &[], ..lookout.seeker() };
-    let mut scores = Vec::new();
-    for (captioned, view) in captions.iter().zip(views) {
-        let Some(captioned) = captioned else { continue };
-        let gaze = Gaze { heading: view.view.pose.heading, horizontal_fov_rad: view.view.horizontal_fov_rad };
-        let look = Look { gaze, caption: captioned.caption.clone() };
-        let mut seen = [Observation { looks: vec![look], ..Observation::default() }];
-        seek(platform, &view.path, &mut seen, seeker)?;
-        scores.extend(seen[0].looks.iter().map(|look| score(&look.caption.text, &view.labels)));
+    let mut scores = vec![Vec::new(); by_way.len()];
+    let bar = output.progress(views.len(), "views");
+    for (at, view) in views.iter().enumerate() {
+        for (captions, scores) in by_way.iter().zip(&mut scores) {
+            let Some(Captioned { caption, .. }) = captions.get(at).and_then(Option::as_ref) else { continue };
+            let seen = seek_in(&view.view, caption.clone(), seeker)?;
+            scores.push(score(&seen.text, &view.labels));
+        }
+        bar.inc(1);
+        interrupt::check()?;
     }
-    Ok(WithDetector::of(captions.iter().flatten().map(|captioned| &captioned.score), &scores))
+    bar.finish_and_clear();
+    let with = |(captions, after): (&Vec<Option<Captioned>>, &Vec<Score>)| {
+        WithDetector::of(captions.iter().flatten().map(|captioned| &captioned.score), after)
+    };
+    Ok(by_way.iter().zip(&scores).map(with).collect())
 }
 
 /// Writes what was measured of a detector.

@@ -1,15 +1,14 @@
-//! The views that are captioned: those ahead along random paths or episodes, each once, where the platform has labels.
+//! The views that are captioned: those along random paths or episodes, each once, where the platform has labels.
 
 use crate::{count::count, error::Error, item::Item, plan::Plan, settings::Settings};
 use std::collections::BTreeSet;
 use wayword_checks::{Evidence, SeenThing};
 use wayword_core::{Frame, Gaze, Path, Platform, PlatformError, SceneId, View};
+use wayword_synthesis::observe::gazes;
 
 /// A view with what its labels say.
 pub(super) struct Labelled {
     pub(super) scene: SceneId,
-    /// A path of the one frame that it is seen from.
-    pub(super) path: Path,
     pub(super) view: View,
     pub(super) labels: Vec<SeenThing>,
 }
@@ -22,15 +21,19 @@ pub(super) fn labelled_views(plan: &Plan<'_>, most: usize) -> Result<Vec<Labelle
     let mut blind = 0;
     'paths: for item in &plan.items {
         let Some(path) = path(item, settings, platform)? else { continue };
-        for frame in &path.frames {
+        let looks = path
+            .frames
+            .iter()
+            .flat_map(|frame| gazes(frame, settings.frames).into_iter().map(move |gaze| (frame, gaze)));
+        for (frame, gaze) in looks {
             if views.len() == most {
                 break 'paths;
             }
-            let place = (path.scene.clone(), frame.place(), micro_rad(frame));
+            let place = (path.scene.clone(), frame.place(), micro_rad(gaze));
             if !looked_at.insert(place) {
                 continue;
             }
-            match labelled(platform, &path, frame)? {
+            match labelled(platform, &path, frame, gaze)? {
                 Some(view) => views.push(view),
                 None => blind += 1,
             }
@@ -54,15 +57,15 @@ pub(super) fn path(item: &Item, settings: &Settings, platform: &dyn Platform) ->
     }
 }
 
-fn micro_rad(frame: &Frame) -> u64 {
-    (frame.pose.heading.rad() * 1e6).round() as u64
+fn micro_rad(gaze: Gaze) -> u64 {
+    (gaze.heading.rad() * 1e6).round() as u64
 }
 
-fn labelled(platform: &dyn Platform, path: &Path, frame: &Frame) -> Result<Option<Labelled>, Error> {
-    let view = platform.look(&path.scene, frame, Gaze::quarter(frame.pose.heading))?;
+fn labelled(platform: &dyn Platform, path: &Path, frame: &Frame, gaze: Gaze) -> Result<Option<Labelled>, Error> {
+    let view = platform.look(&path.scene, frame, gaze)?;
     let one = Path { frames: vec![frame.clone()], ..path.clone() };
     let evidence = Evidence::from_labels(&one, &[vec![view.clone()]]);
     let labels = evidence.and_then(|evidence| evidence.frames.into_iter().next()).map(|frame| frame.things);
     let labels = labels.filter(|labels| !labels.is_empty());
-    Ok(labels.map(|labels| Labelled { scene: path.scene.clone(), path: one, view, labels }))
+    Ok(labels.map(|labels| Labelled { scene: path.scene.clone(), view, labels }))
 }

@@ -1,0 +1,173 @@
+//! What becomes of captions and claims by what a detector found: seen, denied, or not sure.
+
+use super::{
+    PROPOSED, Seeker, Wanted,
+    finds::{Finds, Place, Seen, finds, frames},
+};
+use crate::{
+    dialogue::{RulesSummariser, Summariser},
+    observe::{CONDENSED_WORDS, ObserveError},
+    seeing::caption_text,
+};
+use std::collections::BTreeSet;
+use wayword_checks::detected::{Judged, judge};
+use wayword_core::{Caption, Look, ModelError, Observation, Sighting, Where, Witness};
+use wayword_language::lexicon::{agree, normal};
+
+/// What the finds are for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// Captions are corrected and completed.
+    Captions,
+    /// Claims are judged of which no caption tells.
+    Claims,
+}
+
+/// The looks at which the detector looked.
+type Places = BTreeSet<Place>;
+
+/// Looks for what is wanted in the views, and puts what it finds and misses into the captions.
+///
+/// # Errors
+/// When there is no view for captions, or the detector fails.
+pub(super) fn testify(
+    seen: &[Seen],
+    observations: &mut [Observation],
+    seeker: Seeker<'_>,
+    wanted: &Wanted,
+    purpose: Purpose,
+) -> Result<(), ObserveError> {
+    if seen.is_empty() && purpose == Purpose::Captions {
+        return Err(ModelError::NothingToSee {
+            name: seeker.detector.name().to_owned(),
+            needs: "a picture",
+            hint: "use a platform or data folder with pictures, or leave --detector out",
+        }
+        .into());
+    }
+    if seen.is_empty() || wanted.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<&str> = wanted.keys().map(String::as_str).collect();
+    let finds = finds(seen, &names, seeker)?;
+    let (by, looked_at) = (seeker.detector.name(), seen.iter().map(|seen| (seen.frame, seen.look)).collect());
+    let was: Vec<Vec<Sighting>> = looks(observations).map(|look| look.caption.sightings.clone()).collect();
+    for ((name, before), finds) in wanted.iter().zip(finds) {
+        let judged = judge(seeker.figures.of(name), &frames(seen, &finds), *before);
+        let is_proposal = *before <= PROPOSED;
+        match (judged, purpose) {
+            (Judged::There, _) => found(observations, name, &finds, &looked_at, by),
+            _ if is_proposal => {}
+            (Judged::Absent, Purpose::Captions) => struck_out(observations, name, by),
+            (Judged::Open, Purpose::Captions) => doubted(observations, name, &finds, &looked_at, by),
+            (Judged::Absent, Purpose::Claims) => said_of_all(observations, name, Witness::Denied, by),
+            (Judged::Open, Purpose::Claims) => said_of_all(observations, name, Witness::Unsure, by),
+        }
+    }
+    if purpose == Purpose::Captions {
+        let mut was = was.into_iter();
+        observations.iter_mut().try_for_each(|observation| retell(observation, &mut was))?;
+    }
+    Ok(())
+}
+
+fn looks(observations: &mut [Observation]) -> impl Iterator<Item = &mut Look> {
+    observations.iter_mut().flat_map(|seen| &mut seen.looks)
+}
+
+/// The sightings of that name.
+fn of<'a>(caption: &'a mut Caption, name: &'a str) -> impl Iterator<Item = &'a mut Sighting> {
+    caption.sightings.iter_mut().filter(move |sighting| normal(&sighting.name) == name)
+}
+
+/// It is there: it is seen wherever it was found.
+fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
+    each(observations, looked_at, |at, look| {
+        let Some(spots) = finds.get(&at) else {
+            // It is somewhere along the path; the caption that names it here may be wrong all the same.
+            doubt(look, name, by);
+            return;
+        };
+        let best = spots[0];
+        let place = Some(Where::at(best.off_rad, look.gaze.horizontal_fov_rad));
+        let mut is_named = false;
+        for sighting in of(&mut look.caption, name) {
+            is_named = true;
+            (sighting.witness, sighting.place, sighting.spot) = (Witness::Seen, place, Some(best));
+        }
+        // A more exact name for it was perhaps said ("dining table"): it stays, and nothing is said twice.
+        let is_said = |sighting: &Sighting| sighting.witness == Witness::Seen && agree(&sighting.name, name);
+        if !is_named && !look.caption.sightings.iter().any(is_said) {
+            let several = spots.len() > 1;
+            let spot = Some(best);
+            look.caption.sightings.push(Sighting { place, spot, several, ..Sighting::new(name, Witness::Seen, by) });
+        }
+    });
+}
+
+/// It is nowhere: the captions that name it are wrong.
+fn struck_out(observations: &mut [Observation], name: &str, by: &str) {
+    for look in looks(observations) {
+        for sighting in of(&mut look.caption, name) {
+            *sighting = Sighting::new(name, Witness::Denied, by);
+        }
+    }
+}
+
+/// It may be there: where a caption saw it and the detector did not, that is a guess.
+fn doubted(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
+    each(observations, looked_at, |at, look| {
+        if !finds.contains_key(&at) {
+            doubt(look, name, by);
+        }
+    });
+}
+
+/// What the detector says of a claim, in every look.
+fn said_of_all(observations: &mut [Observation], name: &str, witness: Witness, by: &str) {
+    looks(observations).for_each(|look| look.caption.sightings.push(Sighting::new(name, witness, by)));
+}
+
+fn doubt(look: &mut Look, name: &str, by: &str) {
+    for sighting in of(&mut look.caption, name).filter(|sighting| sighting.witness == Witness::Seen) {
+        sighting.witness = Witness::Unsure;
+        by.clone_into(&mut sighting.by);
+    }
+}
+
+/// Changes the looks at which the detector looked.
+fn each(observations: &mut [Observation], looked_at: &Places, mut change: impl FnMut(Place, &mut Look)) {
+    for (frame, look) in looked_at {
+        if let Some(found) = observations.get_mut(*frame).and_then(|seen| seen.looks.get_mut(*look)) {
+            change((*frame, *look), found);
+        }
+    }
+}
+
+/// What a detector changed is told again by rules, so that no words name what the caption does not hold. `was` gives the
+/// sightings of each look as they were.
+fn retell(observation: &mut Observation, was: &mut impl Iterator<Item = Vec<Sighting>>) -> Result<(), ModelError> {
+    let mut is_changed = false;
+    for (look, was) in observation.looks.iter_mut().zip(was) {
+        let caption = &mut look.caption;
+        if caption.sightings == was {
+            continue;
+        }
+        is_changed = true;
+        caption.text = caption_text(caption.room.as_deref(), &caption.perhaps_rooms, &caption.sightings, &caption.ways);
+        if !caption.is_structured {
+            caption.by = Some(RulesSummariser.name().to_owned());
+        }
+    }
+    if !is_changed {
+        return Ok(());
+    }
+    if let [only] = &observation.looks[..] {
+        observation.summary.clone_from(&only.caption.text);
+        return Ok(());
+    }
+    let captions: Vec<(&str, &Caption)> = observation.looks.iter().map(|look| ("", &look.caption)).collect();
+    observation.summary = RulesSummariser.condense(&captions, CONDENSED_WORDS)?.text;
+    observation.by = Some(RulesSummariser.name().to_owned());
+    Ok(())
+}
