@@ -1,13 +1,15 @@
 //! Six pictures around a point, and views sampled from them as the Matterport3D simulator does.
 
-use crate::bilinear::bilinear;
 use crate::camera::check_fov;
+use crate::cube_row::{Rays, Side};
 use crate::picture::{RenderError, check_finite, check_size};
-use glam::{DMat3, Vec3};
+use glam::DMat3;
 use rayon::prelude::*;
 
 /// The longest side a face may have.
 const MAX_FACE_PX: u32 = 8192;
+/// Rows that a thread draws at a time, at least.
+const MIN_ROWS: usize = 8;
 
 /// One side of the cube, square.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,8 +23,7 @@ pub struct Face {
 /// The six faces in Matterport3D's skybox order: 0 up, 1 to 4 around, 5 down.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
-    /// GL's cube has them as +X = 2, -X = 4, +Y = 0, -Y = 5, +Z = 1, -Z = 3.
-    faces: [Face; 6],
+    sides: [Side; 6],
 }
 
 /// Why pictures do not make a cube.
@@ -65,7 +66,7 @@ impl CubeMap {
                 return Err(CubeMapError::Face { face: index, side_px: face.side_px, bytes });
             }
         }
-        Ok(Self { faces })
+        Ok(Self { sides: faces.map(Side::new) })
     }
 
     /// A cube map from the faces 0 to 5 side by side (Matterport3D's `*_skybox_small.jpg`), RGB.
@@ -83,38 +84,7 @@ impl CubeMap {
             let part = rows.flat_map(|row| row[3 * side * index..3 * side * (index + 1)].iter().copied());
             Face { side_px: height, rgb: part.collect() }
         };
-        Ok(Self { faces: std::array::from_fn(face) })
-    }
-
-    /// The faces 0 to 5.
-    #[must_use]
-    pub fn faces(&self) -> &[Face; 6] {
-        &self.faces
-    }
-
-    /// The colour in a direction of GL's cube frame, 0..=255 per channel.
-    fn look_up(&self, direction: Vec3) -> Vec3 {
-        let Vec3 { x, y, z } = direction;
-        let size = direction.abs();
-        // Face, the two coordinates on it and the major one, as GL's cube lookup has them.
-        let (face, s, t, major) = if size.x >= size.y && size.x >= size.z {
-            if x >= 0.0 { (2, -z, -y, size.x) } else { (4, z, -y, size.x) }
-        } else if size.y >= size.z {
-            if y >= 0.0 { (0, x, z, size.y) } else { (5, x, -z, size.y) }
-        } else if z >= 0.0 {
-            (1, x, -y, size.z)
-        } else {
-            (3, -x, -y, size.z)
-        };
-        let scale = 0.5 / major;
-        self.faces[face].bilinear(s * scale + 0.5, t * scale + 0.5)
-    }
-}
-
-impl Face {
-    fn bilinear(&self, u: f32, v: f32) -> Vec3 {
-        let side = self.side_px as usize;
-        bilinear(&self.rgb, [side, side], [u * side as f32, v * side as f32])
+        Ok(Self { sides: std::array::from_fn(|index| Side::new(face(index))) })
     }
 }
 
@@ -145,14 +115,11 @@ pub fn sample_view(
     let axes = -(world_from_skybox.transpose() * camera.world_from_camera());
     let (right, up, forward) = (axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), -axes.z_axis.as_vec3());
     let pixel = (1.0 / camera.focal_px()) as f32;
+    let across: Vec<f32> = (0..width).map(|x| (x as f32 + 0.5 - 0.5 * width as f32) * pixel).collect();
     let mut rgb = vec![0; 3 * width as usize * height as usize];
-    rgb.par_chunks_exact_mut(3 * width as usize).enumerate().for_each(|(y, row)| {
+    rgb.par_chunks_exact_mut(3 * width as usize).with_min_len(MIN_ROWS).enumerate().for_each(|(y, row)| {
         let start = forward + up * ((0.5 * height as f32 - (y as f32 + 0.5)) * pixel);
-        for (x, out) in row.chunks_exact_mut(3).enumerate() {
-            let direction = start + right * ((x as f32 + 0.5 - 0.5 * width as f32) * pixel);
-            let colour = cube.look_up(direction) + Vec3::splat(0.5);
-            out.copy_from_slice(&colour.to_array().map(|value| value as u8));
-        }
+        Rays { start, step: right }.draw(&cube.sides, &across, row);
     });
     Ok(rgb)
 }

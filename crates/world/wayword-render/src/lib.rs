@@ -33,6 +33,7 @@ mod bilinear;
 mod camera;
 mod clip;
 mod cluster;
+mod cube_row;
 mod cubemap;
 mod evident;
 mod mesh;

@@ -1,0 +1,177 @@
+//! One row of a view of a cube map.
+//!
+//! The rays of a row are evenly spaced, so along a face all that the lookup needs is linear in the column. The work is done
+//! for a few columns at a time, in loops without branches, which compilers turn into vector instructions.
+
+use crate::cubemap::Face;
+use glam::Vec3;
+
+/// Columns that are worked on at a time.
+const COLUMNS: usize = 64;
+
+/// Added to a number from 0 up to this, it leaves no fraction: then the low bits of the sum are the nearest whole number.
+const WHOLE: f32 = 8_388_608.0;
+
+/// One side of the cube, made for lookups.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Side {
+    /// Pixels per row, and rows: at least two, so that each place lies between two of them.
+    side_px: usize,
+    /// Three bytes per pixel, from the top left, and two more, so that eight bytes can be read where two pixels are.
+    rgb: Vec<u8>,
+}
+
+impl Side {
+    /// `face` is checked: square, and not empty.
+    pub(crate) fn new(face: Face) -> Self {
+        let (side_px, mut rgb) = match face.side_px as usize {
+            1 => (2, face.rgb.repeat(4)),
+            side_px => (side_px, face.rgb),
+        };
+        rgb.extend([0; 2]);
+        Self { side_px, rgb }
+    }
+
+    /// The pixel at a byte and its neighbour on the right, each in the lowest three bytes.
+    fn pair(&self, start: usize) -> [u32; 2] {
+        let eight = self.rgb[start..].first_chunk().copied().unwrap_or_default();
+        let both = u64::from_le_bytes(eight);
+        [both as u32, (both >> 24) as u32]
+    }
+
+    /// The four pixels from the one at a column and a row on: left and right in that row, left and right in the next.
+    fn four(&self, [x, y]: [u32; 2]) -> [u32; 4] {
+        let row = 3 * self.side_px;
+        let start = y as usize * row + 3 * x as usize;
+        let ([a, b], [c, d]) = (self.pair(start), self.pair(start + row));
+        [a, b, c, d]
+    }
+}
+
+/// The rays of a row of pixels, in GL's cube frame: `start + step * across`.
+pub(crate) struct Rays {
+    pub(crate) start: Vec3,
+    pub(crate) step: Vec3,
+}
+
+impl Rays {
+    /// Draws the row: three bytes for each of the columns, which lie at `across`.
+    pub(crate) fn draw(&self, sides: &[Side; 6], across: &[f32], row: &mut [u8]) {
+        for (across, row) in across.chunks(COLUMNS).zip(row.chunks_mut(3 * COLUMNS)) {
+            let met: [u32; COLUMNS] = self.sides_met(across);
+            let mut from = 0;
+            for run in met[..across.len()].chunk_by(|a, b| a == b) {
+                let (to, side) = (from + run.len(), &sides[run[0] as usize]);
+                let rays = [self.start, self.step].map(|ray| on_side(run[0], ray));
+                Places::new(side.side_px, rays, &across[from..to]).draw(side, &mut row[3 * from..3 * to]);
+                from = to;
+            }
+        }
+    }
+
+    /// For each ray the side of the cube that it meets.
+    fn sides_met(&self, across: &[f32]) -> [u32; COLUMNS] {
+        let mut met = [0; COLUMNS];
+        for (met, across) in met.iter_mut().zip(across) {
+            let [x, y, z] = (self.start + self.step * *across).to_array();
+            let of_x = if x >= 0.0 { 2 } else { 4 };
+            let of_y = if y >= 0.0 { 0 } else { 5 };
+            let of_z = if z >= 0.0 { 1 } else { 3 };
+            let (x, y, z) = (x.abs(), y.abs(), z.abs());
+            let of_yz = if y >= z { of_y } else { of_z };
+            *met = if (x >= y) & (x >= z) { of_x } else { of_yz };
+        }
+        met
+    }
+}
+
+/// The coordinates of a ray across and down a side, and the one along which the side lies, as GL's cube lookup has them: +X
+/// is side 2, -X 4, +Y 0, -Y 5, +Z 1 and -Z 3.
+fn on_side(side: u32, Vec3 { x, y, z }: Vec3) -> [f32; 3] {
+    match side {
+        0 => [x, z, y],
+        1 => [x, -y, z],
+        2 => [-z, -y, x],
+        3 => [-x, -y, -z],
+        4 => [z, -y, -x],
+        _ => [x, -z, -y],
+    }
+}
+
+/// Where the rays of a few columns meet a side: the pixel on the upper left of each place, and how far the place is from that
+/// pixel's centre to those of its neighbours, in 0..=1.
+struct Places {
+    columns: usize,
+    left: [u32; COLUMNS],
+    above: [u32; COLUMNS],
+    right: [f32; COLUMNS],
+    down: [f32; COLUMNS],
+}
+
+impl Places {
+    fn new(side_px: usize, [start, step]: [[f32; 3]; 2], across: &[f32]) -> Self {
+        let mut places = Self {
+            columns: across.len(),
+            left: [0; COLUMNS],
+            above: [0; COLUMNS],
+            right: [0.0; COLUMNS],
+            down: [0.0; COLUMNS],
+        };
+        let (side, last) = (side_px as f32, (side_px - 1) as f32);
+        let split = |place: f32| {
+            let at = place * side - 0.5;
+            // Not by `clamp`: what is not a number becomes 0.
+            let at = if at > 0.0 { at } else { 0.0 };
+            let at = if at < last { at } else { last };
+            // At the far edge the second pixel has all the weight.
+            let first = count(at).min(side_px as u32 - 2);
+            (first, at - first as i32 as f32)
+        };
+        let spots = places.left.iter_mut().zip(&mut places.above).zip(places.right.iter_mut().zip(&mut places.down));
+        for (((left, above), (right, down)), across) in spots.zip(across) {
+            let [s, t, major]: [f32; 3] = std::array::from_fn(|axis| start[axis] + step[axis] * across);
+            let scale = 0.5 / major;
+            (*left, *right) = split(s * scale + 0.5);
+            (*above, *down) = split(t * scale + 0.5);
+        }
+        places
+    }
+
+    fn draw(&self, side: &Side, row: &mut [u8]) {
+        // Loops over one index of arrays: compilers make vectors of them, and not of the same loops over iterators.
+        let columns = self.columns.min(COLUMNS);
+        let mut pixels = [[0; COLUMNS]; 4];
+        for at in 0..columns {
+            for (pixels, pixel) in pixels.iter_mut().zip(side.four([self.left[at], self.above[at]])) {
+                pixels[at] = pixel;
+            }
+        }
+        let mut colours = [0; COLUMNS];
+        let [a, b, c, d] = &pixels;
+        for at in 0..columns {
+            colours[at] = between([a[at], b[at], c[at], d[at]], [self.right[at], self.down[at]]);
+        }
+        for (colour, pixel) in colours.iter().zip(row.chunks_exact_mut(3)) {
+            let [red, green, blue, _] = colour.to_le_bytes();
+            pixel.copy_from_slice(&[red, green, blue]);
+        }
+    }
+}
+
+/// The colour between four pixels, bilinear and rounded, channel by channel.
+fn between(pixels: [u32; 4], [right, down]: [f32; 2]) -> u32 {
+    let channel = |shift: u32| {
+        let [a, b, c, d] = pixels.map(|pixel| f32::from((pixel >> shift) as u8));
+        let (top, bottom) = (a + (b - a) * right, c + (d - c) * right);
+        (count(top + (bottom - top) * down + 0.5) & 0xff) << shift
+    };
+    channel(0) | channel(8) | channel(16)
+}
+
+/// How many whole numbers above 0 fit into a number in 0..[`WHOLE`]. (A conversion would ask whether the number fits into an
+/// integer, and `f32::floor` is a function call on the baseline x86-64.)
+fn count(value: f32) -> u32 {
+    let raised = value + WHOLE;
+    let is_above = raised - WHOLE > value;
+    raised.to_bits() - WHOLE.to_bits() - u32::from(is_above)
+}
